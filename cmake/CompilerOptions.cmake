@@ -1,0 +1,13 @@
+# Warnings and sanitizers, applied target by target: framewatch_options(<target>).
+function(framewatch_options target)
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wcast-qual
+    -Woverloaded-virtual -Wnon-virtual-dtor $<$<BOOL:${FRAMEWATCH_WERROR}>:-Werror>)
+  if(FRAMEWATCH_SANITIZE)
+    target_compile_options(${target} PUBLIC -fsanitize=${FRAMEWATCH_SANITIZE}
+      -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_compile_definitions(${target} PUBLIC _GLIBCXX_ASSERTIONS)
+    target_link_options(${target} PUBLIC -fsanitize=${FRAMEWATCH_SANITIZE})
+  endif()
+endfunction()

@@ -1,0 +1,31 @@
+# Debian's LCM ships neither a CMake package nor lcm_wrap_types, and its pkg-config file needs
+# glib's: find it by hand, and generate one header per .lcm file.
+find_path(LCM_INCLUDE_DIR lcm/lcm-cpp.hpp REQUIRED)
+find_library(LCM_LIBRARY lcm REQUIRED)
+find_program(LCM_GEN lcm-gen REQUIRED)
+
+if(NOT TARGET lcm::lcm)
+  add_library(lcm::lcm UNKNOWN IMPORTED)
+  set_target_properties(lcm::lcm PROPERTIES IMPORTED_LOCATION ${LCM_LIBRARY}
+    INTERFACE_INCLUDE_DIRECTORIES ${LCM_INCLUDE_DIR})
+endif()
+
+# framewatch_lcm_types(<target> <package> <file>...): interface library with the generated headers,
+# included as <package/name.hpp>; a system include, because generated code is not held to our flags.
+function(framewatch_lcm_types target package)
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/generated)
+  set(headers)
+  foreach(file IN LISTS ARGN)
+    get_filename_component(name ${file} NAME_WE)
+    set(header ${out}/${package}/${name}.hpp)
+    add_custom_command(OUTPUT ${header}
+      COMMAND ${LCM_GEN} --cpp --cpp-std=c++11 --cpp-hpath ${out}
+              ${CMAKE_CURRENT_SOURCE_DIR}/${file}
+      DEPENDS ${file} COMMENT "lcm-gen ${file}" VERBATIM)
+    list(APPEND headers ${header})
+  endforeach()
+  add_custom_target(${target}_headers DEPENDS ${headers})
+  add_library(${target} INTERFACE)
+  add_dependencies(${target} ${target}_headers)
+  target_include_directories(${target} SYSTEM INTERFACE ${out} ${LCM_INCLUDE_DIR})
+endfunction()

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/pipeline.h"
+
+namespace framewatch::daemon {
+
+/// Where a sensor axis' samples come from on LCM; node < 0: file only, matched by channel name.
+struct AxisSource {
+  std::string lcm_channel;
+  int node = -1;
+  int axis = 0;  ///< 0 x, 1 y, 2 z
+};
+
+struct LcmSettings {
+  std::string url = "udpm://239.255.76.67:7667?ttl=0";
+  std::string prefix = "FRAMEWATCH_";  ///< of the channels the daemon publishes on
+  int queue_capacity = 10000;          ///< messages waiting for the estimator
+  int receive_buffer_bytes = 4194304;
+  int boxplot_every = 1;  ///< publish boxplot statistics with every n-th window
+};
+
+/// One configuration file, defaults filled in.
+struct Config {
+  std::string path;
+  std::string sha256;
+  PipelineConfig pipeline;
+  std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
+  LcmSettings lcm;
+};
+
+struct ConfigProblem {
+  std::string where;  ///< file:line:column, or file
+  std::string message;
+};
+
+/// Reads and validates. Empty optional and every problem at once when it is not valid.
+std::optional<Config> load_config(const std::string& path, std::vector<ConfigProblem>& problems);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimator/motion/sample.h"
+
+namespace framewatch {
+
+enum class WindowStatus { warming_up, valid, nothing_identifiable };
+
+/// Why a parameter has no value; observable means it has one.
+enum class Observability { observable, warming_up, quiet, ill_determined, channel_lost };
+
+/// Statistics of one parameter over the last windows in which it was observable, as MATLAB's
+/// boxplot draws them; NaN when there was none.
+struct BoxplotStatistics {
+  double q1;
+  double median;
+  double q3;
+  double whisker_low;
+  double whisker_high;
+  int outliers = 0;
+  int count = 0;  ///< windows behind the numbers
+};
+
+/// What one window says. Vectors follow the parameter table; entries that are not observable are
+/// NaN. A value-initialised estimate is not valid.
+struct WindowEstimate {
+  Time start;
+  Time end;
+  std::int64_t sequence = -1;
+  WindowStatus status = WindowStatus::warming_up;
+  int rows = 0;                   ///< sample sets in the window
+  double residual_ratio = 0;      ///< rms residual over rms response
+  std::vector<double> value;      ///< SI
+  std::vector<double> std_error;  ///< SI, one standard deviation
+  std::vector<Observability> reason;
+  std::vector<double> snr;          ///< regressor energy over its expected noise energy
+  std::vector<double> prior_share;  ///< 0..1
+  std::vector<BoxplotStatistics> boxplot;
+};
+
+}  // namespace framewatch

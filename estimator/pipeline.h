@@ -1,0 +1,74 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/estimate.h"
+#include "estimator/motion/sample.h"
+#include "estimator/options.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/sensors.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+/// Counts of what happened to the samples of one axis.
+struct AxisCounters {
+  std::int64_t received = 0;
+  std::int64_t missing = 0;   ///< instants closed without a value
+  std::int64_t late = 0;      ///< came after their instant was closed
+  std::int64_t repaired = 0;  ///< single losses filled by interpolation
+  std::int64_t rejected = 0;  ///< NaN, infinite, duplicate, off the grid
+};
+
+struct PipelineCounters {
+  std::int64_t sample_sets = 0;
+  std::int64_t gaps = 0;     ///< breaks that restarted the window
+  std::int64_t windows = 0;  ///< estimates given to the sink
+  std::int64_t retunes = 0;  ///< times the filters were re-tuned
+  std::vector<AxisCounters> axes;
+};
+
+/// Everything the estimating process needs to know, validated by problems().
+struct PipelineConfig {
+  Structure structure;
+  std::vector<SensorAxis> axes;
+  EstimatorOptions options;
+  /// Design parameters, theta order, SI; empty when the drawings say nothing.
+  Eigen::VectorXd design;
+};
+
+std::vector<std::string> problems(const PipelineConfig& config);
+
+/// Samples in, window estimates out. Never asks the time, never throws after construction, never
+/// allocates per sample once the input is steady.
+class Pipeline {
+ public:
+  using Sink = std::function<void(const WindowEstimate&)>;
+
+  /// Precondition: problems(config) is empty.
+  Pipeline(const PipelineConfig& config, Sink sink);
+  ~Pipeline();
+
+  /// One axis at one instant. Any order within options.lateness_s.
+  void push(const AccelSample& sample);
+  /// The input has ended: closes the instants still open.
+  void finish();
+
+  const ParameterTable& parameters() const;
+  /// Design the filters are tuned to now, theta order.
+  const Eigen::VectorXd& design() const;
+  int window_rows() const;
+  int hop_rows() const;
+  PipelineCounters counters() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace framewatch

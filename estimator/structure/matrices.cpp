@@ -1,0 +1,111 @@
+#include "estimator/structure/matrices.h"
+
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+namespace framewatch {
+namespace {
+
+/// Plan coordinates of the frame lines, from the first of each direction.
+std::vector<double> lines(const std::vector<double>& spans) {
+  std::vector<double> at{0.0};
+  for (const double span : spans) at.push_back(at.back() + span);
+  return at;
+}
+
+}  // namespace
+
+std::vector<Element> elements(const Structure& s, const ParameterTable& table) {
+  std::vector<Element> all(static_cast<std::size_t>(table.elements()));
+  for (int story = 1; story <= s.stories; ++story) {
+    for (int f = 0; f < s.frames(); ++f) {
+      Element e{story, f, -1, table.frame_stiffness(story, f), {{s.dof(story, f), 1.0}}};
+      if (story > 1) e.b.emplace_back(s.dof(story - 1, f), -1.0);
+      all[static_cast<std::size_t>(e.stiffness)] = e;
+    }
+    for (int p = 0; p < s.panels(); ++p) {
+      const int j = p % (s.m() - 1);
+      const int l = p / (s.m() - 1);
+      const double lx = s.span_x[static_cast<std::size_t>(j)];
+      const double ly = s.span_y[static_cast<std::size_t>(l)];
+      const double bu = std::sqrt(lx / ly);
+      const double bv = std::sqrt(ly / lx);
+      Element e{story, -1, p, table.panel_stiffness(story, p), {}};
+      e.b = {{s.dof(story, l), -bu},
+             {s.dof(story, l + 1), bu},
+             {s.dof(story, s.n() + j), -bv},
+             {s.dof(story, s.n() + j + 1), bv}};
+      all[static_cast<std::size_t>(e.stiffness)] = e;
+    }
+  }
+  return all;
+}
+
+Matrices assemble(const Structure& s, const ParameterTable& table, const Eigen::VectorXd& theta) {
+  const int nd = s.degrees_of_freedom();
+  Matrices out{Eigen::VectorXd(nd), Eigen::MatrixXd::Zero(nd, nd), Eigen::MatrixXd::Zero(nd, nd)};
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f) out.mass[s.dof(story, f)] = s.frame_mass(story, f);
+  for (const Element& e : elements(s, table)) {
+    const double k = theta[e.stiffness];
+    const double c = theta[e.stiffness + table.elements()];
+    for (const auto& [row, br] : e.b) {
+      for (const auto& [column, bc] : e.b) {
+        out.stiffness(row, column) += k * br * bc;
+        out.damping(row, column) += c * br * bc;
+      }
+    }
+  }
+  return out;
+}
+
+Eigen::MatrixXd floor_constraint(const Structure& s) {
+  const int nd = s.degrees_of_freedom();
+  if (s.floor == FloorModel::flexible) return Eigen::MatrixXd::Identity(nd, nd);
+  const std::vector<double> y = lines(s.span_y);
+  const std::vector<double> x = lines(s.span_x);
+  const int f = s.frames();
+  Eigen::MatrixXd motions = Eigen::MatrixXd::Zero(f, 3);
+  for (int l = 0; l < s.n(); ++l)
+    motions.row(l) << 1, 0, -(y[static_cast<std::size_t>(l)] - y.back() / 2);
+  for (int j = 0; j < s.m(); ++j)
+    motions.row(s.n() + j) << 0, 1, x[static_cast<std::size_t>(j)] - x.back() / 2;
+  std::vector<Eigen::VectorXd> columns;
+  for (int story = 1; story <= s.stories; ++story) {
+    Eigen::VectorXd mass(f);
+    for (int i = 0; i < f; ++i) mass[i] = s.frame_mass(story, i);
+    std::vector<Eigen::VectorXd> basis;
+    for (int c = 0; c < 3; ++c) {
+      Eigen::VectorXd v = motions.col(c);
+      const double before = v.dot(mass.cwiseProduct(v));
+      for (const Eigen::VectorXd& b : basis) v -= b * b.dot(mass.cwiseProduct(v));
+      const double norm2 = v.dot(mass.cwiseProduct(v));
+      if (norm2 <= 1e-12 * before || before == 0) continue;
+      basis.push_back(v / std::sqrt(norm2));
+      Eigen::VectorXd column = Eigen::VectorXd::Zero(nd);
+      column.segment(s.dof(story, 0), f) = basis.back();
+      columns.push_back(column);
+    }
+  }
+  Eigen::MatrixXd out(nd, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    out.col(static_cast<Eigen::Index>(c)) = columns[c];
+  return out;
+}
+
+std::vector<double> natural_frequencies_hz(const Structure& s, const ParameterTable& table,
+                                           const Eigen::VectorXd& theta) {
+  const Matrices matrices = assemble(s, table, theta);
+  const Eigen::MatrixXd r = floor_constraint(s);
+  const Eigen::MatrixXd m = r.transpose() * matrices.mass.asDiagonal() * r;
+  const Eigen::MatrixXd k = r.transpose() * matrices.stiffness * r;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, m,
+                                                                         Eigen::EigenvaluesOnly);
+  std::vector<double> out;
+  for (const double w2 : solver.eigenvalues())
+    out.push_back(std::sqrt(std::max(w2, 0.0)) / (2 * M_PI));
+  return out;
+}
+
+}  // namespace framewatch

@@ -1,0 +1,62 @@
+#include "estimator/structure/parameter_table.h"
+
+#include <cmath>
+
+#include "estimator/structure/matrices.h"
+
+namespace framewatch {
+namespace {
+
+std::string panel_name(const Structure& s, int panel) {
+  const int columns = s.m() - 1;
+  return s.frames_y[static_cast<std::size_t>(panel % columns)] +
+         s.frames_x[static_cast<std::size_t>(panel / columns)];
+}
+
+}  // namespace
+
+ParameterTable::ParameterTable(const Structure& s)
+    : stories_(s.stories), n_(s.n()), m_(s.m()), panels_(s.panels()) {
+  const auto add_group = [&](const char* prefix, ParameterKind kind, int first, int count,
+                             const char* unit) {
+    const bool panel =
+        kind == ParameterKind::panel_stiffness || kind == ParameterKind::panel_damping;
+    for (int story = 1; story <= s.stories; ++story) {
+      for (int i = first; i < first + count; ++i) {
+        const std::string place = panel ? panel_name(s, i) : s.frame_name(i);
+        parameters_.push_back({std::string(prefix) + "_" + std::to_string(story) + "_" + place,
+                               kind, story, panel ? -1 : i, panel ? i : -1, unit});
+      }
+    }
+  };
+  add_group("kx", ParameterKind::frame_stiffness, 0, n_, "N/m");
+  add_group("ky", ParameterKind::frame_stiffness, n_, m_, "N/m");
+  add_group("Gk", ParameterKind::panel_stiffness, 0, panels_, "N/(rad*m)");
+  add_group("cx", ParameterKind::frame_damping, 0, n_, "N*s/m");
+  add_group("cy", ParameterKind::frame_damping, n_, m_, "N*s/m");
+  add_group("Gc", ParameterKind::panel_damping, 0, panels_, "N*s/(rad*m)");
+}
+
+int ParameterTable::frame_stiffness(int story, int frame) const {
+  if (frame < n_) return (story - 1) * n_ + frame;
+  return stories_ * n_ + (story - 1) * m_ + (frame - n_);
+}
+
+int ParameterTable::panel_stiffness(int story, int panel) const {
+  return stories_ * (n_ + m_) + (story - 1) * panels_ + panel;
+}
+
+std::optional<int> ParameterTable::find(const std::string& name) const {
+  for (int i = 0; i < size(); ++i)
+    if ((*this)[i].name == name) return i;
+  return std::nullopt;
+}
+
+Eigen::VectorXd with_proportional_damping(const Structure& structure, const ParameterTable& table,
+                                          Eigen::VectorXd theta, double damping_ratio) {
+  const double w1 = 2 * M_PI * natural_frequencies_hz(structure, table, theta).front();
+  theta.tail(table.elements()) = 2 * damping_ratio / w1 * theta.head(table.elements());
+  return theta;
+}
+
+}  // namespace framewatch

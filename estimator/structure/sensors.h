@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+/// One accelerometer axis and where it sits. Its corrected value is
+/// polarity * (scale * raw - offset), m/s^2, absolute, positive toward +x or +y.
+struct SensorAxis {
+  std::string name;
+  int story = 0;                       ///< 0 = base
+  Direction direction = Direction::x;  ///< of the measured motion
+  int frame = -1;                      ///< frame it rides on; -1 for a base axis of the whole plan
+  double scale = 1.0;
+  double offset = 0.0;         ///< m/s^2, subtracted after scaling
+  double polarity = 1.0;       ///< +1 or -1
+  double delay = 0.0;          ///< s, true sample instant = stamp - delay
+  double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0 = unknown
+};
+
+/// Every way in which the sensors do not fit the structure: two axes in one place, a frame or story
+/// that does not exist, a direction with frames and no base axis, a place without a sensor.
+std::vector<std::string> problems(const Structure& structure, const std::vector<SensorAxis>& axes);
+
+}  // namespace framewatch

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace framewatch {
+
+/// Axis a frame is parallel to, and along which its floors and sensors move.
+enum class Direction { x, y };
+
+/// flexible: every floor panel shears in its plane; rigid: a floor moves as one body (diaphragm).
+enum class FloorModel { flexible, rigid };
+
+/// The monitored building's static description. SI units.
+///
+/// Frames at one floor are numbered 0..n-1 for the x-parallel ones (in order of y) and n..n+m-1 for
+/// the y-parallel ones (in order of x); each has one horizontal degree of freedom per floor, along
+/// its own plane, positive toward +x or +y. Stories are numbered 1..N, floor i on top of story i,
+/// floor 0 the ground. Either direction may have no frame: a plane building.
+struct Structure {
+  std::string name;
+  int stories = 0;
+  std::vector<std::string> frames_x;
+  std::vector<std::string> frames_y;
+  std::vector<double> span_x;        ///< m, between y-parallel frames; size m-1
+  std::vector<double> span_y;        ///< m, between x-parallel frames; size n-1
+  std::vector<double> story_height;  ///< m; size N
+  FloorModel floor = FloorModel::flexible;
+  /// kg, [story][y line][x line] flattened; a direction without frames counts as one line.
+  std::vector<double> node_mass;
+
+  int n() const { return static_cast<int>(frames_x.size()); }
+  int m() const { return static_cast<int>(frames_y.size()); }
+  int frames() const { return n() + m(); }
+  int degrees_of_freedom() const { return stories * frames(); }
+  /// Floor panels per floor, (n-1)(m-1); none when rigid or plane.
+  int panels() const;
+  Direction direction(int frame) const { return frame < n() ? Direction::x : Direction::y; }
+  const std::string& frame_name(int frame) const;
+  /// Index of the degree of freedom of `frame` at floor `story`: story-major.
+  int dof(int story, int frame) const { return (story - 1) * frames() + frame; }
+  /// Mass that moves with `frame` at floor `story`, kg: sum over the nodes on it (A13, A14).
+  double frame_mass(int story, int frame) const;
+  /// Number of node masses the description must hold.
+  int nodes() const;
+};
+
+/// Every way in which `structure` is not a building; empty when it is one.
+std::vector<std::string> problems(const Structure& structure);
+
+}  // namespace framewatch
