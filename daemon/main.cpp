@@ -1,7 +1,7 @@
 #include <functional>
 
-#include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <CLI/CLI.hpp>
 
 // The one translation unit that sees CLI11 (it costs seconds to compile): it turns the command line
 // into plain argument structs; every command lives in its own file.
@@ -13,8 +13,9 @@ using Action = std::function<int()>;
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"framewatch: stiffness and damping of every frame and floor panel of a building,\n"
-               "from its accelerometers, while it moves."};
+  CLI::App app{
+      "framewatch: stiffness and damping of every frame and floor panel of a building,\n"
+      "from its accelerometers, while it moves."};
   app.name("framewatch");
   app.require_subcommand(1);
   app.set_version_flag("--version", FRAMEWATCH_VERSION);

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "estimator/motion/sample.h"
+
+namespace framewatch::drivers {
+
+/// One accelerometer node at one instant, as accel_t carries it.
+struct NodeSample {
+  Time time;
+  std::int64_t sequence = 0;
+  std::int32_t node = 0;
+  std::array<double, 3> accel_abs_mps2{};  ///< x, y, z; NaN where there is no valid value
+};
+
+/// Bytes of one encoded accel_t.
+inline constexpr std::size_t kAccelBytes = 8 + 8 + 8 + 4 + 3 * 8;
+
+/// Empty unless `size` and fingerprint are exactly those of accel_t.
+std::optional<NodeSample> decode_accel(const void* data, std::size_t size);
+std::vector<std::uint8_t> encode_accel(const NodeSample& sample);
+
+}  // namespace framewatch::drivers
