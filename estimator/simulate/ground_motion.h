@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace framewatch {
+
+/// Ground acceleration along one direction, piecewise linear between samples step_s apart.
+struct GroundMotion {
+  double step_s = 0.01;
+  std::vector<double> accel;  ///< m/s^2, first sample at time 0
+
+  double duration_s() const;
+  /// m/s^2 at time t, s; 0 before the first and after the last sample.
+  double at(double t_s) const;
+  /// Largest |accel|, m/s^2.
+  double peak() const;
+};
+
+/// Stationary white noise through the ground's own resonance (Kanai-Tajimi), a second-order
+/// high-pass against drift, and an envelope: quadratic build-up, strong part, exponential decay.
+struct KanaiTajimi {
+  double ground_frequency_hz = 2.5;
+  double ground_damping_ratio = 0.6;
+  double high_pass_hz = 0.2;
+  double peak_mps2 = 2.0;  ///< the motion is scaled to this peak
+  double duration_s = 30;
+  double build_up_s = 2;  ///< envelope (t / build_up)^2 until here
+  double strong_s = 20;   ///< envelope 1 for this long
+  double decay_s = 10;    ///< then exp(-t / decay)
+  double step_s = 0.01;
+  std::uint64_t seed = 1;
+};
+
+/// The same motion for the same parameters on every machine.
+GroundMotion kanai_tajimi(const KanaiTajimi& parameters);
+
+}  // namespace framewatch
