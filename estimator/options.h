@@ -13,17 +13,17 @@ struct EstimatorOptions {
   double window_s = 5;   ///< rounded to 20 blocks of whole samples
   double hop_s = 0.01;   ///< between published windows; rounded to whole samples, >= 1
   int boxplot_windows = 500;
-  double high_pass_hz = 0.3;      ///< drift control, second order; the paper's variant: 0.1
-  double filter_damping = 0.35;   ///< of the matched low-pass filters
-  bool prior = true;              ///< weak pull toward the design where data say little
-  bool self_tune = true;          ///< re-tune the filters to what was identified
-  double settle_s = 3;            ///< at least this long before a (re)started window counts
-  double lateness_s = 0.5;        ///< an instant is closed this long after its time
-  double max_fill_gap_s = 0.015;  ///< longest loss repaired by interpolation: one sample at 100 Hz
-  double min_snr = 10;            ///< gate: a value needs at least this regressor energy ratio
-  double max_error_k = 0.05;      ///< gate: largest relative standard error, frame stiffness
-  double max_error_g = 0.20;      ///< floor-panel stiffness
-  double max_error_c = 0.20;      ///< damping of frames and panels
+  double high_pass_hz = 0.3;       ///< drift control, second order; the paper's variant: 0.1
+  double filter_damping = 0.35;    ///< of the matched low-pass filters
+  bool prior = true;               ///< weak pull toward the design where data say little
+  bool self_tune = true;           ///< re-tune the filters to what was identified
+  double settle_s = 3;             ///< at least this long before a (re)started window counts
+  double lateness_s = 0.5;         ///< an instant is closed this long after its time
+  bool fill_single_losses = true;  ///< repair a single lost sample by the 4-point cubic
+  double min_snr = 10;             ///< gate: a value needs at least this regressor energy ratio
+  double max_error_k = 0.05;       ///< gate: largest relative standard error, frame stiffness
+  double max_error_g = 0.20;       ///< floor-panel stiffness
+  double max_error_c = 0.20;       ///< damping of frames and panels
 };
 
 }  // namespace framewatch

@@ -7,41 +7,50 @@
 
 namespace framewatch {
 
-std::vector<std::string> problems(const Structure& s, const std::vector<SensorAxis>& axes) {
-  std::vector<std::string> found;
+std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorAxis>& axes) {
+  std::vector<Problem> found;
   std::set<std::string> names;
   std::map<std::tuple<int, int>, std::string> places;
   std::set<Direction> base;
-  for (const SensorAxis& a : axes) {
-    const std::string who = "channel '" + a.name + "': ";
-    if (a.name.empty()) found.push_back("channel: needs a name");
-    if (!names.insert(a.name).second) found.push_back(who + "named twice");
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const SensorAxis& a = axes[i];
+    const auto add = [&](const char* field, const std::string& rule) {
+      found.push_back({field, static_cast<int>(i), "channel '" + a.name + "': " + rule});
+    };
+    if (a.name.empty()) add("name", "needs a name");
+    if (!names.insert(a.name).second) add("name", "another channel has this name already");
+    if (!std::isfinite(a.scale) || a.scale == 0) add("scale", "scale must not be 0");
+    if (a.polarity != 1 && a.polarity != -1) add("polarity", "polarity must be 1 or -1");
     if (a.story < 0 || a.story > s.stories) {
-      found.push_back(who + "story " + std::to_string(a.story) + " does not exist, 0 (base) to " +
-                      std::to_string(s.stories) + " do");
+      add("story", "story " + std::to_string(a.story) + " does not exist, 0 (base) to " +
+                       std::to_string(s.stories) + " do");
       continue;
     }
     if (a.frame >= s.frames() || (a.story > 0 && a.frame < 0)) {
-      found.push_back(who + "its frame does not exist");
+      add("frame", "its frame does not exist");
       continue;
     }
-    if (!std::isfinite(a.scale) || a.scale == 0) found.push_back(who + "scale must not be 0");
-    if (a.polarity != 1 && a.polarity != -1) found.push_back(who + "polarity must be 1 or -1");
     const int place = a.frame >= 0 ? a.frame : (a.direction == Direction::x ? -1 : -2);
     if (a.story == 0) base.insert(a.frame >= 0 ? s.direction(a.frame) : a.direction);
     const auto [at, fresh] = places.emplace(std::tuple(a.story, place), a.name);
-    if (!fresh) found.push_back(who + "sits where channel '" + at->second + "' sits already");
+    if (!fresh) add("", "sits where channel '" + at->second + "' sits already");
   }
-  if (s.n() > 0 && !base.contains(Direction::x))
-    found.push_back("channels: no base channel (story = 0) in direction x");
-  if (s.m() > 0 && !base.contains(Direction::y))
-    found.push_back("channels: no base channel (story = 0) in direction y");
+  const auto missing = [&](const std::string& what) {
+    found.push_back({"", -1, "channels: no " + what});
+  };
+  if (s.n() > 0 && !base.contains(Direction::x)) missing("base channel (story = 0) in direction x");
+  if (s.m() > 0 && !base.contains(Direction::y)) missing("base channel (story = 0) in direction y");
   for (int story = 1; story <= s.stories; ++story)
     for (int f = 0; f < s.frames(); ++f)
       if (!places.contains(std::tuple(story, f)))
-        found.push_back("channels: no channel on story " + std::to_string(story) + ", frame '" +
-                        s.frame_name(f) + "'");
+        missing("channel on story " + std::to_string(story) + ", frame '" + s.frame_name(f) + "'");
   return found;
+}
+
+std::vector<std::string> problems(const Structure& s, const std::vector<SensorAxis>& axes) {
+  std::vector<std::string> messages;
+  for (const Problem& problem : find_problems(s, axes)) messages.push_back(problem.message);
+  return messages;
 }
 
 }  // namespace framewatch

@@ -23,6 +23,9 @@ struct SensorAxis {
 
 /// Every way in which the sensors do not fit the structure: two axes in one place, a frame or story
 /// that does not exist, a direction with frames and no base axis, a place without a sensor.
+/// A problem's index is that of the axis.
+std::vector<Problem> find_problems(const Structure& structure, const std::vector<SensorAxis>& axes);
+/// Their messages.
 std::vector<std::string> problems(const Structure& structure, const std::vector<SensorAxis>& axes);
 
 }  // namespace framewatch

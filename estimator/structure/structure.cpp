@@ -12,11 +12,6 @@ bool all_positive(const std::vector<double>& values) {
                      [](double v) { return std::isfinite(v) && v > 0; });
 }
 
-std::string size_problem(const char* what, std::size_t found, int wanted) {
-  return std::string(what) + ": expected " + std::to_string(wanted) + " values, found " +
-         std::to_string(found);
-}
-
 }  // namespace
 
 int Structure::panels() const {
@@ -48,29 +43,40 @@ double Structure::frame_mass(int story, int frame) const {
   return sum;
 }
 
-std::vector<std::string> problems(const Structure& s) {
-  std::vector<std::string> found;
-  if (s.stories < 1) found.push_back("stories: must be at least 1");
-  if (s.frames() < 1) found.push_back("frames_x, frames_y: at least one frame is needed");
-  const auto check_size = [&](const char* what, std::size_t size, int wanted) {
-    if (size != static_cast<std::size_t>(std::max(wanted, 0)))
-      found.push_back(size_problem(what, size, std::max(wanted, 0)));
+std::vector<Problem> find_problems(const Structure& s) {
+  std::vector<Problem> found;
+  const auto add = [&](const std::string& field, const std::string& rule) {
+    found.push_back({field, -1, field + ": " + rule});
   };
-  check_size("span_x_m", s.span_x.size(), s.m() - 1);
-  check_size("span_y_m", s.span_y.size(), s.n() - 1);
-  check_size("story_height_m", s.story_height.size(), s.stories);
-  check_size("node_mass_kg", s.node_mass.size(), s.nodes());
-  if (!all_positive(s.span_x)) found.push_back("span_x_m: every span must be > 0");
-  if (!all_positive(s.span_y)) found.push_back("span_y_m: every span must be > 0");
-  if (!all_positive(s.story_height)) found.push_back("story_height_m: every height must be > 0");
-  if (!all_positive(s.node_mass)) found.push_back("node_mass_kg: every mass must be > 0");
+  if (s.stories < 1) add("stories", "must be at least 1");
+  if (s.frames() < 1) found.push_back({"", -1, "frames_x, frames_y: at least one frame is needed"});
+  const auto check_values = [&](const char* field, const std::vector<double>& values, int wanted) {
+    const int size = std::max(wanted, 0);
+    if (values.size() != static_cast<std::size_t>(size)) {
+      add(field,
+          "expected " + std::to_string(size) + " values, found " + std::to_string(values.size()));
+    } else if (!all_positive(values)) {
+      add(field, "every value must be > 0");
+    }
+  };
+  check_values("span_x_m", s.span_x, s.m() - 1);
+  check_values("span_y_m", s.span_y, s.n() - 1);
+  check_values("story_height_m", s.story_height, s.stories);
+  check_values("node_mass_kg", s.node_mass, s.nodes());
   std::set<std::string> names;
   for (int f = 0; f < s.frames(); ++f) {
-    if (s.frame_name(f).empty()) found.push_back("frames: a frame needs a name");
+    const char* field = s.direction(f) == Direction::x ? "frames_x" : "frames_y";
+    if (s.frame_name(f).empty()) add(field, "a frame needs a name");
     if (!names.insert(s.frame_name(f)).second)
-      found.push_back("frames: '" + s.frame_name(f) + "' is named twice");
+      add(field, "'" + s.frame_name(f) + "' is the name of two frames");
   }
   return found;
+}
+
+std::vector<std::string> problems(const Structure& s) {
+  std::vector<std::string> messages;
+  for (const Problem& problem : find_problems(s)) messages.push_back(problem.message);
+  return messages;
 }
 
 }  // namespace framewatch

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "estimator/structure/problem.h"
+
 namespace framewatch {
 
 /// Axis a frame is parallel to, and along which its floors and sensors move.
@@ -46,6 +48,8 @@ struct Structure {
 };
 
 /// Every way in which `structure` is not a building; empty when it is one.
+std::vector<Problem> find_problems(const Structure& structure);
+/// Their messages.
 std::vector<std::string> problems(const Structure& structure);
 
 }  // namespace framewatch

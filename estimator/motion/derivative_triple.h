@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+namespace framewatch {
+
+/// Three finite impulse responses of equal length and equal delay whose outputs are p, p' and p''
+/// of their input. Taps newest first; units 1, 1/s, 1/s^2. delay is in samples.
+struct DerivativeTriple {
+  std::vector<double> value;
+  std::vector<double> first;
+  std::vector<double> second;
+  double delay = 0;
+  int length() const { return static_cast<int>(value.size()); }
+};
+
+/// Least squares on 0..rate/4 with exact behaviour at rest, 11 taps, followed by the numerator
+/// (1 + z^-1)^2 / 4 of the bilinear low-pass (13 taps in all). Relative error below 1e-4 up to
+/// rate/5. Source: docs/equations.md, derivative triple.
+DerivativeTriple matched_triple(double rate_hz);
+
+/// What the trapezoidal rule implies, times the same numerator: p'' = integrand, p' and p its first
+/// and second trapezoidal integrals. The paper's integration.
+DerivativeTriple trapezoid_triple(double rate_hz);
+
+}  // namespace framewatch

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimator/motion/derivative_triple.h"
+
+namespace framewatch {
+
+/// Second-order high-pass with two zeros at rest (bilinear Butterworth): removes bias, thermal ramp
+/// and tilt. The start of an axis is pre-charged with its first sample, so there is no start step.
+struct HighPass {
+  HighPass(double corner_hz, double rate_hz);
+  double gain, a1, a2;
+};
+
+/// Drift control and differentiation of every axis: high-pass, then p, p', p'' of the acceleration
+/// itself by one derivative triple. All three have seen the same filter, so the equation of motion
+/// still holds between them. An axis without a value is invalid until its filters are refilled.
+class MotionFilter {
+ public:
+  MotionFilter(int axes, const DerivativeTriple& triple, const HighPass& high_pass);
+
+  /// accel: one value per axis, m/s^2, NaN where missing.
+  void push(const std::vector<double>& accel);
+  void reset();
+
+  bool valid(int axis) const { return filled_[index(axis)] >= triple_.length(); }
+  /// The axis' filtered motion at the last push; 0 while invalid.
+  double value(int axis) const { return value_[index(axis)]; }
+  double first(int axis) const { return first_[index(axis)]; }
+  double second(int axis) const { return second_[index(axis)]; }
+
+ private:
+  static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
+  void push_axis(std::size_t axis, double accel);
+
+  DerivativeTriple triple_;
+  HighPass high_pass_;
+  std::size_t axes_;
+  std::size_t length_;
+  std::size_t newest_ = 0;
+  std::vector<double> x1_, x2_, y1_, y2_;
+  std::vector<int> filled_;    ///< samples since the axis (re)started, saturating
+  std::vector<double> ring_;   ///< axes x 2 length, mirrored, newest first from newest_
+  std::vector<double> value_, first_, second_;
+};
+
+}  // namespace framewatch
