@@ -46,11 +46,14 @@ double GroundMotion::duration_s() const {
 }
 
 double GroundMotion::at(double t_s) const {
-  const double place = t_s / step_s;
+  // Times on the grid come out of sums and quotients: rounding must not lose the end samples.
+  constexpr double rounding = 1e-9;
   const double last = static_cast<double>(accel.size()) - 1;
-  if (!(place >= 0) || place > last) return 0;
-  const auto i = static_cast<std::size_t>(place);
-  const double fraction = place - static_cast<double>(i);
+  const double place = t_s / step_s;
+  if (!(place >= -rounding) || place > last + rounding) return 0;
+  const double within = std::clamp(place, 0.0, last);
+  const auto i = static_cast<std::size_t>(within);
+  const double fraction = within - static_cast<double>(i);
   if (fraction == 0) return accel[i];
   return accel[i] + fraction * (accel[i + 1] - accel[i]);
 }
@@ -59,6 +62,17 @@ double GroundMotion::peak() const {
   double peak = 0;
   for (const double a : accel) peak = std::max(peak, std::abs(a));
   return peak;
+}
+
+double PlanMotion::duration_s() const {
+  return std::max(x.duration_s(), y.duration_s());
+}
+
+PlanMotion directed(const GroundMotion& motion, double angle_rad) {
+  PlanMotion out{motion, motion};
+  for (double& a : out.x.accel) a *= std::cos(angle_rad);
+  for (double& a : out.y.accel) a *= std::sin(angle_rad);
+  return out;
 }
 
 GroundMotion kanai_tajimi(const KanaiTajimi& p) {

@@ -17,6 +17,17 @@ struct GroundMotion {
   double peak() const;
 };
 
+/// Ground acceleration along both axes of the plan.
+struct PlanMotion {
+  GroundMotion x;
+  GroundMotion y;
+
+  double duration_s() const;
+};
+
+/// One motion arriving at an angle to the x axis: x component times cos, y component times sin.
+PlanMotion directed(const GroundMotion& motion, double angle_rad);
+
 /// Stationary white noise through the ground's own resonance (Kanai-Tajimi), a second-order
 /// high-pass against drift, and an envelope: quadratic build-up, strong part, exponential decay.
 struct KanaiTajimi {

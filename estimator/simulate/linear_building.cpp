@@ -1,0 +1,108 @@
+#include "estimator/simulate/linear_building.h"
+
+#include <cassert>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <unsupported/Eigen/MatrixFunctions>
+
+#include "estimator/structure/matrices.h"
+
+namespace framewatch {
+namespace {
+
+/// out = a * x. Written out because a debug build of Eigen's is many times slower.
+void multiply(const double* a, const double* x, double* out, Eigen::Index rows,
+              Eigen::Index columns) {
+  for (Eigen::Index r = 0; r < rows; ++r, a += columns) {
+    double sum = 0;
+    for (Eigen::Index c = 0; c < columns; ++c) sum += a[c] * x[c];
+    out[r] = sum;
+  }
+}
+
+}  // namespace
+
+LinearBuilding::LinearBuilding(const Structure& structure, const ParameterTable& table,
+                               const Eigen::VectorXd& theta, double step_s)
+    : structure_(structure),
+      table_(table),
+      step_s_(step_s),
+      constraint_(floor_constraint(structure)),
+      influence_(Eigen::MatrixXd::Zero(structure.degrees_of_freedom(), 2)) {
+  assert(step_s > 0);
+  for (int story = 1; story <= structure.stories; ++story)
+    for (int f = 0; f < structure.frames(); ++f)
+      influence_(structure.dof(story, f), structure.direction(f) == Direction::x ? 0 : 1) = 1;
+  state_ = Eigen::VectorXd::Zero(2 * constraint_.cols() + 4);
+  next_ = state_;
+  accel_abs_ = Eigen::VectorXd::Zero(structure.degrees_of_freedom());
+  set_theta(theta);
+}
+
+void LinearBuilding::set_theta(const Eigen::VectorXd& theta) {
+  assert(theta.size() == table_.size());
+  const Matrices matrices = assemble(structure_, table_, theta);
+  const Eigen::Index q = constraint_.cols();
+  const Eigen::MatrixXd constraint_mass = constraint_.transpose() * matrices.mass.asDiagonal();
+  const Eigen::LDLT<Eigen::MatrixXd> mass(constraint_mass * constraint_);
+  const Eigen::MatrixXd stiffness =
+      mass.solve(constraint_.transpose() * matrices.stiffness * constraint_);
+  const Eigen::MatrixXd damping =
+      mass.solve(constraint_.transpose() * matrices.damping * constraint_);
+
+  const double scale_before = velocity_scale_;
+  velocity_scale_ = std::sqrt(stiffness.diagonal().maxCoeff());
+  if (!(velocity_scale_ > 0)) velocity_scale_ = 1;
+  state_.head(q) *= velocity_scale_ / scale_before;
+
+  // d/dt (state, ground, slope of ground) = generator * (...): its exponential over one step holds
+  // the transition and both first-order-hold input matrices.
+  Eigen::MatrixXd generator = Eigen::MatrixXd::Zero(2 * q + 4, 2 * q + 4);
+  generator.block(0, q, q, q).diagonal().setConstant(velocity_scale_);
+  generator.block(q, 0, q, q) = -stiffness / velocity_scale_;
+  generator.block(q, q, q, q) = -damping;
+  generator.block(q, 2 * q, q, 2) = -mass.solve(constraint_mass * influence_);
+  generator.block(2 * q, 2 * q + 2, 2, 2).setIdentity();
+  const Eigen::MatrixXd scaled = generator * step_s_;
+  const Eigen::MatrixXd exponential = scaled.exp();
+  transition_ = exponential.topRows(2 * q);
+  transition_.rightCols(2) /= step_s_;
+
+  output_.resize(accel_abs_.size(), 2 * q);
+  output_.leftCols(q) = -constraint_ * stiffness / velocity_scale_;
+  output_.rightCols(q) = -constraint_ * damping;
+  update_accel();
+}
+
+void LinearBuilding::set_state(const Eigen::VectorXd& disp_rel, const Eigen::VectorXd& vel_rel) {
+  const Eigen::Index q = constraint_.cols();
+  const auto decomposition = constraint_.colPivHouseholderQr();
+  state_.head(q) = velocity_scale_ * decomposition.solve(disp_rel);
+  state_.segment(q, q) = decomposition.solve(vel_rel);
+  update_accel();
+}
+
+void LinearBuilding::advance(const Eigen::Vector2d& ground_before,
+                             const Eigen::Vector2d& ground_after) {
+  state_.segment<2>(state_.size() - 4) = ground_before;
+  state_.tail<2>() = ground_after - ground_before;
+  multiply(transition_.data(), state_.data(), next_.data(), transition_.rows(), state_.size());
+  state_.swap(next_);
+  update_accel();
+}
+
+void LinearBuilding::update_accel() {
+  multiply(output_.data(), state_.data(), accel_abs_.data(), output_.rows(), output_.cols());
+}
+
+Eigen::VectorXd LinearBuilding::disp_rel() const {
+  return constraint_ * state_.head(constraint_.cols()) / velocity_scale_;
+}
+
+Eigen::VectorXd LinearBuilding::vel_rel() const {
+  return constraint_ * state_.segment(constraint_.cols(), constraint_.cols());
+}
+
+}  // namespace framewatch

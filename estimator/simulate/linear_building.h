@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+/// M y'' + C y' + K y = -M r a_g advanced in time exactly (first-order-hold state space by the
+/// matrix exponential): no error while the ground acceleration is linear within a step. Floors are
+/// rigid or flexible as the structure says. Starts at rest.
+class LinearBuilding {
+ public:
+  /// theta in table order; step_s > 0.
+  LinearBuilding(const Structure& structure, const ParameterTable& table,
+                 const Eigen::VectorXd& theta, double step_s);
+
+  /// New stiffness and damping from now on; displacements and velocities go on from where they are.
+  void set_theta(const Eigen::VectorXd& theta);
+  /// Relative to the ground, one entry per degree of freedom, m and m/s.
+  void set_state(const Eigen::VectorXd& disp_rel, const Eigen::VectorXd& vel_rel);
+
+  /// One step; ground acceleration (x, y) at its start and end, m/s^2.
+  void advance(const Eigen::Vector2d& ground_before, const Eigen::Vector2d& ground_after);
+
+  double step_s() const { return step_s_; }
+  Eigen::VectorXd disp_rel() const;
+  Eigen::VectorXd vel_rel() const;
+  /// m/s^2 per degree of freedom (Structure::dof), positive toward +x or +y.
+  const Eigen::VectorXd& accel_abs() const { return accel_abs_; }
+
+ private:
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  void update_accel();
+
+  Structure structure_;
+  ParameterTable table_;
+  double step_s_;
+  Eigen::MatrixXd constraint_;  ///< degrees of freedom x independent coordinates
+  Eigen::MatrixXd influence_;   ///< degrees of freedom x (x, y): 1 where the ground moves it
+  double velocity_scale_ = 1;   ///< 1/s; displacements are held times this, which evens out A
+  RowMajor transition_;         ///< state x (state, ground before, change of ground)
+  RowMajor output_;             ///< degrees of freedom x state
+  Eigen::VectorXd state_;       ///< scaled coordinates, then their velocities
+  Eigen::VectorXd next_;
+  Eigen::VectorXd accel_abs_;
+};
+
+}  // namespace framewatch

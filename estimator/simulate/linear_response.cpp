@@ -1,0 +1,69 @@
+#include "estimator/simulate/linear_response.h"
+
+#include <cmath>
+#include <utility>
+
+namespace framewatch {
+namespace {
+
+/// Times are multiples of a binary-inexact step.
+constexpr double kRounding_s = 1e-9;
+
+int steps_per_instant(const ResponseOptions& options) {
+  return static_cast<int>(std::ceil(1 / (options.rate_hz * options.longest_step_s) - 1e-9));
+}
+
+}  // namespace
+
+ResponseStream::ResponseStream(const Structure& structure, const ParameterTable& table,
+                               const Eigen::VectorXd& theta, PlanMotion motion,
+                               ResponseOptions options, std::vector<ParameterChange> changes)
+    : motion_(std::move(motion)),
+      options_(options),
+      changes_(std::move(changes)),
+      ratio_(steps_per_instant(options)),
+      building_(structure, table, theta, 1 / (options.rate_hz * ratio_)),
+      decimator_(options.anti_alias ? anti_alias_taps(ratio_) : std::vector<double>{1.0},
+                 structure.degrees_of_freedom() + 2),
+      step_(-decimator_.delay_steps() - 1),
+      fine_(Eigen::VectorXd::Zero(structure.degrees_of_freedom() + 2)) {}
+
+const Eigen::VectorXd& ResponseStream::next() {
+  ++instant_;
+  while (step_ < instant_ * ratio_ + decimator_.delay_steps()) advance();
+  return decimator_.output();
+}
+
+double ResponseStream::time_s() const {
+  return static_cast<double>(instant_) / options_.rate_hz;
+}
+
+Eigen::Vector2d ResponseStream::ground(long long step) const {
+  const double t = static_cast<double>(step) / (options_.rate_hz * ratio_);
+  return {motion_.x.at(t), motion_.y.at(t)};
+}
+
+void ResponseStream::advance() {
+  const double now_s = static_cast<double>(step_) / (options_.rate_hz * ratio_);
+  while (next_change_ < changes_.size() && changes_[next_change_].at_s <= now_s + kRounding_s)
+    building_.set_theta(changes_[next_change_++].theta);
+  const Eigen::Vector2d before = fine_.tail<2>();
+  fine_.tail<2>() = ground(++step_);
+  building_.advance(before, fine_.tail<2>());
+  fine_.head(building_.accel_abs().size()) = building_.accel_abs();
+  decimator_.push(fine_);
+}
+
+Response linear_response(const Structure& structure, const ParameterTable& table,
+                         const Eigen::VectorXd& theta, const PlanMotion& motion,
+                         const ResponseOptions& options, double duration_s) {
+  if (duration_s < 0) duration_s = motion.duration_s();
+  const auto instants =
+      static_cast<Eigen::Index>(std::floor(duration_s * options.rate_hz + 1e-6)) + 1;
+  Response out{options.rate_hz, Eigen::MatrixXd(instants, structure.degrees_of_freedom() + 2)};
+  ResponseStream stream(structure, table, theta, motion, options);
+  for (Eigen::Index i = 0; i < instants; ++i) out.accel_abs.row(i) = stream.next().transpose();
+  return out;
+}
+
+}  // namespace framewatch
