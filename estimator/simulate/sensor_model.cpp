@@ -1,0 +1,75 @@
+#include "estimator/simulate/sensor_model.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace framewatch {
+namespace {
+
+double quantised(double accel, const SensorModel& m) {
+  if (m.full_scale <= 0) return accel;
+  if (m.bits == 0) return std::clamp(accel, -m.full_scale, m.full_scale);
+  const double half_codes = std::exp2(m.bits - 1);
+  const double step = m.full_scale / half_codes;
+  return step * std::clamp(std::round(accel / step), -half_codes, half_codes - 1);
+}
+
+}  // namespace
+
+std::vector<std::string> problems(const SensorModel& m) {
+  std::vector<std::string> found;
+  const auto require = [&](bool holds, const char* rule) {
+    if (!holds) found.push_back(rule);
+  };
+  require(std::isfinite(m.noise_density) && m.noise_density >= 0, "noise must be >= 0");
+  require(std::isfinite(m.bias) && std::isfinite(m.thermal_ramp), "bias and ramp must be finite");
+  require(std::isfinite(m.full_scale) && m.full_scale >= 0, "full scale must be >= 0");
+  require(m.bits == 0 || (m.bits >= 2 && m.bits <= 32), "bits must be 0 or 2 to 32");
+  require(m.bits == 0 || m.full_scale > 0, "bits need a full scale");
+  require(m.loss_ratio >= 0 && m.loss_ratio < 1, "loss ratio must be in [0, 1)");
+  require(m.dead_to_s >= m.dead_from_s, "dead time must end after it begins");
+  return found;
+}
+
+double noise_density_of(double ratio, double rms, double rate_hz) {
+  return ratio * rms / std::sqrt(rate_hz / 2);
+}
+
+int response_column(const Structure& structure, const SensorAxis& axis) {
+  if (axis.story > 0) return structure.dof(axis.story, axis.frame);
+  const Direction d = axis.frame >= 0 ? structure.direction(axis.frame) : axis.direction;
+  return structure.degrees_of_freedom() + (d == Direction::x ? 0 : 1);
+}
+
+SensorArray::SensorArray(const Structure& structure, std::vector<SensorAxis> axes,
+                         std::vector<SensorModel> models, double rate_hz, std::uint64_t seed)
+    : axes_(std::move(axes)),
+      models_(std::move(models)),
+      noise_gain_(std::sqrt(rate_hz / 2)),
+      raw_(axes_.size()) {
+  assert(axes_.size() == models_.size());
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    columns_.push_back(response_column(structure, axes_[i]));
+    noise_.emplace_back(seed, 2 * i);
+    loss_.emplace_back(seed, 2 * i + 1);
+  }
+}
+
+const std::vector<double>& SensorArray::measure(double time_s, const Eigen::VectorXd& response) {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const SensorModel& m = models_[i];
+    const double noise = m.noise_density * noise_gain_ * noise_[i].normal();
+    const bool lost = loss_[i].uniform() < m.loss_ratio;
+    const bool dead = time_s >= m.dead_from_s && time_s < m.dead_to_s;
+    const double seen =
+        quantised(response[columns_[i]] + noise + m.bias + m.thermal_ramp * time_s, m);
+    raw_[i] = lost || dead ? std::numeric_limits<double>::quiet_NaN()
+                           : (axes_[i].polarity * seen + axes_[i].offset) / axes_[i].scale;
+  }
+  return raw_;
+}
+
+}  // namespace framewatch
