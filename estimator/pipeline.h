@@ -9,21 +9,13 @@
 
 #include "estimator/identify/estimate.h"
 #include "estimator/motion/sample.h"
+#include "estimator/motion/sample_merger.h"
 #include "estimator/options.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch {
-
-/// Counts of what happened to the samples of one axis.
-struct AxisCounters {
-  std::int64_t received = 0;
-  std::int64_t missing = 0;   ///< instants closed without a value
-  std::int64_t late = 0;      ///< came after their instant was closed
-  std::int64_t repaired = 0;  ///< single losses filled by interpolation
-  std::int64_t rejected = 0;  ///< NaN, infinite, duplicate, off the grid
-};
 
 struct PipelineCounters {
   std::int64_t sample_sets = 0;

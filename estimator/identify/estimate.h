@@ -39,6 +39,8 @@ struct WindowEstimate {
   std::vector<double> snr;          ///< regressor energy over its expected noise energy
   std::vector<double> prior_share;  ///< 0..1
   std::vector<BoxplotStatistics> boxplot;
+  /// What the normal equations say before the gate, SI; for study, never published.
+  std::vector<double> solution;
 };
 
 }  // namespace framewatch

@@ -7,7 +7,7 @@
 namespace framewatch {
 namespace {
 
-constexpr int kHalfLength = 5;
+constexpr int kHalfLength = 6;
 constexpr int kGridPoints = 500;
 
 /// Weighted least squares with equality constraints: minimise |X c - y|, subject to E c = f.

@@ -14,8 +14,8 @@ struct DerivativeTriple {
   int length() const { return static_cast<int>(value.size()); }
 };
 
-/// Least squares on 0..rate/4 with exact behaviour at rest, 11 taps, followed by the numerator
-/// (1 + z^-1)^2 / 4 of the bilinear low-pass (13 taps in all). Relative error below 1e-4 up to
+/// Least squares on 0..rate/4 with exact behaviour at rest, 13 taps, followed by the numerator
+/// (1 + z^-1)^2 / 4 of the bilinear low-pass (15 taps in all). Relative error below 1e-4 up to
 /// rate/5. Source: docs/equations.md, derivative triple.
 DerivativeTriple matched_triple(double rate_hz);
 

@@ -50,8 +50,7 @@ void MotionFilter::push_axis(std::size_t axis, double accel) {
     std::fill(ring, ring + 2 * length_, 0.0);
   }
   const double change = (accel - x1_[axis]) - (x1_[axis] - x2_[axis]);
-  const double y =
-      high_pass_.gain * change - high_pass_.a1 * y1_[axis] - high_pass_.a2 * y2_[axis];
+  const double y = high_pass_.gain * change - high_pass_.a1 * y1_[axis] - high_pass_.a2 * y2_[axis];
   x2_[axis] = x1_[axis];
   x1_[axis] = accel;
   y2_[axis] = y1_[axis];

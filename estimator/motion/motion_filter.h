@@ -41,8 +41,8 @@ class MotionFilter {
   std::size_t length_;
   std::size_t newest_ = 0;
   std::vector<double> x1_, x2_, y1_, y2_;
-  std::vector<int> filled_;    ///< samples since the axis (re)started, saturating
-  std::vector<double> ring_;   ///< axes x 2 length, mirrored, newest first from newest_
+  std::vector<int> filled_;   ///< samples since the axis (re)started, saturating
+  std::vector<double> ring_;  ///< axes x 2 length, mirrored, newest first from newest_
   std::vector<double> value_, first_, second_;
 };
 

@@ -1,0 +1,61 @@
+#include "estimator/identify/machine.h"
+
+#include <algorithm>
+
+namespace framewatch {
+
+MotionRing::MotionRing(const Deformations& deformations, int capacity)
+    : sets_(static_cast<std::size_t>(capacity), deformations.make_set()) {}
+
+Machine::Machine(const RowTuning& tuning, const FloorLayout& layout, int blocks, int block_rows,
+                 int least_settle)
+    : tuning_(tuning),
+      layout_(layout),
+      settle_(tuning_.settle_rows(least_settle)),
+      entering_(tuning_, layout_, settle_),
+      delayed_(tuning_, layout_, settle_),
+      sums_(layout_, blocks, block_rows) {}
+
+void Machine::start(std::int64_t instant) {
+  next_ = delayed_next_ = instant;
+  counting_ = false;
+  entering_.reset();
+  delayed_.reset();
+  sums_.reset();
+}
+
+void Machine::advance(const MotionRing& ring) {
+  entering_.push(ring.at(next_++));
+  for (int floor = 0; floor < layout_.floors() && !counting_; ++floor)
+    counting_ = entering_.count(floor) > 0;
+  if (!counting_) {
+    counted_from_ = next_;
+    return;
+  }
+  sums_.push(entering_);
+}
+
+bool Machine::finish(const MotionRing& ring) {
+  const std::int64_t delayed_instant = next_ - 1 - sums_.lag();
+  bool delayed_counts = false;
+  if (delayed_instant >= delayed_next_) {
+    delayed_.push(ring.at(delayed_next_++));
+    delayed_counts = delayed_next_ > counted_from_;
+  }
+  return counting_ && sums_.maintain(delayed_counts ? &delayed_ : nullptr);
+}
+
+void Machine::noise_energy(std::vector<double>& per_unknown, double& residual) const {
+  std::fill(per_unknown.begin(), per_unknown.end(), 0.0);
+  residual = 0;
+  for (int floor = 0; floor < layout_.floors(); ++floor) {
+    const FloorRows& rows = entering_.floor_rows(floor);
+    const double instants = sums_.floor_instants(floor);
+    residual += instants * rows.noise_residual;
+    for (std::size_t p = 0; p < rows.noise_energy.size(); ++p)
+      per_unknown[static_cast<std::size_t>(floor * layout_.own()) + p] +=
+          instants * rows.noise_energy[p];
+  }
+}
+
+}  // namespace framewatch

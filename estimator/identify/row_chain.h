@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimator/identify/row_tuning.h"
+
+namespace framewatch {
+
+/// Filters deformations into the rows of every floor. A pure function of the deformation sets it
+/// was given since the start: two chains fed the same sets give the same bits, which is how the
+/// rows that leave the window are had again without storing them.
+class RowChain {
+ public:
+  /// settle: instants a floor's filters run before its rows count, after a start or a change of
+  /// what is known.
+  RowChain(const RowTuning& tuning, const FloorLayout& layout, int settle);
+
+  /// Back to the state of a new chain.
+  void reset();
+  void push(const DeformationSet& set);
+
+  /// rows x padded(front) of a floor at the last push; count() is 0 while it settles.
+  const double* rows(int floor) const { return &rows_[offset_[static_cast<std::size_t>(floor)]]; }
+  int count(int floor) const {
+    const Floor& f = floor_[static_cast<std::size_t>(floor)];
+    return f.settling > 0 ? 0 : f.rows.rows;
+  }
+  const FloorRows& floor_rows(int floor) const {
+    return floor_[static_cast<std::size_t>(floor)].rows;
+  }
+  /// Doubles of all floors' rows, and where a floor's begin.
+  std::size_t size() const { return rows_.size(); }
+  std::size_t offset(int floor) const { return offset_[static_cast<std::size_t>(floor)]; }
+  const double* data() const { return rows_.data(); }
+
+ private:
+  struct Floor {
+    FloorRows rows;
+    std::vector<double> s1, s2;
+    int settling = 0;
+  };
+  void rebuild(int floor);
+  bool same_surroundings(int floor, const std::vector<std::uint8_t>& known) const;
+
+  const RowTuning* tuning_;
+  const FloorLayout* layout_;
+  int settle_;
+  std::vector<std::uint8_t> known_;
+  std::vector<Floor> floor_;
+  std::vector<std::size_t> offset_;
+  std::vector<double> rows_;
+  std::vector<double> signal_;
+};
+
+}  // namespace framewatch

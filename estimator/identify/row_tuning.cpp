@@ -1,0 +1,300 @@
+#include "estimator/identify/row_tuning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+
+namespace framewatch {
+namespace {
+
+/// Matched filters above this share of the sampling rate leave the triple's accurate band.
+constexpr double kHighestCorner = 0.2;
+
+/// Response of high-pass and one tap set to a unit impulse, long enough for the high-pass to decay.
+std::vector<double> impulse_response(const std::vector<double>& taps, const HighPass& hp,
+                                     std::size_t length) {
+  std::vector<double> high(length), out(length, 0.0);
+  double y1 = 0, y2 = 0;
+  for (std::size_t t = 0; t < length; ++t) {
+    const double change = t == 0 ? 1.0 : t == 1 ? -2.0 : t == 2 ? 1.0 : 0.0;
+    const double y = hp.gain * change - hp.a1 * y1 - hp.a2 * y2;
+    y2 = y1;
+    y1 = y;
+    high[t] = y;
+  }
+  for (std::size_t t = 0; t < length; ++t)
+    for (std::size_t k = 0; k < taps.size() && k <= t; ++k) out[t] += taps[k] * high[t - k];
+  return out;
+}
+
+}  // namespace
+
+struct RowTuning::Noise {
+  double g00 = 0, g11 = 0, g22 = 0, g20 = 0;
+};
+
+RowTuning::RowTuning(const Structure& structure, const FloorLayout& layout,
+                     const Deformations& deformations, const EstimatorOptions& options,
+                     const DerivativeTriple& triple, const HighPass& high_pass,
+                     const Eigen::VectorXd& theta0)
+    : structure_(&structure),
+      layout_(&layout),
+      deformations_(&deformations),
+      options_(&options),
+      theta0_(theta0) {
+  for (int story = 1; story <= structure.stories; ++story)
+    for (int f = 0; f < structure.frames(); ++f) mass_.push_back(structure.frame_mass(story, f));
+  if (structure.floor == FloorModel::rigid) constraint_ = floor_constraint(structure);
+  const auto length = static_cast<std::size_t>(3 * options.rate_hz / options.high_pass_hz);
+  for (const std::vector<double>* taps : {&triple.value, &triple.first, &triple.second})
+    impulse_.push_back(impulse_response(*taps, high_pass, length));
+}
+
+std::vector<int> RowTuning::usable_equations(int floor,
+                                             const std::vector<std::uint8_t>& known) const {
+  const int frames = layout_->frames();
+  const auto is_known = [&](int level, int f) {
+    return known[static_cast<std::size_t>(level * frames + f)] != 0;
+  };
+  std::vector<int> usable;
+  for (int f = 0; f < frames; ++f) {
+    bool ok = is_known(floor + 1, f) && is_known(floor, f) &&
+              (layout_->next(floor) == 0 || is_known(floor + 2, f));
+    for (int p = 2 * frames; ok && p < 2 * frames + layout_->panels(); ++p) {
+      if (layout_->coefficient(p, f) == 0) continue;
+      for (int g = 0; g < frames; ++g)
+        ok = ok && (layout_->coefficient(p, g) == 0 || is_known(floor + 1, g));
+    }
+    if (ok) usable.push_back(f);
+  }
+  return usable;
+}
+
+Eigen::MatrixXd RowTuning::floor_stiffness(int floor, const Eigen::VectorXd& theta) const {
+  const int frames = layout_->frames();
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(frames, frames);
+  const auto add = [&](int position, double stiffness) {
+    Eigen::VectorXd b(frames);
+    for (int f = 0; f < frames; ++f) b[f] = layout_->coefficient(position, f);
+    k += stiffness * b * b.transpose();
+  };
+  for (int f = 0; f < frames; ++f) {
+    add(f, theta[layout_->parameter(floor, f)]);
+    if (layout_->next(floor) > 0) add(layout_->own() + f, theta[layout_->parameter(floor + 1, f)]);
+  }
+  for (int p = 2 * frames; p < 2 * frames + layout_->panels(); ++p)
+    add(p, theta[layout_->parameter(floor, p)]);
+  return k;
+}
+
+Eigen::MatrixXd RowTuning::floor_modes(int floor, const std::vector<int>& equations,
+                                       const Eigen::VectorXd& theta,
+                                       Eigen::VectorXd& frequency_hz) const {
+  const int frames = layout_->frames();
+  const int first = floor * frames;
+  const auto count = static_cast<Eigen::Index>(equations.size());
+  Eigen::MatrixXd basis = Eigen::MatrixXd::Zero(frames, count);
+  if (constraint_.size() > 0) {
+    if (count < frames) return Eigen::MatrixXd(frames, 0);
+    std::vector<Eigen::Index> columns;
+    for (Eigen::Index c = 0; c < constraint_.cols(); ++c)
+      if (!constraint_.block(first, c, frames, 1).isZero(0)) columns.push_back(c);
+    basis.resize(frames, static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      basis.col(static_cast<Eigen::Index>(c)) = constraint_.block(first, columns[c], frames, 1);
+  } else {
+    for (Eigen::Index c = 0; c < count; ++c) {
+      const int f = equations[static_cast<std::size_t>(c)];
+      basis(f, c) = 1 / std::sqrt(mass(floor, f));
+    }
+  }
+  const Eigen::MatrixXd k = basis.transpose() * floor_stiffness(floor, theta) * basis;
+  if (options_->variant == Variant::paper) {
+    frequency_hz = Eigen::VectorXd::Constant(basis.cols(), options_->high_pass_hz);
+    for (Eigen::Index c = 0; c < basis.cols() && constraint_.size() == 0; ++c)
+      basis.col(c) *= std::sqrt(mass(floor, equations[static_cast<std::size_t>(c)]));
+    return basis;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k);
+  frequency_hz = (solver.eigenvalues().cwiseMax(0.0).cwiseSqrt() / (2 * M_PI))
+                     .cwiseMin(kHighestCorner * options_->rate_hz)
+                     .cwiseMax(options_->high_pass_hz);
+  return basis * solver.eigenvectors();
+}
+
+RowTuning::Noise RowTuning::filtered_noise(double gain, double a1, double a2) const {
+  Noise noise;
+  double s[3][2] = {};
+  for (std::size_t t = 0; t < impulse_[0].size(); ++t) {
+    double y[3];
+    for (std::size_t d = 0; d < 3; ++d) {
+      y[d] = gain * impulse_[d][t] - a1 * s[d][0] - a2 * s[d][1];
+      s[d][1] = s[d][0];
+      s[d][0] = y[d];
+    }
+    noise.g00 += y[0] * y[0];
+    noise.g11 += y[1] * y[1];
+    noise.g22 += y[2] * y[2];
+    noise.g20 += y[2] * y[0];
+  }
+  return noise;
+}
+
+void RowTuning::weigh(int floor, int r, const Eigen::VectorXd& phi, FloorRows& out) const {
+  const int frames = layout_->frames();
+  const int panels = layout_->panels();
+  const int unknowns = layout_->own() + layout_->next(floor);
+  const auto row = static_cast<std::size_t>(r);
+  const Noise noise = filtered_noise(out.gain[row], out.a1[row], out.a2[row]);
+
+  // Each front unknown's element as (level, frame, coefficient) of its deformation.
+  struct End {
+    int level, frame;
+    double b;
+  };
+  const auto ends = [&](int position) {
+    std::vector<End> found;
+    const bool of_next = position >= layout_->own();
+    const int local = of_next ? position - layout_->own() : position;
+    if (of_next || local < 2 * frames) {
+      const int f = local % frames;
+      const int level = floor + (of_next ? 2 : 1);
+      found = {{level, f, 1.0}, {level - 1, f, -1.0}};
+    } else {
+      const int p = 2 * frames + (local - 2 * frames) % panels;
+      for (int f = 0; f < frames; ++f)
+        if (layout_->coefficient(p, f) != 0)
+          found.push_back({floor + 1, f, layout_->coefficient(p, f)});
+    }
+    return found;
+  };
+  const auto is_damping = [&](int position) {
+    if (position >= layout_->own()) return position - layout_->own() >= frames;
+    if (position < 2 * frames) return position >= frames;
+    return position - 2 * frames >= panels;
+  };
+
+  struct Share {
+    double mass = 0, damping = 0, stiffness = 0;
+  };
+  std::vector<Share> axis_share;
+  const auto share = [&](int axis) -> Share& {
+    if (static_cast<std::size_t>(axis) >= axis_share.size())
+      axis_share.resize(static_cast<std::size_t>(axis) + 1);
+    return axis_share[static_cast<std::size_t>(axis)];
+  };
+  std::vector<double> projected(static_cast<std::size_t>(unknowns));
+  std::vector<double> scale(static_cast<std::size_t>(unknowns));
+  for (int f = 0; f < frames; ++f)
+    for (const auto& [axis, weight] : deformations_->at(floor + 1, f))
+      share(axis).mass += phi[f] * mass(floor, f) * weight;
+  for (int p = 0; p < unknowns; ++p) {
+    const auto at = static_cast<std::size_t>(p);
+    for (int f = 0; f < frames; ++f) projected[at] += layout_->coefficient(p, f) * phi[f];
+    scale[at] = p < layout_->own() ? design_at(floor, p) : design_at(floor + 1, p - layout_->own());
+    for (const End& end : ends(p)) {
+      for (const auto& [axis, weight] : deformations_->at(end.level, end.frame)) {
+        const double coefficient = projected[at] * scale[at] * end.b * weight;
+        (is_damping(p) ? share(axis).damping : share(axis).stiffness) += coefficient;
+      }
+    }
+  }
+  double variance = 0;
+  for (std::size_t axis = 0; axis < axis_share.size(); ++axis) {
+    const Share& s = axis_share[axis];
+    variance += deformations_->noise_variance(static_cast<int>(axis), options_->rate_hz) *
+                (s.mass * s.mass * noise.g22 + s.damping * s.damping * noise.g11 +
+                 s.stiffness * s.stiffness * noise.g00 + 2 * s.mass * s.stiffness * noise.g20);
+  }
+  const double root_weight =
+      options_->variant == Variant::paper || variance <= 0 ? 1.0 : 1 / std::sqrt(variance);
+  out.noise_residual += root_weight * root_weight * variance;
+
+  const auto stride = static_cast<std::size_t>(padded(layout_->front(floor)));
+  for (int p = 0; p < unknowns; ++p) {
+    const auto at = static_cast<std::size_t>(p);
+    const double beta = root_weight * projected[at] * scale[at];
+    out.beta[row * stride + at] = beta;
+    std::vector<double> per_axis;
+    for (const End& end : ends(p)) {
+      for (const auto& [axis, weight] : deformations_->at(end.level, end.frame)) {
+        per_axis.resize(std::max(per_axis.size(), static_cast<std::size_t>(axis) + 1));
+        per_axis[static_cast<std::size_t>(axis)] += end.b * weight;
+      }
+    }
+    double deformation_variance = 0;
+    for (std::size_t axis = 0; axis < per_axis.size(); ++axis)
+      deformation_variance +=
+          per_axis[axis] * per_axis[axis] *
+          deformations_->noise_variance(static_cast<int>(axis), options_->rate_hz);
+    out.noise_energy[at] +=
+        beta * beta * deformation_variance * (is_damping(p) ? noise.g11 : noise.g00);
+  }
+  out.beta[row * stride + static_cast<std::size_t>(unknowns)] = root_weight;
+  for (int f = 0; f < frames; ++f)
+    out.response[row * static_cast<std::size_t>(frames) + static_cast<std::size_t>(f)] = -phi[f];
+}
+
+double RowTuning::damping() const {
+  return options_->variant == Variant::paper ? std::sqrt(0.5) : options_->filter_damping;
+}
+
+std::vector<int> RowTuning::all_frames() const {
+  std::vector<int> all(static_cast<std::size_t>(layout_->frames()));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+int RowTuning::settle_rows(int least) const {
+  const std::vector<int> all = all_frames();
+  double slowest_hz = kHighestCorner * options_->rate_hz;
+  for (int floor = 0; floor < layout_->floors(); ++floor) {
+    Eigen::VectorXd frequency;
+    floor_modes(floor, all, theta0_, frequency);
+    slowest_hz = std::min(slowest_hz, frequency.minCoeff());
+  }
+  const double settle_s = 3 / (damping() * 2 * M_PI * slowest_hz);
+  return std::max(least, static_cast<int>(std::ceil(settle_s * options_->rate_hz)));
+}
+
+double RowTuning::detuning(const Eigen::VectorXd& theta) const {
+  const std::vector<int> all = all_frames();
+  double worst = 0;
+  for (int floor = 0; floor < layout_->floors(); ++floor) {
+    Eigen::VectorXd now, then;
+    floor_modes(floor, all, theta0_, now);
+    floor_modes(floor, all, theta, then);
+    for (Eigen::Index r = 0; r < now.size(); ++r)
+      worst = std::max(worst, std::abs(then[r] / now[r] - 1));
+  }
+  return worst;
+}
+
+FloorRows RowTuning::rows(int floor, const std::vector<std::uint8_t>& known) const {
+  const std::vector<int> equations = usable_equations(floor, known);
+  FloorRows out;
+  Eigen::VectorXd frequency;
+  const Eigen::MatrixXd modes =
+      equations.empty() ? Eigen::MatrixXd() : floor_modes(floor, equations, theta0_, frequency);
+  out.rows = static_cast<int>(modes.cols());
+  const auto rows = static_cast<std::size_t>(out.rows);
+  const auto frames = static_cast<std::size_t>(layout_->frames());
+  out.beta.assign(rows * static_cast<std::size_t>(padded(layout_->front(floor))), 0.0);
+  out.response.assign(rows * frames, 0.0);
+  out.noise_energy.assign(static_cast<std::size_t>(layout_->front(floor) - 1), 0.0);
+  const double zeta = damping();
+  for (int r = 0; r < out.rows; ++r) {
+    const double w = std::tan(M_PI * frequency[r] / options_->rate_hz);
+    const double norm = 1 / (1 + 2 * zeta * w + w * w);
+    out.a1.push_back(2 * (w * w - 1) * norm);
+    out.a2.push_back((1 - 2 * zeta * w + w * w) * norm);
+    out.gain.push_back(4 * w * w * norm);
+    out.frequency_hz.push_back(frequency[r]);
+    weigh(floor, r, modes.col(r), out);
+  }
+  return out;
+}
+
+}  // namespace framewatch

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/deformations.h"
+#include "estimator/identify/floor_layout.h"
+#include "estimator/motion/derivative_triple.h"
+#include "estimator/motion/motion_filter.h"
+#include "estimator/options.h"
+
+namespace framewatch {
+
+/// Length of a front padded to whole vector lanes.
+inline constexpr int kLane = 4;
+constexpr int padded(int length) {
+  return (length + kLane - 1) / kLane * kLane;
+}
+
+/// One floor's projected equations: each row r is sum_f phi_rf (equation f), low-passed by an
+/// all-pole section s = gain x - a1 s' - a2 s'' and scaled by the root of its weight.
+struct FloorRows {
+  int rows = 0;
+  std::vector<double> gain, a1, a2;  ///< per row
+  std::vector<double> frequency_hz;  ///< corner of each row's filter
+  /// rows x padded(front): multiplies the filtered front signals [deformations..., response].
+  std::vector<double> beta;
+  std::vector<double> response;      ///< rows x frames: -phi_rf, forms the response from m p''
+  std::vector<double> noise_energy;  ///< per front unknown: expected per instant from noise
+  double noise_residual = 0;         ///< expected weighted squared residual per instant
+};
+
+/// How the rows of every floor are formed for one design theta0. docs/equations.md, matched rows.
+class RowTuning {
+ public:
+  /// All arguments but theta0 must outlive the object. theta0 > 0, theta order.
+  RowTuning(const Structure& structure, const FloorLayout& layout, const Deformations& deformations,
+            const EstimatorOptions& options, const DerivativeTriple& triple,
+            const HighPass& high_pass, const Eigen::VectorXd& theta0);
+
+  /// known: (floors + 1) x frames flags of DeformationSet. Equations that need an unknown motion
+  /// are left out and the rest projected on their own eigenvectors.
+  FloorRows rows(int floor, const std::vector<std::uint8_t>& known) const;
+
+  const Eigen::VectorXd& design() const { return theta0_; }
+  /// Instants the slowest row filter needs to forget its start: 3 / (zeta w), and at least `least`.
+  int settle_rows(int least) const;
+  /// Largest relative change of a row filter's corner between this design and `theta`.
+  double detuning(const Eigen::VectorXd& theta) const;
+
+ private:
+  struct Noise;  ///< second moments of filtered unit white noise
+  double damping() const;
+  std::vector<int> all_frames() const;
+  std::vector<int> usable_equations(int floor, const std::vector<std::uint8_t>& known) const;
+  Noise filtered_noise(double gain, double a1, double a2) const;
+  double design_at(int floor, int position) const {
+    return theta0_[layout_->parameter(floor, position)];
+  }
+  void weigh(int floor, int r, const Eigen::VectorXd& phi, FloorRows& out) const;
+  Eigen::MatrixXd floor_modes(int floor, const std::vector<int>& equations,
+                              const Eigen::VectorXd& theta, Eigen::VectorXd& frequency_hz) const;
+  Eigen::MatrixXd floor_stiffness(int floor, const Eigen::VectorXd& theta) const;
+  double mass(int floor, int f) const {
+    return mass_[static_cast<std::size_t>(floor * layout_->frames() + f)];
+  }
+
+  const Structure* structure_;
+  const FloorLayout* layout_;
+  const Deformations* deformations_;
+  const EstimatorOptions* options_;
+  Eigen::VectorXd theta0_;
+  std::vector<double> mass_;                  ///< floors x frames
+  Eigen::MatrixXd constraint_;                ///< of rigid floors; empty when flexible
+  std::vector<std::vector<double>> impulse_;  ///< of high-pass and triple: p, p', p''
+};
+
+}  // namespace framewatch

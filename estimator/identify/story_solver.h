@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/identify/floor_layout.h"
+#include "estimator/identify/window_sums.h"
+
+namespace framewatch {
+
+/// Solves the window's normal equations story by story: they are block tridiagonal, so each story's
+/// unknowns are eliminated from its own front and only 2 frames + 1 columns are passed on.
+/// Unknowns are relative: theta = design * x. docs/equations.md, story-ordered solution.
+class StorySolver {
+ public:
+  explicit StorySolver(const FloorLayout& layout);
+
+  /// prior: precision of every unknown about 1, in the rows' units, internal order; 0 = none.
+  void factor(const WindowSums& sums, const std::vector<double>& prior);
+
+  /// Unknowns in internal order (floor by floor); unusable ones are 1 (the design).
+  const std::vector<double>& solution() const { return x_; }
+  bool usable(int unknown) const { return usable_[static_cast<std::size_t>(unknown)] != 0; }
+  /// Diagonal of the data's normal matrix, before the prior.
+  const std::vector<double>& information() const { return information_; }
+  /// Sum of squares of the response, and of what the solution leaves of it (with the prior's pull).
+  double response_energy() const { return response_energy_; }
+  double residual_energy() const { return residual_energy_; }
+
+  /// Solves for `columns` right-hand sides in place; right: unknowns x columns, row-major.
+  void solve(std::vector<double>& right, int columns) const;
+  /// Diagonal of the inverse of the factored matrix.
+  void inverse_diagonal(std::vector<double>& diagonal) const;
+
+ private:
+  const double* factor_rows(int floor) const {
+    return &factor_[static_cast<std::size_t>(floor) * factor_stride_];
+  }
+  FloorLayout layout_;
+  std::size_t factor_stride_;
+  std::vector<double> front_, factor_, carry_, pivot_floor_;
+  std::vector<double> x_, information_;
+  std::vector<unsigned char> usable_;
+  double response_energy_ = 0, residual_energy_ = 0;
+};
+
+}  // namespace framewatch

@@ -1,0 +1,259 @@
+#include "estimator/identify/window_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/identify/design.h"
+
+namespace framewatch {
+namespace {
+
+constexpr int kBlocks = 20;       // per window
+constexpr int kCatchUp = 8;       // instants a new tuning takes in per instant of input
+constexpr int kMostPasses = 6;    // of tuning before the first estimate
+constexpr double kDetuned = 0.1;  // change of a filter's corner that asks for re-tuning
+constexpr double kInflation = 4;  // information is overstated by correlated residuals
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+DerivativeTriple triple_of(const EstimatorOptions& o) {
+  return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz) : matched_triple(o.rate_hz);
+}
+
+/// Relative standard deviation of the prior about the design.
+double prior_width(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::frame_stiffness:
+      return 0.1;
+    case ParameterKind::panel_stiffness:
+    case ParameterKind::frame_damping:
+      return 0.3;
+    case ParameterKind::panel_damping:
+      return 0.5;
+  }
+  return 0.1;
+}
+
+int rows_of(double seconds, double rate) {
+  return std::max(1, static_cast<int>(std::lround(seconds * rate)));
+}
+
+/// Instants the slowest filter a design can ask for needs to settle: no corner is below the
+/// high-pass.
+int longest_settle(const EstimatorOptions& o) {
+  const double slowest_s = 3 / (std::min(o.filter_damping, 0.7) * 2 * M_PI * o.high_pass_hz);
+  return rows_of(std::max(o.settle_s, slowest_s), o.rate_hz) + 1;
+}
+
+}  // namespace
+
+WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTable& table)
+    : structure_(config.structure),
+      axes_(config.axes),
+      options_(config.options),
+      table_(table),
+      layout_(structure_, table_),
+      deformations_(structure_, layout_, axes_),
+      triple_(triple_of(options_)),
+      high_pass_(options_.high_pass_hz, options_.rate_hz),
+      blocks_(kBlocks),
+      block_rows_(std::max(2, rows_of(options_.window_s / kBlocks, options_.rate_hz))),
+      hop_rows_(rows_of(options_.hop_s, options_.rate_hz)),
+      settle_rows_(rows_of(options_.settle_s, options_.rate_hz)),
+      filter_(static_cast<int>(axes_.size()), triple_, high_pass_),
+      ring_(deformations_, (longest_settle(options_) + kBlocks * block_rows_ + triple_.length()) *
+                                   (kCatchUp + 1) / kCatchUp +
+                               2 * kCatchUp),
+      solver_(layout_),
+      batch_means_(layout_, kBlocks),
+      boxplots_(static_cast<std::size_t>(table_.size()), BoxplotWindow(options_.boxplot_windows)) {
+  const auto unknowns = static_cast<std::size_t>(layout_.unknowns());
+  prior_.assign(unknowns, 0.0);
+  noise_energy_.assign(unknowns, 0.0);
+  prior_share_.assign(unknowns, 0.0);
+  for (int u = 0; u < layout_.unknowns(); ++u) {
+    const Parameter& p = table_[layout_.parameter(u / layout_.own(), u % layout_.own())];
+    const double width = prior_width(p.kind);
+    prior_precision_.push_back(kInflation / (width * width));
+  }
+  const auto parameters = static_cast<std::size_t>(table_.size());
+  for (std::vector<double>* v :
+       {&estimate_.value, &estimate_.std_error, &estimate_.snr, &estimate_.prior_share})
+    v->assign(parameters, kNaN);
+  estimate_.reason.assign(parameters, Observability::warming_up);
+  estimate_.boxplot.assign(parameters, BoxplotStatistics{kNaN, kNaN, kNaN, kNaN, kNaN, 0, 0});
+  estimate_.solution.assign(parameters, kNaN);
+  active_ =
+      make_machine(config.design.size() > 0 ? config.design : guessed_design(structure_, table_));
+  tuned_ = !options_.self_tune || options_.variant == Variant::paper;
+}
+
+std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& design) const {
+  const RowTuning tuning(structure_, layout_, deformations_, options_, triple_, high_pass_, design);
+  return std::make_unique<Machine>(tuning, layout_, blocks_, block_rows_, settle_rows_);
+}
+
+void WindowEstimator::restart() {
+  filter_.reset();
+  ring_.reset();
+  active_->start(0);
+  candidate_.reset();
+  errors_known_ = false;
+  since_hop_ = 0;
+}
+
+const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
+  if (set.index != expected_index_) {
+    if (expected_index_ >= 0) ++gaps_;
+    restart();
+  }
+  expected_index_ = set.index + 1;
+
+  filter_.push(set.accel);
+  deformations_.compute(filter_, ring_.push());
+  active_->advance(ring_);
+  ++since_hop_;
+  const bool due = since_hop_ >= hop_rows_;
+  if (active_->full()) solve();
+  if (active_->finish(ring_) && active_->full()) {
+    batch_means_.compute(active_->sums(), solver_);
+    solver_.inverse_diagonal(inverse_diagonal_);
+    for (std::size_t u = 0; u < prior_.size(); ++u)
+      prior_share_[u] = prior_[u] * inverse_diagonal_[u];
+    errors_known_ = true;
+    consider_retuning();
+  }
+  catch_up();
+  if (!due) return nullptr;
+  since_hop_ = 0;
+  fill_estimate(set.time);
+  return &estimate_;
+}
+
+void WindowEstimator::solve() {
+  double expected_residual = 0;
+  active_->noise_energy(noise_energy_, expected_residual);
+  const bool pull = options_.prior && options_.variant == Variant::matched && tuned_;
+  for (std::size_t u = 0; u < prior_.size(); ++u)
+    prior_[u] = pull ? prior_precision_[u] * noise_scale_ : 0.0;
+  solver_.factor(active_->sums(), prior_);
+  noise_scale_ = expected_residual > 0 ? solver_.residual_energy() / expected_residual : 0.0;
+}
+
+void WindowEstimator::consider_retuning() {
+  if (!options_.self_tune || options_.variant == Variant::paper || candidate_ != nullptr) return;
+  if (tuned_ && ++blocks_since_check_ < kBlocks) return;
+  blocks_since_check_ = 0;
+  std::vector<bool> shown;
+  for (std::size_t u = 0; u < noise_energy_.size(); ++u)
+    shown.push_back(solver_.usable(static_cast<int>(u)) &&
+                    solver_.information()[u] > options_.min_snr * noise_energy_[u] * noise_scale_ &&
+                    solver_.solution()[u] > 0);
+  if (std::none_of(shown.begin(), shown.end(), [](bool s) { return s; })) return;
+  const Eigen::VectorXd design =
+      retuned_design(layout_, table_, active_->tuning().design(), solver_.solution(),
+                     batch_means_.std_error(), shown);
+  if (active_->tuning().detuning(design) <= kDetuned || tuning_passes_ >= kMostPasses) {
+    tuned_ = true;
+    tuning_passes_ = 0;
+    return;
+  }
+  if (!tuned_) ++tuning_passes_;
+  candidate_ = make_machine(design);
+  const std::int64_t back = candidate_->warm_up() + triple_.length();
+  candidate_->start(std::max(ring_.begin(), ring_.end() - back));
+}
+
+void WindowEstimator::catch_up() {
+  for (int i = 0; candidate_ != nullptr && i < kCatchUp; ++i) {
+    if (candidate_->next() < ring_.end()) {
+      candidate_->advance(ring_);
+      candidate_->finish(ring_);
+    }
+    if (candidate_->next() < ring_.end()) continue;
+    active_ = std::move(candidate_);
+    ++retunes_;
+    errors_known_ = false;
+  }
+}
+
+bool WindowEstimator::element_known(int unknown, const std::vector<std::uint8_t>& known) const {
+  const int frames = layout_.frames();
+  const int floor = unknown / layout_.own();
+  const int position = unknown % layout_.own();
+  const auto is_known = [&](int level, int f) {
+    return known[static_cast<std::size_t>(level * frames + f)] != 0;
+  };
+  if (position < 2 * frames)
+    return is_known(floor, position % frames) && is_known(floor + 1, position % frames);
+  for (int f = 0; f < frames; ++f)
+    if (layout_.coefficient(position, f) != 0 && !is_known(floor + 1, f)) return false;
+  return true;
+}
+
+Observability WindowEstimator::judge(int unknown, const std::vector<std::uint8_t>& known) const {
+  const auto u = static_cast<std::size_t>(unknown);
+  if (!element_known(unknown, known)) return Observability::channel_lost;
+  if (!active_->full() || !errors_known_ || !tuned_ ||
+      active_->sums().floor_instants(unknown / layout_.own()) < window_rows() / 2)
+    return Observability::warming_up;
+  const Parameter& p = table_[layout_.parameter(unknown / layout_.own(), unknown % layout_.own())];
+  const double limit = p.kind == ParameterKind::frame_stiffness   ? options_.max_error_k
+                       : p.kind == ParameterKind::panel_stiffness ? options_.max_error_g
+                                                                  : options_.max_error_c;
+  const double x = solver_.solution()[u];
+  const bool excited =
+      solver_.information()[u] > options_.min_snr * noise_energy_[u] * noise_scale_;
+  if (solver_.usable(unknown) && excited && x > 0 && batch_means_.std_error()[u] < limit * x)
+    return Observability::observable;
+  return Observability::ill_determined;
+}
+
+void WindowEstimator::fill_estimate(Time time) {
+  const double rate = options_.rate_hz;
+  const auto since = [&](double rows) {
+    return SensorClock::duration(std::llround(rows * 1e6 / rate));
+  };
+  estimate_.end = time - since(triple_.delay);
+  estimate_.rows = active_->full() ? window_rows() : 0;
+  estimate_.start = estimate_.end - since(std::max(estimate_.rows - 1, 0));
+  ++estimate_.sequence;
+  estimate_.residual_ratio = estimate_.rows > 0 && solver_.response_energy() > 0
+                                 ? std::sqrt(solver_.residual_energy() / solver_.response_energy())
+                                 : 0;
+  const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
+  bool any = false, any_frame = false;
+  for (int u = 0; u < layout_.unknowns(); ++u) {
+    const auto i = static_cast<std::size_t>(u);
+    const int parameter = layout_.parameter(u / layout_.own(), u % layout_.own());
+    const auto p = static_cast<std::size_t>(parameter);
+    const double design = active_->tuning().design()[parameter];
+    estimate_.reason[p] = judge(u, known);
+    const bool observable = estimate_.reason[p] == Observability::observable;
+    any = any || observable;
+    any_frame =
+        any_frame || (observable && table_[parameter].kind == ParameterKind::frame_stiffness);
+    const bool solved = active_->full();
+    estimate_.solution[p] = solved ? design * solver_.solution()[i] : kNaN;
+    estimate_.value[p] = observable ? estimate_.solution[p] : kNaN;
+    estimate_.std_error[p] = observable ? design * batch_means_.std_error()[i] : kNaN;
+    const double noise = noise_energy_[i] * noise_scale_;
+    estimate_.snr[p] = solved && noise > 0 ? solver_.information()[i] / noise : 0;
+    estimate_.prior_share[p] = solved && errors_known_ ? std::min(prior_share_[i], 1.0) : 0;
+  }
+  for (std::size_t p = 0; p < estimate_.reason.size(); ++p) {
+    if (estimate_.reason[p] == Observability::ill_determined && !any_frame)
+      estimate_.reason[p] = Observability::quiet;
+    boxplots_[p].push(estimate_.value[p]);
+    estimate_.boxplot[p] = boxplots_[p].statistics();
+  }
+  const bool warming =
+      std::all_of(estimate_.reason.begin(), estimate_.reason.end(), [](Observability o) {
+        return o == Observability::warming_up || o == Observability::channel_lost;
+      });
+  estimate_.status = any       ? WindowStatus::valid
+                     : warming ? WindowStatus::warming_up
+                               : WindowStatus::nothing_identifiable;
+}
+
+}  // namespace framewatch

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "estimator/identify/boxplot.h"
+#include "estimator/identify/estimate.h"
+#include "estimator/identify/machine.h"
+#include "estimator/pipeline.h"
+
+namespace framewatch {
+
+/// Calibrated sample sets in, window estimates out: the method, step by step.
+class WindowEstimator {
+ public:
+  WindowEstimator(const PipelineConfig& config, const ParameterTable& table);
+
+  /// One instant. Returns the estimate of the window that ends there, or null between hops.
+  const WindowEstimate* push(const SampleSet& set);
+
+  const Eigen::VectorXd& design() const { return active_->tuning().design(); }
+  int window_rows() const { return blocks_ * block_rows_; }
+  int hop_rows() const { return hop_rows_; }
+  std::int64_t gaps() const { return gaps_; }
+  std::int64_t retunes() const { return retunes_; }
+
+ private:
+  void restart();
+  void catch_up();
+  void consider_retuning();
+  std::unique_ptr<Machine> make_machine(const Eigen::VectorXd& design) const;
+  void solve();
+  void fill_estimate(Time time);
+  Observability judge(int unknown, const std::vector<std::uint8_t>& known) const;
+  bool element_known(int unknown, const std::vector<std::uint8_t>& known) const;
+
+  Structure structure_;
+  std::vector<SensorAxis> axes_;
+  EstimatorOptions options_;
+  ParameterTable table_;
+  FloorLayout layout_;
+  Deformations deformations_;
+  DerivativeTriple triple_;
+  HighPass high_pass_;
+  int blocks_, block_rows_, hop_rows_, settle_rows_;
+  MotionFilter filter_;
+  MotionRing ring_;
+  std::unique_ptr<Machine> active_, candidate_;
+  StorySolver solver_;
+  BatchMeans batch_means_;
+  bool errors_known_ = false;  ///< batch means exist for the present run of windows
+  bool tuned_ = false;         ///< a check has found the filters right
+  int tuning_passes_ = 0;
+  int blocks_since_check_ = 0;
+  double noise_scale_ = 0;  ///< residual energy over what sensor noise explains
+  std::vector<double> prior_precision_, prior_, noise_energy_, inverse_diagonal_, prior_share_;
+  std::vector<BoxplotWindow> boxplots_;
+  WindowEstimate estimate_;
+  std::int64_t expected_index_ = -1, since_hop_ = 0, gaps_ = 0, retunes_ = 0;
+};
+
+}  // namespace framewatch

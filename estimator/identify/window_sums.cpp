@@ -1,0 +1,145 @@
+#include "estimator/identify/window_sums.h"
+
+#include <algorithm>
+
+#include "estimator/identify/kernels.h"
+
+namespace framewatch {
+
+SumsShape::SumsShape(const FloorLayout& layout) {
+  for (int f = 0; f < layout.floors(); ++f) {
+    const int front = layout.front(f);
+    const int stride = padded(front);
+    floor.push_back({size, front, stride});
+    for (int i = 0; i < front; ++i) size += static_cast<std::size_t>(stride - i / kLane * kLane);
+  }
+}
+
+WindowSums::WindowSums(const FloorLayout& layout, int blocks, int block_rows)
+    : shape_(layout), floors_(layout.floors()), blocks_(blocks), block_rows_(block_rows) {
+  for (std::vector<double>* state : {&current_, &middle_, &next_middle_, &zero_})
+    state->assign(shape_.size, 0.0);
+  blocks_ring_.assign(shape_.size * static_cast<std::size_t>(blocks), 0.0);
+  suffixes_.assign(shape_.size * static_cast<std::size_t>(std::max(block_rows - 1, 0)), 0.0);
+  for (int f = 0; f < floors_; ++f) {
+    row_offset_.push_back(instant_rows_);
+    instant_rows_ += static_cast<std::size_t>(layout.frames() * padded(layout.front(f)));
+  }
+  const auto rows = static_cast<std::size_t>(block_rows);
+  const auto floors = static_cast<std::size_t>(floors_);
+  stored_rows_.assign(instant_rows_ * rows, 0.0);
+  stored_counts_.assign(floors * rows, 0);
+  counts_.assign(floors * static_cast<std::size_t>(blocks), 0);
+  reset();
+}
+
+void WindowSums::reset() {
+  pushed_ = 0;
+  std::fill(current_.begin(), current_.end(), 0.0);
+  std::fill(middle_.begin(), middle_.end(), 0.0);
+  std::fill(next_middle_.begin(), next_middle_.end(), 0.0);
+  std::fill(blocks_ring_.begin(), blocks_ring_.end(), 0.0);
+  std::fill(suffixes_.begin(), suffixes_.end(), 0.0);
+  std::fill(stored_counts_.begin(), stored_counts_.end(), 0);
+  std::fill(counts_.begin(), counts_.end(), 0);
+  forward_ = true;
+  oldest_ = zero_.data();
+}
+
+int WindowSums::rows() const {
+  return static_cast<int>(
+      std::min<std::int64_t>(pushed_, static_cast<std::int64_t>(blocks_) * block_rows_));
+}
+
+const double* WindowSums::block(int age) const {
+  const std::int64_t newest = pushed_ / block_rows_ - 1;
+  return &blocks_ring_[static_cast<std::size_t>((newest - age) % blocks_) * shape_.size];
+}
+
+int WindowSums::floor_instants(int floor) const {
+  int sum = 0;
+  for (int b = 0; b < blocks_; ++b) sum += counts_[static_cast<std::size_t>(b * floors_ + floor)];
+  return sum;
+}
+
+void WindowSums::push(const RowChain& entering) {
+  const int j = static_cast<int>(pushed_ % block_rows_) + 1;
+  int* count = counts(pushed_ / block_rows_);
+  if (j == 1) std::fill(count, count + floors_, 0);
+  for (int f = 0; f < floors_; ++f) {
+    const SumsShape::Floor& shape = shape_.floor[static_cast<std::size_t>(f)];
+    double* to = &current_[shape.offset];
+    kernels::add_rows(to, to, entering.rows(f), entering.count(f), shape.front, shape.stride);
+    if (entering.count(f) > 0) ++count[f];
+  }
+  // slot(j) holds what this block needs at row j and then receives what the next block needs at
+  // row block_rows - j, so one set of slots serves, run through in alternating directions.
+  oldest_ = j < block_rows_ ? suffix(forward_ ? j : block_rows_ - j) : zero_.data();
+  ++pushed_;
+}
+
+bool WindowSums::maintain(const RowChain* delayed) {
+  const int j = static_cast<int>((pushed_ - 1) % block_rows_) + 1;
+  if (j < block_rows_) build_suffix(j);
+  if (delayed != nullptr) store_delayed(*delayed, j);
+  add_slice(j);
+  if (j < block_rows_) return false;
+  close_block();
+  return true;
+}
+
+void WindowSums::build_suffix(int j) {
+  const int slot = forward_ ? j : block_rows_ - j;
+  const int previous = forward_ ? j - 1 : block_rows_ - j + 1;
+  const double* from = j == 1 ? zero_.data() : suffix(previous);
+  double* to = suffix(slot);
+  const auto stored = static_cast<std::size_t>(forward_ ? block_rows_ - j : j - 1);
+  const double* rows = &stored_rows_[stored * instant_rows_];
+  const int* count = &stored_counts_[stored * static_cast<std::size_t>(floors_)];
+  for (int f = 0; f < floors_; ++f) {
+    const SumsShape::Floor& shape = shape_.floor[static_cast<std::size_t>(f)];
+    kernels::add_rows(from + shape.offset, to + shape.offset,
+                      rows + row_offset_[static_cast<std::size_t>(f)], count[f], shape.front,
+                      shape.stride);
+  }
+}
+
+void WindowSums::store_delayed(const RowChain& delayed, int j) {
+  const auto stored = static_cast<std::size_t>(forward_ ? block_rows_ - j : j - 1);
+  std::copy(delayed.data(), delayed.data() + instant_rows_,
+            stored_rows_.begin() + static_cast<std::ptrdiff_t>(stored * instant_rows_));
+  for (int f = 0; f < floors_; ++f)
+    stored_counts_[stored * static_cast<std::size_t>(floors_) + static_cast<std::size_t>(f)] =
+        delayed.count(f);
+}
+
+void WindowSums::add_slice(int j) {
+  const std::int64_t block = (pushed_ - 1) / block_rows_;
+  const std::int64_t oldest = std::max<std::int64_t>(block - blocks_ + 2, 0);
+  const auto total = static_cast<std::size_t>(block - oldest) * shape_.size;
+  const auto rows = static_cast<std::size_t>(block_rows_);
+  std::size_t at = total * static_cast<std::size_t>(j - 1) / rows;
+  const std::size_t end = total * static_cast<std::size_t>(j) / rows;
+  while (at < end) {
+    const std::size_t within = at % shape_.size;
+    const std::size_t length = std::min(shape_.size - within, end - at);
+    const auto ring =
+        static_cast<std::size_t>((oldest + static_cast<std::int64_t>(at / shape_.size)) % blocks_);
+    kernels::add(&next_middle_[within], &blocks_ring_[ring * shape_.size + within],
+                 static_cast<long>(length));
+    at += length;
+  }
+}
+
+void WindowSums::close_block() {
+  const auto ring = static_cast<std::size_t>((pushed_ / block_rows_ - 1) % blocks_);
+  kernels::add(next_middle_.data(), current_.data(), static_cast<long>(shape_.size));
+  std::copy(current_.begin(), current_.end(),
+            blocks_ring_.begin() + static_cast<std::ptrdiff_t>(ring * shape_.size));
+  middle_.swap(next_middle_);
+  std::fill(next_middle_.begin(), next_middle_.end(), 0.0);
+  std::fill(current_.begin(), current_.end(), 0.0);
+  forward_ = !forward_;
+}
+
+}  // namespace framewatch

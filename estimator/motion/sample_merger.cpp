@@ -1,0 +1,137 @@
+#include "estimator/motion/sample_merger.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace framewatch {
+namespace {
+
+constexpr double kOffGrid = 0.3;     // of a step: a sample farther from its instant is no sample
+constexpr double kPhaseGain = 0.02;  // how fast the grid follows the stamps
+constexpr std::int64_t kSpare = 8;   // instants beyond the lateness that may be open
+
+}  // namespace
+
+SampleMerger::SampleMerger(int axes, double rate_hz, double lateness_s)
+    : step_us_(1e6 / rate_hz),
+      lateness_(std::max<std::int64_t>(1, std::llround(lateness_s * rate_hz))),
+      stray_limit_(2 * axes + 4) {
+  const auto count = static_cast<std::size_t>(axes);
+  open_.resize(static_cast<std::size_t>(lateness_ + kSpare));
+  for (Instant& i : open_) {
+    i.accel.resize(count);
+    i.has.resize(count);
+    clear(i);
+  }
+  silent_.assign(count, 0);
+  counters_.assign(count, {});
+  set_.accel.resize(count);
+}
+
+void SampleMerger::clear(Instant& instant) {
+  std::fill(instant.accel.begin(), instant.accel.end(), std::numeric_limits<double>::quiet_NaN());
+  std::fill(instant.has.begin(), instant.has.end(), std::uint8_t{0});
+  instant.delivered = 0;
+}
+
+std::int64_t SampleMerger::index_of(double time_us) const {
+  const double steps = std::clamp((time_us - phase_us_) / step_us_, -9e15, 9e15);
+  return origin_ + std::llround(steps);
+}
+
+void SampleMerger::anchor(double time_us) {
+  for (Instant& i : open_) clear(i);
+  phase_us_ = time_us;
+  // A new anchor leaves a hole in the numbering: whoever reads the sets sees the gap.
+  origin_ = anchored_ ? std::max(newest_, first_open_) + 2 : 0;
+  first_open_ = origin_;
+  newest_ = origin_ - 1;
+  strays_ = 0;
+  anchored_ = true;
+}
+
+void SampleMerger::stray(const AccelSample& sample) {
+  const double time_us = static_cast<double>(to_microseconds(sample.time));
+  const bool together = strays_ > 0 && std::abs(time_us - stray_time_us_) < 1e6;
+  strays_ = together ? strays_ + 1 : 1;
+  stray_time_us_ = time_us;
+  if (strays_ > stray_limit_) anchor(time_us);
+}
+
+bool SampleMerger::push(const AccelSample& sample) {
+  const auto axis = static_cast<std::size_t>(sample.axis);
+  AxisCounters& counter = counters_[axis];
+  const double time_us = static_cast<double>(to_microseconds(sample.time));
+  if (!anchored_) anchor(time_us);
+  std::int64_t index = index_of(time_us);
+  if (index < first_open_ - lateness_ ||
+      index >= first_open_ + static_cast<std::int64_t>(open_.size()) + lateness_) {
+    stray(sample);
+    index = index_of(time_us);
+    if (strays_ > 0) {
+      ++counter.received;
+      ++counter.rejected;
+      return true;
+    }
+  }
+  strays_ = 0;
+  if (index >= first_open_ + static_cast<std::int64_t>(open_.size())) {
+    newest_ = index;
+    return false;
+  }
+  ++counter.received;
+  if (index < first_open_) {
+    ++counter.late;
+    silent_[axis] = 0;
+    return true;
+  }
+  const double off = time_us - (phase_us_ + step_us_ * static_cast<double>(index - origin_));
+  if (!std::isfinite(sample.accel) || std::abs(off) > kOffGrid * step_us_) {
+    ++counter.rejected;
+    return true;
+  }
+  newest_ = std::max(newest_, index);
+  Instant& slot = instant(index);
+  if (slot.has[axis] != 0) {
+    ++counter.rejected;
+    return true;
+  }
+  slot.has[axis] = 1;
+  slot.accel[axis] = sample.accel;
+  ++slot.delivered;
+  silent_[axis] = 0;
+  phase_us_ += kPhaseGain * off / static_cast<double>(silent_.size());
+  return true;
+}
+
+bool SampleMerger::complete(const Instant& instant) const {
+  for (std::size_t a = 0; a < silent_.size(); ++a)
+    if (instant.has[a] == 0 && silent_[a] == 0) return false;
+  return instant.delivered > 0;
+}
+
+const SampleSet* SampleMerger::next() {
+  if (!anchored_ || first_open_ > newest_) return nullptr;
+  Instant& oldest = instant(first_open_);
+  const bool overdue = newest_ - first_open_ > lateness_;
+  if (!complete(oldest) && !overdue && !finishing_) return nullptr;
+  for (std::size_t a = 0; a < silent_.size(); ++a) {
+    if (oldest.has[a] != 0) continue;
+    ++counters_[a].missing;
+    if (overdue) silent_[a] = 1;
+  }
+  set_.index = first_open_;
+  set_.time = from_microseconds(
+      std::llround(phase_us_ + step_us_ * static_cast<double>(first_open_ - origin_)));
+  std::copy(oldest.accel.begin(), oldest.accel.end(), set_.accel.begin());
+  clear(oldest);
+  ++first_open_;
+  if (first_open_ - origin_ >= 4096) {
+    phase_us_ += step_us_ * static_cast<double>(first_open_ - origin_);
+    origin_ = first_open_;
+  }
+  return &set_;
+}
+
+}  // namespace framewatch

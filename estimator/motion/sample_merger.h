@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimator/motion/sample.h"
+
+namespace framewatch {
+
+/// Counts of what happened to the samples of one axis.
+struct AxisCounters {
+  std::int64_t received = 0;
+  std::int64_t missing = 0;   ///< instants closed without a value
+  std::int64_t late = 0;      ///< came after their instant was closed
+  std::int64_t repaired = 0;  ///< single losses filled by interpolation
+  std::int64_t rejected = 0;  ///< NaN, infinite, duplicate, off the grid or far from the others
+};
+
+/// Brings the axes' samples together on one grid of instants. An instant is given out once every
+/// axis that is not silent has delivered, or when a sample `lateness` newer has come: a dead sensor
+/// holds nobody up. Instants come out in order; a jump of SampleSet::index is a gap. The grid's
+/// phase follows the stamps, so a sampling clock that is off by 1000 ppm does not fall off it.
+class SampleMerger {
+ public:
+  SampleMerger(int axes, double rate_hz, double lateness_s);
+
+  /// Bad samples are counted and dropped. False when the sample is so much newer than what is open
+  /// that next() must be called until it is empty, and the sample pushed again.
+  [[nodiscard]] bool push(const AccelSample& sample);
+  /// The oldest instant that can be closed, if any. Values NaN where an axis did not deliver.
+  /// The reference is valid until the next call.
+  const SampleSet* next();
+  /// No more samples will come: next() gives out everything that is open.
+  void finish() { finishing_ = true; }
+
+  const std::vector<AxisCounters>& counters() const { return counters_; }
+  AxisCounters& counters_of(int axis) { return counters_[static_cast<std::size_t>(axis)]; }
+
+ private:
+  struct Instant {
+    std::vector<double> accel;
+    std::vector<std::uint8_t> has;
+    int delivered = 0;
+  };
+  Instant& instant(std::int64_t index) {
+    return open_[static_cast<std::size_t>(index % static_cast<std::int64_t>(open_.size()))];
+  }
+  std::int64_t index_of(double time_us) const;
+  void anchor(double time_us);
+  void stray(const AccelSample& sample);
+  bool complete(const Instant& instant) const;
+  void clear(Instant& instant);
+
+  double step_us_;
+  std::int64_t lateness_;  ///< instants
+  int stray_limit_;
+  std::vector<Instant> open_;
+  std::vector<std::uint8_t> silent_;
+  std::vector<AxisCounters> counters_;
+  bool anchored_ = false, finishing_ = false;
+  double phase_us_ = 0;  ///< time of instant origin_
+  std::int64_t origin_ = 0;
+  std::int64_t first_open_ = 0, newest_ = -1;
+  int strays_ = 0;
+  double stray_time_us_ = 0;
+  SampleSet set_;
+};
+
+}  // namespace framewatch

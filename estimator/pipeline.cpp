@@ -1,0 +1,120 @@
+#include "estimator/pipeline.h"
+
+#include <cmath>
+
+#include "estimator/identify/window_estimator.h"
+#include "estimator/motion/gap_filler.h"
+#include "estimator/motion/sample_merger.h"
+
+namespace framewatch {
+
+std::vector<std::string> problems(const PipelineConfig& config) {
+  std::vector<std::string> found = problems(config.structure);
+  if (!found.empty()) return found;
+  found = problems(config.structure, config.axes);
+  const EstimatorOptions& o = config.options;
+  const auto at_least = [&](const char* name, double value, double least) {
+    if (!(std::isfinite(value) && value >= least))
+      found.push_back(std::string(name) + ": must be at least " + std::to_string(least));
+  };
+  at_least("rate_hz", o.rate_hz, 1);
+  at_least("window_s", o.window_s, 40 / o.rate_hz);
+  at_least("hop_s", o.hop_s, 0);
+  at_least("boxplot_windows", o.boxplot_windows, 1);
+  at_least("high_pass_hz", o.high_pass_hz, 0.001);
+  at_least("filter_damping", o.filter_damping, 0.05);
+  if (config.design.size() > 0) {
+    const ParameterTable table(config.structure);
+    if (config.design.size() != table.size() || !(config.design.array() > 0).all())
+      found.push_back("design: needs " + std::to_string(table.size()) + " values > 0");
+  }
+  return found;
+}
+
+class Pipeline::Implementation {
+ public:
+  Implementation(const PipelineConfig& config, Sink sink)
+      : table_(config.structure),
+        axes_(config.axes),
+        merger_(static_cast<int>(axes_.size()), config.options.rate_hz, config.options.lateness_s),
+        filler_(static_cast<int>(axes_.size()), config.options.fill_single_losses),
+        estimator_(config, table_),
+        sink_(std::move(sink)) {}
+
+  void push(const AccelSample& raw) {
+    const SensorAxis& axis = axes_[static_cast<std::size_t>(raw.axis)];
+    AccelSample sample = raw;
+    sample.accel = axis.polarity * (axis.scale * raw.accel - axis.offset);
+    sample.time -= SensorClock::duration(std::llround(axis.delay * 1e6));
+    bool taken = merger_.push(sample);
+    drain();
+    if (taken) return;
+    taken = merger_.push(sample);
+    drain();
+  }
+
+  void finish() {
+    merger_.finish();
+    drain();
+    while (const SampleSet* set = filler_.drain()) estimate(*set);
+  }
+
+  PipelineCounters counters() const {
+    PipelineCounters out{sets_, estimator_.gaps(), windows_, estimator_.retunes(),
+                         merger_.counters()};
+    for (std::size_t a = 0; a < out.axes.size(); ++a) out.axes[a].repaired = filler_.repaired()[a];
+    return out;
+  }
+
+  const ParameterTable& table() const { return table_; }
+  const WindowEstimator& estimator() const { return estimator_; }
+
+ private:
+  void drain() {
+    while (const SampleSet* set = merger_.next())
+      if (const SampleSet* repaired = filler_.push(*set)) estimate(*repaired);
+  }
+
+  void estimate(const SampleSet& set) {
+    ++sets_;
+    if (const WindowEstimate* estimate = estimator_.push(set)) {
+      ++windows_;
+      sink_(*estimate);
+    }
+  }
+
+  ParameterTable table_;
+  std::vector<SensorAxis> axes_;
+  SampleMerger merger_;
+  GapFiller filler_;
+  WindowEstimator estimator_;
+  Sink sink_;
+  std::int64_t sets_ = 0, windows_ = 0;
+};
+
+Pipeline::Pipeline(const PipelineConfig& config, Sink sink)
+    : implementation_(std::make_unique<Implementation>(config, std::move(sink))) {}
+Pipeline::~Pipeline() = default;
+void Pipeline::push(const AccelSample& sample) {
+  implementation_->push(sample);
+}
+void Pipeline::finish() {
+  implementation_->finish();
+}
+const ParameterTable& Pipeline::parameters() const {
+  return implementation_->table();
+}
+const Eigen::VectorXd& Pipeline::design() const {
+  return implementation_->estimator().design();
+}
+int Pipeline::window_rows() const {
+  return implementation_->estimator().window_rows();
+}
+int Pipeline::hop_rows() const {
+  return implementation_->estimator().hop_rows();
+}
+PipelineCounters Pipeline::counters() const {
+  return implementation_->counters();
+}
+
+}  // namespace framewatch
