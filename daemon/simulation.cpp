@@ -1,0 +1,51 @@
+#include "daemon/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framewatch::daemon {
+namespace {
+
+ResponseStream response_of(const Scenario& s) {
+  const Structure& structure = s.config.pipeline.structure;
+  ResponseOptions options;
+  options.rate_hz = s.rate_hz;
+  return {structure, ParameterTable(structure), s.truth, s.motion, options, s.changes};
+}
+
+/// The sensors with their noise ratios turned into densities, which takes a run ahead.
+std::vector<SensorModel> sensors_of(const Scenario& s) {
+  std::vector<SensorModel> models = s.sensors;
+  const bool wanted = std::any_of(s.noise_ratio.begin(), s.noise_ratio.end(),
+                                  [](double ratio) { return ratio > 0; });
+  if (!wanted) return models;
+  ResponseStream response = response_of(s);
+  const std::int64_t count = instants(s);
+  Eigen::ArrayXd squares = response.next().array().square();
+  for (std::int64_t i = 1; i < count; ++i) squares += response.next().array().square();
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const int column = response_column(s.config.pipeline.structure, s.config.pipeline.axes[i]);
+    const double rms = std::sqrt(squares[column] / static_cast<double>(count));
+    models[i].noise_density =
+        std::hypot(models[i].noise_density, noise_density_of(s.noise_ratio[i], rms, s.rate_hz));
+  }
+  return models;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& s)
+    : response_(response_of(s)),
+      sensors_(s.config.pipeline.structure, s.config.pipeline.axes, sensors_of(s), s.rate_hz,
+               s.seed) {}
+
+const std::vector<double>& Simulation::next() {
+  const Eigen::VectorXd& response = response_.next();
+  return sensors_.measure(response_.time_s(), response);
+}
+
+std::int64_t instants(const Scenario& s) {
+  return static_cast<std::int64_t>(std::floor(s.duration_s * s.rate_hz + 1e-6)) + 1;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,145 @@
+#include "daemon/simulation_output.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <utility>
+
+#include <fmt/core.h>
+#include <lcm/lcm-cpp.hpp>
+
+#include "drivers/lcm_log.h"
+#include "drivers/record_csv_writer.h"
+
+namespace framewatch::daemon {
+namespace {
+
+std::int64_t microseconds(double time_s) {
+  return std::llround(time_s * 1e6);
+}
+
+std::vector<std::string> names(const Scenario& s) {
+  std::vector<std::string> out;
+  for (const SensorAxis& axis : s.config.pipeline.axes) out.push_back(axis.name);
+  return out;
+}
+
+class CsvOutput : public SimulationOutput {
+ public:
+  bool open(const Scenario& s, const std::string& path) { return writer_.open(path, names(s)); }
+  bool put(double time_s, const std::vector<double>& raw) override {
+    return writer_.write(time_s, raw);
+  }
+  bool close() override { return writer_.close(); }
+  std::string error() const override { return writer_.error(); }
+
+ private:
+  drivers::RecordCsvWriter writer_;
+};
+
+class LogOutput : public SimulationOutput {
+ public:
+  explicit LogOutput(const Scenario& s) : messages_(accel_messages(s)) {}
+  bool open(const std::string& path) { return writer_.open(path) && write(0, messages_.tables(0)); }
+  bool put(double time_s, const std::vector<double>& raw) override {
+    const std::int64_t time_us = microseconds(time_s);
+    return write(time_us, messages_.samples(time_us, raw));
+  }
+  bool close() override { return writer_.close(); }
+  std::string error() const override { return writer_.error(); }
+
+ private:
+  bool write(std::int64_t time_us, const std::vector<drivers::Message>& all) {
+    return std::all_of(all.begin(), all.end(), [&](const drivers::Message& m) {
+      return writer_.write(time_us, m.channel, m.bytes.data(), m.bytes.size());
+    });
+  }
+
+  drivers::AccelMessages messages_;
+  drivers::LcmLogWriter writer_;
+};
+
+class LiveOutput : public SimulationOutput {
+ public:
+  LiveOutput(const Scenario& s, const std::string& url, double speed)
+      : lcm_(url),
+        messages_(accel_messages(s)),
+        speed_(speed),
+        table_every_(std::llround(s.rate_hz)),
+        start_us_(std::chrono::duration_cast<std::chrono::microseconds>(
+                      std::chrono::system_clock::now().time_since_epoch())
+                      .count()) {}
+  bool good() { return lcm_.good(); }
+
+  bool put(double time_s, const std::vector<double>& raw) override {
+    const auto since_start = std::chrono::duration<double>(time_s / speed_);
+    std::this_thread::sleep_until(
+        start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(since_start));
+    const std::int64_t time_us = start_us_ + microseconds(time_s);
+    if (instant_++ % table_every_ == 0 && !publish(messages_.tables(time_us))) return false;
+    return publish(messages_.samples(time_us, raw));
+  }
+  bool close() override { return true; }
+  std::string error() const override { return "LCM refuses to send"; }
+
+ private:
+  bool publish(const std::vector<drivers::Message>& all) {
+    return std::all_of(all.begin(), all.end(), [&](const drivers::Message& m) {
+      return lcm_.publish(m.channel, m.bytes.data(), static_cast<unsigned>(m.bytes.size())) == 0;
+    });
+  }
+
+  lcm::LCM lcm_;
+  drivers::AccelMessages messages_;
+  double speed_;
+  std::int64_t table_every_;  ///< instants; so that a late listener learns the names, too
+  std::int64_t start_us_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::int64_t instant_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<SimulationOutput> file_output(const Scenario& s, const std::string& path,
+                                              std::string& error) {
+  if (path.ends_with(".csv") || path.ends_with(".csv.gz")) {
+    auto out = std::make_unique<CsvOutput>();
+    if (out->open(s, path)) return out;
+    error = out->error();
+  } else if (path.ends_with(".lcmlog")) {
+    auto out = std::make_unique<LogOutput>(s);
+    if (out->open(path)) return out;
+    error = out->error();
+  } else {
+    error = "the name must end in .csv, .csv.gz or .lcmlog";
+  }
+  return nullptr;
+}
+
+std::unique_ptr<SimulationOutput> live_output(const Scenario& s, const std::string& url,
+                                              double speed, std::string& error) {
+  auto out = std::make_unique<LiveOutput>(s, url, speed);
+  if (out->good()) return out;
+  error = fmt::format("LCM cannot be reached at {}", url);
+  return nullptr;
+}
+
+std::vector<drivers::ChannelAddress> addresses(const std::vector<AxisSource>& sources) {
+  int highest = 0;
+  for (const AxisSource& source : sources) highest = std::max(highest, source.node);
+  std::vector<drivers::ChannelAddress> out;
+  for (const AxisSource& source : sources) {
+    if (source.node >= 0)
+      out.push_back({source.lcm_channel, source.node, source.axis});
+    else
+      out.push_back({"ACCEL", ++highest, 0});
+  }
+  return out;
+}
+
+drivers::AccelMessages accel_messages(const Scenario& s) {
+  return {names(s), addresses(s.config.sources), s.rate_hz};
+}
+
+}  // namespace framewatch::daemon

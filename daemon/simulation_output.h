@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/simulation.h"
+#include "drivers/accel_messages.h"
+
+namespace framewatch::daemon {
+
+/// Takes a virtual test's instants, one after the other.
+class SimulationOutput {
+ public:
+  virtual ~SimulationOutput() = default;
+  /// False when it cannot be stored or sent; error() says why, here and below.
+  [[nodiscard]] virtual bool put(double time_s, const std::vector<double>& raw) = 0;
+  /// A file appears under its name only now.
+  [[nodiscard]] virtual bool close() = 0;
+  virtual std::string error() const = 0;
+};
+
+/// By the name's end: .csv, .csv.gz or .lcmlog. Null, and the reason, when it cannot be made.
+std::unique_ptr<SimulationOutput> file_output(const Scenario& scenario, const std::string& path,
+                                              std::string& error);
+
+/// LCM, at `speed` times real time from now on; sensor time is the host's clock at the start plus
+/// the test's time.
+std::unique_ptr<SimulationOutput> live_output(const Scenario& scenario, const std::string& url,
+                                              double speed, std::string& error);
+
+/// Where each configured axis travels on LCM; axes without a source get nodes of their own on
+/// ACCEL, after the highest one in use.
+std::vector<drivers::ChannelAddress> addresses(const std::vector<AxisSource>& sources);
+
+/// The messages of a scenario's axes.
+drivers::AccelMessages accel_messages(const Scenario& scenario);
+
+}  // namespace framewatch::daemon
