@@ -46,17 +46,22 @@ Eigen::VectorXd retuned_design(const FloorLayout& layout, const ParameterTable& 
     factor[parameter] = std::clamp(moved, 1 / kLargestStep, kLargestStep);
     seen[static_cast<int>(table[parameter].kind)].push_back(factor[parameter]);
   }
+  const auto median = [&](ParameterKind kind, double otherwise) {
+    std::vector<double>& values = seen[static_cast<int>(kind)];
+    if (values.empty()) return otherwise;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  const double frame_stiffness = median(ParameterKind::frame_stiffness, 1);
+  const double frame_damping = median(ParameterKind::frame_damping, 1);
+  const double unseen[kKinds] = {frame_stiffness,
+                                 median(ParameterKind::panel_stiffness, frame_stiffness),
+                                 frame_damping,
+                                 median(ParameterKind::panel_damping, frame_damping)};
   Eigen::VectorXd out = design;
-  for (int p = 0; p < table.size(); ++p) {
-    std::vector<double>& kind = seen[static_cast<int>(table[p].kind)];
-    if (factor[p] == 0) {
-      if (kind.empty()) continue;
-      const auto middle = kind.begin() + static_cast<std::ptrdiff_t>(kind.size() / 2);
-      std::nth_element(kind.begin(), middle, kind.end());
-      factor[p] = *middle;
-    }
-    out[p] *= factor[p];
-  }
+  for (int p = 0; p < table.size(); ++p)
+    out[p] *= factor[p] > 0 ? factor[p] : unseen[static_cast<int>(table[p].kind)];
   return out;
 }
 
