@@ -6,9 +6,9 @@ jobs=${FRAMEWATCH_JOBS:-$(nproc)}
 
 say() { printf '== %s\n' "$*" >&2; }
 
-# install_packages <--yes or empty>: what a build needs, or exit as deploy/install-deps says.
+# install_packages <--yes or empty>: what a build needs, or exit 2.
 install_packages() {
-  "$root/deploy/install-deps" ${1:+"$1"} >&2 || exit $?
+  "$root/deploy/install-deps" ${1:+"$1"} >&2 || exit 2
 }
 
 warn_missing_packages() {
