@@ -23,6 +23,7 @@ std::vector<std::string> problems(const PipelineConfig& config) {
   at_least("boxplot_windows", o.boxplot_windows, 1);
   at_least("high_pass_hz", o.high_pass_hz, 0.001);
   at_least("filter_damping", o.filter_damping, 0.05);
+  at_least("corner_ratio", o.corner_ratio, 0.1);
   if (config.design.size() > 0) {
     const ParameterTable table(config.structure);
     if (config.design.size() != table.size() || !(config.design.array() > 0).all())
@@ -39,13 +40,17 @@ class Pipeline::Implementation {
         merger_(static_cast<int>(axes_.size()), config.options.rate_hz, config.options.lateness_s),
         filler_(static_cast<int>(axes_.size()), config.options.fill_single_losses),
         estimator_(config, table_),
-        sink_(std::move(sink)) {}
+        sink_(std::move(sink)) {
+    const double rate = config.options.rate_hz;
+    for (const SensorAxis& axis : axes_)
+      whole_delay_us_.push_back(std::llround(std::round(axis.delay * rate) / rate * 1e6));
+  }
 
   void push(const AccelSample& raw) {
     const SensorAxis& axis = axes_[static_cast<std::size_t>(raw.axis)];
     AccelSample sample = raw;
     sample.accel = axis.polarity * (axis.scale * raw.accel - axis.offset);
-    sample.time -= SensorClock::duration(std::llround(axis.delay * 1e6));
+    sample.time -= SensorClock::duration(whole_delay_us_[static_cast<std::size_t>(raw.axis)]);
     bool taken = merger_.push(sample);
     drain();
     if (taken) return;
@@ -85,6 +90,7 @@ class Pipeline::Implementation {
 
   ParameterTable table_;
   std::vector<SensorAxis> axes_;
+  std::vector<std::int64_t> whole_delay_us_;
   SampleMerger merger_;
   GapFiller filler_;
   WindowEstimator estimator_;

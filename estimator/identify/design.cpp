@@ -55,10 +55,9 @@ Eigen::VectorXd retuned_design(const FloorLayout& layout, const ParameterTable& 
   };
   const double frame_stiffness = median(ParameterKind::frame_stiffness, 1);
   const double frame_damping = median(ParameterKind::frame_damping, 1);
-  const double unseen[kKinds] = {frame_stiffness,
-                                 median(ParameterKind::panel_stiffness, frame_stiffness),
-                                 frame_damping,
-                                 median(ParameterKind::panel_damping, frame_damping)};
+  const double unseen[kKinds] = {
+      frame_stiffness, median(ParameterKind::panel_stiffness, frame_stiffness), frame_damping,
+      median(ParameterKind::panel_damping, frame_damping)};
   Eigen::VectorXd out = design;
   for (int p = 0; p < table.size(); ++p)
     out[p] *= factor[p] > 0 ? factor[p] : unseen[static_cast<int>(table[p].kind)];

@@ -118,9 +118,10 @@ Eigen::MatrixXd RowTuning::floor_modes(int floor, const std::vector<int>& equati
     return basis;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(k);
-  frequency_hz = (solver.eigenvalues().cwiseMax(0.0).cwiseSqrt() / (2 * M_PI))
-                     .cwiseMin(kHighestCorner * options_->rate_hz)
-                     .cwiseMax(options_->high_pass_hz);
+  frequency_hz =
+      (options_->corner_ratio * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt() / (2 * M_PI))
+          .cwiseMin(kHighestCorner * options_->rate_hz)
+          .cwiseMax(options_->high_pass_hz);
   return basis * solver.eigenvectors();
 }
 

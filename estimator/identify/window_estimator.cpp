@@ -16,8 +16,20 @@ constexpr double kDetuned = 0.1;  // change of a filter's corner that asks for r
 constexpr double kInflation = 4;  // information is overstated by correlated residuals
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-DerivativeTriple triple_of(const EstimatorOptions& o) {
-  return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz) : matched_triple(o.rate_hz);
+DerivativeTriple triple_of(const EstimatorOptions& o, double advance) {
+  return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz)
+                                     : matched_triple(o.rate_hz, advance);
+}
+
+/// Whole samples of a delay are taken off the stamps (Pipeline), the rest is filtered away here.
+std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o,
+                                         const std::vector<SensorAxis>& axes) {
+  std::vector<DerivativeTriple> triples;
+  for (const SensorAxis& axis : axes) {
+    const double samples = axis.delay * o.rate_hz;
+    triples.push_back(triple_of(o, samples - std::round(samples)));
+  }
+  return triples;
 }
 
 /// Relative standard deviation of the prior about the design.
@@ -54,13 +66,13 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
       table_(table),
       layout_(structure_, table_),
       deformations_(structure_, layout_, axes_),
-      triple_(triple_of(options_)),
+      triple_(triple_of(options_, 0)),
       high_pass_(options_.high_pass_hz, options_.rate_hz),
       blocks_(kBlocks),
       block_rows_(std::max(2, rows_of(options_.window_s / kBlocks, options_.rate_hz))),
       hop_rows_(rows_of(options_.hop_s, options_.rate_hz)),
       settle_rows_(rows_of(options_.settle_s, options_.rate_hz)),
-      filter_(static_cast<int>(axes_.size()), triple_, high_pass_),
+      filter_(triples_of(options_, axes_), high_pass_),
       ring_(deformations_, (longest_settle(options_) + kBlocks * block_rows_ + triple_.length()) *
                                    (kCatchUp + 1) / kCatchUp +
                                2 * kCatchUp),

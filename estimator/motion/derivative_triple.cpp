@@ -10,43 +10,44 @@ namespace {
 constexpr int kHalfLength = 6;
 constexpr int kGridPoints = 500;
 
-/// Weighted least squares with equality constraints: minimise |X c - y|, subject to E c = f.
+/// Least squares with equality constraints: minimise |x c - y|, subject to e c = f. By the null
+/// space of e and an orthogonal factorisation: the normal equations would lose half the digits.
 Eigen::VectorXd constrained_fit(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                                 const Eigen::MatrixXd& e, const Eigen::VectorXd& f) {
-  const Eigen::Index unknowns = x.cols();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(e.transpose());
+  const Eigen::MatrixXd q = qr.householderQ();
   const Eigen::Index constraints = e.rows();
-  Eigen::MatrixXd kkt = Eigen::MatrixXd::Zero(unknowns + constraints, unknowns + constraints);
-  kkt.topLeftCorner(unknowns, unknowns) = x.transpose() * x;
-  kkt.topRightCorner(unknowns, constraints) = e.transpose();
-  kkt.bottomLeftCorner(constraints, unknowns) = e;
-  Eigen::VectorXd right(unknowns + constraints);
-  right << x.transpose() * y, f;
-  return kkt.fullPivLu().solve(right).head(unknowns);
+  const Eigen::MatrixXd range = q.leftCols(constraints);
+  const Eigen::MatrixXd null = q.rightCols(q.cols() - constraints);
+  const Eigen::VectorXd particular = range * (e * range).partialPivLu().solve(f);
+  return particular + null * (x * null).colPivHouseholderQr().solve(y - x * particular);
 }
 
-/// c_1..c_L of 2 sum c_k sin(k w) = w, relative error, slope exact at w = 0.
-Eigen::VectorXd first_derivative() {
-  Eigen::MatrixXd x(kGridPoints, kHalfLength);
-  Eigen::MatrixXd slope(1, kHalfLength);
+/// Taps c_-L..c_L (newest first) of sum c_k e^(-i w k) = (i w)^order e^(i w advance), relative
+/// error, with the first order + 1 moments exact, so that behaviour at rest is.
+std::vector<double> derivative_taps(int order, double advance) {
+  constexpr int kLength = 2 * kHalfLength + 1;
+  Eigen::MatrixXd x(2 * kGridPoints, kLength);
+  Eigen::VectorXd y(2 * kGridPoints);
   for (int i = 0; i < kGridPoints; ++i) {
     const double w = M_PI / 2 * (i + 0.5) / kGridPoints;
-    for (int k = 1; k <= kHalfLength; ++k) x(i, k - 1) = 2 * std::sin(k * w) / w;
+    const double scale = std::pow(w, -order);
+    const double phase = w * advance + order * M_PI / 2;
+    for (int k = -kHalfLength; k <= kHalfLength; ++k) {
+      x(2 * i, k + kHalfLength) = scale * std::cos(w * k);
+      x(2 * i + 1, k + kHalfLength) = -scale * std::sin(w * k);
+    }
+    y[2 * i] = std::cos(phase);
+    y[2 * i + 1] = std::sin(phase);
   }
-  for (int k = 1; k <= kHalfLength; ++k) slope(0, k - 1) = 2 * k;
-  return constrained_fit(x, Eigen::VectorXd::Ones(kGridPoints), slope, Eigen::VectorXd::Ones(1));
-}
-
-/// c_1..c_L of sum c_k (2 cos(k w) - 2) = -w^2, relative error, curvature exact at w = 0.
-Eigen::VectorXd second_derivative() {
-  Eigen::MatrixXd x(kGridPoints, kHalfLength);
-  Eigen::MatrixXd curvature(1, kHalfLength);
-  for (int i = 0; i < kGridPoints; ++i) {
-    const double w = M_PI / 2 * (i + 0.5) / kGridPoints;
-    for (int k = 1; k <= kHalfLength; ++k) x(i, k - 1) = (2 - 2 * std::cos(k * w)) / (w * w);
-  }
-  for (int k = 1; k <= kHalfLength; ++k) curvature(0, k - 1) = static_cast<double>(k) * k;
-  return constrained_fit(x, Eigen::VectorXd::Ones(kGridPoints), curvature,
-                         Eigen::VectorXd::Ones(1));
+  Eigen::MatrixXd moments(order + 1, kLength);
+  Eigen::VectorXd wanted = Eigen::VectorXd::Zero(order + 1);
+  for (int power = 0; power <= order; ++power)
+    for (int k = -kHalfLength; k <= kHalfLength; ++k)
+      moments(power, k + kHalfLength) = std::pow(-static_cast<double>(k), power);
+  wanted[order] = order == 2 ? 2 : 1;
+  const Eigen::VectorXd taps = constrained_fit(x, y, moments, wanted);
+  return {taps.data(), taps.data() + taps.size()};
 }
 
 /// taps convolved with (1 + z^-1)^2 / 4.
@@ -62,21 +63,14 @@ std::vector<double> with_numerator(const std::vector<double>& taps) {
 
 }  // namespace
 
-DerivativeTriple matched_triple(double rate_hz) {
-  const Eigen::VectorXd c1 = first_derivative();
-  const Eigen::VectorXd c2 = second_derivative();
-  constexpr std::size_t kLength = 2 * kHalfLength + 1;
-  std::vector<double> d0(kLength, 0.0), d1(kLength, 0.0), d2(kLength, 0.0);
-  d0[kHalfLength] = 1;
-  for (int k = 1; k <= kHalfLength; ++k) {
-    const auto newer = static_cast<std::size_t>(kHalfLength - k);
-    const auto older = static_cast<std::size_t>(kHalfLength + k);
-    d1[newer] = rate_hz * c1[k - 1];
-    d1[older] = -d1[newer];
-    d2[newer] = d2[older] = rate_hz * rate_hz * c2[k - 1];
-    d2[kHalfLength] -= 2 * d2[newer];
-  }
-  return {with_numerator(d0), with_numerator(d1), with_numerator(d2), kHalfLength + 1.0};
+DerivativeTriple matched_triple(double rate_hz, double advance) {
+  DerivativeTriple triple{derivative_taps(0, advance), derivative_taps(1, advance),
+                          derivative_taps(2, advance), kHalfLength + 1.0};
+  for (double& tap : triple.first) tap *= rate_hz;
+  for (double& tap : triple.second) tap *= rate_hz * rate_hz;
+  for (std::vector<double>* taps : {&triple.value, &triple.first, &triple.second})
+    *taps = with_numerator(*taps);
+  return triple;
 }
 
 DerivativeTriple trapezoid_triple(double rate_hz) {

@@ -16,8 +16,10 @@ struct DerivativeTriple {
 
 /// Least squares on 0..rate/4 with exact behaviour at rest, 13 taps, followed by the numerator
 /// (1 + z^-1)^2 / 4 of the bilinear low-pass (15 taps in all). Relative error below 1e-4 up to
-/// rate/5. Source: docs/equations.md, derivative triple.
-DerivativeTriple matched_triple(double rate_hz);
+/// rate/5. advance: outputs belong to an instant this many samples later than `delay` says, at most
+/// half a sample either way; it undoes a sensor's known delay. Source: docs/equations.md,
+/// derivative triple.
+DerivativeTriple matched_triple(double rate_hz, double advance = 0);
 
 /// What the trapezoidal rule implies, times the same numerator: p'' = integrand, p' and p its first
 /// and second trapezoidal integrals. The paper's integration.

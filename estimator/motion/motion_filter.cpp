@@ -13,11 +13,11 @@ HighPass::HighPass(double corner_hz, double rate_hz) {
   a2 = (1 - std::sqrt(2.0) * w + w * w) * norm;
 }
 
-MotionFilter::MotionFilter(int axes, const DerivativeTriple& triple, const HighPass& high_pass)
-    : triple_(triple),
+MotionFilter::MotionFilter(const std::vector<DerivativeTriple>& triples, const HighPass& high_pass)
+    : triples_(triples),
       high_pass_(high_pass),
-      axes_(static_cast<std::size_t>(axes)),
-      length_(static_cast<std::size_t>(triple.length())) {
+      axes_(triples.size()),
+      length_(static_cast<std::size_t>(triples.front().length())) {
   for (std::vector<double>* state : {&x1_, &x2_, &y1_, &y2_, &value_, &first_, &second_})
     state->resize(axes_);
   ring_.resize(axes_ * 2 * length_);
@@ -56,16 +56,17 @@ void MotionFilter::push_axis(std::size_t axis, double accel) {
   y2_[axis] = y1_[axis];
   y1_[axis] = y;
   ring[newest_] = ring[newest_ + length_] = y;
-  filled_[axis] = std::min(filled_[axis] + 1, triple_.length());
+  filled_[axis] = std::min(filled_[axis] + 1, static_cast<int>(length_));
 
+  const DerivativeTriple& triple = triples_[axis];
   const double* recent = ring + newest_;
   double p0 = 0, p1 = 0, p2 = 0;
   for (std::size_t k = 0; k < length_; ++k) {
-    p0 += triple_.value[k] * recent[k];
-    p1 += triple_.first[k] * recent[k];
-    p2 += triple_.second[k] * recent[k];
+    p0 += triple.value[k] * recent[k];
+    p1 += triple.first[k] * recent[k];
+    p2 += triple.second[k] * recent[k];
   }
-  const bool ready = filled_[axis] >= triple_.length();
+  const bool ready = filled_[axis] >= static_cast<int>(length_);
   value_[axis] = ready ? p0 : 0;
   first_[axis] = ready ? p1 : 0;
   second_[axis] = ready ? p2 : 0;

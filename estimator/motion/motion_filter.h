@@ -19,13 +19,14 @@ struct HighPass {
 /// still holds between them. An axis without a value is invalid until its filters are refilled.
 class MotionFilter {
  public:
-  MotionFilter(int axes, const DerivativeTriple& triple, const HighPass& high_pass);
+  /// triples: one per axis, all of one length and delay.
+  MotionFilter(const std::vector<DerivativeTriple>& triples, const HighPass& high_pass);
 
   /// accel: one value per axis, m/s^2, NaN where missing.
   void push(const std::vector<double>& accel);
   void reset();
 
-  bool valid(int axis) const { return filled_[index(axis)] >= triple_.length(); }
+  bool valid(int axis) const { return filled_[index(axis)] >= static_cast<int>(length_); }
   /// The axis' filtered motion at the last push; 0 while invalid.
   double value(int axis) const { return value_[index(axis)]; }
   double first(int axis) const { return first_[index(axis)]; }
@@ -35,7 +36,7 @@ class MotionFilter {
   static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
   void push_axis(std::size_t axis, double accel);
 
-  DerivativeTriple triple_;
+  std::vector<DerivativeTriple> triples_;
   HighPass high_pass_;
   std::size_t axes_;
   std::size_t length_;
