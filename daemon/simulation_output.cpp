@@ -66,16 +66,14 @@ class LiveOutput : public SimulationOutput {
       : lcm_(url),
         messages_(accel_messages(s)),
         speed_(speed),
-        table_every_(std::llround(s.rate_hz)),
-        start_us_(std::chrono::duration_cast<std::chrono::microseconds>(
-                      std::chrono::system_clock::now().time_since_epoch())
-                      .count()) {}
+        table_every_(std::llround(s.rate_hz)) {}
   bool good() { return lcm_.good(); }
 
   bool put(double time_s, const std::vector<double>& raw) override {
-    const auto since_start = std::chrono::duration<double>(time_s / speed_);
-    std::this_thread::sleep_until(
-        start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(since_start));
+    if (instant_ == 0) start();
+    const std::chrono::duration<double> since_start(time_s / speed_);
+    std::this_thread::sleep_until(start_ +
+                                  std::chrono::duration_cast<Clock::duration>(since_start));
     const std::int64_t time_us = start_us_ + microseconds(time_s);
     if (instant_++ % table_every_ == 0 && !publish(messages_.tables(time_us))) return false;
     return publish(messages_.samples(time_us, raw));
@@ -84,6 +82,15 @@ class LiveOutput : public SimulationOutput {
   std::string error() const override { return "LCM refuses to send"; }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  void start() {
+    start_ = Clock::now();
+    start_us_ = std::chrono::duration_cast<std::chrono::microseconds>(
+                    std::chrono::system_clock::now().time_since_epoch())
+                    .count();
+  }
+
   bool publish(const std::vector<drivers::Message>& all) {
     return std::all_of(all.begin(), all.end(), [&](const drivers::Message& m) {
       return lcm_.publish(m.channel, m.bytes.data(), static_cast<unsigned>(m.bytes.size())) == 0;
@@ -94,8 +101,8 @@ class LiveOutput : public SimulationOutput {
   drivers::AccelMessages messages_;
   double speed_;
   std::int64_t table_every_;  ///< instants; so that a late listener learns the names, too
-  std::int64_t start_us_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Clock::time_point start_;   ///< of the first instant
+  std::int64_t start_us_ = 0;
   std::int64_t instant_ = 0;
 };
 

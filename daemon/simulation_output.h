@@ -24,8 +24,8 @@ class SimulationOutput {
 std::unique_ptr<SimulationOutput> file_output(const Scenario& scenario, const std::string& path,
                                               std::string& error);
 
-/// LCM, at `speed` times real time from now on; sensor time is the host's clock at the start plus
-/// the test's time.
+/// LCM, at `speed` times real time from the first instant on; sensor time is the host's clock then
+/// plus the test's time.
 std::unique_ptr<SimulationOutput> live_output(const Scenario& scenario, const std::string& url,
                                               double speed, std::string& error);
 
