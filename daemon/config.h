@@ -39,5 +39,8 @@ struct ConfigProblem {
 
 /// Reads and validates. Empty optional and every problem at once when it is not valid.
 std::optional<Config> load_config(const std::string& path, std::vector<ConfigProblem>& problems);
+/// The same from a text; `path` is what messages call it.
+std::optional<Config> parse_config(const std::string& path, const std::string& text,
+                                   std::vector<ConfigProblem>& problems);
 
 }  // namespace framewatch::daemon

@@ -1,0 +1,77 @@
+#include "daemon/config.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/config_parts.h"
+#include "daemon/config_suggest.h"
+#include "daemon/file_digest.h"
+
+namespace framewatch::daemon {
+namespace {
+
+void check_sections(const TomlValue& document, std::vector<TextProblem>& problems) {
+  const std::vector<std::string> known{"structure", "channel", "estimator", "lcm"};
+  for (const TomlEntry& entry : document.entries) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+    const std::string meant = nearest(entry.key, known);
+    problems.push_back(
+        {entry.place,
+         fmt::format("unknown section or key {}: {}", entry.key,
+                     meant.empty() ? "the sections are [structure], [structure.design], "
+                                     "[[channel]], [estimator], [lcm]"
+                                   : fmt::format("did you mean {}?", meant))});
+  }
+}
+
+std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextProblem> problems) {
+  std::stable_sort(problems.begin(), problems.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+  });
+  std::vector<ConfigProblem> out;
+  for (const TextProblem& p : problems)
+    out.push_back(
+        {p.place.line > 0 ? fmt::format("{}:{}:{}", path, p.place.line, p.place.column) : path,
+         p.message});
+  return out;
+}
+
+}  // namespace
+
+std::optional<Config> parse_config(const std::string& path, const std::string& text,
+                                   std::vector<ConfigProblem>& problems) {
+  Config config;
+  config.path = path;
+  config.sha256 = sha256(text);
+  std::vector<TextProblem> found;
+  if (const std::optional<TomlValue> document = parse_toml(text, found)) {
+    check_sections(*document, found);
+    const StructureReading structure = read_structure(*document, found);
+    config.pipeline.structure = structure.structure;
+    config.pipeline.design = structure.design;
+    read_channels(*document, structure, config, found);
+    config.pipeline.options = read_estimator(*document, found);
+    config.lcm = read_lcm(*document, found);
+    if (found.empty())
+      for (const std::string& rule : framewatch::problems(config.pipeline))
+        found.push_back({{}, rule});
+  }
+  if (found.empty()) return config;
+  problems = with_file(path, std::move(found));
+  return std::nullopt;
+}
+
+std::optional<Config> load_config(const std::string& path, std::vector<ConfigProblem>& problems) {
+  problems.clear();
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  if (!text) {
+    problems.push_back({path, error});
+    return std::nullopt;
+  }
+  return parse_config(path, *text, problems);
+}
+
+}  // namespace framewatch::daemon

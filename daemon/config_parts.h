@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/toml_document.h"
+
+namespace framewatch::daemon {
+
+/// [structure] and [structure.design] as far as they could be read.
+struct StructureReading {
+  Structure structure;
+  Eigen::VectorXd design;  ///< theta order; empty when the file has none
+  bool stories_known = false;
+  bool frames_known = false;
+};
+
+StructureReading read_structure(const TomlValue& document, std::vector<TextProblem>& problems);
+
+/// Design parameters in theta order, of a structure without problems; empty when the file has none.
+Eigen::VectorXd read_design(const TomlValue* design, const Structure& structure, bool shape_known,
+                            std::vector<TextProblem>& problems);
+
+/// Rule that a frame or channel name breaks; empty when it is good.
+std::string problem_of_name(const std::string& name);
+
+/// Every [[channel]] into config.pipeline.axes and config.sources.
+void read_channels(const TomlValue& document, const StructureReading& structure, Config& config,
+                   std::vector<TextProblem>& problems);
+
+EstimatorOptions read_estimator(const TomlValue& document, std::vector<TextProblem>& problems);
+LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& problems);
+
+}  // namespace framewatch::daemon
