@@ -19,9 +19,9 @@ struct LogEvent {
 enum class LogRead {
   event,      ///< an intact event was read
   damage,     ///< bytes were skipped to find the next event; see damage()
-  truncated,  ///< the file ends inside an event; see damage()
-  end,        ///< the file ends after an intact event
-  error,      ///< the operating system refused a read
+  truncated,  ///< the file ends inside an event or in zeros never written; see damage()
+  end,        ///< the file ends after an event or after what damage() told
+  error,      ///< the operating system refused a read; see error()
 };
 
 /// A stretch of the file that is no intact event.
@@ -32,7 +32,12 @@ struct LogDamage {
 };
 
 /// Reads LCM event logs: bounded memory, resynchronising, never trusts a length it has not checked.
-/// Channel length 1..63, payload at most kMaxPayload.
+///
+/// An event counts as intact when its lengths are in bounds (channel 1..kMaxChannel printable
+/// bytes, payload at most kMaxPayload) and a sync word or the end of the file follows. One that is
+/// followed by something else is still given when no such event starts inside it and none reaches
+/// over its end: the bytes after it are then the damage. A changed payload byte cannot be seen; the
+/// format has no checksum.
 class LcmLogReader {
  public:
   static constexpr std::int32_t kMaxChannel = 63;
@@ -43,18 +48,42 @@ class LcmLogReader {
   LcmLogReader(const LcmLogReader&) = delete;
   LcmLogReader& operator=(const LcmLogReader&) = delete;
 
-  /// False when the file cannot be opened; error() says why.
+  /// False when the file cannot be opened or is no regular file; error() says why.
   [[nodiscard]] bool open(const std::string& path);
+  /// The buffers of `event` are reused. Call until end or error; both are final.
   [[nodiscard]] LogRead next(LogEvent& event);
   const LogDamage& damage() const { return damage_; }
   const std::string& error() const { return error_; }
-  std::int64_t size() const { return size_; }
-  std::int64_t position() const { return position_; }
+  std::int64_t size() const { return size_; }          ///< bytes, when it was opened
+  std::int64_t position() const { return position_; }  ///< bytes consumed
 
  private:
-  std::FILE* file_ = nullptr;
+  struct Header {
+    std::int64_t number, timestamp_us;
+    std::int64_t channel_length, payload_length;
+    std::int64_t end;  ///< offset after the event
+  };
+
+  const std::uint8_t* at(std::int64_t offset, std::int64_t bytes);
+  bool sync_at(std::int64_t offset);
+  bool read_header(std::int64_t offset, Header& header, const char** why);
+  bool well_followed(const Header& header);
+  std::int64_t find_sync(std::int64_t from, std::int64_t limit);
+  std::int64_t first_certain_event(std::int64_t from, std::int64_t limit);
+  bool nothing_better_inside(const Header& header);
+  std::int64_t resynchronise(std::int64_t from);
+  LogRead skip_damage(const Header& header, bool plausible, const char* why);
+  bool zeros_to_end(std::int64_t from);
+
+  int file_ = -1;
   std::int64_t size_ = 0;
   std::int64_t position_ = 0;
+  std::vector<std::uint8_t> buffer_;
+  std::int64_t buffer_offset_ = 0;
+  std::int64_t buffer_bytes_ = 0;
+  std::int64_t clear_from_ = 0;  ///< no certain event starts in [clear_from_, clear_to_)
+  std::int64_t clear_to_ = 0;
+  std::int64_t certain_ = -1;  ///< where the last certain event was found
   LogDamage damage_;
   std::string error_;
 };
@@ -64,18 +93,23 @@ class LcmLogReader {
 class LcmLogWriter {
  public:
   LcmLogWriter() = default;
+  /// Removes the partial file when close() was not called.
   ~LcmLogWriter();
   LcmLogWriter(const LcmLogWriter&) = delete;
   LcmLogWriter& operator=(const LcmLogWriter&) = delete;
 
   [[nodiscard]] bool open(const std::string& path);
+  /// False, once and for all, when the channel or payload is out of bounds or the disk is full.
   [[nodiscard]] bool write(std::int64_t timestamp_us, const std::string& channel, const void* data,
                            std::size_t size);
-  /// Flushes and renames. False when anything was not written; the partial file then stays.
+  /// Flushes to the disk and renames. False when anything was not written; then nothing stays.
   [[nodiscard]] bool close();
   const std::string& error() const { return error_; }
+  std::int64_t events() const { return number_; }
 
  private:
+  void discard();
+
   std::FILE* file_ = nullptr;
   std::string path_;
   std::int64_t number_ = 0;
