@@ -10,7 +10,7 @@ struct Record {
   std::vector<std::string> names;               ///< channel names
   std::vector<double> time_s;                   ///< strictly increasing
   std::vector<std::vector<double>> accel_mps2;  ///< [channel][instant]; NaN where missing
-  double rate_hz = 0;                           ///< nominal: 1 / median step
+  double rate_hz = 0;                           ///< nominal: 1 / the even step
   std::vector<std::string> notes;               ///< things the reader had to decide, for the person
 };
 
