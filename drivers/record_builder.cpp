@@ -42,7 +42,7 @@ double RecordBuilder::even_step() const {
   std::vector<double> steps(rows() - 1);
   for (std::size_t i = 0; i < steps.size(); ++i)
     steps[i] = record_.time_s[i + 1] - record_.time_s[i];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
   std::nth_element(steps.begin(), middle, steps.end());
   // Times rounded to, say, 1 ms make the median step wrong but not the mean of the single steps.
   const double median = *middle;
