@@ -45,17 +45,4 @@ bool Machine::finish(const MotionRing& ring) {
   return counting_ && sums_.maintain(delayed_counts ? &delayed_ : nullptr);
 }
 
-void Machine::noise_energy(std::vector<double>& per_unknown, double& residual) const {
-  std::fill(per_unknown.begin(), per_unknown.end(), 0.0);
-  residual = 0;
-  for (int floor = 0; floor < layout_.floors(); ++floor) {
-    const FloorRows& rows = entering_.floor_rows(floor);
-    const double instants = sums_.floor_instants(floor);
-    residual += instants * rows.noise_residual;
-    for (std::size_t p = 0; p < rows.noise_energy.size(); ++p)
-      per_unknown[static_cast<std::size_t>(floor * layout_.own()) + p] +=
-          instants * rows.noise_energy[p];
-  }
-}
-
 }  // namespace framewatch

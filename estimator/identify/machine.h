@@ -54,8 +54,7 @@ class Machine {
   bool full() const { return counting_ && sums_.full(); }
   const RowTuning& tuning() const { return tuning_; }
   const WindowSums& sums() const { return sums_; }
-  /// Expected energy of sensor noise in the window: per unknown (internal order), and of residual.
-  void noise_energy(std::vector<double>& per_unknown, double& residual) const;
+  const RowChain& rows() const { return entering_; }
 
  private:
   RowTuning tuning_;

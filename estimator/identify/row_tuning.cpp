@@ -143,99 +143,104 @@ RowTuning::Noise RowTuning::filtered_noise(double gain, double a1, double a2) co
   return noise;
 }
 
-void RowTuning::weigh(int floor, int r, const Eigen::VectorXd& phi, FloorRows& out) const {
+RowTuning::FloorNoise RowTuning::floor_noise(int floor) const {
   const int frames = layout_->frames();
   const int panels = layout_->panels();
+  const int own = layout_->own();
+  const int unknowns = own + layout_->next(floor);
+  FloorNoise out;
+  const auto column = [&](int axis) {
+    const auto found = std::find(out.axes.begin(), out.axes.end(), axis);
+    if (found == out.axes.end()) out.axes.push_back(axis);
+    return found - out.axes.begin();
+  };
+  const int levels = layout_->next(floor) > 0 ? 3 : 2;
+  for (int level = floor; level < floor + levels; ++level)
+    for (int f = 0; f < frames; ++f)
+      for (const auto& share : deformations_->at(level, f)) column(share.axis);
+  const auto axes = static_cast<Eigen::Index>(out.axes.size());
+  out.motion = Eigen::MatrixXd::Zero(frames, axes);
+  out.deformation = Eigen::MatrixXd::Zero(unknowns, axes);
+  const auto add = [&](auto row, int level, int f, double coefficient) {
+    for (const auto& [axis, weight] : deformations_->at(level, f))
+      row[column(axis)] += coefficient * weight;
+  };
+  for (int f = 0; f < frames; ++f) add(out.motion.row(f), floor + 1, f, 1);
+  for (int p = 0; p < unknowns; ++p) {
+    const bool of_next = p >= own;
+    const int local = of_next ? p - own : p;
+    if (of_next || local < 2 * frames) {
+      const int upper = floor + (of_next ? 2 : 1);
+      add(out.deformation.row(p), upper, local % frames, 1);
+      add(out.deformation.row(p), upper - 1, local % frames, -1);
+    } else {
+      for (int f = 0; f < frames; ++f)
+        if (layout_->coefficient(p, f) != 0)
+          add(out.deformation.row(p), floor + 1, f, layout_->coefficient(p, f));
+    }
+    out.damping.push_back(of_next || local < 2 * frames ? local >= frames
+                                                        : local - 2 * frames >= panels);
+  }
+  out.variance.resize(axes);
+  for (Eigen::Index a = 0; a < axes; ++a)
+    out.variance[a] =
+        deformations_->noise_variance(out.axes[static_cast<std::size_t>(a)], options_->rate_hz);
+  out.covariance = out.deformation * out.variance.asDiagonal() * out.deformation.transpose();
+  return out;
+}
+
+void RowTuning::weigh(int floor, int r, const Eigen::VectorXd& phi, const FloorNoise& floor_noise,
+                      FloorRows& out) const {
+  const int frames = layout_->frames();
   const int unknowns = layout_->own() + layout_->next(floor);
   const auto row = static_cast<std::size_t>(r);
   const Noise noise = filtered_noise(out.gain[row], out.a1[row], out.a2[row]);
 
-  // Each front unknown's element as (level, frame, coefficient) of its deformation.
-  struct End {
-    int level, frame;
-    double b;
-  };
-  const auto ends = [&](int position) {
-    std::vector<End> found;
-    const bool of_next = position >= layout_->own();
-    const int local = of_next ? position - layout_->own() : position;
-    if (of_next || local < 2 * frames) {
-      const int f = local % frames;
-      const int level = floor + (of_next ? 2 : 1);
-      found = {{level, f, 1.0}, {level - 1, f, -1.0}};
-    } else {
-      const int p = 2 * frames + (local - 2 * frames) % panels;
-      for (int f = 0; f < frames; ++f)
-        if (layout_->coefficient(p, f) != 0)
-          found.push_back({floor + 1, f, layout_->coefficient(p, f)});
-    }
-    return found;
-  };
-  const auto is_damping = [&](int position) {
-    if (position >= layout_->own()) return position - layout_->own() >= frames;
-    if (position < 2 * frames) return position >= frames;
-    return position - 2 * frames >= panels;
-  };
-
-  struct Share {
-    double mass = 0, damping = 0, stiffness = 0;
-  };
-  std::vector<Share> axis_share;
-  const auto share = [&](int axis) -> Share& {
-    if (static_cast<std::size_t>(axis) >= axis_share.size())
-      axis_share.resize(static_cast<std::size_t>(axis) + 1);
-    return axis_share[static_cast<std::size_t>(axis)];
-  };
-  std::vector<double> projected(static_cast<std::size_t>(unknowns));
-  std::vector<double> scale(static_cast<std::size_t>(unknowns));
-  for (int f = 0; f < frames; ++f)
-    for (const auto& [axis, weight] : deformations_->at(floor + 1, f))
-      share(axis).mass += phi[f] * mass(floor, f) * weight;
+  Eigen::VectorXd force(unknowns);  // of the element, projected on the row, per unit deformation
   for (int p = 0; p < unknowns; ++p) {
-    const auto at = static_cast<std::size_t>(p);
-    for (int f = 0; f < frames; ++f) projected[at] += layout_->coefficient(p, f) * phi[f];
-    scale[at] = p < layout_->own() ? design_at(floor, p) : design_at(floor + 1, p - layout_->own());
-    for (const End& end : ends(p)) {
-      for (const auto& [axis, weight] : deformations_->at(end.level, end.frame)) {
-        const double coefficient = projected[at] * scale[at] * end.b * weight;
-        (is_damping(p) ? share(axis).damping : share(axis).stiffness) += coefficient;
-      }
-    }
+    double projected = 0;
+    for (int f = 0; f < frames; ++f) projected += layout_->coefficient(p, f) * phi[f];
+    force[p] = projected * (p < layout_->own() ? design_at(floor, p)
+                                               : design_at(floor + 1, p - layout_->own()));
   }
+  Eigen::VectorXd inertia(frames);
+  for (int f = 0; f < frames; ++f) inertia[f] = phi[f] * mass(floor, f);
+  const auto axes = floor_noise.variance.size();
+  const Eigen::RowVectorXd m = inertia.transpose() * floor_noise.motion;
+  Eigen::RowVectorXd k = Eigen::RowVectorXd::Zero(axes);
+  Eigen::RowVectorXd c = Eigen::RowVectorXd::Zero(axes);
+  for (int p = 0; p < unknowns; ++p)
+    (floor_noise.damping[static_cast<std::size_t>(p)] ? c : k) +=
+        force[p] * floor_noise.deformation.row(p);
   double variance = 0;
-  for (std::size_t axis = 0; axis < axis_share.size(); ++axis) {
-    const Share& s = axis_share[axis];
-    variance += deformations_->noise_variance(static_cast<int>(axis), options_->rate_hz) *
-                (s.mass * s.mass * noise.g22 + s.damping * s.damping * noise.g11 +
-                 s.stiffness * s.stiffness * noise.g00 + 2 * s.mass * s.stiffness * noise.g20);
-  }
+  for (Eigen::Index a = 0; a < axes; ++a)
+    variance += floor_noise.variance[a] * (m[a] * m[a] * noise.g22 + c[a] * c[a] * noise.g11 +
+                                           k[a] * k[a] * noise.g00 + 2 * m[a] * k[a] * noise.g20);
   const double root_weight =
       options_->variant == Variant::paper || variance <= 0 ? 1.0 : 1 / std::sqrt(variance);
   out.noise_residual += root_weight * root_weight * variance;
 
-  const auto stride = static_cast<std::size_t>(padded(layout_->front(floor)));
-  for (int p = 0; p < unknowns; ++p) {
-    const auto at = static_cast<std::size_t>(p);
-    const double beta = root_weight * projected[at] * scale[at];
-    out.beta[row * stride + at] = beta;
-    std::vector<double> per_axis;
-    for (const End& end : ends(p)) {
-      for (const auto& [axis, weight] : deformations_->at(end.level, end.frame)) {
-        per_axis.resize(std::max(per_axis.size(), static_cast<std::size_t>(axis) + 1));
-        per_axis[static_cast<std::size_t>(axis)] += end.b * weight;
-      }
-    }
-    double deformation_variance = 0;
-    for (std::size_t axis = 0; axis < per_axis.size(); ++axis)
-      deformation_variance +=
-          per_axis[axis] * per_axis[axis] *
-          deformations_->noise_variance(static_cast<int>(axis), options_->rate_hz);
-    out.noise_energy[at] +=
-        beta * beta * deformation_variance * (is_damping(p) ? noise.g11 : noise.g00);
-  }
-  out.beta[row * stride + static_cast<std::size_t>(unknowns)] = root_weight;
+  const int stride = padded(layout_->front(floor));
+  double* beta = &out.beta[row * static_cast<std::size_t>(stride)];
+  for (int p = 0; p < unknowns; ++p) beta[p] = root_weight * force[p];
+  beta[unknowns] = root_weight;
   for (int f = 0; f < frames; ++f)
     out.response[row * static_cast<std::size_t>(frames) + static_cast<std::size_t>(f)] = -phi[f];
+  out.noise_response +=
+      root_weight * root_weight * noise.g22 * m.cwiseAbs2().dot(floor_noise.variance.transpose());
+  const Eigen::VectorXd common =
+      floor_noise.deformation * floor_noise.variance.cwiseProduct(m.transpose());
+  for (int p = 0; p < unknowns; ++p) {
+    // The response is -m p'': noise in p'' and p moves together, in p'' and p' it does not.
+    if (!floor_noise.damping[static_cast<std::size_t>(p)])
+      out.noise_right[static_cast<std::size_t>(p)] -= root_weight * beta[p] * common[p] * noise.g20;
+    for (int q = p; q < unknowns; ++q) {
+      const bool damping = floor_noise.damping[static_cast<std::size_t>(p)];
+      if (damping != floor_noise.damping[static_cast<std::size_t>(q)]) continue;
+      out.noise_energy[static_cast<std::size_t>(p * unknowns + q)] +=
+          beta[p] * beta[q] * floor_noise.covariance(p, q) * (damping ? noise.g11 : noise.g00);
+    }
+  }
 }
 
 double RowTuning::damping() const {
@@ -284,7 +289,10 @@ FloorRows RowTuning::rows(int floor, const std::vector<std::uint8_t>& known) con
   const auto frames = static_cast<std::size_t>(layout_->frames());
   out.beta.assign(rows * static_cast<std::size_t>(padded(layout_->front(floor))), 0.0);
   out.response.assign(rows * frames, 0.0);
-  out.noise_energy.assign(static_cast<std::size_t>(layout_->front(floor) - 1), 0.0);
+  const auto unknowns = static_cast<std::size_t>(layout_->front(floor) - 1);
+  out.noise_energy.assign(unknowns * unknowns, 0.0);
+  out.noise_right.assign(unknowns, 0.0);
+  const FloorNoise noise = floor_noise(floor);
   const double zeta = damping();
   for (int r = 0; r < out.rows; ++r) {
     const double w = std::tan(M_PI * frequency[r] / options_->rate_hz);
@@ -293,7 +301,7 @@ FloorRows RowTuning::rows(int floor, const std::vector<std::uint8_t>& known) con
     out.a2.push_back((1 - 2 * zeta * w + w * w) * norm);
     out.gain.push_back(4 * w * w * norm);
     out.frequency_hz.push_back(frequency[r]);
-    weigh(floor, r, modes.col(r), out);
+    weigh(floor, r, modes.col(r), noise, out);
   }
   return out;
 }

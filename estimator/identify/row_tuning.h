@@ -27,9 +27,13 @@ struct FloorRows {
   std::vector<double> frequency_hz;  ///< corner of each row's filter
   /// rows x padded(front): multiplies the filtered front signals [deformations..., response].
   std::vector<double> beta;
-  std::vector<double> response;      ///< rows x frames: -phi_rf, forms the response from m p''
-  std::vector<double> noise_energy;  ///< per front unknown: expected per instant from noise
-  double noise_residual = 0;         ///< expected weighted squared residual per instant
+  std::vector<double> response;  ///< rows x frames: -phi_rf, forms the response from m p''
+  /// What sensor noise adds per instant, for the design: to the normal matrix (unknowns x unknowns,
+  /// upper), to the right-hand side, and to the energy of the response.
+  std::vector<double> noise_energy;
+  std::vector<double> noise_right;
+  double noise_response = 0;
+  double noise_residual = 0;  ///< expected weighted squared residual per instant
 };
 
 /// How the rows of every floor are formed for one design theta0. docs/equations.md, matched rows.
@@ -52,6 +56,16 @@ class RowTuning {
 
  private:
   struct Noise;  ///< second moments of filtered unit white noise
+  /// How the axes' noise enters a floor's motion and deformations.
+  struct FloorNoise {
+    std::vector<int> axes;
+    Eigen::VectorXd variance;     ///< per axis
+    Eigen::MatrixXd motion;       ///< frames x axes
+    Eigen::MatrixXd deformation;  ///< unknowns x axes
+    Eigen::MatrixXd covariance;   ///< unknowns x unknowns, of deformations
+    std::vector<bool> damping;    ///< per unknown: multiplies a rate, not a deformation
+  };
+  FloorNoise floor_noise(int floor) const;
   double damping() const;
   std::vector<int> all_frames() const;
   std::vector<int> usable_equations(int floor, const std::vector<std::uint8_t>& known) const;
@@ -59,7 +73,8 @@ class RowTuning {
   double design_at(int floor, int position) const {
     return theta0_[layout_->parameter(floor, position)];
   }
-  void weigh(int floor, int r, const Eigen::VectorXd& phi, FloorRows& out) const;
+  void weigh(int floor, int r, const Eigen::VectorXd& phi, const FloorNoise& floor_noise,
+             FloorRows& out) const;
   Eigen::MatrixXd floor_modes(int floor, const std::vector<int>& equations,
                               const Eigen::VectorXd& theta, Eigen::VectorXd& frequency_hz) const;
   Eigen::MatrixXd floor_stiffness(int floor, const Eigen::VectorXd& theta) const;

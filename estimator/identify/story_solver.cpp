@@ -29,7 +29,8 @@ StorySolver::StorySolver(const FloorLayout& layout) : layout_(layout) {
   usable_.assign(unknowns, 0);
 }
 
-void StorySolver::factor(const WindowSums& sums, const std::vector<double>& prior) {
+void StorySolver::factor(const WindowSums& sums, const std::vector<double>& prior,
+                         const NoiseShare& noise) {
   const int own = layout_.own();
   const int passed = 2 * layout_.frames();
   response_energy_ = 0;
@@ -51,6 +52,7 @@ void StorySolver::factor(const WindowSums& sums, const std::vector<double>& prio
       const auto unknown = static_cast<std::size_t>(floor * own + p);
       information_[unknown] = a[p * stride + p];
     }
+    noise.take_off(floor, a, stride);
     if (floor > 0) {
       const SumsShape::Floor& below = sums.shape().floor[static_cast<std::size_t>(floor - 1)];
       std::size_t at = below.offset;
@@ -90,7 +92,7 @@ void StorySolver::factor(const WindowSums& sums, const std::vector<double>& prio
             a[(own + i) * stride + own + j];
       }
   }
-  residual_energy_ = std::max(carry(passed, passed) + prior_energy, 0.0);
+  residual_energy_ = carry(passed, passed) + prior_energy;
 
   for (int floor = layout_.floors() - 1; floor >= 0; --floor) {
     const int next = layout_.next(floor);

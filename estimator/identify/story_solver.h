@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "estimator/identify/floor_layout.h"
+#include "estimator/identify/noise_share.h"
 #include "estimator/identify/window_sums.h"
 
 namespace framewatch {
@@ -15,14 +16,14 @@ class StorySolver {
   explicit StorySolver(const FloorLayout& layout);
 
   /// prior: precision of every unknown about 1, in the rows' units, internal order; 0 = none.
-  void factor(const WindowSums& sums, const std::vector<double>& prior);
+  void factor(const WindowSums& sums, const std::vector<double>& prior, const NoiseShare& noise);
 
   /// Unknowns in internal order (floor by floor); unusable ones are 1 (the design).
   const std::vector<double>& solution() const { return x_; }
   bool usable(int unknown) const { return usable_[static_cast<std::size_t>(unknown)] != 0; }
   /// Diagonal of the data's normal matrix, before the prior.
   const std::vector<double>& information() const { return information_; }
-  /// Sum of squares of the response, and of what the solution leaves of it (with the prior's pull).
+  /// Sum of squares of the response, and of what the solution leaves of it.
   double response_energy() const { return response_energy_; }
   double residual_energy() const { return residual_energy_; }
 

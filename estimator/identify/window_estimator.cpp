@@ -32,8 +32,8 @@ std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o,
   return triples;
 }
 
-/// Relative standard deviation of the prior about the design.
-double prior_width(ParameterKind kind) {
+/// Relative standard deviation of a design: the prior's width.
+double tolerance(ParameterKind kind) {
   switch (kind) {
     case ParameterKind::frame_stiffness:
       return 0.1;
@@ -44,6 +44,13 @@ double prior_width(ParameterKind kind) {
       return 0.5;
   }
   return 0.1;
+}
+
+std::vector<double> tolerances(const FloorLayout& layout, const ParameterTable& table) {
+  std::vector<double> out;
+  for (int u = 0; u < layout.unknowns(); ++u)
+    out.push_back(tolerance(table[layout.parameter(u / layout.own(), u % layout.own())].kind));
+  return out;
 }
 
 int rows_of(double seconds, double rate) {
@@ -76,18 +83,16 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
       ring_(deformations_, (longest_settle(options_) + kBlocks * block_rows_ + triple_.length()) *
                                    (kCatchUp + 1) / kCatchUp +
                                2 * kCatchUp),
+      noise_(layout_),
       solver_(layout_),
-      batch_means_(layout_, kBlocks),
+      batch_means_(layout_, kBlocks, tolerances(layout_, table_)),
       boxplots_(static_cast<std::size_t>(table_.size()), BoxplotWindow(options_.boxplot_windows)) {
   const auto unknowns = static_cast<std::size_t>(layout_.unknowns());
   prior_.assign(unknowns, 0.0);
-  noise_energy_.assign(unknowns, 0.0);
   prior_share_.assign(unknowns, 0.0);
-  for (int u = 0; u < layout_.unknowns(); ++u) {
-    const Parameter& p = table_[layout_.parameter(u / layout_.own(), u % layout_.own())];
-    const double width = prior_width(p.kind);
-    prior_precision_.push_back(kInflation / (width * width));
-  }
+  tolerance_ = tolerances(layout_, table_);
+  noise_configured_ = std::all_of(axes_.begin(), axes_.end(),
+                                  [](const SensorAxis& a) { return a.noise_density > 0; });
   const auto parameters = static_cast<std::size_t>(table_.size());
   for (std::vector<double>* v :
        {&estimate_.value, &estimate_.std_error, &estimate_.snr, &estimate_.prior_share})
@@ -128,7 +133,7 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
   const bool due = since_hop_ >= hop_rows_;
   if (active_->full()) solve();
   if (active_->finish(ring_) && active_->full()) {
-    batch_means_.compute(active_->sums(), solver_);
+    batch_means_.compute(active_->sums(), solver_, prior_, noise_, noise_scale_);
     solver_.inverse_diagonal(inverse_diagonal_);
     for (std::size_t u = 0; u < prior_.size(); ++u)
       prior_share_[u] = prior_[u] * inverse_diagonal_[u];
@@ -143,13 +148,16 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
 }
 
 void WindowEstimator::solve() {
-  double expected_residual = 0;
-  active_->noise_energy(noise_energy_, expected_residual);
-  const bool pull = options_.prior && options_.variant == Variant::matched && tuned_;
+  const bool regularise = options_.variant == Variant::matched && tuned_;
+  const double taken_off = regularise && noise_configured_ ? std::min(noise_scale_, 1.0) : 0.0;
+  noise_.update(active_->rows(), active_->sums(), taken_off);
   for (std::size_t u = 0; u < prior_.size(); ++u)
-    prior_[u] = pull ? prior_precision_[u] * noise_scale_ : 0.0;
-  solver_.factor(active_->sums(), prior_);
-  noise_scale_ = expected_residual > 0 ? solver_.residual_energy() / expected_residual : 0.0;
+    prior_[u] = regularise && options_.prior
+                    ? kInflation / (tolerance_[u] * tolerance_[u]) * noise_scale_
+                    : 0.0;
+  solver_.factor(active_->sums(), prior_, noise_);
+  residual_energy_ = std::max(solver_.residual_energy() + taken_off * noise_.residual(), 0.0);
+  noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
 }
 
 void WindowEstimator::consider_retuning() {
@@ -157,9 +165,10 @@ void WindowEstimator::consider_retuning() {
   if (tuned_ && ++blocks_since_check_ < kBlocks) return;
   blocks_since_check_ = 0;
   std::vector<bool> shown;
-  for (std::size_t u = 0; u < noise_energy_.size(); ++u)
+  for (std::size_t u = 0; u < prior_.size(); ++u)
     shown.push_back(solver_.usable(static_cast<int>(u)) &&
-                    solver_.information()[u] > options_.min_snr * noise_energy_[u] * noise_scale_ &&
+                    solver_.information()[u] >
+                        options_.min_snr * noise_.energy()[u] * noise_scale_ &&
                     solver_.solution()[u] > 0);
   if (std::none_of(shown.begin(), shown.end(), [](bool s) { return s; })) return;
   const Eigen::VectorXd design =
@@ -215,7 +224,7 @@ Observability WindowEstimator::judge(int unknown, const std::vector<std::uint8_t
                                                                   : options_.max_error_c;
   const double x = solver_.solution()[u];
   const bool excited =
-      solver_.information()[u] > options_.min_snr * noise_energy_[u] * noise_scale_;
+      solver_.information()[u] > options_.min_snr * noise_.energy()[u] * noise_scale_;
   if (solver_.usable(unknown) && excited && x > 0 && batch_means_.std_error()[u] < limit * x)
     return Observability::observable;
   return Observability::ill_determined;
@@ -231,7 +240,7 @@ void WindowEstimator::fill_estimate(Time time) {
   estimate_.start = estimate_.end - since(std::max(estimate_.rows - 1, 0));
   ++estimate_.sequence;
   estimate_.residual_ratio = estimate_.rows > 0 && solver_.response_energy() > 0
-                                 ? std::sqrt(solver_.residual_energy() / solver_.response_energy())
+                                 ? std::sqrt(residual_energy_ / solver_.response_energy())
                                  : 0;
   const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
   bool any = false, any_frame = false;
@@ -249,7 +258,7 @@ void WindowEstimator::fill_estimate(Time time) {
     estimate_.solution[p] = solved ? design * solver_.solution()[i] : kNaN;
     estimate_.value[p] = observable ? estimate_.solution[p] : kNaN;
     estimate_.std_error[p] = observable ? design * batch_means_.std_error()[i] : kNaN;
-    const double noise = noise_energy_[i] * noise_scale_;
+    const double noise = noise_.energy()[i] * noise_scale_;
     estimate_.snr[p] = solved && noise > 0 ? solver_.information()[i] / noise : 0;
     estimate_.prior_share[p] = solved && errors_known_ ? std::min(prior_share_[i], 1.0) : 0;
   }

@@ -46,14 +46,17 @@ class WindowEstimator {
   MotionFilter filter_;
   MotionRing ring_;
   std::unique_ptr<Machine> active_, candidate_;
+  NoiseShare noise_;
   StorySolver solver_;
   BatchMeans batch_means_;
   bool errors_known_ = false;  ///< batch means exist for the present run of windows
   bool tuned_ = false;         ///< a check has found the filters right
   int tuning_passes_ = 0;
   int blocks_since_check_ = 0;
+  double residual_energy_ = 0;
   double noise_scale_ = 0;  ///< residual energy over what sensor noise explains
-  std::vector<double> prior_precision_, prior_, noise_energy_, inverse_diagonal_, prior_share_;
+  std::vector<double> tolerance_, prior_, inverse_diagonal_, prior_share_;
+  bool noise_configured_;  ///< of every axis
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
   std::int64_t expected_index_ = -1, since_hop_ = 0, gaps_ = 0, retunes_ = 0;
