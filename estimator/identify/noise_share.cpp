@@ -5,7 +5,7 @@
 namespace framewatch {
 namespace {
 
-constexpr double kTakenOff = 0.6;
+constexpr double kTakenOff = 0.8;
 
 }  // namespace
 

@@ -14,7 +14,7 @@ namespace framewatch {
 /// design that is wrong by its usual tolerance. docs/equations.md, batch means.
 class BatchMeans {
  public:
-  /// tolerance: relative standard deviation of the design, per unknown.
+  /// tolerance: how far the design may be off, relative, per unknown.
   BatchMeans(const FloorLayout& layout, int blocks, const std::vector<double>& tolerance);
 
   /// Valid right after maintain() closed the block whose window `solver` factored.

@@ -32,7 +32,7 @@ std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o,
   return triples;
 }
 
-/// Relative standard deviation of a design: the prior's width.
+/// How far a design may usually be off, relative: also the width of the prior.
 double tolerance(ParameterKind kind) {
   switch (kind) {
     case ParameterKind::frame_stiffness:
