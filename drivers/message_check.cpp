@@ -1,0 +1,91 @@
+#include "drivers/message_check.h"
+
+#include <string_view>
+
+namespace framewatch::drivers {
+namespace {
+
+std::uint64_t big_endian(std::span<const std::uint8_t> bytes) {
+  std::uint64_t value = 0;
+  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
+  return value;
+}
+
+/// Walks over a payload's fields without ever leaving it.
+class Walk {
+ public:
+  explicit Walk(std::span<const std::uint8_t> payload) : rest_(payload) {}
+
+  bool skip(std::size_t bytes) {
+    if (bytes > rest_.size()) return false;
+    rest_ = rest_.subspan(bytes);
+    return true;
+  }
+  bool count(std::size_t& value) {
+    if (rest_.size() < 4) return false;
+    const std::uint64_t read = big_endian(rest_.first(4));
+    if (read > INT32_MAX) return false;
+    value = read;
+    return skip(4);
+  }
+  bool string() {
+    std::size_t length = 0;  // with its closing zero
+    return count(length) && length >= 1 && length <= rest_.size() && rest_[length - 1] == 0 &&
+           skip(length);
+  }
+  bool ended() const { return rest_.empty(); }
+
+ private:
+  std::span<const std::uint8_t> rest_;
+};
+
+/// Whether `payload` has the layout: per field 8 or 4 bytes ('8', '4'), a string ('s'), a count
+/// ('n'); between brackets the arrays of the last count.
+bool laid_out(std::span<const std::uint8_t> payload, std::string_view layout) {
+  Walk walk(payload);
+  std::size_t count = 0;
+  std::size_t times = 1;
+  for (const char field : layout) {
+    bool sound = true;
+    if (field == '[') times = count;
+    if (field == ']') times = 1;
+    if (field == 'n') sound = walk.count(count);
+    if (field == '8') sound = walk.skip(8 * times);
+    if (field == '4') sound = walk.skip(4 * times);
+    if (field == 's')
+      for (std::size_t i = 0; i < times && sound; ++i) sound = walk.string();
+    if (!sound) return false;
+  }
+  return walk.ended();
+}
+
+template <typename Type>
+std::optional<Type> decode(std::span<const std::uint8_t> payload, std::string_view layout) {
+  if (fingerprint(payload) != Type::getHash() || !laid_out(payload, layout)) return std::nullopt;
+  Type message{};
+  const int size = static_cast<int>(payload.size());
+  if (message.decode(payload.data(), 0, size) != size) return std::nullopt;
+  return message;
+}
+
+}  // namespace
+
+std::optional<std::int64_t> fingerprint(std::span<const std::uint8_t> payload) {
+  if (payload.size() < 8) return std::nullopt;
+  return static_cast<std::int64_t>(big_endian(payload.first(8)));
+}
+
+// In the layouts the first '8' is the fingerprint.
+std::optional<channel_table_t> decode_channel_table(std::span<const std::uint8_t> payload) {
+  return decode<channel_table_t>(payload, "888n[s44]");
+}
+
+std::optional<parameter_table_t> decode_parameter_table(std::span<const std::uint8_t> payload) {
+  return decode<parameter_table_t>(payload, "88sss8444n[ss448]");
+}
+
+std::optional<window_estimate_t> decode_window_estimate(std::span<const std::uint8_t> payload) {
+  return decode<window_estimate_t>(payload, "8888448n[88444]4n[8888844]");
+}
+
+}  // namespace framewatch::drivers
