@@ -40,24 +40,29 @@ std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextPr
 
 }  // namespace
 
+bool read_config(const TomlValue& document, Config& config, std::vector<TextProblem>& problems) {
+  const std::size_t before = problems.size();
+  check_sections(document, problems);
+  const StructureReading structure = read_structure(document, problems);
+  config.pipeline.structure = structure.structure;
+  config.pipeline.design = structure.design;
+  read_channels(document, structure, config, problems);
+  config.pipeline.options = read_estimator(document, problems);
+  config.lcm = read_lcm(document, problems);
+  if (problems.size() == before)
+    for (const std::string& rule : framewatch::problems(config.pipeline))
+      problems.push_back({{}, rule});
+  return problems.size() == before;
+}
+
 std::optional<Config> parse_config(const std::string& path, const std::string& text,
                                    std::vector<ConfigProblem>& problems) {
   Config config;
   config.path = path;
   config.sha256 = sha256(text);
   std::vector<TextProblem> found;
-  if (const std::optional<TomlValue> document = parse_toml(text, found)) {
-    check_sections(*document, found);
-    const StructureReading structure = read_structure(*document, found);
-    config.pipeline.structure = structure.structure;
-    config.pipeline.design = structure.design;
-    read_channels(*document, structure, config, found);
-    config.pipeline.options = read_estimator(*document, found);
-    config.lcm = read_lcm(*document, found);
-    if (found.empty())
-      for (const std::string& rule : framewatch::problems(config.pipeline))
-        found.push_back({{}, rule});
-  }
+  if (const std::optional<TomlValue> document = parse_toml(text, found))
+    read_config(*document, config, found);
   if (found.empty()) return config;
   problems = with_file(path, std::move(found));
   return std::nullopt;

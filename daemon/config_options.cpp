@@ -383,14 +383,21 @@ const Option kOptions[] = {
 }  // namespace
 
 std::span<const Option> options() {
-  return kOptions;
+  static const std::vector<Option> kAll = [] {
+    std::vector<Option> all(std::begin(kOptions), std::end(kOptions));
+    const std::span<const Option> scenario = scenario_options();
+    all.insert(all.end(), scenario.begin(), scenario.end());
+    return all;
+  }();
+  return kAll;
 }
 
 const Option* find_option(std::string_view section, std::string_view key) {
-  const auto at = std::find_if(std::begin(kOptions), std::end(kOptions), [&](const Option& o) {
+  const std::span<const Option> all = options();
+  const auto at = std::find_if(all.begin(), all.end(), [&](const Option& o) {
     return o.section == section && o.key == key;
   });
-  return at == std::end(kOptions) ? nullptr : at;
+  return at == all.end() ? nullptr : &*at;
 }
 
 std::vector<std::string> choices(const Option& option) {

@@ -29,7 +29,9 @@ struct Option {
   std::string_view meaning = "";
 };
 
+/// Of the configuration file, then of the scenario file.
 std::span<const Option> options();
+std::span<const Option> scenario_options();
 
 /// Null when the section has no such key.
 const Option* find_option(std::string_view section, std::string_view key);

@@ -16,6 +16,10 @@ struct StructureReading {
   bool frames_known = false;
 };
 
+/// The configuration in a document that was parsed already, its path and digest apart. False when
+/// there was a problem.
+bool read_config(const TomlValue& document, Config& config, std::vector<TextProblem>& problems);
+
 StructureReading read_structure(const TomlValue& document, std::vector<TextProblem>& problems);
 
 /// Design parameters in theta order, of a structure without problems; empty when the file has none.

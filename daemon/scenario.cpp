@@ -1,0 +1,219 @@
+#include "daemon/scenario.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/config_parts.h"
+#include "daemon/config_section.h"
+#include "daemon/file_digest.h"
+#include "daemon/scenario_motion.h"
+#include "daemon/scenario_truth.h"
+#include "daemon/toml_document.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kStandardGravity = 9.80665;
+constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change"};
+
+/// The file in three parts: top keys, sections of the scenario, the rest (the building).
+struct Parts {
+  TomlValue top;
+  TomlValue sections;
+  TomlValue building;
+};
+
+Parts split(const TomlValue& root) {
+  Parts out;
+  for (const TomlEntry& entry : root.entries) {
+    const bool plain = entry.value.kind != TomlKind::table && entry.value.kind != TomlKind::array;
+    const bool ours = std::find(kSections.begin(), kSections.end(), entry.key) != kSections.end();
+    (plain ? out.top : ours ? out.sections : out.building).entries.push_back(entry);
+  }
+  return out;
+}
+
+const TomlValue* section(const Parts& parts, std::string_view name) {
+  const TomlEntry* entry = parts.sections.find(name);
+  return entry ? &entry->value : nullptr;
+}
+
+/// Tables of [[name]]; a problem when it is something else.
+std::vector<const TomlValue*> tables(const Parts& parts, std::string_view name,
+                                     std::vector<TextProblem>& problems) {
+  std::vector<const TomlValue*> out;
+  const TomlValue* array = section(parts, name);
+  if (!array) return out;
+  if (array->kind != TomlKind::array) {
+    problems.push_back({array->place, fmt::format("{0}: write [[{0}]], once for each", name)});
+    return out;
+  }
+  for (const TomlValue& item : array->items) out.push_back(&item);
+  return out;
+}
+
+/// Keys that are given replace what `model` holds.
+void read_sensor(ConfigSection& s, SensorModel& model, double& noise_ratio) {
+  const auto take = [&](const char* key, double& value, double factor = 1) {
+    if (s.given(key)) value = factor * s.number(key);
+  };
+  take("noise_mps2_per_rthz", model.noise_density);
+  take("noise_ratio", noise_ratio);
+  take("bias_mps2", model.bias);
+  take("ramp_mps3", model.thermal_ramp);
+  take("full_scale_g", model.full_scale, kStandardGravity);
+  if (s.given("bits")) model.bits = s.integer("bits");
+  take("loss_ratio", model.loss_ratio);
+  take("dead_from_s", model.dead_from_s);
+  take("dead_to_s", model.dead_to_s);
+  for (const std::string& rule : problems(model)) s.problem("", rule);
+}
+
+class ScenarioReader {
+ public:
+  ScenarioReader(Parts parts, std::string path, std::string digest, std::vector<ConfigProblem>& out)
+      : parts_(std::move(parts)), path_(std::move(path)), sha256_(std::move(digest)), out_(out) {}
+
+  std::optional<Scenario> read() {
+    const std::size_t before = out_.size();
+    Scenario s;
+    ConfigSection top("scenario", "scenario", &parts_.top, {1, 1}, problems_);
+    const bool building = read_building(top, s.config);
+    s.rate_hz = top.given("rate_hz") ? top.number("rate_hz") : s.config.pipeline.options.rate_hz;
+    s.seed = static_cast<std::uint64_t>(top.integer("seed"));
+
+    ConfigSection motion("motion", "motion", section(parts_, "motion"), {1, 1}, problems_);
+    s.motion = read_motion(motion, relative(""), s.seed);
+    s.duration_s = top.given("duration_s") ? top.number("duration_s") : s.motion.duration_s();
+    ConfigSection truth("truth", "truth", section(parts_, "truth"), {1, 1}, problems_);
+    if (building) {
+      const PipelineConfig& p = s.config.pipeline;
+      s.truth = read_truth(truth, p.structure, p.design);
+    }
+    read_sensors(s, building);
+    read_changes(s, building);
+
+    for (const TextProblem& p : problems_)
+      out_.push_back(
+          {p.place.line > 0 ? fmt::format("{}:{}:{}", path_, p.place.line, p.place.column) : path_,
+           p.message});
+    if (out_.size() > before) return std::nullopt;
+    return s;
+  }
+
+ private:
+  std::string relative(const std::string& file) const {
+    return (std::filesystem::path(path_).parent_path() / file).string();
+  }
+
+  bool read_building(ConfigSection& top, Config& config) {
+    if (top.given("config")) {
+      for (const TomlEntry& entry : parts_.building.entries)
+        problems_.push_back(
+            {entry.place, fmt::format("{}: the building is that of {} (key config): "
+                                      "only one of both may be here",
+                                      entry.key, top.text("config"))});
+      std::vector<ConfigProblem> problems;
+      const auto found = load_config(relative(top.text("config")), problems);
+      out_.insert(out_.end(), problems.begin(), problems.end());
+      if (found) config = *found;
+      return found.has_value();
+    }
+    config.path = path_;
+    config.sha256 = sha256_;
+    return read_config(parts_.building, config, problems_);
+  }
+
+  void read_sensors(Scenario& s, bool building) {
+    SensorModel common;
+    double common_ratio = 0;
+    ConfigSection all("sensors", "sensors", section(parts_, "sensors"), {1, 1}, problems_);
+    read_sensor(all, common, common_ratio);
+    const std::vector<SensorAxis>& axes = s.config.pipeline.axes;
+    s.sensors.assign(axes.size(), common);
+    s.noise_ratio.assign(axes.size(), common_ratio);
+    for (const TomlValue* table : tables(parts_, "sensor", problems_)) {
+      ConfigSection one("sensor", "sensor", table, {}, problems_);
+      const std::string name = one.text("channel");
+      const auto at = std::find_if(axes.begin(), axes.end(),
+                                   [&](const SensorAxis& a) { return a.name == name; });
+      const auto index = static_cast<std::size_t>(at - axes.begin());
+      SensorModel unknown;
+      double unknown_ratio = 0;
+      if (building && at == axes.end() && one.given("channel"))
+        one.problem("channel", fmt::format("no channel is named \"{}\"", name));
+      const bool known = at != axes.end();
+      read_sensor(one, known ? s.sensors[index] : unknown,
+                  known ? s.noise_ratio[index] : unknown_ratio);
+    }
+    for (const SensorAxis& axis : axes)
+      if (axis.delay != 0)
+        out_.push_back(
+            {path_, fmt::format("channel \"{}\": a delay_s is not simulated", axis.name)});
+  }
+
+  void read_changes(Scenario& s, bool building) {
+    struct Change {
+      double at_s;
+      int parameter;
+      double factor;
+    };
+    std::vector<Change> changes;
+    std::optional<ParameterTable> table;
+    if (building) table.emplace(s.config.pipeline.structure);
+    for (const TomlValue* value : tables(parts_, "change", problems_)) {
+      ConfigSection c("change", "change", value, {}, problems_);
+      if (!table || !c.given("at_s") || !c.given("parameter") || !c.given("factor")) continue;
+      const auto index = table->find(c.text("parameter"));
+      if (index)
+        changes.push_back({c.number("at_s"), *index, c.number("factor")});
+      else
+        c.problem("parameter", fmt::format("this building has no parameter \"{}\"; `framewatch "
+                                           "check` lists them",
+                                           c.text("parameter")));
+    }
+    std::stable_sort(changes.begin(), changes.end(),
+                     [](const Change& a, const Change& b) { return a.at_s < b.at_s; });
+    Eigen::VectorXd theta = s.truth;
+    for (const Change& change : changes) {
+      theta[change.parameter] *= change.factor;
+      s.changes.push_back({change.at_s, theta});
+    }
+  }
+
+  Parts parts_;
+  std::string path_;
+  std::string sha256_;
+  std::vector<ConfigProblem>& out_;
+  std::vector<TextProblem> problems_;
+};
+
+}  // namespace
+
+std::optional<Scenario> read_scenario(const std::string& text, const std::string& path,
+                                      std::vector<ConfigProblem>& problems) {
+  std::vector<TextProblem> syntax;
+  const std::optional<TomlValue> root = parse_toml(text, syntax);
+  for (const TextProblem& p : syntax)
+    problems.push_back({fmt::format("{}:{}:{}", path, p.place.line, p.place.column), p.message});
+  if (!root || !syntax.empty()) return std::nullopt;
+  return ScenarioReader(split(*root), path, sha256(text), problems).read();
+}
+
+std::optional<Scenario> load_scenario(const std::string& path,
+                                      std::vector<ConfigProblem>& problems) {
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  if (!text) {
+    problems.push_back({path, error});
+    return std::nullopt;
+  }
+  return read_scenario(*text, path, problems);
+}
+
+}  // namespace framewatch::daemon

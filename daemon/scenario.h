@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/simulation.h"
+
+namespace framewatch::daemon {
+
+/// Reads and validates a scenario file: the building as a configuration file has it ([structure],
+/// [[channel]], or `config = "FILE"`), and what happens to it ([truth], [motion], [sensors],
+/// [[sensor]], [[change]]). Empty optional and every problem at once when it is not valid.
+/// Paths in the file are relative to it.
+std::optional<Scenario> load_scenario(const std::string& path,
+                                      std::vector<ConfigProblem>& problems);
+
+/// The same from a text; `path` only names it and gives relative paths their start.
+std::optional<Scenario> read_scenario(const std::string& text, const std::string& path,
+                                      std::vector<ConfigProblem>& problems);
+
+}  // namespace framewatch::daemon

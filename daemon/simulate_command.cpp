@@ -1,0 +1,99 @@
+#include "daemon/simulate_command.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "daemon/scenario.h"
+#include "daemon/simulation.h"
+#include "daemon/simulation_output.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kBadInput = 2;
+
+/// Percent on stderr, when that is a terminal and the work takes over 2 s.
+class Progress {
+ public:
+  Progress(std::int64_t total, bool quiet) : total_(total), on_(!quiet && ::isatty(2) == 1) {}
+  ~Progress() {
+    if (shown_) fmt::print(stderr, "\n");
+  }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void operator()(std::int64_t done) {
+    if (!on_ || done % 100 != 0) return;
+    const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (elapsed_s < next_s_) return;
+    next_s_ = elapsed_s + 0.5;
+    shown_ = true;
+    const double left_s =
+        elapsed_s * static_cast<double>(total_ - done) / static_cast<double>(done);
+    fmt::print(stderr, "\rsimulate: {:3d} %, {:.0f} instants/s, {:.0f} s left ",
+               100 * done / total_, static_cast<double>(done) / elapsed_s, left_s);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::int64_t total_;
+  bool on_;
+  bool shown_ = false;
+  Clock::time_point start_ = Clock::now();
+  double next_s_ = 2;
+};
+
+int refuse(const std::string& message) {
+  fmt::print(stderr, "framewatch simulate: {}\n", message);
+  return kBadInput;
+}
+
+}  // namespace
+
+int simulate(const SimulateArguments& a) {
+  if (a.out.empty() && !a.lcm) return refuse("nowhere to put it: --out FILE, --lcm or both");
+  std::vector<ConfigProblem> problems;
+  std::optional<Scenario> scenario = load_scenario(a.scenario, problems);
+  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  if (!scenario) return kBadInput;
+  if (a.seconds > 0) scenario->duration_s = a.seconds;
+
+  std::vector<std::unique_ptr<SimulationOutput>> outputs;
+  std::string error;
+  if (!a.out.empty()) {
+    outputs.push_back(file_output(*scenario, a.out, error));
+    if (!outputs.back()) return refuse(fmt::format("{}: {}", a.out, error));
+  }
+  Simulation simulation(*scenario);
+  if (a.lcm) {
+    const std::string& url = a.lcm_url.empty() ? scenario->config.lcm.url : a.lcm_url;
+    outputs.push_back(live_output(*scenario, url, a.speed, error));
+    if (!outputs.back()) return refuse(error);
+  }
+
+  const std::int64_t count = instants(*scenario);
+  {
+    Progress progress(count, a.quiet);
+    for (std::int64_t i = 0; i < count; ++i) {
+      const std::vector<double>& raw = simulation.next();
+      for (const auto& output : outputs)
+        if (!output->put(simulation.time_s(), raw)) return refuse(output->error());
+      progress(i + 1);
+    }
+  }
+  for (const auto& output : outputs)
+    if (!output->close()) return refuse(output->error());
+  if (!a.quiet)
+    fmt::print(stderr, "{}: {} channels, {} instants at {:g} Hz{}{}\n",
+               scenario->config.pipeline.structure.name, scenario->config.pipeline.axes.size(),
+               count, scenario->rate_hz, a.out.empty() ? "" : " to ", a.out);
+  return 0;
+}
+
+}  // namespace framewatch::daemon
