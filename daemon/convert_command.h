@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace framewatch::daemon {
+
+struct ConvertArguments {
+  std::vector<std::string> inputs;  ///< record files, or one LCM event log
+  std::string out;                  ///< .lcmlog, .csv or .csv.gz
+  std::string unit;                 ///< g, gal, mps2; empty: not declared
+  double step_s = 0;                ///< 0: not declared
+  std::string format = "detect";
+  std::string config;   ///< whose channels say where named columns travel; empty: by column number
+  std::string channel;  ///< LCM channel to write or read; empty: ACCEL, or the only one of its kind
+  bool boxplot = false;
+  std::int64_t start_us = 0;  ///< sensor time of a record's time zero
+};
+
+/// framewatch convert. Exit code: 0, or 2 with every problem on stderr and no file.
+int convert(const ConvertArguments& arguments);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,123 @@
+#include "daemon/estimates_csv.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "drivers/log_events.h"
+#include "drivers/message_check.h"
+#include "drivers/number_text.h"
+#include "drivers/text_output.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using drivers::LogEvent;
+using drivers::Problem;
+
+constexpr std::array<const char*, 3> kStatus = {"warming_up", "valid", "nothing_identifiable"};
+
+std::string cell(double value) {
+  return std::isfinite(value) ? "," + drivers::format_number(value) : ",";
+}
+
+/// The names of the parameters of a log, which must not change in it.
+std::optional<std::vector<std::string>> parameter_names(const std::string& log,
+                                                        std::vector<Problem>& problems) {
+  std::optional<std::vector<std::string>> names;
+  const bool whole = drivers::for_each_event(
+      log,
+      [&](const LogEvent& event) {
+        if (drivers::fingerprint(event.data) != parameter_table_t::getHash()) return true;
+        const auto table = drivers::decode_parameter_table(event.data);
+        if (!table)
+          problems.push_back({place_of(log, event), "the message is no parameter_table_t"});
+        else if (names && *names != table->name)
+          problems.push_back({place_of(log, event), "the parameter table changes inside the log"});
+        else
+          names = table->name;
+        return problems.empty();
+      },
+      problems);
+  if (whole && problems.empty() && !names)
+    problems.push_back({log, "there is no parameter_table_t to name the parameters"});
+  if (!problems.empty()) return std::nullopt;
+  return names;
+}
+
+std::string header(const std::vector<std::string>& names, bool boxplot) {
+  std::string line = "window_end_s,status";
+  for (const std::string& name : names) {
+    line += fmt::format(",{0},{0}.std_error,{0}.observable", name);
+    if (boxplot)
+      line += fmt::format(",{0}.q1,{0}.median,{0}.q3,{0}.whisker_low,{0}.whisker_high,{0}.outliers",
+                          name);
+  }
+  return line + "\n";
+}
+
+std::string boxplot_cells(const window_estimate_t& estimate, std::size_t i) {
+  if (i >= static_cast<std::size_t>(estimate.boxplots) || estimate.boxplot_count[i] == 0)
+    return ",,,,,,";
+  return cell(estimate.q1[i]) + cell(estimate.median[i]) + cell(estimate.q3[i]) +
+         cell(estimate.whisker_low[i]) + cell(estimate.whisker_high[i]) +
+         fmt::format(",{}", estimate.outliers[i]);
+}
+
+std::string row(const window_estimate_t& estimate, bool boxplot) {
+  std::string line = drivers::format_number(static_cast<double>(estimate.window_end_us) / 1e6);
+  line += fmt::format(",{}", kStatus[static_cast<std::size_t>(estimate.status)]);
+  for (std::size_t i = 0; i < estimate.value.size(); ++i) {
+    const bool observable = estimate.reason[i] == 0;
+    line += observable ? cell(estimate.value[i]) + cell(estimate.std_error[i]) + ",1" : ",,,0";
+    if (boxplot) line += boxplot_cells(estimate, i);
+  }
+  return line + "\n";
+}
+
+/// Empty when the estimate can stand in the file.
+std::string fault(const window_estimate_t& estimate, std::size_t parameters) {
+  if (estimate.value.size() != parameters)
+    return fmt::format("{} parameters where the table has {}", estimate.value.size(), parameters);
+  if (estimate.boxplots != 0 && estimate.boxplots != estimate.parameters)
+    return fmt::format("{} boxplots for {} parameters", estimate.boxplots, estimate.parameters);
+  if (estimate.status < 0 || estimate.status >= static_cast<int>(kStatus.size()))
+    return fmt::format("status {} is not 0, 1 or 2", estimate.status);
+  for (std::size_t i = 0; i < parameters; ++i)
+    if (estimate.reason[i] == 0 && !std::isfinite(estimate.value[i]))
+      return fmt::format("parameter {} is observable and has no value", i);
+  return "";
+}
+
+}  // namespace
+
+bool write_estimates_csv(const std::string& log, const std::string& channel, bool boxplot,
+                         const std::string& out, std::vector<Problem>& problems) {
+  const auto names = parameter_names(log, problems);
+  if (!names) return false;
+  drivers::TextOutput file;
+  if (!file.open(out) || !file.write(header(*names, boxplot))) {
+    problems.push_back({out, file.error()});
+    return false;
+  }
+  drivers::for_each_event(
+      log,
+      [&](const LogEvent& event) {
+        if (event.channel != channel) return true;
+        const auto estimate = drivers::decode_window_estimate(event.data);
+        const std::string wrong =
+            estimate ? fault(*estimate, names->size()) : "the message is no window_estimate_t";
+        if (!wrong.empty())
+          problems.push_back({place_of(log, event), wrong});
+        else if (!file.write(row(*estimate, boxplot)))
+          problems.push_back({out, file.error()});
+        return problems.empty();
+      },
+      problems);
+  if (problems.empty() && !file.close()) problems.push_back({out, file.error()});
+  return problems.empty();
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+struct gzFile_s;
+
+namespace framewatch::drivers {
+
+/// Writes a text file, gzip when its name ends in .gz, as PATH.partial renamed by close(): nothing
+/// half-written under its name.
+class TextOutput {
+ public:
+  TextOutput() = default;
+  /// Removes the partial file when close() was not called.
+  ~TextOutput();
+  TextOutput(const TextOutput&) = delete;
+  TextOutput& operator=(const TextOutput&) = delete;
+
+  [[nodiscard]] bool open(const std::string& path);
+  [[nodiscard]] bool write(std::string_view text);
+  [[nodiscard]] bool close();
+  const std::string& error() const { return error_; }
+
+ private:
+  bool fail();
+
+  gzFile_s* file_ = nullptr;
+  std::string path_;
+  std::string error_;
+};
+
+}  // namespace framewatch::drivers
