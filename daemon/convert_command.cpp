@@ -5,8 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <set>
-#include <tuple>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -144,9 +143,23 @@ std::string chosen(const std::vector<std::string>& found, const std::string& ask
 }
 
 std::string list(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 10;
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  for (std::size_t i = 0; i < std::min(kShown, names.size()); ++i)
+    text += (i == 0 ? "" : ", ") + names[i];
+  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
   return text.empty() ? "none" : text;
+}
+
+/// Why there is not exactly one channel to convert.
+std::string no_choice(const drivers::LogContents& contents, const std::string& asked) {
+  const std::string channels =
+      fmt::format("accelerations: {}; estimates: {}; other: {}", list(contents.accel),
+                  list(contents.estimates), list(contents.others));
+  if (contents.accel.empty() && contents.estimates.empty())
+    return "holds neither accelerations nor estimates; " + channels;
+  if (!asked.empty()) return fmt::format("channel {} is not one to convert; {}", asked, channels);
+  return "say with --channel which to convert; " + channels;
 }
 
 void write_csv(const std::string& out, const Record& record, Problems& problems) {
@@ -179,11 +192,7 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
   const std::string accel = chosen(contents->accel, a.channel);
   const std::string estimates = chosen(contents->estimates, a.channel);
   if (accel.empty() == estimates.empty()) {
-    problems.push_back(
-        {in,
-         fmt::format("say with --channel what to convert. Accelerations: {}; estimates: {}; "
-                     "other: {}",
-                     list(contents->accel), list(contents->estimates), list(contents->others))});
+    problems.push_back({in, no_choice(*contents, a.channel)});
     return;
   }
   if (!estimates.empty()) {

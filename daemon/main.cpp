@@ -1,7 +1,12 @@
 #include <functional>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
+
+#include "daemon/convert_command.h"
 
 // The one translation unit that sees CLI11 (it costs seconds to compile): it turns the command line
 // into plain argument structs; every command lives in its own file.
@@ -9,6 +14,42 @@ namespace {
 
 /// What the chosen subcommand will do; set by its CLI11 callback.
 using Action = std::function<int()>;
+
+void add_convert(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "convert", "records to LCM event logs or CSV, logs of accelerations or estimates to CSV");
+  command->footer(
+      "What is read is told from the content, what is written from OUT's ending: .lcmlog, .csv or\n"
+      ".csv.gz. Several records of one rate become one log. docs/formats.md has every format.\n"
+      "Examples:\n"
+      "  framewatch convert rec.csv --config table.toml rec.lcmlog\n"
+      "  framewatch convert elcentro_NS.dat --unit g elcentro.csv\n"
+      "  framewatch convert hachi.txt --unit gal --step 0.01 hachi.lcmlog\n"
+      "  framewatch convert ground.csv.gz first.csv.gz second.csv.gz top.csv.gz run.lcmlog\n"
+      "  framewatch convert est.lcmlog --boxplot est.csv");
+  auto files = std::make_shared<std::vector<std::string>>();
+  auto arguments = std::make_shared<framewatch::daemon::ConvertArguments>();
+  command->add_option("FILES", *files, "IN... OUT: record files or one event log, then the output")
+      ->required()
+      ->expected(2, 1000)
+      ->type_name("");
+  command->add_option("--unit", arguments->unit, "of a file that does not say it: g, gal, mps2");
+  command->add_option("--step", arguments->step_s,
+                      "seconds between samples of a file without time");
+  command->add_option("--format", arguments->format, "csv, at2, two-columns, rows or xsens")
+      ->capture_default_str();
+  command->add_option("--config", arguments->config,
+                      "configuration whose channels say where the columns of their names travel");
+  command->add_option("--channel", arguments->channel,
+                      "LCM channel to write (default ACCEL) or to read");
+  command->add_flag("--boxplot", arguments->boxplot, "boxplot columns beside the estimates");
+  command->add_option("--start-us", arguments->start_us, "sensor time of a record's time zero");
+  command->callback([&action, files, arguments] {
+    arguments->inputs.assign(files->begin(), files->end() - 1);
+    arguments->out = files->back();
+    action = [arguments] { return framewatch::daemon::convert(*arguments); };
+  });
+}
 
 }  // namespace
 
@@ -22,6 +63,7 @@ int main(int argc, char** argv) {
   Action action;
 
   // add_<command>(app, action) calls go here, one per command, in the order people meet them.
+  add_convert(app, action);
 
   try {
     app.parse(argc, argv);
