@@ -30,7 +30,7 @@ FRAMEWATCH_CLONES
 void add_rows(const double* source, double* destination, const double* h, int rows, int front,
               int stride) {
   for (int i = 0; i < front; ++i) {
-    const int first = i / kLane * kLane;
+    const int first = packed_row_begin(i);
     const int length = stride - first;
     const double* __restrict from = source;
     double* to = destination;
@@ -76,16 +76,17 @@ void add(double* __restrict destination, const double* __restrict source, long l
 
 FRAMEWATCH_CLONES
 void sum_into_front(const double* __restrict a, const double* __restrict b,
-                    const double* __restrict c, double* __restrict front_rows, int front,
-                    int stride) {
+                    const double* __restrict c, double scale, const double* __restrict noise,
+                    double* __restrict front_rows, int front, int stride) {
   for (int i = 0; i < front; ++i) {
-    const int first = i / kLane * kLane;
+    const int first = packed_row_begin(i);
     const int length = stride - first;
     double* __restrict to = front_rows + i * stride + first;
-    for (int j = 0; j < length; ++j) to[j] = a[j] + b[j] + c[j];
+    for (int j = 0; j < length; ++j) to[j] = a[j] + b[j] + c[j] - scale * noise[j];
     a += length;
     b += length;
     c += length;
+    noise += length;
   }
 }
 
@@ -102,7 +103,7 @@ void partial_cholesky(double* front_rows, int pivots, int front, int stride, con
     const double inverse = 1 / std::sqrt(pivot[p]);
     for (int j = p; j < front; ++j) pivot[j] *= inverse;
     for (int q = p + 1; q < front; ++q) {
-      const int first = q / kLane * kLane;
+      const int first = packed_row_begin(q);
       const double factor = pivot[q];
       double* __restrict to = front_rows + q * stride + first;
       const double* __restrict from = pivot + first;

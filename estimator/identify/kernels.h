@@ -17,9 +17,9 @@ void add_rows(const double* source, double* destination, const double* h, int ro
 /// destination += source.
 void add(double* destination, const double* source, long length);
 
-/// Unpacks a + b + c into the rows of a stride x stride upper front.
-void sum_into_front(const double* a, const double* b, const double* c, double* front_rows,
-                    int front, int stride);
+/// Unpacks a + b + c - scale noise into the rows of a stride x stride upper front.
+void sum_into_front(const double* a, const double* b, const double* c, double scale,
+                    const double* noise, double* front_rows, int front, int stride);
 
 /// Right-looking partial Cholesky of the first `pivots` unknowns of an upper front, in place: the
 /// pivot rows become the factor's, the rest the Schur complement. A pivot not above floor[i] is

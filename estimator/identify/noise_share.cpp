@@ -3,12 +3,6 @@
 #include <algorithm>
 
 namespace framewatch {
-namespace {
-
-constexpr double kTakenOff = 0.8;
-
-}  // namespace
-
 NoiseShare::NoiseShare(const FloorLayout& layout)
     : layout_(layout),
       floor_(static_cast<std::size_t>(layout.floors())),
@@ -28,28 +22,6 @@ void NoiseShare::update(const RowChain& rows, const WindowSums& sums, double lev
       energy_[static_cast<std::size_t>(f * layout_.own() + p)] +=
           floor.instants * floor.rows->noise_energy[static_cast<std::size_t>(p * unknowns + p)];
   }
-}
-
-void NoiseShare::take_off(int f, double* front_rows, int stride) const {
-  const Floor& floor = floor_[static_cast<std::size_t>(f)];
-  if (level_ <= 0 || floor.rows == nullptr) return;
-  const double scale = level_ * floor.instants;
-  const int unknowns = layout_.front(f) - 1;
-  const std::vector<double>& energy = floor.rows->noise_energy;
-  double whole = 0;
-  for (int p = 0; p < unknowns; ++p) {
-    double* row = front_rows + p * stride;
-    row[unknowns] -= scale * floor.rows->noise_right[static_cast<std::size_t>(p)];
-    for (int q = p; q < unknowns; ++q) {
-      const double w = scale * energy[static_cast<std::size_t>(p * unknowns + q)];
-      row[q] -= kTakenOff * w;
-      row[unknowns] += (1 - kTakenOff) * w;
-      if (q != p) front_rows[q * stride + unknowns] += (1 - kTakenOff) * w;
-      whole += q == p ? w : 2 * w;
-    }
-  }
-  front_rows[unknowns * stride + unknowns] -=
-      scale * floor.rows->noise_response - (1 - kTakenOff) * whole;
 }
 
 void NoiseShare::add_remaining(const std::vector<double>& vector, std::vector<double>& out) const {

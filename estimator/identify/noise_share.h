@@ -9,10 +9,7 @@
 namespace framewatch {
 
 /// What sensor noise is expected to have put into the window's normal equations, and how much of it
-/// the solver takes off. With W the noise in the matrix and w in the right-hand side, taking off
-/// all of W would be unbiased but blows up where there is little but noise; so the share kTakenOff
-/// of W goes, and the right-hand side is corrected such that the remaining pull is toward the
-/// design only. docs/equations.md, noise in the regressors.
+/// the solver takes off.
 class NoiseShare {
  public:
   explicit NoiseShare(const FloorLayout& layout);
@@ -20,8 +17,15 @@ class NoiseShare {
   /// level: variance of the noise over the configured one.
   void update(const RowChain& rows, const WindowSums& sums, double level);
 
-  /// Takes the floor's part off a front (rows of `stride`, upper, response last).
-  void take_off(int floor, double* front_rows, int stride) const;
+  /// Packed part of a floor's sums that is taken off, times scale.
+  struct TakenOff {
+    const double* packed;
+    double scale;
+  };
+  TakenOff taken_off(int floor) const {
+    const Floor& f = floor_[static_cast<std::size_t>(floor)];
+    return {f.rows->noise_taken_off.data(), level_ * f.instants};
+  }
   /// out += (1 - kTakenOff) W vector, internal order, over all floors: what is left in the matrix.
   void add_remaining(const std::vector<double>& vector, std::vector<double>& out) const;
 
@@ -29,8 +33,6 @@ class NoiseShare {
   const std::vector<double>& energy() const { return energy_; }
   /// Expected weighted residual energy from noise alone.
   double residual() const { return residual_; }
-  /// Response energy that take_off() removed in all floors together, so that residuals add up.
-  bool takes_off() const { return level_ > 0; }
 
  private:
   struct Floor {

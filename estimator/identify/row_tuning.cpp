@@ -243,6 +243,29 @@ void RowTuning::weigh(int floor, int r, const Eigen::VectorXd& phi, const FloorN
   }
 }
 
+void RowTuning::pack_noise(int floor, FloorRows& out) const {
+  const int front = layout_->front(floor);
+  const int stride = padded(front);
+  const int unknowns = front - 1;
+  Eigen::MatrixXd part = Eigen::MatrixXd::Zero(front, stride);
+  double whole = 0;
+  for (int p = 0; p < unknowns; ++p)
+    part(p, unknowns) = out.noise_right[static_cast<std::size_t>(p)];
+  for (int p = 0; p < unknowns; ++p) {
+    for (int q = p; q < unknowns; ++q) {
+      const double w = out.noise_energy[static_cast<std::size_t>(p * unknowns + q)];
+      part(p, q) = kTakenOff * w;
+      part(p, unknowns) -= (1 - kTakenOff) * w;
+      if (q != p) part(q, unknowns) -= (1 - kTakenOff) * w;
+      whole += q == p ? w : 2 * w;
+    }
+  }
+  part(unknowns, unknowns) = out.noise_response - (1 - kTakenOff) * whole;
+  for (int i = 0; i < front; ++i)
+    for (int j = packed_row_begin(i); j < stride; ++j)
+      out.noise_taken_off.push_back(j >= i ? part(i, j) : part(j, i));
+}
+
 double RowTuning::damping() const {
   return options_->variant == Variant::paper ? std::sqrt(0.5) : options_->filter_damping;
 }
@@ -303,6 +326,7 @@ FloorRows RowTuning::rows(int floor, const std::vector<std::uint8_t>& known) con
     out.frequency_hz.push_back(frequency[r]);
     weigh(floor, r, modes.col(r), noise, out);
   }
+  pack_noise(floor, out);
   return out;
 }
 

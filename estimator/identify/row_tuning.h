@@ -19,6 +19,18 @@ constexpr int padded(int length) {
   return (length + kLane - 1) / kLane * kLane;
 }
 
+/// Share of the sensor noise in the normal matrix that the solver takes off. All of it would be
+/// unbiased but blows up where there is little but noise; so this share goes, and the right-hand
+/// side is corrected such that what is left pulls toward the design only.
+/// docs/equations.md, noise in the regressors.
+inline constexpr double kTakenOff = 0.8;
+
+/// Packed upper rows of a symmetric front: row i holds columns from i rounded down to a lane up to
+/// padded(front).
+constexpr int packed_row_begin(int i) {
+  return i / kLane * kLane;
+}
+
 /// One floor's projected equations: each row r is sum_f phi_rf (equation f), low-passed by an
 /// all-pole section s = gain x - a1 s' - a2 s'' and scaled by the root of its weight.
 struct FloorRows {
@@ -33,6 +45,8 @@ struct FloorRows {
   std::vector<double> noise_energy;
   std::vector<double> noise_right;
   double noise_response = 0;
+  /// The part of these that the solver takes off per instant, packed like the sums.
+  std::vector<double> noise_taken_off;
   double noise_residual = 0;  ///< expected weighted squared residual per instant
 };
 
@@ -66,6 +80,7 @@ class RowTuning {
     std::vector<bool> damping;    ///< per unknown: multiplies a rate, not a deformation
   };
   FloorNoise floor_noise(int floor) const;
+  void pack_noise(int floor, FloorRows& out) const;
   double damping() const;
   std::vector<int> all_frames() const;
   std::vector<int> usable_equations(int floor, const std::vector<std::uint8_t>& known) const;

@@ -29,11 +29,30 @@ StorySolver::StorySolver(const FloorLayout& layout) : layout_(layout) {
   usable_.assign(unknowns, 0);
 }
 
+void StorySolver::gather_information(const WindowSums& sums) {
+  std::fill(information_.begin(), information_.end(), 0.0);
+  response_energy_ = 0;
+  for (int floor = 0; floor < layout_.floors(); ++floor) {
+    const SumsShape::Floor& shape = sums.shape().floor[static_cast<std::size_t>(floor)];
+    std::size_t at = shape.offset;
+    for (int i = 0; i < shape.front; ++i) {
+      const std::size_t diagonal = at + static_cast<std::size_t>(i - packed_row_begin(i));
+      const double sum =
+          sums.newest()[diagonal] + sums.middle()[diagonal] + sums.oldest()[diagonal];
+      if (i + 1 == shape.front)
+        response_energy_ += sum;
+      else
+        information_[static_cast<std::size_t>(floor * layout_.own() + i)] += sum;
+      at += static_cast<std::size_t>(shape.stride - packed_row_begin(i));
+    }
+  }
+}
+
 void StorySolver::factor(const WindowSums& sums, const std::vector<double>& prior,
                          const NoiseShare& noise) {
   const int own = layout_.own();
   const int passed = 2 * layout_.frames();
-  response_energy_ = 0;
+  gather_information(sums);
   double prior_energy = 0;
   std::fill(carry_.begin(), carry_.end(), 0.0);
   const auto carry = [&](int i, int j) -> double& {
@@ -44,27 +63,12 @@ void StorySolver::factor(const WindowSums& sums, const std::vector<double>& prio
     const int stride = shape.stride;
     const int last = shape.front - 1;
     double* a = front_.data();
+    const NoiseShare::TakenOff taken_off = noise.taken_off(floor);
     kernels::sum_into_front(sums.newest() + shape.offset, sums.middle() + shape.offset,
-                            sums.oldest() + shape.offset, a, shape.front, stride);
-    response_energy_ += a[last * stride + last];
-    // What the floor below knows about this story's frames: its own rows and its Schur complement.
-    for (int p = 0; p < own; ++p) {
-      const auto unknown = static_cast<std::size_t>(floor * own + p);
-      information_[unknown] = a[p * stride + p];
-    }
-    noise.take_off(floor, a, stride);
+                            sums.oldest() + shape.offset, taken_off.scale, taken_off.packed, a,
+                            shape.front, stride);
     if (floor > 0) {
-      const SumsShape::Floor& below = sums.shape().floor[static_cast<std::size_t>(floor - 1)];
-      std::size_t at = below.offset;
-      for (int i = 0; i < own; ++i)
-        at += static_cast<std::size_t>(below.stride - i / kLane * kLane);
-      for (int i = 0; i < passed; ++i) {
-        const int row = own + i;
-        const std::size_t diagonal = at + static_cast<std::size_t>(row % kLane);
-        information_[static_cast<std::size_t>(floor * own + i)] +=
-            sums.newest()[diagonal] + sums.middle()[diagonal] + sums.oldest()[diagonal];
-        at += static_cast<std::size_t>(below.stride - row / kLane * kLane);
-      }
+      // What the floor below knows about this story's frames: the Schur complement of its rows.
       for (int i = 0; i < passed; ++i) {
         for (int j = i; j < passed; ++j) a[i * stride + j] += carry(i, j);
         a[i * stride + last] += carry(i, passed);

@@ -36,6 +36,8 @@ class StorySolver {
   const double* factor_rows(int floor) const {
     return &factor_[static_cast<std::size_t>(floor) * factor_stride_];
   }
+  void gather_information(const WindowSums& sums);
+
   FloorLayout layout_;
   std::size_t factor_stride_;
   std::vector<double> front_, factor_, carry_, pivot_floor_;

@@ -64,14 +64,14 @@ void BatchMeans::add_block_scores(const WindowSums& sums, const std::vector<doub
         return columns_values_[static_cast<std::size_t>((floor * own + i) * columns_ + b)];
       };
       for (int i = 0; i < unknowns; ++i) {
-        const double* a = row - i / kLane * kLane;
+        const double* a = row - packed_row_begin(i);
         double sum = a[unknowns] - a[i] * xf[i];
         for (int j = i + 1; j < unknowns; ++j) {
           sum -= a[j] * xf[j];
           score(j) -= a[j] * xf[i];
         }
         score(i) += sum;
-        row += shape.stride - i / kLane * kLane;
+        row += shape.stride - packed_row_begin(i);
       }
     }
   }

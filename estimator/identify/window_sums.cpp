@@ -11,7 +11,7 @@ SumsShape::SumsShape(const FloorLayout& layout) {
     const int front = layout.front(f);
     const int stride = padded(front);
     floor.push_back({size, front, stride});
-    for (int i = 0; i < front; ++i) size += static_cast<std::size_t>(stride - i / kLane * kLane);
+    for (int i = 0; i < front; ++i) size += static_cast<std::size_t>(stride - packed_row_begin(i));
   }
 }
 

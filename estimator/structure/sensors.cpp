@@ -22,9 +22,9 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
     if (!std::isfinite(a.scale) || a.scale == 0) add("scale", "scale must not be 0");
     if (a.polarity != 1 && a.polarity != -1) add("polarity", "polarity must be 1 or -1");
     if (!std::isfinite(a.offset)) add("offset", "offset must be a number");
-    if (!std::isfinite(a.delay)) add("delay", "delay must be a number");
+    if (!std::isfinite(a.delay)) add("delay_s", "delay must be a number");
     if (!(std::isfinite(a.noise_density) && a.noise_density >= 0))
-      add("noise_density", "noise density must be 0 or more");
+      add("noise_mps2_per_rthz", "noise density must be 0 or more");
     if (a.story < 0 || a.story > s.stories) {
       add("story", "story " + std::to_string(a.story) + " does not exist, 0 (base) to " +
                        std::to_string(s.stories) + " do");
