@@ -45,8 +45,8 @@ TEST(SensorProblems, EveryMalformedAxisIsNamed) {
 TEST(SensorProblems, NumbersThatAreNoneAreNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect_one([&](Axes& a) { a[2].offset = nan; }, "offset", 2, "offset");
-  expect_one([&](Axes& a) { a[2].delay = nan; }, "delay", 2, "delay");
-  expect_one([&](Axes& a) { a[2].noise_density = -1e-4; }, "noise_density", 2, "noise");
+  expect_one([&](Axes& a) { a[2].delay = nan; }, "delay_s", 2, "delay");
+  expect_one([&](Axes& a) { a[2].noise_density = -1e-4; }, "noise_mps2_per_rthz", 2, "noise");
 }
 
 TEST(SensorProblems, PlacesThatDoNotExistAreNamedAndLeaveTheirPlaceEmpty) {

@@ -33,18 +33,18 @@ TEST(StructureProblems, SoundBuildingsHaveNone) {
 TEST(StructureProblems, EveryMalformedTwinIsNamed) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
-  EXPECT_EQ(fields_after([](S& s) { s.span_x.pop_back(); }), Fields{"span_x_m"});
-  EXPECT_EQ(fields_after([](S& s) { s.span_x[1] = 0; }), Fields{"span_x_m"});
-  EXPECT_EQ(fields_after([](S& s) { s.span_y.push_back(1); }), Fields{"span_y_m"});
-  EXPECT_EQ(fields_after([](S& s) { s.span_y[0] = -3; }), Fields{"span_y_m"});
-  EXPECT_EQ(fields_after([](S& s) { s.story_height.clear(); }), Fields{"story_height_m"});
-  EXPECT_EQ(fields_after([&](S& s) { s.story_height[0] = nan; }), Fields{"story_height_m"});
-  EXPECT_EQ(fields_after([](S& s) { s.node_mass.pop_back(); }), Fields{"node_mass_kg"});
-  EXPECT_EQ(fields_after([&](S& s) { s.node_mass[5] = infinity; }), Fields{"node_mass_kg"});
-  EXPECT_EQ(fields_after([](S& s) { s.node_mass[0] = 0; }), Fields{"node_mass_kg"});
-  EXPECT_EQ(fields_after([](S& s) { s.frames_x[1].clear(); }), Fields{"frames_x"});
-  EXPECT_EQ(fields_after([](S& s) { s.frames_x[1] = "y1"; }), Fields{"frames_x"});
-  EXPECT_EQ(fields_after([](S& s) { s.frames_y[0] = "y1"; }), Fields{"frames_y"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.span_x.pop_back(); }), Fields{"span_x_m"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.span_x[1] = 0; }), Fields{"span_x_m"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.span_y.push_back(1); }), Fields{"span_y_m"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.span_y[0] = -3; }), Fields{"span_y_m"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.story_height.clear(); }), Fields{"story_height_m"});
+  EXPECT_EQ(fields_after([&](Structure& s) { s.story_height[0] = nan; }), Fields{"story_height_m"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.node_mass.pop_back(); }), Fields{"node_mass_kg"});
+  EXPECT_EQ(fields_after([&](Structure& s) { s.node_mass[5] = infinity; }), Fields{"node_mass_kg"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.node_mass[0] = 0; }), Fields{"node_mass_kg"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.frames_x[1].clear(); }), Fields{"frames_x"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.frames_x[1] = "y1"; }), Fields{"frames_x"});
+  EXPECT_EQ(fields_after([](Structure& s) { s.frames_y[0] = "y1"; }), Fields{"frames_y"});
 }
 
 TEST(StructureProblems, AreReportedAllAtOnce) {
