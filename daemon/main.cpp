@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
+#include "daemon/check_command.h"
 #include "daemon/convert_command.h"
 
 // The one translation unit that sees CLI11 (it costs seconds to compile): it turns the command line
@@ -14,6 +15,21 @@ namespace {
 
 /// What the chosen subcommand will do; set by its CLI11 callback.
 using Action = std::function<int()>;
+
+void add_check(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "check", "every problem of a configuration at once, and what will be identifiable with it");
+  command->footer("Example: framewatch check configs/table_two_story.toml");
+  auto arguments = std::make_shared<framewatch::daemon::CheckArguments>();
+  command->add_option("CONFIG", arguments->config, "configuration file (TOML)");
+  command->add_flag("--json", arguments->json, "print what a program would read");
+  command->add_flag("--print-options-markdown", arguments->print_options_markdown)->group("");
+  command->callback([&action, arguments] {
+    if (arguments->config.empty() && !arguments->print_options_markdown)
+      throw CLI::RequiredError("CONFIG");
+    action = [arguments] { return framewatch::daemon::check_command(*arguments); };
+  });
+}
 
 void add_convert(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
@@ -63,6 +79,7 @@ int main(int argc, char** argv) {
   Action action;
 
   // add_<command>(app, action) calls go here, one per command, in the order people meet them.
+  add_check(app, action);
   add_convert(app, action);
 
   try {

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+namespace framewatch::daemon {
+
+struct CheckArguments {
+  std::string config;
+  bool json = false;
+  bool print_options_markdown = false;  ///< docs/configuration.md instead of a check
+};
+
+/// Exit status: 0 the configuration is good, 2 it is not.
+int check_command(const CheckArguments& arguments);
+
+}  // namespace framewatch::daemon

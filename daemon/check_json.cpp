@@ -1,0 +1,55 @@
+#include <nlohmann/json.hpp>
+
+#include "daemon/check_report.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json channels(const Config& config) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < config.sources.size(); ++i) {
+    const SensorAxis& axis = config.pipeline.axes[i];
+    const AxisSource& source = config.sources[i];
+    Json channel{{"name", axis.name},
+                 {"story", axis.story},
+                 {"direction", axis.direction == Direction::x ? "x" : "y"}};
+    if (axis.frame >= 0) channel["frame"] = config.pipeline.structure.frame_name(axis.frame);
+    if (source.node >= 0)
+      channel["source"] = {{"lcm", source.lcm_channel},
+                           {"node", source.node},
+                           {"axis", std::string(1, "xyz"[source.axis])}};
+    out.push_back(channel);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string to_json(const std::string& path, const std::optional<CheckReport>& report,
+                    const std::vector<ConfigProblem>& problems) {
+  Json out{{"schema", "framewatch.check/1"}, {"config", path}, {"good", report.has_value()}};
+  out["problems"] = Json::array();
+  for (const ConfigProblem& p : problems)
+    out["problems"].push_back({{"where", p.where}, {"message", p.message}});
+  if (report) {
+    const PipelineConfig& c = report->config.pipeline;
+    out["sha256"] = report->config.sha256;
+    out["degrees_of_freedom"] = c.structure.degrees_of_freedom();
+    out["parameters"] = report->parameters;
+    out["rate_hz"] = c.options.rate_hz;
+    out["window_samples"] = report->window_rows;
+    out["hop_samples"] = report->hop_rows;
+    out["design_natural_frequencies_hz"] = report->design_hz;
+    out["panel_shear_ratio"] = Json::object();
+    for (const PanelOutlook& panel : report->panels)
+      out["panel_shear_ratio"][panel.parameter] = panel.shear_ratio;
+    out["lcm_url"] = report->config.lcm.url;
+    out["channels"] = channels(report->config);
+    out["warnings"] = report->warnings;
+  }
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,92 @@
+#include "daemon/check_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "estimator/pipeline.h"
+#include "estimator/structure/matrices.h"
+#include "estimator/structure/panel_excitation.h"
+
+namespace framewatch::daemon {
+namespace {
+
+/// Below this share rounding is all there is.
+constexpr double kNoShear = 1e-9;
+/// Below this share 1 % sensor noise leaves a panel with an error of more than its value
+/// (method.md).
+constexpr double kWeakShear = 0.01;
+/// The derivative filters' error is small up to a fifth of the sampling rate.
+constexpr double kUsableShareOfRate = 0.2;
+/// Larger buildings would keep a person waiting for dense matrices.
+constexpr int kMaxDegreesOfFreedom = 400;
+
+void warn_about_panels(CheckReport& report) {
+  std::string none, weak;
+  for (const PanelOutlook& panel : report.panels) {
+    std::string& list = panel.shear_ratio < kNoShear ? none : weak;
+    if (panel.shear_ratio < kWeakShear) list += (list.empty() ? "" : ", ") + panel.parameter;
+  }
+  if (!none.empty())
+    report.warnings.push_back(
+        "the plan is symmetric in the design's stiffness and mass: ground motion does not shear "
+        "the floors, and no record can identify " +
+        none + " and their damping");
+  if (!weak.empty())
+    report.warnings.push_back(
+        "the plan is nearly symmetric in the design's stiffness and mass: expect little about " +
+        weak + " and their damping");
+}
+
+void warn_about_rate(CheckReport& report) {
+  const double rate = report.config.pipeline.options.rate_hz;
+  const double usable = kUsableShareOfRate * rate;
+  const auto& hz = report.design_hz;
+  const auto above = std::count_if(hz.begin(), hz.end(), [&](double f) { return f > usable; });
+  if (above > 0)
+    report.warnings.push_back(fmt::format(
+        "{} of {} design natural frequencies lie above a fifth of the sampling rate, {:g} Hz "
+        "(highest: {:.2f} Hz); sample at {:.0f} Hz or more",
+        above, hz.size(), usable, hz.back(), std::ceil(hz.back() / kUsableShareOfRate)));
+}
+
+void warn_about_rounding(CheckReport& report) {
+  const EstimatorOptions& o = report.config.pipeline.options;
+  const auto check = [&](const char* key, double asked, int rows) {
+    const double got = rows / o.rate_hz;
+    if (std::abs(got - asked) > 1e-6 * asked)
+      report.warnings.push_back(
+          fmt::format("estimator.{}: {:g} s becomes {:.6g} s, {} samples at {:g} Hz", key, asked,
+                      got, rows, o.rate_hz));
+  };
+  check("window_s", o.window_s, report.window_rows);
+  check("hop_s", o.hop_s, report.hop_rows);
+}
+
+}  // namespace
+
+CheckReport make_check_report(const Config& config) {
+  CheckReport report;
+  report.config = config;
+  const PipelineConfig& c = config.pipeline;
+  const Pipeline pipeline(c, [](const WindowEstimate&) {});
+  report.window_rows = pipeline.window_rows();
+  report.hop_rows = pipeline.hop_rows();
+  const ParameterTable table(c.structure);
+  for (int i = 0; i < table.size(); ++i) report.parameters.push_back(table[i].name);
+  warn_about_rounding(report);
+  const bool small = c.structure.degrees_of_freedom() <= kMaxDegreesOfFreedom;
+  if (c.design.size() > 0 && small) {
+    report.design_hz = natural_frequencies_hz(c.structure, table, c.design);
+    const std::vector<double> shares = panel_excitation(c.structure, table, c.design);
+    const int first = table.elements() - static_cast<int>(shares.size());
+    for (std::size_t p = 0; p < shares.size(); ++p)
+      report.panels.push_back({table[first + static_cast<int>(p)].name, shares[p]});
+    warn_about_panels(report);
+    warn_about_rate(report);
+  }
+  return report;
+}
+
+}  // namespace framewatch::daemon

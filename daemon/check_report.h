@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+
+namespace framewatch::daemon {
+
+/// What the design says about one floor panel under ground motion.
+struct PanelOutlook {
+  std::string parameter;  ///< Gk_2_x1y1
+  double shear_ratio;     ///< largest shear deformation over the frames' largest
+};
+
+/// What can be told about a good configuration before any sample came.
+struct CheckReport {
+  Config config;
+  std::vector<std::string> parameters;
+  int window_rows = 0;
+  int hop_rows = 0;
+  std::vector<double> design_hz;  ///< natural frequencies, ascending; empty without a design
+  std::vector<PanelOutlook> panels;
+  std::vector<std::string> warnings;
+};
+
+CheckReport make_check_report(const Config& config);
+
+/// For people, several lines.
+std::string to_text(const CheckReport& report);
+/// For programs, schema framewatch.check/1. `report` empty: the problems are why.
+std::string to_json(const std::string& path, const std::optional<CheckReport>& report,
+                    const std::vector<ConfigProblem>& problems);
+
+}  // namespace framewatch::daemon
