@@ -163,7 +163,9 @@ void StorySolver::inverse_diagonal(std::vector<double>& diagonal) const {
         u(p, j) = usable_row ? rows[p * stride + j] : (j == p ? 1.0 : 0.0);
       for (int j = 0; j < next; ++j) w(p, j) = rows[p * stride + own + j];
     }
-    Eigen::MatrixXd middle = Eigen::MatrixXd::Identity(own, own);
+    // An unusable unknown is held fixed: it has no variance to pass on.
+    Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(own, own);
+    for (int p = 0; p < own; ++p) middle(p, p) = rows[p * stride + p] > 0 ? 1.0 : 0.0;
     if (next > 0) middle += w * z_next.topLeftCorner(next, next) * w.transpose();
     const auto upper = u.triangularView<Eigen::Upper>();
     const Eigen::MatrixXd half = upper.solve(middle);

@@ -214,6 +214,8 @@ bool WindowEstimator::element_known(int unknown, const std::vector<std::uint8_t>
 
 Observability WindowEstimator::judge(int unknown, const std::vector<std::uint8_t>& known) const {
   const auto u = static_cast<std::size_t>(unknown);
+  const bool filling = ring_.end() < triple_.length();  // no axis can be valid yet
+  if (filling) return Observability::warming_up;
   if (!element_known(unknown, known)) return Observability::channel_lost;
   if (!active_->full() || !errors_known_ || !tuned_ ||
       active_->sums().floor_instants(unknown / layout_.own()) < window_rows() / 2)
