@@ -33,8 +33,14 @@ SequenceCounter::Verdict SequenceCounter::see(std::int64_t sequence, std::int64_
     ++restarts;
     return restart(sequence, time_us);
   }
-  const std::uint64_t bit = step > -kWindow ? std::uint64_t{1} << -step : 0;
-  if (bit == 0 || (seen_ & bit) != 0) {
+  if (step <= -kWindow) {
+    ++restarts;
+    ++backwards;
+    restart(sequence, time_us);
+    return Verdict::backwards;
+  }
+  const std::uint64_t bit = std::uint64_t{1} << -step;
+  if ((seen_ & bit) != 0) {
     ++duplicates;
     return Verdict::duplicate;
   }

@@ -11,7 +11,8 @@ class SequenceCounter {
 
   /// A number never seen before counts as lost until it comes, at most kWindow numbers later. A
   /// smaller number with a newer time is a node that restarted; a jump by more than kMaxJump too.
-  /// A larger number whose time is not newer is time running backwards: counted, still a sample.
+  /// A larger number whose time is not newer, or a much smaller one whose time is older, is time
+  /// running backwards: counted, still a sample.
   Verdict see(std::int64_t sequence, std::int64_t time_us);
 
   std::int64_t received = 0;  ///< fresh ones

@@ -1,0 +1,81 @@
+#include "daemon/estimation.h"
+
+#include <utility>
+
+namespace framewatch::daemon {
+
+bool SensorSeconds::passed(std::int64_t time_us) {
+  std::int64_t step = 0;
+  const bool near = started_ && !__builtin_sub_overflow(time_us, newest_us_, &step) &&
+                    step <= kLargestStep_us && step >= -kLargestStep_us;
+  if (!started_ || (!near && ++strays_ >= kStraysToFollow)) {
+    started_ = true;
+    strays_ = 0;
+    newest_us_ = time_us;
+    next_us_ = time_us > INT64_MAX - kSecond_us ? INT64_MAX : time_us + kSecond_us;
+    return true;
+  }
+  if (!near) return false;
+  strays_ = 0;
+  if (step <= 0) return false;
+  newest_us_ = time_us;
+  if (newest_us_ < next_us_) return false;
+  while (next_us_ <= newest_us_ && next_us_ <= INT64_MAX - kSecond_us) next_us_ += kSecond_us;
+  return true;
+}
+
+std::vector<drivers::WantedAxis> wanted_axes(const Config& config) {
+  std::vector<drivers::WantedAxis> wanted;
+  for (std::size_t i = 0; i < config.pipeline.axes.size(); ++i) {
+    const AxisSource source = i < config.sources.size() ? config.sources[i] : AxisSource{};
+    wanted.push_back({config.pipeline.axes[i].name, source.lcm_channel, source.node, source.axis});
+  }
+  return wanted;
+}
+
+Estimation::Estimation(const Config& config, MessageSink sink, Observer observer)
+    : observer_(std::move(observer)),
+      publisher_(config, std::move(sink)),
+      pipeline_(config.pipeline,
+                [this](const WindowEstimate& estimate) {
+                  if (observer_) observer_(estimate);
+                  publisher_.estimate(estimate);
+                  ++windows_;
+                }),
+      intake_(wanted_axes(config), [this](const AccelSample& s) { sample(s); }) {}
+
+drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
+                                          std::size_t size) {
+  return intake_.message(channel, data, size);
+}
+
+void Estimation::sample(const AccelSample& sample) {
+  if (seconds_.passed(to_microseconds(sample.time))) publish_state();
+  pipeline_.push(sample);
+}
+
+void Estimation::finish() {
+  pipeline_.finish();
+  publish_state();
+}
+
+void Estimation::publish_state() {
+  const PipelineCounters pipeline = pipeline_.counters();
+  const drivers::IntakeCounters& intake = intake_.counters();
+  StatusCounts counts;
+  counts.windows = pipeline.windows;
+  counts.sample_sets = pipeline.sample_sets;
+  counts.gaps = pipeline.gaps;
+  counts.rejected_messages = intake.foreign + intake.malformed + intake.duplicate;
+  for (std::size_t i = 0; i < pipeline.axes.size(); ++i) {
+    const AxisCounters& axis = pipeline.axes[i];
+    const drivers::SequenceCounter* node = intake_.sequence_of(i);
+    counts.axes.push_back({axis.received, node == nullptr ? 0 : node->lost, axis.late,
+                           axis.repaired,
+                           axis.rejected + (node == nullptr ? 0 : node->duplicates)});
+  }
+  publisher_.parameters(seconds_.newest_us(), pipeline_);
+  publisher_.status(seconds_.newest_us(), counts, live_);
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "daemon/config.h"
+#include "daemon/publisher.h"
+#include "drivers/accel_intake.h"
+
+namespace framewatch::daemon {
+
+/// Decides when a second of sensor time has passed. A node whose clock is elsewhere does not move
+/// it unless everybody's clock is there.
+class SensorSeconds {
+ public:
+  /// Whether the first sample or a new second has come.
+  bool passed(std::int64_t time_us);
+  std::int64_t newest_us() const { return newest_us_; }
+
+ private:
+  static constexpr std::int64_t kSecond_us = 1'000'000;
+  static constexpr std::int64_t kLargestStep_us = 10 * kSecond_us;
+  static constexpr int kStraysToFollow = 1000;  ///< in a row
+
+  bool started_ = false;
+  std::int64_t newest_us_ = 0;
+  std::int64_t next_us_ = 0;
+  int strays_ = 0;
+};
+
+/// Messages in, messages out: intake, pipeline and publisher. The one path of live and replayed
+/// samples; asks no clock.
+class Estimation {
+ public:
+  using Observer = std::function<void(const WindowEstimate&)>;
+
+  /// `config` must outlive this. `observer`, if any, sees every estimate before it is published.
+  Estimation(const Config& config, MessageSink sink, Observer observer = {});
+
+  /// One LCM message, whatever it is.
+  drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size);
+  /// One value from a file that has names instead of messages.
+  void sample(const AccelSample& sample);
+  /// The input has ended: closes open instants, publishes the last table and status.
+  void finish();
+
+  /// Goes out with the next status.
+  void set_live(const LiveState& live) { live_ = live; }
+  const drivers::AccelIntake& intake() const { return intake_; }
+  const Pipeline& pipeline() const { return pipeline_; }
+  std::int64_t windows() const { return windows_; }  ///< published
+
+ private:
+  void publish_state();
+
+  Observer observer_;
+  Publisher publisher_;
+  Pipeline pipeline_;
+  drivers::AccelIntake intake_;
+  SensorSeconds seconds_;
+  LiveState live_;
+  std::int64_t windows_ = 0;
+};
+
+/// The configured axes as the drivers know them.
+std::vector<drivers::WantedAxis> wanted_axes(const Config& config);
+
+}  // namespace framewatch::daemon

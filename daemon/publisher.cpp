@@ -1,0 +1,114 @@
+#include "daemon/publisher.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace framewatch::daemon {
+
+Publisher::Publisher(const Config& config, MessageSink sink)
+    : config_(config),
+      sink_(std::move(sink)),
+      parameters_channel_(config.lcm.prefix + "PARAMETERS"),
+      estimate_channel_(config.lcm.prefix + "ESTIMATE"),
+      status_channel_(config.lcm.prefix + "STATUS") {}
+
+template <typename MessageType>
+void Publisher::send(std::int64_t time_us, const std::string& channel, const MessageType& message) {
+  bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+  sink_(time_us, channel, bytes_);
+}
+
+void Publisher::parameters(std::int64_t time_us, const Pipeline& pipeline) {
+  const ParameterTable& table = pipeline.parameters();
+  framewatch::parameter_table_t& m = parameters_;
+  m.time_us = time_us;
+  m.structure = config_.pipeline.structure.name;
+  m.config_sha256 = config_.sha256;
+  m.version = FRAMEWATCH_VERSION;
+  m.rate_hz = config_.pipeline.options.rate_hz;
+  m.window_rows = pipeline.window_rows();
+  m.hop_rows = pipeline.hop_rows();
+  m.boxplot_windows = config_.pipeline.options.boxplot_windows;
+  m.parameters = table.size();
+  m.name.clear();
+  m.unit.clear();
+  m.kind.clear();
+  m.story.clear();
+  for (int i = 0; i < table.size(); ++i) {
+    m.name.push_back(table[i].name);
+    m.unit.push_back(table[i].unit);
+    m.kind.push_back(static_cast<std::int32_t>(table[i].kind));
+    m.story.push_back(table[i].story);
+  }
+  m.design.assign(pipeline.design().begin(), pipeline.design().end());
+  m.design.resize(m.name.size());
+  send(time_us, parameters_channel_, m);
+}
+
+void Publisher::estimate(const WindowEstimate& e) {
+  framewatch::window_estimate_t& m = estimate_;
+  m.window_start_us = to_microseconds(e.start);
+  m.window_end_us = to_microseconds(e.end);
+  m.sequence = e.sequence;
+  m.status = static_cast<std::int32_t>(e.status);
+  m.rows = e.rows;
+  m.residual_ratio = e.residual_ratio;
+  m.parameters = static_cast<std::int32_t>(e.value.size());
+  m.value = e.value;
+  m.std_error = e.std_error;
+  m.reason.clear();
+  for (const Observability reason : e.reason) m.reason.push_back(static_cast<std::int32_t>(reason));
+  m.snr.clear();
+  for (const double snr : e.snr) m.snr.push_back(static_cast<float>(snr));
+  m.prior_share.clear();
+  for (const double share : e.prior_share) m.prior_share.push_back(static_cast<float>(share));
+
+  const bool with_boxplot = e.sequence % config_.lcm.boxplot_every == 0;
+  m.boxplot_windows = static_cast<std::int32_t>(
+      std::min<std::int64_t>(e.sequence + 1, config_.pipeline.options.boxplot_windows));
+  m.boxplots = with_boxplot ? static_cast<std::int32_t>(e.boxplot.size()) : 0;
+  for (auto* column : {&m.q1, &m.median, &m.q3, &m.whisker_low, &m.whisker_high}) column->clear();
+  m.outliers.clear();
+  m.boxplot_count.clear();
+  if (with_boxplot) {
+    for (const BoxplotStatistics& box : e.boxplot) {
+      m.q1.push_back(box.q1);
+      m.median.push_back(box.median);
+      m.q3.push_back(box.q3);
+      m.whisker_low.push_back(box.whisker_low);
+      m.whisker_high.push_back(box.whisker_high);
+      m.outliers.push_back(box.outliers);
+      m.boxplot_count.push_back(box.count);
+    }
+  }
+  send(m.window_end_us, estimate_channel_, m);
+}
+
+void Publisher::status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live) {
+  framewatch::status_t& m = status_;
+  m.time_us = time_us;
+  m.config_sha256 = config_.sha256;
+  m.version = FRAMEWATCH_VERSION;
+  m.windows = counts.windows;
+  m.sample_sets = counts.sample_sets;
+  m.gaps = counts.gaps;
+  m.rejected_messages = counts.rejected_messages;
+  m.queue_high_water = live.queue_high_water;
+  m.queue_dropped = live.queue_dropped;
+  m.latency_s = live.latency_s;
+  m.channels = static_cast<std::int32_t>(counts.axes.size());
+  m.name.clear();
+  for (auto* column : {&m.received, &m.lost, &m.late, &m.repaired, &m.rejected}) column->clear();
+  for (std::size_t i = 0; i < counts.axes.size(); ++i) {
+    m.name.push_back(config_.pipeline.axes[i].name);
+    m.received.push_back(counts.axes[i].received);
+    m.lost.push_back(counts.axes[i].lost);
+    m.late.push_back(counts.axes[i].late);
+    m.repaired.push_back(counts.axes[i].repaired);
+    m.rejected.push_back(counts.axes[i].rejected);
+  }
+  send(time_us, status_channel_, m);
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+#include "daemon/config.h"
+
+namespace framewatch::daemon {
+
+/// Where encoded messages go: LCM, a log. `time_us` is sensor time.
+using MessageSink = std::function<void(std::int64_t time_us, const std::string& channel,
+                                       const std::vector<std::uint8_t>& bytes)>;
+
+/// What only a live process knows; all zero in replay, so that its output is reproducible.
+struct LiveState {
+  std::int32_t queue_high_water = 0;
+  std::int64_t queue_dropped = 0;
+  double latency_s = 0;
+};
+
+/// One axis' line of the status message.
+struct AxisStatus {
+  std::int64_t received = 0, lost = 0, late = 0, repaired = 0, rejected = 0;
+};
+
+struct StatusCounts {
+  std::int64_t windows = 0, sample_sets = 0, gaps = 0, rejected_messages = 0;
+  std::vector<AxisStatus> axes;  ///< parallel to the configured ones
+};
+
+/// Turns what the estimator says into the messages of lcmtypes/. No wall clock: the same estimates
+/// give the same bytes.
+class Publisher {
+ public:
+  /// `config` must outlive this.
+  Publisher(const Config& config, MessageSink sink);
+
+  void parameters(std::int64_t time_us, const Pipeline& pipeline);
+  /// Boxplot statistics go with every LcmSettings::boxplot_every-th window.
+  void estimate(const WindowEstimate& estimate);
+  void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
+
+ private:
+  template <typename MessageType>
+  void send(std::int64_t time_us, const std::string& channel, const MessageType& message);
+
+  const Config& config_;
+  MessageSink sink_;
+  std::string parameters_channel_, estimate_channel_, status_channel_;
+  framewatch::parameter_table_t parameters_{};
+  framewatch::window_estimate_t estimate_{};
+  framewatch::status_t status_{};
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,210 @@
+#include "daemon/replay_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/core.h>
+
+#include "daemon/estimation.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kRateTolerance = 0.02;
+constexpr std::size_t kStampsPerNode = 4096;
+constexpr std::size_t kRateLag = 100;  ///< samples; times may be rounded to whole milliseconds
+constexpr int kDamageLines = 20;
+
+bool looks_like_record(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  char head[4] = {};
+  in.read(head, sizeof head);
+  if (std::string_view(head, 4) == std::string_view("\xED\xA1\xDA\x01", 4)) return false;
+  const std::string name = std::filesystem::path(path).filename();
+  return name.find(".csv") != std::string::npos || name.ends_with(".txt") ||
+         name.ends_with(".AT2") || name.ends_with(".at2");
+}
+
+std::string list(const std::map<std::string, std::int64_t>& channels) {
+  std::string text;
+  int shown = 0;
+  for (const auto& [name, count] : channels) {
+    if (++shown > 10) return text + ", ...";
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, count);
+  }
+  return text;
+}
+
+}  // namespace
+
+ReplaySurvey::ReplaySurvey(const Config& config)
+    : config_(config), intake_(wanted_axes(config), [](const AccelSample&) {}) {}
+
+void ReplaySurvey::add(const std::string& path) {
+  std::error_code failure;
+  const auto size = std::filesystem::file_size(path, failure);
+  if (failure) {
+    problems_.push_back(fmt::format("{}: {}", path, failure.message()));
+  } else if (size == 0) {
+    problems_.push_back(fmt::format("{}: is empty", path));
+  } else if (!looks_like_record(path)) {
+    bytes_ += static_cast<std::int64_t>(size);
+    add_log(path);
+  } else {
+    bytes_ += static_cast<std::int64_t>(size);
+    std::vector<drivers::Problem> found;
+    auto record = drivers::read_record(path, {}, found);
+    for (const drivers::Problem& p : found)
+      problems_.push_back(fmt::format("{}: {}", p.where, p.message));
+    if (record) add_record({path, true, std::move(*record), {}});
+  }
+}
+
+void ReplaySurvey::add_record(ReplayInput input) {
+  const drivers::Record& record = input.record;
+  for (const std::string& note : record.notes) notes_.push_back(input.path + ": " + note);
+  const auto& axes = config_.pipeline.axes;
+  int found = 0;
+  std::string others;
+  for (const std::string& name : record.names) {
+    const auto at = std::find_if(axes.begin(), axes.end(),
+                                 [&](const SensorAxis& axis) { return axis.name == name; });
+    input.axis_of_column.push_back(at == axes.end() ? -1 : static_cast<int>(at - axes.begin()));
+    found += at != axes.end();
+    if (at == axes.end()) others += (others.empty() ? "" : ", ") + name;
+  }
+  if (found == 0)
+    problems_.push_back(fmt::format("{}: no column is named like a channel of {}; it has {}",
+                                    input.path, config_.path, others));
+  else if (!others.empty())
+    notes_.push_back(fmt::format("{}: columns without a channel ignored: {}", input.path, others));
+  check_rate(input.path, record.rate_hz);
+  if (!record.time_s.empty())
+    extend(input.path, std::llround(record.time_s.front() * 1e6),
+           std::llround(record.time_s.back() * 1e6));
+  inputs_.push_back(std::move(input));
+}
+
+void ReplaySurvey::add_log(const std::string& path) {
+  drivers::LcmLogReader reader;
+  if (!reader.open(path)) {
+    problems_.push_back(fmt::format("{}: {}", path, reader.error()));
+    return;
+  }
+  LogSeen seen;
+  stamps_.clear();
+  int damages = 0;
+  const std::int64_t malformed = intake_.counters().malformed;
+  const std::int64_t damaged_before = damaged_bytes_;
+  drivers::LogEvent event;
+  for (auto read = reader.next(event); read != drivers::LogRead::end; read = reader.next(event)) {
+    if (read == drivers::LogRead::error) {
+      problems_.push_back(fmt::format("{}: byte {}: {}", path, reader.position(), reader.error()));
+      return;
+    }
+    if (read == drivers::LogRead::event) {
+      look_at(event, seen);
+      continue;
+    }
+    damaged_bytes_ += reader.damage().bytes;
+    if (++damages <= kDamageLines)
+      notes_.push_back(fmt::format("{}: byte {}: {}, {} bytes skipped: {}", path,
+                                   reader.damage().offset,
+                                   read == drivers::LogRead::truncated ? "truncated" : "damaged",
+                                   reader.damage().bytes, reader.damage().reason));
+  }
+  if (damages > kDamageLines)
+    notes_.push_back(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
+                                 damaged_bytes_ - damaged_before));
+  judge_log(path, seen, intake_.counters().malformed - malformed);
+  inputs_.push_back({path, false, {}, {}});
+}
+
+void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
+  ++seen.events;
+  ++seen.channels[event.channel];
+  const std::int64_t backwards = intake_.backwards();
+  const auto result = intake_.message(event.channel, event.data.data(), event.data.size());
+  if (result == drivers::IntakeResult::malformed && seen.first_malformed_offset < 0)
+    seen.first_malformed_offset = event.offset;
+  if (result != drivers::IntakeResult::samples) return;
+  const auto sample = drivers::decode_accel(event.data.data(), event.data.size());
+  const std::int64_t time_us = to_microseconds(sample->time);
+  if (intake_.backwards() > backwards && seen.backwards_offset < 0)
+    seen.backwards_offset = event.offset;
+  for (const double value : sample->accel_abs_mps2)
+    if (std::isinf(value) && seen.infinite_offset < 0) seen.infinite_offset = event.offset;
+  log_first_us_ = seen.samples == 0 ? time_us : std::min(log_first_us_, time_us);
+  log_last_us_ = seen.samples == 0 ? time_us : std::max(log_last_us_, time_us);
+  ++seen.samples;
+  auto& stamps = stamps_[{event.channel, sample->node}];
+  if (stamps.size() < kStampsPerNode) stamps.push_back({sample->sequence, time_us});
+}
+
+void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed) {
+  if (malformed > 0)
+    (seen.samples == 0 ? problems_ : notes_)
+        .push_back(fmt::format("{}: byte {}: {} messages on our channels are no accel_t (size or "
+                               "fingerprint), this is the first",
+                               path, seen.first_malformed_offset, malformed));
+  if (seen.infinite_offset >= 0)
+    notes_.push_back(fmt::format("{}: byte {}: infinite acceleration, rejected with all others",
+                                 path, seen.infinite_offset));
+  if (seen.events == 0)
+    problems_.push_back(fmt::format("{}: holds no intact LCM event", path));
+  else if (seen.samples == 0 && malformed == 0)
+    problems_.push_back(fmt::format("{}: no message for the channels of {}; it has {}", path,
+                                    config_.path, list(seen.channels)));
+  if (seen.backwards_offset >= 0)
+    problems_.push_back(fmt::format(
+        "{}: byte {}: time runs backwards: a node's sample is not newer than the one before", path,
+        seen.backwards_offset));
+  if (seen.samples > 0 && seen.backwards_offset < 0) extend(path, log_first_us_, log_last_us_);
+  for (const auto& [node, stamps] : stamps_) {
+    const std::size_t lag = std::min(kRateLag, stamps.size() - 1);
+    std::vector<double> steps;
+    for (std::size_t i = lag; lag > 0 && i < stamps.size(); ++i) {
+      const auto sequence_step = stamps[i].sequence - stamps[i - lag].sequence;
+      const auto time_step_us = stamps[i].time_us - stamps[i - lag].time_us;
+      if (sequence_step > 0 && time_step_us > 0)
+        steps.push_back(static_cast<double>(time_step_us) / static_cast<double>(sequence_step));
+    }
+    if (steps.empty()) continue;
+    std::nth_element(steps.begin(), steps.begin() + std::ssize(steps) / 2, steps.end());
+    check_rate(fmt::format("{}: {} node {}", path, node.first, node.second),
+               1e6 / steps[steps.size() / 2]);
+  }
+}
+
+void ReplaySurvey::check_rate(const std::string& place, double rate_hz) {
+  const double configured = config_.pipeline.options.rate_hz;
+  if (std::abs(rate_hz / configured - 1) > kRateTolerance)
+    problems_.push_back(fmt::format("{}: sampled at {:.4g} Hz, but {} says rate_hz = {:g}", place,
+                                    rate_hz, config_.path, configured));
+}
+
+void ReplaySurvey::extend(const std::string& path, std::int64_t first_us, std::int64_t last_us) {
+  if (any_ && first_us <= last_us_)
+    problems_.push_back(fmt::format(
+        "{}: time runs backwards: starts at {:.6f} s, before the file before it ends ({:.6f} s)",
+        path, static_cast<double>(first_us) * 1e-6, static_cast<double>(last_us_) * 1e-6));
+  first_us_ = any_ ? std::min(first_us_, first_us) : first_us;
+  last_us_ = any_ ? std::max(last_us_, last_us) : last_us;
+  any_ = true;
+}
+
+void ReplaySurvey::finish() {
+  const bool only_logs = std::none_of(inputs_.begin(), inputs_.end(),
+                                      [](const ReplayInput& input) { return input.is_record; });
+  if (!only_logs || !problems_.empty()) return;
+  std::string names;
+  for (const std::string& name : intake_.binding().unbound())
+    names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty())
+    notes_.push_back(
+        fmt::format("channels of {} that no message carries: {}", config_.path, names));
+}
+
+}  // namespace framewatch::daemon

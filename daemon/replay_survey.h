@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/config.h"
+#include "drivers/accel_intake.h"
+#include "drivers/lcm_log.h"
+#include "drivers/record_file.h"
+
+namespace framewatch::daemon {
+
+/// One file to replay: an LCM event log, or a record held in memory.
+struct ReplayInput {
+  std::string path;
+  bool is_record = false;
+  drivers::Record record;
+  std::vector<int> axis_of_column;  ///< of the record; -1: a column no axis is named after
+};
+
+/// Looks at every input before anything is estimated or written: what it holds, what is damaged,
+/// and whether it can be what the configuration describes.
+class ReplaySurvey {
+ public:
+  explicit ReplaySurvey(const Config& config);
+
+  void add(const std::string& path);
+  /// To be called after the last add(): problems of the whole.
+  void finish();
+
+  /// Any of these: replay must not start. "place: rule".
+  const std::vector<std::string>& problems() const { return problems_; }
+  /// Damage and other things the person should know.
+  const std::vector<std::string>& notes() const { return notes_; }
+  std::vector<ReplayInput>& inputs() { return inputs_; }
+  std::int64_t bytes() const { return bytes_; }
+  std::int64_t damaged_bytes() const { return damaged_bytes_; }
+  double measured_seconds() const { return static_cast<double>(last_us_ - first_us_) * 1e-6; }
+
+ private:
+  struct Stamp {
+    std::int64_t sequence, time_us;
+  };
+  struct LogSeen {
+    std::map<std::string, std::int64_t> channels;  ///< events by channel
+    std::int64_t events = 0, samples = 0, first_malformed_offset = -1, backwards_offset = -1;
+    std::int64_t infinite_offset = -1;
+  };
+
+  void add_record(ReplayInput input);
+  void add_log(const std::string& path);
+  void look_at(const drivers::LogEvent& event, LogSeen& seen);
+  void judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed);
+  void check_rate(const std::string& place, double rate_hz);
+  void extend(const std::string& path, std::int64_t first_us, std::int64_t last_us);
+
+  const Config& config_;
+  drivers::AccelIntake intake_;
+  std::vector<ReplayInput> inputs_;
+  std::vector<std::string> problems_, notes_;
+  std::map<std::pair<std::string, std::int32_t>, std::vector<Stamp>> stamps_;
+  std::int64_t bytes_ = 0, damaged_bytes_ = 0;
+  std::int64_t first_us_ = 0, last_us_ = 0;  ///< of all samples
+  std::int64_t log_first_us_ = 0, log_last_us_ = 0;
+  bool any_ = false;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,151 @@
+#include "daemon/run_command.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "daemon/log.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kBadInput = 2;
+constexpr int kPoll_ms = 100;
+constexpr std::int64_t kReport_us = 1'000'000;
+
+volatile std::sig_atomic_t stop_requested = 0;
+
+extern "C" void request_stop(int) {
+  stop_requested = 1;
+}
+
+std::int64_t host_clock_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::vector<std::string> channels_of(const Config& config) {
+  std::vector<std::string> channels = drivers::ChannelBinding(wanted_axes(config)).streams();
+  for (std::size_t i = 0, streams = channels.size(); i < streams; ++i)
+    channels.push_back(channels[i] + "_CHANNELS");
+  return channels;
+}
+
+/// Says once a second at most what went wrong since it last said so.
+class Complaints {
+ public:
+  void look(const Estimation& estimation, const LiveState& state, std::int64_t now_us) {
+    if (now_us < next_us_) return;
+    next_us_ = now_us + kReport_us;
+    const PipelineCounters pipeline = estimation.pipeline().counters();
+    const drivers::IntakeCounters& intake = estimation.intake().counters();
+    std::int64_t late = 0, rejected = 0;
+    for (const AxisCounters& axis : pipeline.axes) {
+      late += axis.late;
+      rejected += axis.rejected;
+    }
+    std::string news;
+    add(news, seen_[0], intake.malformed, "undecodable messages");
+    add(news, seen_[1], intake.duplicate, "duplicate messages");
+    add(news, seen_[2], estimation.intake().lost(), "messages lost");
+    add(news, seen_[3], state.queue_dropped, "of them dropped by the full queue");
+    add(news, seen_[4], late, "samples late");
+    add(news, seen_[5], rejected, "samples rejected");
+    add(news, seen_[6], estimation.intake().backwards(), "steps back in time");
+    add(news, seen_[7], pipeline.gaps, "gaps that restarted the window");
+    if (!news.empty()) log(LogLevel::warning, news);
+    for (const std::string& name : estimation.intake().binding().unbound())
+      if (!said_unbound_) log(LogLevel::warning, fmt::format("no message carries {} yet", name));
+    said_unbound_ = true;
+  }
+
+ private:
+  static void add(std::string& news, std::int64_t& seen, std::int64_t now, const char* what) {
+    if (now > seen) news += fmt::format("{}{} {}", news.empty() ? "" : ", ", now - seen, what);
+    seen = now;
+  }
+
+  std::int64_t next_us_ = 0;
+  std::int64_t seen_[8] = {};
+  bool said_unbound_ = false;
+};
+
+}  // namespace
+
+LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm)
+    : lcm_(lcm),
+      estimation_(
+          config,
+          [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+            lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+          }),
+      source_(lcm, channels_of(config), config.lcm.queue_capacity,
+              [this](const std::string& channel, const void* data, std::size_t size,
+                     std::int64_t received_us) { on_message(channel, data, size, received_us); }) {}
+
+bool LiveEstimation::poll(int timeout_ms) {
+  return source_.handle(timeout_ms);
+}
+
+void LiveEstimation::on_message(const std::string& channel, const void* data, std::size_t size,
+                                std::int64_t received_us) {
+  const std::int64_t lost = estimation_.intake().lost();
+  const std::int64_t windows = estimation_.windows();
+  estimation_.message(channel, data, size);
+  if (source_.queue_was_full())
+    state_.queue_dropped += std::max<std::int64_t>(0, estimation_.intake().lost() - lost);
+  state_.queue_high_water = static_cast<std::int32_t>(source_.backlog_high_water());
+  if (estimation_.windows() > windows)
+    state_.latency_s = 1e-6 * static_cast<double>(host_clock_us() - received_us);
+  estimation_.set_live(state_);
+}
+
+int run(const RunArguments& a) {
+  std::vector<ConfigProblem> problems;
+  const std::optional<Config> config = load_config(a.config, problems);
+  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  if (!config) return kBadInput;
+
+  const std::string& url = a.url.empty() ? config->lcm.url : a.url;
+  std::string error;
+  const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
+  if (!lcm) {
+    fmt::print(stderr, "framewatch run: {}\n", error);
+    return kBadInput;
+  }
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+
+  LiveEstimation live(*config, *lcm);
+  Complaints complaints;
+  RateLimitedLog failures(LogLevel::error);
+  if (!a.quiet)
+    log(LogLevel::info, fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name,
+                                    config->path, config->pipeline.axes.size(), url));
+  while (stop_requested == 0) {
+    if (!live.poll(kPoll_ms) && stop_requested == 0) {
+      failures(host_clock_us(), "LCM failed to deliver");
+      ::usleep(1000 * kPoll_ms);
+    }
+    complaints.look(live.estimation(), live.state(), host_clock_us());
+  }
+  live.finish();
+  if (!a.quiet) {
+    const PipelineCounters counters = live.estimation().pipeline().counters();
+    log(LogLevel::info,
+        fmt::format("stopped: {} windows, {} gaps, {} messages lost", counters.windows,
+                    counters.gaps, live.estimation().intake().lost()));
+  }
+  return 0;
+}
+
+}  // namespace framewatch::daemon
