@@ -8,6 +8,8 @@
 
 #include "daemon/check_command.h"
 #include "daemon/convert_command.h"
+#include "daemon/replay_command.h"
+#include "daemon/run_command.h"
 
 // The one translation unit that sees CLI11 (it costs seconds to compile): it turns the command line
 // into plain argument structs; every command lives in its own file.
@@ -15,6 +17,39 @@ namespace {
 
 /// What the chosen subcommand will do; set by its CLI11 callback.
 using Action = std::function<int()>;
+
+void add_run(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("run", "the daemon: live samples in, estimates out (LCM)");
+  command->footer("Example: framewatch run configs/table_two_story.toml");
+  auto arguments = std::make_shared<framewatch::daemon::RunArguments>();
+  command->add_option("CONFIG", arguments->config, "configuration file (TOML)")->required();
+  command->add_option("--url", arguments->url, "LCM provider instead of the configuration's");
+  command->add_flag("--quiet", arguments->quiet, "only what goes wrong");
+  command->callback([&action, arguments] {
+    action = [arguments] { return framewatch::daemon::run(*arguments); };
+  });
+}
+
+void add_replay(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "replay", "the estimates of recorded motion, as fast as possible, the same bytes every time");
+  command->footer(
+      "Examples:\n"
+      "  framewatch replay building.toml monday.lcmlog tuesday.lcmlog --out estimates.lcmlog\n"
+      "  framewatch replay building.toml record.csv --json");
+  auto arguments = std::make_shared<framewatch::daemon::ReplayArguments>();
+  command->add_option("CONFIG", arguments->config, "configuration file (TOML)")->required();
+  command
+      ->add_option("LOG", arguments->inputs,
+                   "LCM event logs and record files (CSV), in order of time")
+      ->required();
+  command->add_option("--out", arguments->out, "LCM event log to write the estimates to");
+  command->add_flag("--quiet", arguments->quiet, "no progress, no summary");
+  command->add_flag("--json", arguments->json, "the summary as JSON");
+  command->callback([&action, arguments] {
+    action = [arguments] { return framewatch::daemon::replay(*arguments); };
+  });
+}
 
 void add_check(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
@@ -79,6 +114,8 @@ int main(int argc, char** argv) {
   Action action;
 
   // add_<command>(app, action) calls go here, one per command, in the order people meet them.
+  add_run(app, action);
+  add_replay(app, action);
   add_check(app, action);
   add_convert(app, action);
 
