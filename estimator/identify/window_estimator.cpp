@@ -91,6 +91,15 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
   prior_.assign(unknowns, 0.0);
   prior_share_.assign(unknowns, 0.0);
   tolerance_ = tolerances(layout_, table_);
+  for (int u = 0; u < layout_.unknowns(); ++u) {
+    const int parameter = layout_.parameter(u / layout_.own(), u % layout_.own());
+    const ParameterKind kind = table_[parameter].kind;
+    const bool frame_stiffness = kind == ParameterKind::frame_stiffness;
+    unknowns_.push_back({parameter, frame_stiffness,
+                         frame_stiffness                          ? options_.max_error_k
+                         : kind == ParameterKind::panel_stiffness ? options_.max_error_g
+                                                                  : options_.max_error_c});
+  }
   noise_configured_ = std::all_of(axes_.begin(), axes_.end(),
                                   [](const SensorAxis& a) { return a.noise_density > 0; });
   const auto parameters = static_cast<std::size_t>(table_.size());
@@ -212,22 +221,15 @@ bool WindowEstimator::element_known(int unknown, const std::vector<std::uint8_t>
   return true;
 }
 
-Observability WindowEstimator::judge(int unknown, const std::vector<std::uint8_t>& known) const {
+Observability WindowEstimator::judge(int unknown, bool known, bool warm) const {
   const auto u = static_cast<std::size_t>(unknown);
-  const bool filling = ring_.end() < triple_.length();  // no axis can be valid yet
-  if (filling) return Observability::warming_up;
-  if (!element_known(unknown, known)) return Observability::channel_lost;
-  if (!active_->full() || !errors_known_ || !tuned_ ||
-      active_->sums().floor_instants(unknown / layout_.own()) < window_rows() / 2)
-    return Observability::warming_up;
-  const Parameter& p = table_[layout_.parameter(unknown / layout_.own(), unknown % layout_.own())];
-  const double limit = p.kind == ParameterKind::frame_stiffness   ? options_.max_error_k
-                       : p.kind == ParameterKind::panel_stiffness ? options_.max_error_g
-                                                                  : options_.max_error_c;
+  if (!known) return Observability::channel_lost;
+  if (!warm) return Observability::warming_up;
   const double x = solver_.solution()[u];
   const bool excited =
       solver_.information()[u] > options_.min_snr * noise_.energy()[u] * noise_scale_;
-  if (solver_.usable(unknown) && excited && x > 0 && batch_means_.std_error()[u] < limit * x)
+  if (solver_.usable(unknown) && excited && x > 0 &&
+      batch_means_.std_error()[u] < unknowns_[u].error_limit * x)
     return Observability::observable;
   return Observability::ill_determined;
 }
@@ -245,18 +247,21 @@ void WindowEstimator::fill_estimate(Time time) {
                                  ? std::sqrt(residual_energy_ / solver_.response_energy())
                                  : 0;
   const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
-  bool any = false, any_frame = false;
+  const bool all_known = std::all_of(known.begin(), known.end(), [](auto k) { return k != 0; });
+  const bool solved = active_->full();
+  bool any = false, any_frame = false, floor_warm = false;
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const auto i = static_cast<std::size_t>(u);
-    const int parameter = layout_.parameter(u / layout_.own(), u % layout_.own());
-    const auto p = static_cast<std::size_t>(parameter);
-    const double design = active_->tuning().design()[parameter];
-    estimate_.reason[p] = judge(u, known);
+    const Unknown& unknown = unknowns_[i];
+    const auto p = static_cast<std::size_t>(unknown.parameter);
+    const double design = active_->tuning().design()[unknown.parameter];
+    if (u % layout_.own() == 0)
+      floor_warm = solved && errors_known_ && tuned_ &&
+                   2 * active_->sums().floor_instants(u / layout_.own()) >= window_rows();
+    estimate_.reason[p] = judge(u, all_known || element_known(u, known), floor_warm);
     const bool observable = estimate_.reason[p] == Observability::observable;
     any = any || observable;
-    any_frame =
-        any_frame || (observable && table_[parameter].kind == ParameterKind::frame_stiffness);
-    const bool solved = active_->full();
+    any_frame = any_frame || (observable && unknown.frame_stiffness);
     estimate_.solution[p] = solved ? design * solver_.solution()[i] : kNaN;
     estimate_.value[p] = observable ? estimate_.solution[p] : kNaN;
     estimate_.std_error[p] = observable ? design * batch_means_.std_error()[i] : kNaN;
