@@ -1,0 +1,166 @@
+#include "estimator/identify/window_sums.h"
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "estimator/identify/kernels.h"
+#include "estimator/identify/machine.h"
+#include "estimator/simulate/random.h"
+#include "tests/support/paper_buildings.h"
+
+namespace framewatch {
+namespace {
+
+constexpr int kBlocks = 20;
+constexpr int kBlockRows = 4;
+constexpr int kWindow = kBlocks * kBlockRows;
+constexpr int kSettle = 5;
+/// Issue 4: every later shift, relative to a fresh rebuild, after motion 1e6 times stronger.
+constexpr double kLimit = 1e-14;
+
+/// A building's chains and sums, fed with random deformations.
+struct Bench {
+  Bench()
+      : structure(test::table1()),
+        table(structure),
+        layout(structure, table),
+        axes(test::full_sensor_axes(structure)),
+        deformations(structure, layout, axes),
+        tuning(structure, layout, deformations, options, matched_triple(100), HighPass(0.3, 100),
+               test::table1_theta()),
+        entering(tuning, layout, kSettle),
+        delayed(tuning, layout, kSettle),
+        sums(layout, kBlocks, kBlockRows),
+        set(deformations.make_set()) {
+    std::fill(set.known.begin(), set.known.end(), std::uint8_t{1});
+  }
+
+  /// One instant of amplitude `strength`; the window's sum is ready until finish().
+  void advance(double strength) {
+    for (double& v : set.values) v = strength * random.normal();
+    history.push_back(set);
+    entering.push(set);
+    std::vector<double> of_now(entering.data(), entering.data() + entering.size());
+    std::vector<int> count;
+    for (int f = 0; f < layout.floors(); ++f) count.push_back(entering.count(f));
+    rows.push_back(of_now);
+    counts.push_back(count);
+    sums.push(entering);
+  }
+  void finish() {
+    const auto at = static_cast<int>(history.size()) - 1 - sums.lag();
+    if (at >= 0) delayed.push(history[static_cast<std::size_t>(at)]);
+    if (at >= 0) {
+      const auto& then = rows[static_cast<std::size_t>(at)];
+      EXPECT_EQ(std::memcmp(delayed.data(), then.data(), then.size() * sizeof(double)), 0)
+          << "the delayed chain repeats the entering one bit by bit";
+    }
+    sums.maintain(at >= 0 ? &delayed : nullptr);
+  }
+  void reset() {
+    entering.reset(), delayed.reset(), sums.reset();
+    history.clear(), rows.clear(), counts.clear();
+  }
+  /// Largest |sum - fresh rebuild| over the rebuild's diagonal geometric mean, all floors.
+  double error() const {
+    const SumsShape& shape = sums.shape();
+    std::vector<long double> fresh(shape.size, 0.0L);
+    const std::size_t first = rows.size() > kWindow ? rows.size() - kWindow : 0;
+    double worst = 0;
+    for (int f = 0; f < layout.floors(); ++f) {
+      const auto& floor = shape.floor[static_cast<std::size_t>(f)];
+      const auto front = static_cast<std::size_t>(floor.front);
+      std::vector<long double> dense(front * front, 0.0L);
+      for (std::size_t t = first; t < rows.size(); ++t) {
+        for (int r = 0; r < counts[t][static_cast<std::size_t>(f)]; ++r) {
+          const double* h =
+              &rows[t][entering.offset(f) + static_cast<std::size_t>(r * floor.stride)];
+          for (std::size_t i = 0; i < front; ++i)
+            for (std::size_t j = i; j < front; ++j)
+              dense[i * front + j] += static_cast<long double>(h[i]) * h[j];
+        }
+      }
+      std::size_t at = floor.offset;
+      for (std::size_t i = 0; i < front; ++i) {
+        const std::size_t lane = i / kLane * kLane;
+        for (std::size_t j = i; j < front; ++j) {
+          const std::size_t k = at + j - lane;
+          const double sum = sums.newest()[k] + sums.middle()[k] + sums.oldest()[k];
+          const auto wanted = static_cast<double>(dense[i * front + j]);
+          const double scale =
+              std::sqrt(static_cast<double>(dense[i * front + i] * dense[j * front + j]));
+          if (scale > 0)
+            worst = std::max(worst, std::abs(sum - wanted) / scale);
+          else
+            worst = std::max(worst, std::abs(sum));
+        }
+        at += static_cast<std::size_t>(floor.stride) - lane;
+      }
+    }
+    return worst;
+  }
+
+  Structure structure;
+  ParameterTable table;
+  FloorLayout layout;
+  std::vector<SensorAxis> axes;
+  Deformations deformations;
+  EstimatorOptions options;
+  RowTuning tuning;
+  RowChain entering, delayed;
+  WindowSums sums;
+  DeformationSet set;
+  Random random{11};
+  std::vector<DeformationSet> history;
+  std::vector<std::vector<double>> rows;
+  std::vector<std::vector<int>> counts;
+};
+
+TEST(WindowSums, EqualAFreshRebuildAtEveryShiftThroughAndAfterAStrongQuake) {
+  Bench b;
+  double worst = 0;
+  for (int t = 0; t < 6 * kWindow; ++t) {
+    const bool quake = t >= 130 && t < 160;
+    b.advance(quake ? 1e6 : 1.0);
+    worst = std::max(worst, b.error());
+    EXPECT_EQ(b.sums.full(), t + 1 >= kWindow);
+    EXPECT_EQ(b.sums.rows(), std::min(t + 1, kWindow));
+    b.finish();
+  }
+  RecordProperty("worst_relative_difference", std::to_string(worst * 1e15) + "e-15");
+  EXPECT_LT(worst, kLimit);
+}
+
+TEST(WindowSums, FloorsWithoutRowsComeAndGo) {
+  Bench b;
+  double worst = 0;
+  for (int t = 0; t < 5 * kWindow; ++t) {
+    b.set.known[0 * 4 + 1] = t < 100 || t > 150;  // a base axis
+    for (std::size_t f = 0; f < 4; ++f) b.set.known[3 * 4 + f] = t < 200 || t > 230;
+    b.advance(t > 120 && t < 130 ? 1e6 : 1.0);
+    worst = std::max(worst, b.error());
+    b.finish();
+  }
+  EXPECT_LT(worst, kLimit);
+}
+
+TEST(WindowSums, AreNewAfterAReset) {
+  Bench used, fresh;
+  for (int t = 0; t < 3 * kWindow + 17; ++t) used.advance(1e6), used.finish();
+  used.reset();
+  used.random = fresh.random = Random(5);
+  for (int t = 0; t < 3 * kWindow; ++t) {
+    used.advance(1), fresh.advance(1);
+    EXPECT_LT(used.error(), kLimit);
+    for (std::size_t k = 0; k < used.sums.shape().size; k += 13)
+      EXPECT_EQ(used.sums.middle()[k] + used.sums.oldest()[k],
+                fresh.sums.middle()[k] + fresh.sums.oldest()[k]);
+    used.finish(), fresh.finish();
+  }
+}
+
+}  // namespace
+}  // namespace framewatch
