@@ -31,8 +31,14 @@ class WindowEstimator {
   std::unique_ptr<Machine> make_machine(const Eigen::VectorXd& design) const;
   void solve();
   void fill_estimate(Time time);
-  Observability judge(int unknown, const std::vector<std::uint8_t>& known) const;
+  Observability judge(int unknown, bool known, bool warm) const;
   bool element_known(int unknown, const std::vector<std::uint8_t>& known) const;
+
+  struct Unknown {
+    int parameter;
+    bool frame_stiffness;
+    double error_limit;  ///< relative standard error above which it is not published
+  };
 
   Structure structure_;
   std::vector<SensorAxis> axes_;
@@ -54,7 +60,8 @@ class WindowEstimator {
   int tuning_passes_ = 0;
   int blocks_since_check_ = 0;
   double residual_energy_ = 0;
-  double noise_scale_ = 0;  ///< residual energy over what sensor noise explains
+  double noise_scale_ = 0;         ///< residual energy over what sensor noise explains
+  std::vector<Unknown> unknowns_;  ///< internal order
   std::vector<double> tolerance_, prior_, inverse_diagonal_, prior_share_;
   bool noise_configured_;  ///< of every axis
   std::vector<BoxplotWindow> boxplots_;
