@@ -8,8 +8,10 @@
 
 #include "daemon/check_command.h"
 #include "daemon/convert_command.h"
+#include "daemon/demo_command.h"
 #include "daemon/replay_command.h"
 #include "daemon/run_command.h"
+#include "daemon/simulate_command.h"
 
 // The one translation unit that sees CLI11 (it costs seconds to compile): it turns the command line
 // into plain argument structs; every command lives in its own file.
@@ -17,6 +19,21 @@ namespace {
 
 /// What the chosen subcommand will do; set by its CLI11 callback.
 using Action = std::function<int()>;
+
+void add_demo(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "demo",
+      "a virtual two-story shaking-table test over LCM, with a table of truth and estimate");
+  command->footer("Example: framewatch demo --seconds 30");
+  auto arguments = std::make_shared<framewatch::daemon::DemoArguments>();
+  command->add_option("--seconds", arguments->seconds, "how long the table shakes")
+      ->check(CLI::Range(1, 3600))
+      ->capture_default_str();
+  command->add_flag("--quiet", arguments->quiet, "only whether the stiffnesses were found");
+  command->callback([&action, arguments] {
+    action = [arguments] { return framewatch::daemon::demo(*arguments); };
+  });
+}
 
 void add_run(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("run", "the daemon: live samples in, estimates out (LCM)");
@@ -102,6 +119,31 @@ void add_convert(CLI::App& app, Action& action) {
   });
 }
 
+void add_simulate(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("simulate", "a virtual building's accelerometers, to LCM or to a file");
+  command->footer(
+      "Examples:\n"
+      "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
+      "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2");
+  auto arguments = std::make_shared<framewatch::daemon::SimulateArguments>();
+  command->add_option("SCENARIO", arguments->scenario, "scenario file (TOML)")->required();
+  command->add_option("--out", arguments->out, "file to write: .csv, .csv.gz or .lcmlog");
+  CLI::Option* lcm = command->add_option("--lcm", arguments->lcm_url,
+                                         "publish live, on this URL or the configuration's");
+  lcm->expected(0, 1)->type_name("[URL]");
+  command->add_option("--speed", arguments->speed, "of --lcm, times real time")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  command->add_option("--seconds", arguments->seconds, "instead of the scenario's duration")
+      ->check(CLI::Range(1e-3, 1e6));
+  command->add_flag("--quiet", arguments->quiet, "no progress, no summary");
+  command->callback([&action, arguments, lcm] {
+    arguments->lcm = lcm->count() > 0;
+    action = [arguments] { return framewatch::daemon::simulate(*arguments); };
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -114,10 +156,12 @@ int main(int argc, char** argv) {
   Action action;
 
   // add_<command>(app, action) calls go here, one per command, in the order people meet them.
+  add_demo(app, action);
   add_run(app, action);
   add_replay(app, action);
   add_check(app, action);
   add_convert(app, action);
+  add_simulate(app, action);
 
   try {
     app.parse(argc, argv);

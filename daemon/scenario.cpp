@@ -76,8 +76,13 @@ void read_sensor(ConfigSection& s, SensorModel& model, double& noise_ratio) {
 
 class ScenarioReader {
  public:
-  ScenarioReader(Parts parts, std::string path, std::string digest, std::vector<ConfigProblem>& out)
-      : parts_(std::move(parts)), path_(std::move(path)), sha256_(std::move(digest)), out_(out) {}
+  ScenarioReader(Parts parts, std::string path, std::string digest, const Config* building,
+                 std::vector<ConfigProblem>& out)
+      : parts_(std::move(parts)),
+        path_(std::move(path)),
+        sha256_(std::move(digest)),
+        building_(building),
+        out_(out) {}
 
   std::optional<Scenario> read() {
     const std::size_t before = out_.size();
@@ -112,6 +117,10 @@ class ScenarioReader {
   }
 
   bool read_building(ConfigSection& top, Config& config) {
+    if (building_) {
+      config = *building_;
+      return true;
+    }
     if (top.given("config")) {
       for (const TomlEntry& entry : parts_.building.entries)
         problems_.push_back(
@@ -189,6 +198,7 @@ class ScenarioReader {
   Parts parts_;
   std::string path_;
   std::string sha256_;
+  const Config* building_;  ///< null: the file's own
   std::vector<ConfigProblem>& out_;
   std::vector<TextProblem> problems_;
 };
@@ -196,13 +206,14 @@ class ScenarioReader {
 }  // namespace
 
 std::optional<Scenario> read_scenario(const std::string& text, const std::string& path,
-                                      std::vector<ConfigProblem>& problems) {
+                                      std::vector<ConfigProblem>& problems,
+                                      const Config* building) {
   std::vector<TextProblem> syntax;
   const std::optional<TomlValue> root = parse_toml(text, syntax);
   for (const TextProblem& p : syntax)
     problems.push_back({fmt::format("{}:{}:{}", path, p.place.line, p.place.column), p.message});
   if (!root || !syntax.empty()) return std::nullopt;
-  return ScenarioReader(split(*root), path, sha256(text), problems).read();
+  return ScenarioReader(split(*root), path, sha256(text), building, problems).read();
 }
 
 std::optional<Scenario> load_scenario(const std::string& path,

@@ -16,8 +16,10 @@ namespace framewatch::daemon {
 std::optional<Scenario> load_scenario(const std::string& path,
                                       std::vector<ConfigProblem>& problems);
 
-/// The same from a text; `path` only names it and gives relative paths their start.
+/// The same from a text; `path` only names it and gives relative paths their start. `building`, if
+/// any, stands for the file that the key config names.
 std::optional<Scenario> read_scenario(const std::string& text, const std::string& path,
-                                      std::vector<ConfigProblem>& problems);
+                                      std::vector<ConfigProblem>& problems,
+                                      const Config* building = nullptr);
 
 }  // namespace framewatch::daemon

@@ -12,6 +12,7 @@
 #include "daemon/scenario.h"
 #include "daemon/simulation.h"
 #include "daemon/simulation_output.h"
+#include "drivers/lcm_source.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -64,6 +65,7 @@ int simulate(const SimulateArguments& a) {
   if (!scenario) return kBadInput;
   if (a.seconds > 0) scenario->duration_s = a.seconds;
 
+  std::unique_ptr<lcm::LCM> lcm;
   std::vector<std::unique_ptr<SimulationOutput>> outputs;
   std::string error;
   if (!a.out.empty()) {
@@ -73,8 +75,9 @@ int simulate(const SimulateArguments& a) {
   Simulation simulation(*scenario);
   if (a.lcm) {
     const std::string& url = a.lcm_url.empty() ? scenario->config.lcm.url : a.lcm_url;
-    outputs.push_back(live_output(*scenario, url, a.speed, error));
-    if (!outputs.back()) return refuse(error);
+    lcm = drivers::open_lcm(url, scenario->config.lcm.receive_buffer_bytes, error);
+    if (!lcm) return refuse(error);
+    outputs.push_back(live_output(*scenario, *lcm, a.speed));
   }
 
   const std::int64_t count = instants(*scenario);

@@ -6,9 +6,6 @@
 #include <thread>
 #include <utility>
 
-#include <fmt/core.h>
-#include <lcm/lcm-cpp.hpp>
-
 #include "drivers/lcm_log.h"
 #include "drivers/record_csv_writer.h"
 
@@ -62,12 +59,11 @@ class LogOutput : public SimulationOutput {
 
 class LiveOutput : public SimulationOutput {
  public:
-  LiveOutput(const Scenario& s, const std::string& url, double speed)
-      : lcm_(url),
+  LiveOutput(const Scenario& s, lcm::LCM& lcm, double speed)
+      : lcm_(lcm),
         messages_(accel_messages(s)),
         speed_(speed),
         table_every_(std::llround(s.rate_hz)) {}
-  bool good() { return lcm_.good(); }
 
   bool put(double time_s, const std::vector<double>& raw) override {
     if (instant_ == 0) start();
@@ -97,7 +93,7 @@ class LiveOutput : public SimulationOutput {
     });
   }
 
-  lcm::LCM lcm_;
+  lcm::LCM& lcm_;
   drivers::AccelMessages messages_;
   double speed_;
   std::int64_t table_every_;  ///< instants; so that a late listener learns the names, too
@@ -124,12 +120,8 @@ std::unique_ptr<SimulationOutput> file_output(const Scenario& s, const std::stri
   return nullptr;
 }
 
-std::unique_ptr<SimulationOutput> live_output(const Scenario& s, const std::string& url,
-                                              double speed, std::string& error) {
-  auto out = std::make_unique<LiveOutput>(s, url, speed);
-  if (out->good()) return out;
-  error = fmt::format("LCM cannot be reached at {}", url);
-  return nullptr;
+std::unique_ptr<SimulationOutput> live_output(const Scenario& s, lcm::LCM& lcm, double speed) {
+  return std::make_unique<LiveOutput>(s, lcm, speed);
 }
 
 std::vector<drivers::ChannelAddress> addresses(const std::vector<AxisSource>& sources) {

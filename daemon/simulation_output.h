@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include <lcm/lcm-cpp.hpp>
+
 #include "daemon/simulation.h"
 #include "drivers/accel_messages.h"
 
@@ -25,9 +27,9 @@ std::unique_ptr<SimulationOutput> file_output(const Scenario& scenario, const st
                                               std::string& error);
 
 /// LCM, at `speed` times real time from the first instant on; sensor time is the host's clock then
-/// plus the test's time.
-std::unique_ptr<SimulationOutput> live_output(const Scenario& scenario, const std::string& url,
-                                              double speed, std::string& error);
+/// plus the test's time. `lcm` must outlive it.
+std::unique_ptr<SimulationOutput> live_output(const Scenario& scenario, lcm::LCM& lcm,
+                                              double speed);
 
 /// Where each configured axis travels on LCM; axes without a source get nodes of their own on
 /// ACCEL, after the highest one in use.

@@ -1,0 +1,145 @@
+#include "daemon/demo_view.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <utility>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kRedraw_s = 0.25;
+constexpr double kLine_s = 5;
+
+std::size_t terminal_columns() {
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
+  return size.ws_col;
+}
+
+template <typename Message>
+bool decode(const lcm::ReceiveBuffer* buffer, Message& out) {
+  try {
+    return out.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) >= 0;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+std::string describe(const GroupError& error, double limit_ratio) {
+  if (!error.without.empty()) return fmt::format("no value for {}", fmt::join(error.without, ", "));
+  return fmt::format("within {:.2f} % of truth ({}; limit {:g} %)", 100 * error.worst_ratio,
+                     error.worst, 100 * limit_ratio);
+}
+
+bool holds(const GroupError& error, double limit_ratio) {
+  return error.without.empty() && !error.worst.empty() && error.worst_ratio <= limit_ratio;
+}
+
+}  // namespace
+
+DemoView::DemoView(std::map<std::string, double> truth, bool terminal, bool quiet)
+    : truth_by_name_(std::move(truth)), terminal_(terminal), quiet_(quiet) {}
+
+void DemoView::subscribe(lcm::LCM& lcm, const std::string& prefix) {
+  lcm.subscribe(prefix + "PARAMETERS", &DemoView::on_parameters, this)->setQueueCapacity(100);
+  lcm.subscribe(prefix + "ESTIMATE", &DemoView::on_estimate, this)->setQueueCapacity(10000);
+}
+
+void DemoView::on_parameters(const lcm::ReceiveBuffer* buffer, const std::string&) {
+  framewatch::parameter_table_t table{};
+  if (!decode(buffer, table)) return;
+  truth_.clear();
+  for (const std::string& name : table.name) {
+    const auto at = truth_by_name_.find(name);
+    truth_.push_back(at == truth_by_name_.end() ? std::numeric_limits<double>::quiet_NaN()
+                                                : at->second);
+  }
+  table_ = std::move(table);
+}
+
+void DemoView::on_estimate(const lcm::ReceiveBuffer* buffer, const std::string&) {
+  framewatch::window_estimate_t estimate{};
+  if (!decode(buffer, estimate)) return;
+  if (next_sequence_ >= 0) lost_ += std::max<std::int64_t>(estimate.sequence - next_sequence_, 0);
+  next_sequence_ = estimate.sequence + 1;
+  ++windows_;
+  // A window thinned of its statistics leaves those of the one before on the screen.
+  if (estimate.boxplots == 0) {
+    estimate.q1 = std::move(estimate_.q1);
+    estimate.median = std::move(estimate_.median);
+    estimate.q3 = std::move(estimate_.q3);
+  }
+  estimate_ = std::move(estimate);
+  if (!table_ || estimate_.status != 1) return;
+  ++valid_;
+  const EstimateErrors errors = errors_against(*table_, estimate_, truth_);
+  worst_frame_ratio_ = std::max(worst_frame_ratio_, errors.frames.worst_ratio);
+  worst_panel_ratio_ = std::max(worst_panel_ratio_, errors.panels.worst_ratio);
+}
+
+std::string DemoView::state() const {
+  std::string out = fmt::format("{} windows received, {} valid", windows_, valid_);
+  if (lost_ > 0) out += fmt::format(", {} lost", lost_);
+  if (valid_ > 0)
+    out += fmt::format("; worst of all valid: frames {:.2f} %, panels {:.2f} %",
+                       100 * worst_frame_ratio_, 100 * worst_panel_ratio_);
+  return out;
+}
+
+void DemoView::update(double elapsed_s, double total_s) {
+  if (quiet_ || elapsed_s < next_draw_s_) return;
+  next_draw_s_ = elapsed_s + (terminal_ ? kRedraw_s : kLine_s);
+  if (terminal_) {
+    draw();
+    fmt::print("\x1b[2K{:.0f} of {:.0f} s, {}\n", elapsed_s, total_s,
+               windows_ == 0 ? "waiting for the first window" : state());
+    ++lines_drawn_;
+  } else {
+    fmt::print("{:3.0f} s  {}\n", elapsed_s,
+               windows_ == 0 ? "waiting for the first window" : state());
+  }
+  std::fflush(stdout);
+}
+
+void DemoView::draw() {
+  if (lines_drawn_ > 0) fmt::print("\x1b[{}A", lines_drawn_);
+  lines_drawn_ = 0;
+  if (!table_) return;
+  const std::size_t columns = terminal_columns();
+  for (const std::string& line : estimate_table(*table_, estimate_, truth_)) {
+    fmt::print("\x1b[2K{}\n", line.substr(0, columns - 1));
+    ++lines_drawn_;
+  }
+}
+
+int DemoView::finish() {
+  if (!table_) {
+    fmt::print("FAILED: no estimate was received\n");
+    return 1;
+  }
+  if (terminal_ && !quiet_) {
+    draw();
+    fmt::print("\x1b[2K{}\n", state());
+  } else if (!quiet_) {
+    for (const std::string& line : estimate_table(*table_, estimate_, truth_))
+      fmt::print("{}\n", line);
+    fmt::print("{}\n", state());
+  }
+  const EstimateErrors errors = errors_against(*table_, estimate_, truth_);
+  const bool good =
+      holds(errors.frames, kFrameLimit_ratio) && holds(errors.panels, kPanelLimit_ratio);
+  fmt::print("{}: frame stiffness {}, floor-panel stiffness {}\n", good ? "HOLDS" : "FAILED",
+             describe(errors.frames, kFrameLimit_ratio),
+             describe(errors.panels, kPanelLimit_ratio));
+  return good ? 0 : 1;
+}
+
+}  // namespace framewatch::daemon
