@@ -1,0 +1,98 @@
+#include "drivers/message_check.h"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace framewatch::drivers {
+namespace {
+
+template <typename Type>
+std::vector<std::uint8_t> encoded(const Type& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+channel_table_t channel_table() {
+  channel_table_t table{};
+  table.channels = 2;
+  table.name = {"a", "bc"};
+  table.node = {0, 1};
+  table.axis = {2, 0};
+  return table;
+}
+
+parameter_table_t parameter_table() {
+  parameter_table_t table{};
+  table.structure = "s";
+  table.parameters = 2;
+  table.name = {"kx_1_y1", "cx_1_y1"};
+  table.unit = {"N/m", "N*s/m"};
+  table.kind = {0, 2};
+  table.story = {1, 1};
+  table.design = {1e6, 1e3};
+  return table;
+}
+
+window_estimate_t estimate() {
+  window_estimate_t e{};
+  e.parameters = 2;
+  e.value = e.std_error = {1, 2};
+  e.reason = {0, 3};
+  e.snr = e.prior_share = {1, 1};
+  e.boxplots = 2;
+  e.q1 = e.median = e.q3 = e.whisker_low = e.whisker_high = {1, 2};
+  e.outliers = e.boxplot_count = {0, 4};
+  return e;
+}
+
+/// Truncations, extensions, every 32-bit word made huge, negative or zero, random bytes: nothing
+/// may be read outside the payload, and what is decoded is no larger than it.
+template <typename Decode>
+void attack(const std::vector<std::uint8_t>& whole, const Decode& decode) {
+  ASSERT_TRUE(decode(whole));
+  for (std::size_t size = 0; size < whole.size(); ++size)
+    EXPECT_FALSE(decode(std::vector<std::uint8_t>(
+        whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))));
+  auto longer = whole;
+  longer.push_back(0);
+  EXPECT_FALSE(decode(longer));
+  for (std::size_t i = 0; i < 8; ++i) {
+    auto foreign = whole;
+    foreign[i] ^= 1;
+    EXPECT_FALSE(decode(foreign));
+  }
+  for (const std::uint32_t word : {0x7fffffffU, 0xffffffffU, 0x80000000U, 0U, 0x01312d00U})
+    for (std::size_t at = 8; at + 4 <= whole.size(); ++at) {
+      auto hostile = whole;
+      for (std::size_t i = 0; i < 4; ++i)
+        hostile[at + i] = static_cast<std::uint8_t>(word >> (24 - 8 * i));
+      decode(hostile);
+    }
+  std::mt19937 random(20190812);
+  for (int trial = 0; trial < 2000; ++trial) {
+    auto noisy = whole;
+    for (int flips = 0; flips < 4; ++flips)
+      noisy[8 + random() % (noisy.size() - 8)] = static_cast<std::uint8_t>(random());
+    decode(noisy);
+  }
+}
+
+TEST(MessageCheck, DecodesOnlyWhatItsLengthsAllow) {
+  attack(encoded(channel_table()),
+         [](const auto& b) { return decode_channel_table(b).has_value(); });
+  attack(encoded(parameter_table()),
+         [](const auto& b) { return decode_parameter_table(b).has_value(); });
+  attack(encoded(estimate()), [](const auto& b) { return decode_window_estimate(b).has_value(); });
+}
+
+TEST(MessageCheck, GivesTheValuesBack) {
+  EXPECT_EQ(decode_channel_table(encoded(channel_table()))->name,
+            (std::vector<std::string>{"a", "bc"}));
+  EXPECT_EQ(decode_parameter_table(encoded(parameter_table()))->design[1], 1e3);
+  EXPECT_EQ(decode_window_estimate(encoded(estimate()))->boxplot_count[1], 4);
+}
+
+}  // namespace
+}  // namespace framewatch::drivers
