@@ -1,5 +1,6 @@
 #include "estimator/identify/kernels.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/identify/row_tuning.h"
@@ -90,26 +91,57 @@ void sum_into_front(const double* __restrict a, const double* __restrict b,
   }
 }
 
+namespace {
+
+/// Takes pivot row `p` ready for use: scaled by the root of its diagonal, or zero if given up.
+inline bool scale_pivot(double* row, int p, int front, double floor) {
+  if (!(row[p] > floor)) {
+    for (int j = p; j < front; ++j) row[j] = 0;
+    return false;
+  }
+  const double inverse = 1 / std::sqrt(row[p]);
+  for (int j = p; j < front; ++j) row[j] *= inverse;
+  return true;
+}
+
+}  // namespace
+
 FRAMEWATCH_CLONES
 void partial_cholesky(double* front_rows, int pivots, int front, int stride, const double* floor,
                       unsigned char* usable) {
-  for (int p = 0; p < pivots; ++p) {
-    double* pivot = front_rows + p * stride;
-    usable[p] = pivot[p] > floor[p] ? 1 : 0;
-    if (!usable[p]) {
-      for (int j = p; j < front; ++j) pivot[j] = 0;
-      continue;
-    }
-    const double inverse = 1 / std::sqrt(pivot[p]);
-    for (int j = p; j < front; ++j) pivot[j] *= inverse;
-    for (int q = p + 1; q < front; ++q) {
-      const int first = packed_row_begin(q);
-      const double factor = pivot[q];
-      double* __restrict to = front_rows + q * stride + first;
-      const double* __restrict from = pivot + first;
-      const int length = stride - first;
+  constexpr int kAtOnce = 4;
+  for (int p = 0; p < pivots; p += kAtOnce) {
+    const int count = std::min(kAtOnce, pivots - p);
+    for (int k = 0; k < count; ++k) {
+      double* pivot = front_rows + (p + k) * stride;
+      for (int l = 0; l < k; ++l) {
+        const double* __restrict from = front_rows + (p + l) * stride;
+        const double factor = from[p + k];
 #pragma GCC ivdep
-      for (int j = 0; j < length; ++j) to[j] -= factor * from[j];
+        for (int j = packed_row_begin(p + k); j < stride; ++j) pivot[j] -= factor * from[j];
+      }
+      usable[p + k] = scale_pivot(pivot, p + k, front, floor[p + k]) ? 1 : 0;
+    }
+    // Rows that are no pivots of this group see all of its pivots in one pass.
+    const double* __restrict p0 = front_rows + p * stride;
+    const double* __restrict p1 = count > 1 ? p0 + stride : p0;
+    const double* __restrict p2 = count > 2 ? p0 + 2 * stride : p0;
+    const double* __restrict p3 = count > 3 ? p0 + 3 * stride : p0;
+    for (int q = p + count; q < front; ++q) {
+      const double f0 = p0[q];
+      const double f1 = count > 1 ? p1[q] : 0.0;
+      const double f2 = count > 2 ? p2[q] : 0.0;
+      const double f3 = count > 3 ? p3[q] : 0.0;
+      double* __restrict to = front_rows + q * stride;
+#pragma GCC ivdep
+      for (int j = packed_row_begin(q); j < stride; ++j) {
+        double sum = to[j];
+        sum -= f0 * p0[j];
+        sum -= f1 * p1[j];
+        sum -= f2 * p2[j];
+        sum -= f3 * p3[j];
+        to[j] = sum;
+      }
     }
   }
 }
