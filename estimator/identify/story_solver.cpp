@@ -27,6 +27,10 @@ StorySolver::StorySolver(const FloorLayout& layout) : layout_(layout) {
   x_.assign(unknowns, 1.0);
   information_.assign(unknowns, 0.0);
   usable_.assign(unknowns, 0);
+  for (Eigen::MatrixXd* work : {&upper_, &middle_, &inverse_})
+    work->setZero(layout.own(), layout.own());
+  for (Eigen::MatrixXd* work : {&coupling_, &coupled_})
+    work->setZero(layout.own(), 2 * layout.frames());
 }
 
 void StorySolver::gather_information(const WindowSums& sums) {
@@ -146,32 +150,34 @@ void StorySolver::solve(std::vector<double>& right, int columns) const {
   }
 }
 
-void StorySolver::inverse_diagonal(std::vector<double>& diagonal) const {
+void StorySolver::inverse_diagonal(std::vector<double>& diagonal) {
   // Z = inverse. With the factor's rows [U W] of a story: Z_own = U^-1 (I + W Z_next W^T) U^-T.
   const int own = layout_.own();
   diagonal.assign(static_cast<std::size_t>(layout_.unknowns()), 0.0);
-  Eigen::MatrixXd z_next(0, 0);
   for (int floor = layout_.floors() - 1; floor >= 0; --floor) {
     const int next = layout_.next(floor);
     const int stride = padded(layout_.front(floor));
     const double* rows = factor_rows(floor);
-    Eigen::MatrixXd u = Eigen::MatrixXd::Zero(own, own);
-    Eigen::MatrixXd w(own, next);
+    upper_.setZero();
+    middle_.setZero();
     for (int p = 0; p < own; ++p) {
       const bool usable_row = rows[p * stride + p] > 0;
       for (int j = p; j < own; ++j)
-        u(p, j) = usable_row ? rows[p * stride + j] : (j == p ? 1.0 : 0.0);
-      for (int j = 0; j < next; ++j) w(p, j) = rows[p * stride + own + j];
+        upper_(p, j) = usable_row ? rows[p * stride + j] : (j == p ? 1.0 : 0.0);
+      for (int j = 0; j < next; ++j) coupling_(p, j) = rows[p * stride + own + j];
+      // An unusable unknown is held fixed: it has no variance to pass on.
+      middle_(p, p) = usable_row ? 1.0 : 0.0;
     }
-    // An unusable unknown is held fixed: it has no variance to pass on.
-    Eigen::MatrixXd middle = Eigen::MatrixXd::Zero(own, own);
-    for (int p = 0; p < own; ++p) middle(p, p) = rows[p * stride + p] > 0 ? 1.0 : 0.0;
-    if (next > 0) middle += w * z_next.topLeftCorner(next, next) * w.transpose();
-    const auto upper = u.triangularView<Eigen::Upper>();
-    const Eigen::MatrixXd half = upper.solve(middle);
-    const Eigen::MatrixXd z = upper.solve(half.transpose());
-    for (int p = 0; p < own; ++p) diagonal[static_cast<std::size_t>(floor * own + p)] = z(p, p);
-    z_next = z;
+    if (next > 0) {
+      coupled_.noalias() = coupling_ * inverse_.topLeftCorner(next, next);
+      middle_.noalias() += coupled_ * coupling_.transpose();
+    }
+    upper_.triangularView<Eigen::Upper>().solveInPlace(middle_);
+    middle_.transposeInPlace();
+    upper_.triangularView<Eigen::Upper>().solveInPlace(middle_);
+    for (int p = 0; p < own; ++p)
+      diagonal[static_cast<std::size_t>(floor * own + p)] = middle_(p, p);
+    inverse_ = middle_;
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "estimator/identify/floor_layout.h"
 #include "estimator/identify/noise_share.h"
 #include "estimator/identify/window_sums.h"
@@ -30,7 +32,7 @@ class StorySolver {
   /// Solves for `columns` right-hand sides in place; right: unknowns x columns, row-major.
   void solve(std::vector<double>& right, int columns) const;
   /// Diagonal of the inverse of the factored matrix.
-  void inverse_diagonal(std::vector<double>& diagonal) const;
+  void inverse_diagonal(std::vector<double>& diagonal);
 
  private:
   const double* factor_rows(int floor) const {
@@ -43,6 +45,7 @@ class StorySolver {
   std::vector<double> front_, factor_, carry_, pivot_floor_;
   std::vector<double> x_, information_;
   std::vector<unsigned char> usable_;
+  Eigen::MatrixXd upper_, middle_, inverse_, coupling_, coupled_;  ///< of inverse_diagonal()
   double response_energy_ = 0, residual_energy_ = 0;
 };
 

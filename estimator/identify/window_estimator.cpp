@@ -248,6 +248,7 @@ void WindowEstimator::fill_estimate(Time time) {
                                  : 0;
   const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
   const bool all_known = std::all_of(known.begin(), known.end(), [](auto k) { return k != 0; });
+  const bool filling = ring_.end() < triple_.length();  // no axis can be valid yet
   const bool solved = active_->full();
   bool any = false, any_frame = false, floor_warm = false;
   for (int u = 0; u < layout_.unknowns(); ++u) {
@@ -258,7 +259,7 @@ void WindowEstimator::fill_estimate(Time time) {
     if (u % layout_.own() == 0)
       floor_warm = solved && errors_known_ && tuned_ &&
                    2 * active_->sums().floor_instants(u / layout_.own()) >= window_rows();
-    estimate_.reason[p] = judge(u, all_known || element_known(u, known), floor_warm);
+    estimate_.reason[p] = judge(u, filling || all_known || element_known(u, known), floor_warm);
     const bool observable = estimate_.reason[p] == Observability::observable;
     any = any || observable;
     any_frame = any_frame || (observable && unknown.frame_stiffness);
