@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "drivers/accel_log.h"
+#include "drivers/channel_table.h"
 #include "drivers/log_events.h"
 #include "drivers/message_check.h"
 #include "drivers/record_builder.h"
@@ -21,6 +22,18 @@ constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
 std::string default_name(std::int32_t node, std::int32_t axis) {
   return fmt::format("node{}.{}", node, kAxes[static_cast<std::size_t>(axis)]);
+}
+
+/// 1 / the median step of sorted samples; 0 when they have none.
+double usual_rate(const std::vector<NodeSample>& samples) {
+  std::vector<std::int64_t> steps_us;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    if (samples[i].time > samples[i - 1].time)
+      steps_us.push_back((samples[i].time - samples[i - 1].time).count());
+  if (steps_us.empty()) return 0;
+  const auto middle = steps_us.begin() + static_cast<std::ptrdiff_t>((steps_us.size() - 1) / 2);
+  std::nth_element(steps_us.begin(), middle, steps_us.end());
+  return 1e6 / static_cast<double>(*middle);
 }
 
 /// Everything on one channel and its table.
@@ -37,11 +50,24 @@ class AccelLog {
 
   std::optional<Record> record() {
     if (samples_.empty()) problems_.push_back({path_, "no samples on " + channel_});
+    std::size_t most = 0;
+    double rate_hz = table_ ? table_->rate_hz : 0;
+    for (auto& [node, samples] : samples_) {
+      std::stable_sort(samples.begin(), samples.end(),
+                       [](const NodeSample& a, const NodeSample& b) { return a.time < b.time; });
+      if (samples.size() > most && !(table_ && table_->rate_hz > 0)) rate_hz = usual_rate(samples);
+      most = std::max(most, samples.size());
+    }
+    if (samples_.size() * most > RecordBuilder::kMaxValues / 4)
+      problems_.push_back(
+          {path_, fmt::format("{} nodes with up to {} samples are more than {}", samples_.size(),
+                              most, RecordBuilder::kMaxValues / 4)});
+    if (!problems_.empty()) return std::nullopt;
     std::vector<Record> nodes;
     std::vector<std::string> where;
     for (auto& [node, samples] : samples_) {
       where.push_back(fmt::format("{}: node {}", path_, node));
-      auto node_record = record_of_node(node, samples, where.back());
+      auto node_record = record_of_node(node, samples, rate_hz, most, where.back());
       if (node_record) nodes.push_back(std::move(*node_record));
     }
     if (!problems_.empty()) return std::nullopt;
@@ -66,27 +92,28 @@ class AccelLog {
   }
 
   bool take_table(const LogEvent& event) {
-    auto table = decode_channel_table(event.data);
+    auto table = decode_channel_table(event.data.data(), event.data.size());
     if (!table) return refuse(event, fmt::format("{}: no channel_table_t", event.channel));
+    std::vector<std::string> names;
+    for (const ChannelTable::Entry& entry : table->entries) names.push_back(entry.name);
     FileProblems problems(place_of(path_, event), problems_);
-    check_names(table->name, 0, problems);
+    check_names(names, 0, problems);
     if (problems.any()) return false;
-    for (const std::int32_t axis : table->axis)
-      if (axis < 0 || axis > 2) return refuse(event, fmt::format("axis {} is not 0, 1, 2", axis));
-    if (table_ &&
-        (table_->name != table->name || table_->node != table->node || table_->axis != table->axis))
+    for (const ChannelTable::Entry& entry : table->entries)
+      if (entry.axis < 0 || entry.axis > 2)
+        return refuse(event, fmt::format("axis {} is not 0, 1, 2", entry.axis));
+    if (table_ && *table_ != *table)
       return refuse(event, "the channel table changes: convert its parts one by one");
     table_ = std::move(table);
     return true;
   }
 
   std::optional<Record> record_of_node(std::int32_t node, std::vector<NodeSample>& samples,
-                                       const std::string& where) {
-    std::stable_sort(samples.begin(), samples.end(),
-                     [](const NodeSample& a, const NodeSample& b) { return a.time < b.time; });
+                                       double rate_hz, std::size_t most, const std::string& where) {
     FileProblems problems(where, problems_);
     RecordBuilder builder({default_name(node, 0), default_name(node, 1), default_name(node, 2)},
                           problems);
+    if (std::isfinite(rate_hz) && rate_hz > 0) builder.expect(rate_hz, 2 * most);
     std::int64_t repeated = 0;
     std::int64_t infinite = 0;
     std::optional<Time> last;
@@ -133,8 +160,8 @@ class AccelLog {
           merged.accel_mps2[static_cast<std::size_t>(at - merged.names.begin())]);
     };
     if (table_)
-      for (std::size_t i = 0; i < table_->name.size(); ++i)
-        keep(table_->name[i], default_name(table_->node[i], table_->axis[i]));
+      for (const ChannelTable::Entry& entry : table_->entries)
+        keep(entry.name, default_name(entry.node, entry.axis));
     else
       for (std::size_t i = 0; i < merged.names.size(); ++i)
         if (std::any_of(merged.accel_mps2[i].begin(), merged.accel_mps2[i].end(),
@@ -148,7 +175,7 @@ class AccelLog {
   std::vector<Problem>& problems_;
   std::map<std::int32_t, std::vector<NodeSample>> samples_;
   std::size_t count_ = 0;
-  std::optional<channel_table_t> table_;
+  std::optional<ChannelTable> table_;
 };
 
 }  // namespace

@@ -76,10 +76,6 @@ std::optional<std::int64_t> fingerprint(std::span<const std::uint8_t> payload) {
 }
 
 // In the layouts the first '8' is the fingerprint.
-std::optional<channel_table_t> decode_channel_table(std::span<const std::uint8_t> payload) {
-  return decode<channel_table_t>(payload, "888n[s44]");
-}
-
 std::optional<parameter_table_t> decode_parameter_table(std::span<const std::uint8_t> payload) {
   return decode<parameter_table_t>(payload, "88sss8444n[ss448]");
 }

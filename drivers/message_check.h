@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include <framewatch/channel_table_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
@@ -17,7 +16,6 @@ std::optional<std::int64_t> fingerprint(std::span<const std::uint8_t> payload);
 
 /// Decodes after checking fingerprint, every array and string length and the total size: the
 /// generated decoders allocate whatever a length says. Empty when anything is not as it must be.
-std::optional<channel_table_t> decode_channel_table(std::span<const std::uint8_t> payload);
 std::optional<parameter_table_t> decode_parameter_table(std::span<const std::uint8_t> payload);
 std::optional<window_estimate_t> decode_window_estimate(std::span<const std::uint8_t> payload);
 

@@ -9,6 +9,12 @@
 #include <fmt/core.h>
 
 namespace framewatch::drivers {
+namespace {
+
+/// Of the step found from the single steps: what it lets a long gap be off by.
+constexpr double kRateError = 1e-4;
+
+}  // namespace
 
 RecordBuilder::RecordBuilder(std::vector<std::string> names, FileProblems& problems)
     : problems_(problems) {
@@ -38,35 +44,44 @@ void RecordBuilder::add(std::int64_t line, double time_s, std::span<const double
     record_.accel_mps2[i].push_back(accel_mps2[i]);
 }
 
+void RecordBuilder::expect(double rate_hz, std::size_t missing) {
+  expected_rate_hz_ = rate_hz;
+  missing_allowed_ = missing;
+}
+
 double RecordBuilder::even_step() const {
   std::vector<double> steps(rows() - 1);
   for (std::size_t i = 0; i < steps.size(); ++i)
     steps[i] = record_.time_s[i + 1] - record_.time_s[i];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
+  double usual = 1 / expected_rate_hz_;
+  if (expected_rate_hz_ == 0) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    usual = *middle;
+  }
   // Times rounded to, say, 1 ms make the median step wrong but not the mean of the single steps.
-  const double median = *middle;
   double sum = 0;
   double count = 0;
   for (const double step : steps) {
-    if (step < 0.5 * median || step > 1.5 * median) continue;
+    if (step < 0.5 * usual || step > 1.5 * usual) continue;
     sum += step;
     count += 1;
   }
-  return sum / count;
+  return count > 0 ? sum / count : usual;
 }
 
 void RecordBuilder::fill_gaps(double step) {
   const std::vector<double> time = std::move(record_.time_s);
   std::vector<std::size_t> missing_before(time.size(), 0);
   std::size_t missing = 0;
+  const std::size_t most = std::max(time.size(), missing_allowed_);
   for (std::size_t i = 1; i < time.size(); ++i) {
     const double steps = (time[i] - time[i - 1]) / step;
     const double whole = std::max(1.0, std::round(steps));
-    if (std::abs(steps - whole) > kStepTolerance)
+    if (std::abs(steps - whole) > kStepTolerance + kRateError * (whole - 1))
       problems_.add(lines_[i], fmt::format("uneven step: {:.6g} s where the others are {:.6g} s",
                                            time[i] - time[i - 1], step));
-    if (whole - 1 > static_cast<double>(time.size() - missing)) {
+    if (whole - 1 > static_cast<double>(most - missing)) {
       problems_.add(lines_[i], fmt::format("gap of {:.6g} s: more samples are missing than there "
                                            "are",
                                            time[i] - time[i - 1]));
@@ -100,8 +115,10 @@ void RecordBuilder::fill_gaps(double step) {
 
 std::optional<Record> RecordBuilder::finish() {
   if (problems_.any()) return std::nullopt;
-  if (rows() < 2) {
-    problems_.add(0, fmt::format("a record needs at least 2 samples, this one has {}", rows()));
+  const std::size_t least = expected_rate_hz_ > 0 ? 1 : 2;
+  if (rows() < least) {
+    problems_.add(
+        0, fmt::format("a record needs at least {} samples, this one has {}", least, rows()));
     return std::nullopt;
   }
   const double step = even_step();

@@ -24,6 +24,9 @@ class RecordBuilder {
 
   /// One value per name. `line` is named when the row breaks a rule.
   void add(std::int64_t line, double time_s, std::span<const double> accel_mps2);
+  /// The rate when it is known otherwise: then one row is a record, and up to `missing` instants
+  /// may be; without it at most as many as there are rows.
+  void expect(double rate_hz, std::size_t missing);
   void note(const std::string& text) { record_.notes.push_back(text); }
   bool full() const { return full_; }
   std::size_t rows() const { return record_.time_s.size(); }
@@ -37,6 +40,8 @@ class RecordBuilder {
   FileProblems& problems_;
   Record record_;
   std::vector<std::int64_t> lines_;
+  double expected_rate_hz_ = 0;
+  std::size_t missing_allowed_ = 0;
   bool full_ = false;
 };
 

@@ -77,6 +77,22 @@ TEST_F(AccelLog, SortsAndNotesWhatALiveLogHolds) {
   EXPECT_EQ(record->notes.size(), 3U);
 }
 
+TEST_F(AccelLog, KeepsANodeThatWasSilentMostOfTheTime) {
+  std::vector<std::tuple<std::int64_t, std::int32_t, double>> samples;
+  for (int i = 0; i < 100; ++i) samples.push_back({i * 10000, 7, i});
+  samples.push_back({30000, 3, 0.5});
+  samples.push_back({900000, 3, 0.25});
+  samples.push_back({500000, 4, 0.125});
+  write_samples(samples);
+  const auto record = read_accel_log(path_, "ACCEL", problems_);
+  ASSERT_TRUE(record) << problems_.at(0).message;
+  ASSERT_EQ(record->time_s.size(), 100U);
+  EXPECT_EQ(record->names, (std::vector<std::string>{"node3.x", "node4.x", "node7.x"}));
+  EXPECT_EQ(record->accel_mps2[0][90], 0.25);
+  EXPECT_EQ(record->accel_mps2[1][50], 0.125);
+  EXPECT_NEAR(record->rate_hz, 100, 1e-9);
+}
+
 TEST_F(AccelLog, RefusesForeignAndDamagedLogs) {
   LcmLogWriter log;
   ASSERT_TRUE(log.open(path_));

@@ -14,15 +14,6 @@ std::vector<std::uint8_t> encoded(const Type& message) {
   return bytes;
 }
 
-channel_table_t channel_table() {
-  channel_table_t table{};
-  table.channels = 2;
-  table.name = {"a", "bc"};
-  table.node = {0, 1};
-  table.axis = {2, 0};
-  return table;
-}
-
 parameter_table_t parameter_table() {
   parameter_table_t table{};
   table.structure = "s";
@@ -80,16 +71,12 @@ void attack(const std::vector<std::uint8_t>& whole, const Decode& decode) {
 }
 
 TEST(MessageCheck, DecodesOnlyWhatItsLengthsAllow) {
-  attack(encoded(channel_table()),
-         [](const auto& b) { return decode_channel_table(b).has_value(); });
   attack(encoded(parameter_table()),
          [](const auto& b) { return decode_parameter_table(b).has_value(); });
   attack(encoded(estimate()), [](const auto& b) { return decode_window_estimate(b).has_value(); });
 }
 
 TEST(MessageCheck, GivesTheValuesBack) {
-  EXPECT_EQ(decode_channel_table(encoded(channel_table()))->name,
-            (std::vector<std::string>{"a", "bc"}));
   EXPECT_EQ(decode_parameter_table(encoded(parameter_table()))->design[1], 1e3);
   EXPECT_EQ(decode_window_estimate(encoded(estimate()))->boxplot_count[1], 4);
 }
