@@ -1,0 +1,238 @@
+#include "estimator/refine/max_likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "estimator/refine/measured_building.h"
+#include "estimator/refine/window_likelihood.h"
+
+namespace framewatch {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kHalvings = 12;
+constexpr double kLeastSnr = 3;          ///< of a frame stiffness' information over that of noise
+constexpr double kLeastCurvature = 0.2;  ///< of a step's information over that with noise
+constexpr double kLeastSignal = 1e-3;    ///< the same, of the standard errors
+
+double tolerance_of(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::frame_stiffness:
+      return 0.1;
+    case ParameterKind::panel_damping:
+      return 0.5;
+    default:
+      return 0.3;
+  }
+}
+
+/// `information` without the part that is noise, no direction of it below `least` of the whole.
+MatrixXd signal_part(const MatrixXd& information, const MatrixXd& noise_part, double least) {
+  const VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();
+  const VectorXd inverse = scale.cwiseInverse();
+  MatrixXd whole = inverse.asDiagonal() * information * inverse.asDiagonal();
+  const MatrixXd noise = inverse.asDiagonal() * noise_part * inverse.asDiagonal();
+  whole.diagonal().array() += 1e-12;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(whole - noise, whole);
+  if (solver.info() != Eigen::Success) return least * information;
+  const MatrixXd back = scale.asDiagonal() * whole * solver.eigenvectors();
+  return back * solver.eigenvalues().cwiseMax(least).asDiagonal() * back.transpose();
+}
+
+/// One refinement: everything relative to the design, x = theta / design.
+class Refiner {
+ public:
+  Refiner(const MeasuredBuilding& building, const Spectrum& spectrum, const ParameterTable& table,
+          const VectorXd& design, const RefineOptions& options)
+      : building_(building),
+        spectrum_(spectrum),
+        table_(table),
+        design_(design),
+        options_(options),
+        likelihood_(building, spectrum, EndTerms::sampled),
+        prior_(VectorXd::Zero(table.size())) {
+    if (!options.prior) return;
+    for (int p = 0; p < table.size(); ++p)
+      prior_[p] = 1 / (tolerance_of(table[p].kind) * tolerance_of(table[p].kind));
+  }
+
+  Refinement run(VectorXd x) {
+    Refinement out;
+    out.band = spectrum_.band;
+    out.bins = static_cast<int>(spectrum_.bins());
+    out.status = RefineStatus::not_converged;
+    auto point = at(x);
+    for (; point && out.status == RefineStatus::not_converged &&
+           out.iterations < options_.max_iterations;
+         ++out.iterations) {
+      const auto step = step_at(x, *point);
+      if (!step) break;
+      const double longest = step->cwiseAbs().maxCoeff();
+      const VectorXd limited = *step * std::min(1.0, options_.longest_step / longest);
+      const double before = cost(x, point->misfit);
+      double share = 1;
+      for (int i = 0; i < kHalvings && !lower(x + share * limited, before); ++i) share /= 2;
+      const bool small = step->cwiseQuotient(error_).cwiseAbs().maxCoeff() < options_.tolerance;
+      if (lower(x + share * limited, before))
+        x += share * limited;
+      else if (!small)
+        break;
+      if (small) out.status = RefineStatus::converged;
+      point = at(x);
+    }
+    if (!point) {
+      out.status = RefineStatus::failed;
+      return out;
+    }
+    report(x, *point, out);
+    return out;
+  }
+
+ private:
+  std::optional<LikelihoodPoint> at(const VectorXd& x) {
+    auto point = likelihood_.at(x.cwiseProduct(design_));
+    if (!point) return point;
+    point->gradient = point->gradient.cwiseProduct(design_);
+    point->information = design_.asDiagonal() * point->information * design_.asDiagonal();
+    point->noise_part = design_.asDiagonal() * point->noise_part * design_.asDiagonal();
+    level_ = misfit_ratio(point->misfit);
+    return point;
+  }
+
+  double misfit_ratio(double misfit) const {
+    const double fitted = 0.5 * static_cast<double>(likelihood_.end_unknowns() + table_.size());
+    return misfit / std::max(likelihood_.observations() - fitted, 1.0);
+  }
+
+  /// Noise that is there over the noise that is configured, as far as it concerns the prior.
+  double noise_level() const { return building_.noise_known ? std::max(level_, 1.0) : level_; }
+  VectorXd pull() const { return noise_level() * prior_; }
+
+  double cost(const VectorXd& x, double misfit) const {
+    return misfit + 0.5 * pull().dot((x.array() - 1).square().matrix());
+  }
+
+  bool lower(const VectorXd& x, double before) {
+    const auto misfit = likelihood_.misfit(x.cwiseProduct(design_));
+    return misfit && cost(x, *misfit) < before;
+  }
+
+  std::optional<VectorXd> step_at(const VectorXd& x, const LikelihoodPoint& point) {
+    MatrixXd curvature = signal_part(point.information, point.noise_part, kLeastCurvature);
+    curvature.diagonal() += pull();
+    const Eigen::LDLT<MatrixXd> factor(curvature);
+    if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
+    const VectorXd gradient = point.gradient + pull().cwiseProduct((x.array() - 1).matrix());
+    error_ =
+        std::sqrt(noise_level()) * factor.solve(MatrixXd::Identity(table_.size(), table_.size()))
+                                       .diagonal()
+                                       .cwiseMax(0)
+                                       .cwiseSqrt();
+    VectorXd step = -factor.solve(gradient);
+    if (!step.allFinite() || !(error_.array() > 0).all()) return std::nullopt;
+    return step;
+  }
+
+  void report(const VectorXd& x, const LikelihoodPoint& point, Refinement& out) {
+    const double level = noise_level();
+    double best_snr = 0;
+    for (int p = 0; p < table_.elements(); ++p)
+      if (table_[p].kind == ParameterKind::frame_stiffness)
+        best_snr = std::max(best_snr, point.information(p, p) / (level * point.noise_part(p, p)));
+    if (!(best_snr >= kLeastSnr)) {
+      out.status = RefineStatus::quiet;
+      return;
+    }
+    const MatrixXd signal = signal_part(point.information, level * point.noise_part, kLeastSignal);
+    MatrixXd curvature = signal, score = point.information;
+    curvature.diagonal() += prior_ * level;
+    score.diagonal() += prior_ * level;
+    const MatrixXd inverse =
+        curvature.ldlt().solve(MatrixXd::Identity(table_.size(), table_.size()));
+    const VectorXd variance = (inverse * score * inverse).diagonal();
+    out.theta = x.cwiseProduct(design_);
+    out.std_error = (level * variance).cwiseMax(0).cwiseSqrt().cwiseProduct(design_);
+    out.bound = std::sqrt(level) * bound_of(signal).cwiseProduct(design_);
+    out.misfit_ratio = level_;
+    out.log_likelihood = -point.misfit;
+    for (const double variance_of_axis : building_.variance)
+      out.log_likelihood -= static_cast<double>(spectrum_.bins()) *
+                            std::log(std::numbers::pi * spectrum_.intervals * variance_of_axis);
+  }
+
+  const MeasuredBuilding& building_;
+  const Spectrum& spectrum_;
+  const ParameterTable& table_;
+  const VectorXd& design_;
+  RefineOptions options_;
+  WindowLikelihood likelihood_;
+  VectorXd prior_;
+  VectorXd error_;
+  double level_ = 1;
+};
+
+RefineStatus refused(StretchStatus status) {
+  switch (status) {
+    case StretchStatus::missing_sensors:
+      return RefineStatus::missing_sensors;
+    case StretchStatus::bad_samples:
+      return RefineStatus::bad_samples;
+    case StretchStatus::too_short:
+      return RefineStatus::too_short;
+    default:
+      return RefineStatus::bad_input;
+  }
+}
+
+}  // namespace
+
+Refinement refine_max_likelihood(const Structure& structure, const std::vector<SensorAxis>& axes,
+                                 double rate_hz, const Eigen::MatrixXd& accel_abs,
+                                 const Eigen::VectorXd& design, const Eigen::VectorXd& start,
+                                 const RefineOptions& options) {
+  Refinement out;
+  const StretchStatus stretch = check_stretch(structure, axes, start, rate_hz, accel_abs);
+  if (stretch != StretchStatus::good) {
+    out.status = refused(stretch);
+    return out;
+  }
+  if (design.size() != start.size() || !design.allFinite() || !(design.array() > 0).all())
+    return out;
+  const ParameterTable table(structure);
+  const auto building = measured_building(structure, table, axes, rate_hz);
+  const Spectrum spectrum = spectrum_of(accel_abs, building->delay, rate_hz,
+                                        structure_band(structure, table, start, rate_hz));
+  return Refiner(*building, spectrum, table, design, options).run(start.cwiseQuotient(design));
+}
+
+const char* status_word(RefineStatus status) {
+  switch (status) {
+    case RefineStatus::converged:
+      return "converged";
+    case RefineStatus::not_converged:
+      return "not converged";
+    case RefineStatus::bad_input:
+      return "bad input";
+    case RefineStatus::missing_sensors:
+      return "missing sensors";
+    case RefineStatus::bad_samples:
+      return "bad samples";
+    case RefineStatus::too_short:
+      return "too short";
+    case RefineStatus::quiet:
+      return "quiet";
+    case RefineStatus::failed:
+      break;
+  }
+  return "failed";
+}
+
+}  // namespace framewatch

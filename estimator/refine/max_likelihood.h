@@ -1,0 +1,62 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/refine/cramer_rao.h"
+#include "estimator/refine/spectrum.h"
+#include "estimator/structure/sensors.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+struct RefineOptions {
+  bool prior = true;          ///< weak pull toward the design, as wide as the streaming estimator's
+  int max_iterations = 50;    ///< Gauss-Newton steps
+  double tolerance = 0.01;    ///< converged when a step is below this many standard errors
+  double longest_step = 0.3;  ///< of any parameter, relative to the design
+};
+
+/// converged, not_converged: all numbers are there; any other: only status is.
+/// quiet: no frame stiffness stands out of the sensor noise. failed: theta left what is computable.
+enum class RefineStatus {
+  converged,
+  not_converged,
+  bad_input,
+  missing_sensors,
+  bad_samples,
+  too_short,
+  quiet,
+  failed
+};
+
+/// What a stored stretch says about the parameters, theta order, SI.
+struct Refinement {
+  RefineStatus status = RefineStatus::bad_input;
+  Eigen::VectorXd theta;
+  Eigen::VectorXd std_error;  ///< with prior, noise in the regressors and misfit counted in
+  Eigen::VectorXd bound;      ///< Cramer-Rao bound at theta, no prior; infinite: nothing is shown
+  int iterations = 0;
+  double log_likelihood = 0;
+  double misfit_ratio = 0;  ///< misfit over what the sensor noise explains; 1 when all fits
+  Band band;
+  int bins = 0;
+
+  bool has_values() const {
+    return status == RefineStatus::converged || status == RefineStatus::not_converged;
+  }
+};
+
+/// Errors-in-variables maximum likelihood of a stretch of calibrated samples (with the prior: of
+/// the posterior), docs/equations.md, maximum-likelihood refinement. Never throws.
+/// accel_abs: instants x axes, m/s^2; design, start: > 0. Source: (31)-(38).
+Refinement refine_max_likelihood(const Structure& structure, const std::vector<SensorAxis>& axes,
+                                 double rate_hz, const Eigen::MatrixXd& accel_abs,
+                                 const Eigen::VectorXd& design, const Eigen::VectorXd& start,
+                                 const RefineOptions& options = {});
+
+/// "converged", "not converged", "quiet", ...
+const char* status_word(RefineStatus status);
+
+}  // namespace framewatch

@@ -1,0 +1,98 @@
+#include "estimator/refine/measured_building.h"
+
+#include <Eigen/Cholesky>
+
+#include "estimator/identify/deformations.h"
+#include "estimator/identify/floor_layout.h"
+#include "estimator/structure/matrices.h"
+
+namespace framewatch {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Shares of the axes in the motion of every place of one floor, frames x axes; empty when a
+/// frame's motion is not measured and all are needed.
+std::optional<MatrixXd> places(const Deformations& deformations, int floor, int frames, Index axes,
+                               bool all_needed, std::vector<Index>& measured) {
+  MatrixXd share = MatrixXd::Zero(frames, axes);
+  for (int f = 0; f < frames; ++f) {
+    const auto& parts = deformations.at(floor, f);
+    if (parts.empty() && all_needed) return std::nullopt;
+    if (!parts.empty()) measured.push_back(f);
+    for (const Deformations::Weighted& part : parts) share(f, part.axis) += part.weight;
+  }
+  return share;
+}
+
+}  // namespace
+
+std::optional<MeasuredBuilding> measured_building(const Structure& s, const ParameterTable& table,
+                                                  const std::vector<SensorAxis>& axes,
+                                                  double rate_hz) {
+  const FloorLayout layout(s, table);
+  const Deformations deformations(s, layout, axes);
+  const auto count = static_cast<Index>(axes.size());
+  const int frames = s.frames();
+  const bool rigid = s.floor == FloorModel::rigid;
+
+  MeasuredBuilding out;
+  out.variance.resize(count);
+  out.delay.resize(count);
+  for (Index a = 0; a < count; ++a) {
+    const SensorAxis& axis = axes[static_cast<std::size_t>(a)];
+    out.variance[a] = deformations.noise_variance(static_cast<int>(a), rate_hz);
+    out.delay[a] = axis.delay;
+    out.noise_known = out.noise_known && axis.noise_density > 0;
+  }
+
+  std::vector<Index> measured;
+  const auto base = places(deformations, 0, frames, count, true, measured);
+  if (!base) return std::nullopt;
+  MatrixXd motion(s.degrees_of_freedom(), count);
+  measured.clear();
+  for (int floor = 1; floor <= s.stories; ++floor) {
+    std::vector<Index> here;
+    const auto share = places(deformations, floor, frames, count, !rigid, here);
+    if (!share) return std::nullopt;
+    motion.middleRows(s.dof(floor, 0), frames) = *share;
+    for (const Index f : here) measured.push_back(s.dof(floor, 0) + f);
+  }
+
+  const MatrixXd constraint = floor_constraint(s);
+  MatrixXd coordinates = motion;  // independent coordinates x axes
+  if (rigid) {
+    const auto rows = static_cast<Index>(measured.size());
+    MatrixXd weighted(rows, constraint.cols()), readings(rows, count);
+    for (Index i = 0; i < rows; ++i) {
+      const Index dof = measured[static_cast<std::size_t>(i)];
+      readings.row(i) = motion.row(dof);
+      const double noise = motion.row(dof).cwiseAbs2() * out.variance;
+      weighted.row(i) = constraint.row(dof) / noise;
+    }
+    MatrixXd model(rows, constraint.cols());
+    for (Index i = 0; i < rows; ++i)
+      model.row(i) = constraint.row(measured[static_cast<std::size_t>(i)]);
+    const MatrixXd normal = weighted.transpose() * model;
+    const Eigen::LDLT<MatrixXd> solver(normal);
+    const auto pivots = solver.vectorD();
+    if (rows < constraint.cols() || pivots.minCoeff() <= 1e-10 * pivots.maxCoeff())
+      return std::nullopt;
+    coordinates = solver.solve(weighted.transpose() * readings);
+  }
+
+  const Matrices matrices = assemble(s, table, Eigen::VectorXd::Zero(table.size()));
+  out.mass = constraint.transpose() * matrices.mass.asDiagonal() * constraint * coordinates;
+  MatrixXd vectors = MatrixXd::Zero(s.degrees_of_freedom(), table.elements());
+  MatrixXd ground = MatrixXd::Zero(table.elements(), count);
+  for (const Element& e : elements(s, table)) {
+    for (const auto& [dof, coefficient] : e.b) vectors(dof, e.stiffness) += coefficient;
+    if (e.frame >= 0 && e.story == 1) ground.row(e.stiffness) = base->row(e.frame);
+  }
+  out.act = constraint.transpose() * vectors;
+  out.sense = out.act.transpose() * coordinates - ground;
+  return out;
+}
+
+}  // namespace framewatch

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+/// Frequencies at which a stretch of motion is compared with the equations, Hz.
+struct Band {
+  double low_hz = 0;
+  double high_hz = 0;
+};
+
+/// From 0.4 times the lowest natural frequency to three times the highest, at most 0.4 of the
+/// sampling rate.
+Band structure_band(const Structure& structure, const ParameterTable& table,
+                    const Eigen::VectorXd& theta, double rate_hz);
+
+/// Discrete Fourier transform of a stretch, trapezoidal sums, bins inside a band.
+struct Spectrum {
+  Band band;               ///< of the bins there are
+  Eigen::VectorXd w;       ///< rad/s, ascending
+  Eigen::MatrixXcd accel;  ///< axes x bins, sum of samples, m/s^2
+  double intervals = 0;    ///< of the stretch: noise of variance v has intervals * v in each bin
+
+  Eigen::Index bins() const { return w.size(); }
+};
+
+/// accel: instants x axes, m/s^2, all finite; delay: s, per axis, undone.
+Spectrum spectrum_of(const Eigen::MatrixXd& accel, const Eigen::VectorXd& delay, double rate_hz,
+                     const Band& band);
+
+}  // namespace framewatch
