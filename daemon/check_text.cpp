@@ -64,7 +64,7 @@ std::string identifiable_text(const CheckReport& r) {
       r.panels.begin(), r.panels.end(),
       [](const auto& a, const auto& b) { return a.shear_ratio < b.shear_ratio; });
   return out + fmt::format(
-                   "            floor panels shear {:.2g} % ({}) to {:.2g} % ({}) of what "
+                   "            floor panels shear {:.1f} % ({}) to {:.1f} % ({}) of what "
                    "the frames do\n",
                    100 * least->shear_ratio, least->parameter, 100 * most->shear_ratio,
                    most->parameter);

@@ -29,6 +29,14 @@ constexpr SectionText kSections[] = {
     {"channel.source", "source = { ... }", "Where the samples of a channel come from."},
     {"estimator", "[estimator]", "How the windows are estimated and when a value is published."},
     {"lcm", "[lcm]", "The bus the samples come from and the estimates go to."},
+    {"scenario", "Scenario files: at the top",
+     "`framewatch simulate` reads a scenario: the building as above or `config`, and what happens "
+     "to it."},
+    {"truth", "[truth]", "What the virtual building is, which the estimator does not know."},
+    {"motion", "[motion]", "What the ground does."},
+    {"sensors", "[sensors]", "What every virtual accelerometer is like."},
+    {"sensor", "[[sensor]]", "One that is different."},
+    {"change", "[[change]]", "Something in the building that changes while it is shaken."},
 };
 
 /// | would end the cell.
