@@ -35,7 +35,7 @@ bool decode(const lcm::ReceiveBuffer* buffer, Message& out) {
 
 std::string describe(const GroupError& error, double limit_ratio) {
   if (!error.without.empty()) return fmt::format("no value for {}", fmt::join(error.without, ", "));
-  return fmt::format("within {:.2f} % of truth ({}; limit {:g} %)", 100 * error.worst_ratio,
+  return fmt::format("within {:.2g} % of truth ({}; limit {:g} %)", 100 * error.worst_ratio,
                      error.worst, 100 * limit_ratio);
 }
 
@@ -89,7 +89,7 @@ std::string DemoView::state() const {
   std::string out = fmt::format("{} windows received, {} valid", windows_, valid_);
   if (lost_ > 0) out += fmt::format(", {} lost", lost_);
   if (valid_ > 0)
-    out += fmt::format("; worst of all valid: frames {:.2f} %, panels {:.2f} %",
+    out += fmt::format("; worst of all valid: frames {:.2g} %, panels {:.2g} %",
                        100 * worst_frame_ratio_, 100 * worst_panel_ratio_);
   return out;
 }
@@ -97,27 +97,23 @@ std::string DemoView::state() const {
 void DemoView::update(double elapsed_s, double total_s) {
   if (quiet_ || elapsed_s < next_draw_s_) return;
   next_draw_s_ = elapsed_s + (terminal_ ? kRedraw_s : kLine_s);
+  const std::string now = windows_ == 0 ? "waiting for the first window" : state();
   if (terminal_) {
-    draw();
-    fmt::print("\x1b[2K{:.0f} of {:.0f} s, {}\n", elapsed_s, total_s,
-               windows_ == 0 ? "waiting for the first window" : state());
-    ++lines_drawn_;
+    draw(fmt::format("{:.0f} of {:.0f} s, {}", elapsed_s, total_s, now));
   } else {
-    fmt::print("{:3.0f} s  {}\n", elapsed_s,
-               windows_ == 0 ? "waiting for the first window" : state());
+    fmt::print("{:3.0f} s  {}\n", elapsed_s, now);
   }
   std::fflush(stdout);
 }
 
-void DemoView::draw() {
+void DemoView::draw(const std::string& last_line) {
+  std::vector<std::string> lines;
+  if (table_) lines = estimate_table(*table_, estimate_, truth_);
+  lines.push_back(last_line);
   if (lines_drawn_ > 0) fmt::print("\x1b[{}A", lines_drawn_);
-  lines_drawn_ = 0;
-  if (!table_) return;
   const std::size_t columns = terminal_columns();
-  for (const std::string& line : estimate_table(*table_, estimate_, truth_)) {
-    fmt::print("\x1b[2K{}\n", line.substr(0, columns - 1));
-    ++lines_drawn_;
-  }
+  for (const std::string& line : lines) fmt::print("\x1b[2K{}\n", line.substr(0, columns - 1));
+  lines_drawn_ = lines.size();
 }
 
 int DemoView::finish() {
@@ -126,8 +122,7 @@ int DemoView::finish() {
     return 1;
   }
   if (terminal_ && !quiet_) {
-    draw();
-    fmt::print("\x1b[2K{}\n", state());
+    draw(state());
   } else if (!quiet_) {
     for (const std::string& line : estimate_table(*table_, estimate_, truth_))
       fmt::print("{}\n", line);

@@ -34,7 +34,8 @@ class DemoView {
   void on_parameters(const lcm::ReceiveBuffer* buffer, const std::string& channel);
   void on_estimate(const lcm::ReceiveBuffer* buffer, const std::string& channel);
   std::string state() const;
-  void draw();
+  /// Over what was drawn before.
+  void draw(const std::string& last_line);
 
   std::map<std::string, double> truth_by_name_;
   bool terminal_, quiet_;
