@@ -8,6 +8,7 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
+#include "drivers/accel_codec.h"
 #include "drivers/lcm_log.h"
 #include "drivers/record_file.h"
 #include "tests/support/data.h"
@@ -57,6 +58,28 @@ TEST_F(Convert, StartsAtTheSensorTimeAskedFor) {
   ASSERT_EQ(convert(arguments), 0);
   ASSERT_EQ(convert(from({path("rec.lcmlog")}, "back.csv")), 0);
   EXPECT_EQ(test::read_file(path("back.csv")), "time_s,a\n7,1\n7.5,2\n");
+}
+
+TEST_F(Convert, SendsNamedColumnsWhereTheConfigurationSays) {
+  const std::string config_path = FRAMEWATCH_SOURCE_DIR "/configs/mini_shake_table_xsens.toml";
+  test::write_file(path("rec.csv"),
+                   "time_s,floor-3,extra,ground,floor-1,floor-2\n0,3,9,0,1,2\n0.01,6,9,0,2,4\n");
+  auto arguments = from({path("rec.csv")}, "rec.lcmlog");
+  arguments.config = config_path;
+  ASSERT_EQ(convert(arguments), 0);
+  ASSERT_EQ(convert(from({path("rec.lcmlog")}, "back.csv")), 0);
+  EXPECT_EQ(test::read_file(path("back.csv")),
+            "time_s,ground,floor-1,floor-2,floor-3\n0,0,1,2,3\n0.01,0,2,4,6\n");
+  drivers::LcmLogReader log;
+  ASSERT_TRUE(log.open(path("rec.lcmlog")));
+  for (drivers::LogEvent event; log.next(event) == drivers::LogRead::event;) {
+    const auto sample = drivers::decode_accel(event.data.data(), event.data.size());
+    if (sample && sample->sequence == 0) EXPECT_EQ(sample->accel_abs_mps2[0], sample->node);
+  }
+  arguments.inputs = {path("back.csv")};
+  arguments.config = FRAMEWATCH_SOURCE_DIR "/configs/table_two_story.toml";
+  arguments.out = path("o.lcmlog");
+  expect_refused(arguments, "is not in the record");
 }
 
 TEST_F(Convert, RefusesBadUseAndWritesNothing) {
