@@ -74,7 +74,8 @@ TEST_F(Convert, SendsNamedColumnsWhereTheConfigurationSays) {
   ASSERT_TRUE(log.open(path("rec.lcmlog")));
   for (drivers::LogEvent event; log.next(event) == drivers::LogRead::event;) {
     const auto sample = drivers::decode_accel(event.data.data(), event.data.size());
-    if (sample && sample->sequence == 0) EXPECT_EQ(sample->accel_abs_mps2[0], sample->node);
+    if (!sample || sample->sequence != 0) continue;
+    EXPECT_EQ(sample->accel_abs_mps2[0], sample->node);
   }
   arguments.inputs = {path("back.csv")};
   arguments.config = FRAMEWATCH_SOURCE_DIR "/configs/table_two_story.toml";
