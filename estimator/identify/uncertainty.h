@@ -21,6 +21,10 @@ class BatchMeans {
   /// noise_level: variance of the noise over the configured one.
   void compute(const WindowSums& sums, const StorySolver& solver, const std::vector<double>& prior,
                const NoiseShare& noise, double noise_level);
+  /// The unknown is from now on relative to another design: times `factor`.
+  void rescale(int unknown, double factor) {
+    std_error_[static_cast<std::size_t>(unknown)] *= factor;
+  }
   /// Internal order, relative to the design.
   const std::vector<double>& std_error() const { return std_error_; }
 

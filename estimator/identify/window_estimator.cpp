@@ -149,11 +149,12 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
     errors_known_ = true;
     consider_retuning();
   }
+  // The first sets only fill the filters: a window cannot end before the first sample.
+  const bool given = due && ring_.end() > triple_.length();
+  if (due) since_hop_ = 0;
+  if (given) fill_estimate(set.time);
   catch_up();
-  if (!due) return nullptr;
-  since_hop_ = 0;
-  fill_estimate(set.time);
-  return &estimate_;
+  return given ? &estimate_ : nullptr;
 }
 
 void WindowEstimator::solve() {
@@ -200,10 +201,14 @@ void WindowEstimator::catch_up() {
       candidate_->advance(ring_);
       candidate_->finish(ring_);
     }
-    if (candidate_->next() < ring_.end()) continue;
+    if (candidate_->next() < ring_.end() || (active_->full() && !candidate_->full())) continue;
+    for (int u = 0; u < layout_.unknowns(); ++u) {
+      const int parameter = unknowns_[static_cast<std::size_t>(u)].parameter;
+      batch_means_.rescale(
+          u, active_->tuning().design()[parameter] / candidate_->tuning().design()[parameter]);
+    }
     active_ = std::move(candidate_);
     ++retunes_;
-    errors_known_ = false;
   }
 }
 
