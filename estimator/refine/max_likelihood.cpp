@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kHalvings = 12;
-constexpr double kLeastSnr = 3;          ///< of a frame stiffness' information over that of noise
+constexpr double kLeastSnr = 10;         ///< of a frame stiffness' information over that of noise
 constexpr double kLeastCurvature = 0.2;  ///< of a step's information over that with noise
 constexpr double kLeastSignal = 1e-3;    ///< the same, of the standard errors
 
