@@ -19,6 +19,8 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kStandardGravity = 9.80665;
+/// The delay is made by a filter that is longer by this at both ends.
+constexpr double kLongestDelay_s = 1;
 constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change"};
 
 /// The file in three parts: top keys, sections of the scenario, the rest (the building).
@@ -161,9 +163,10 @@ class ScenarioReader {
                   known ? s.noise_ratio[index] : unknown_ratio);
     }
     for (const SensorAxis& axis : axes)
-      if (axis.delay != 0)
+      if (std::abs(axis.delay) > kLongestDelay_s)
         out_.push_back(
-            {path_, fmt::format("channel \"{}\": a delay_s is not simulated", axis.name)});
+            {path_, fmt::format("channel \"{}\": a delay_s beyond {:g} s is not simulated",
+                                axis.name, kLongestDelay_s)});
   }
 
   void read_changes(Scenario& s, bool building) {

@@ -10,7 +10,13 @@ ResponseStream response_of(const Scenario& s) {
   const Structure& structure = s.config.pipeline.structure;
   ResponseOptions options;
   options.rate_hz = s.rate_hz;
-  return {structure, ParameterTable(structure), s.truth, s.motion, options, s.changes};
+  return {structure,
+          ParameterTable(structure),
+          s.truth,
+          s.motion,
+          options,
+          s.changes,
+          response_channels(structure, s.config.pipeline.axes)};
 }
 
 /// The sensors with their noise ratios turned into densities, which takes a run ahead.
@@ -24,8 +30,8 @@ std::vector<SensorModel> sensors_of(const Scenario& s) {
   Eigen::ArrayXd squares = response.next().array().square();
   for (std::int64_t i = 1; i < count; ++i) squares += response.next().array().square();
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const int column = response_column(s.config.pipeline.structure, s.config.pipeline.axes[i]);
-    const double rms = std::sqrt(squares[column] / static_cast<double>(count));
+    const double rms =
+        std::sqrt(squares[static_cast<Eigen::Index>(i)] / static_cast<double>(count));
     models[i].noise_density =
         std::hypot(models[i].noise_density, noise_density_of(s.noise_ratio[i], rms, s.rate_hz));
   }
@@ -36,12 +42,11 @@ std::vector<SensorModel> sensors_of(const Scenario& s) {
 
 Simulation::Simulation(const Scenario& s)
     : response_(response_of(s)),
-      sensors_(s.config.pipeline.structure, s.config.pipeline.axes, sensors_of(s), s.rate_hz,
-               s.seed) {}
+      sensors_(s.config.pipeline.axes, sensors_of(s), s.rate_hz, s.seed) {}
 
 const std::vector<double>& Simulation::next() {
-  const Eigen::VectorXd& response = response_.next();
-  return sensors_.measure(response_.time_s(), response);
+  const Eigen::VectorXd& motion = response_.next();
+  return sensors_.measure(response_.time_s(), motion);
 }
 
 std::int64_t instants(const Scenario& s) {

@@ -1,5 +1,6 @@
 #include "estimator/simulate/decimator.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -22,46 +23,61 @@ double bessel_i0(double x) {
   return sum;
 }
 
+int longest_half(const std::vector<DecimatorChannel>& channels) {
+  std::size_t half = 0;
+  for (const DecimatorChannel& c : channels) half = std::max(half, c.taps.size() / 2);
+  return static_cast<int>(half);
+}
+
 }  // namespace
 
-std::vector<double> anti_alias_taps(int ratio) {
+std::vector<double> anti_alias_taps(int ratio, double delay) {
   assert(ratio >= 1);
   const double transition = 2 * M_PI * (kStopOfRate - kPassOfRate) / ratio;
   const int half = static_cast<int>(std::ceil((kStopDecibel - 7.95) / (2.285 * transition) / 2));
   const double beta = 0.1102 * (kStopDecibel - 8.7);
   const double cutoff = 0.5 * (kPassOfRate + kStopOfRate) / ratio;
+  const int reach = half + static_cast<int>(std::ceil(std::abs(delay)));
   std::vector<double> taps;
   double sum = 0;
-  for (int i = -half; i <= half; ++i) {
-    const double place = static_cast<double>(i) / (half + 1);
-    const double angle = 2 * M_PI * cutoff * i;
-    const double sinc = i == 0 ? 1 : std::sin(angle) / angle;
-    taps.push_back(sinc * bessel_i0(beta * std::sqrt(1 - place * place)));
+  for (int i = -reach; i <= reach; ++i) {
+    const double at = i - delay;
+    const double place = at / (half + 1);
+    const double angle = 2 * M_PI * cutoff * at;
+    const double sinc = angle == 0 ? 1 : std::sin(angle) / angle;
+    const double window = std::max(0.0, 1 - place * place);
+    taps.push_back(window == 0 ? 0 : sinc * bessel_i0(beta * std::sqrt(window)));
     sum += taps.back();
   }
   for (double& tap : taps) tap /= sum;
   return taps;
 }
 
-Decimator::Decimator(std::vector<double> taps, int channels)
-    : taps_(std::move(taps)),
-      ring_(Eigen::MatrixXd::Zero(channels, static_cast<Eigen::Index>(taps_.size()))),
-      output_(Eigen::VectorXd::Zero(channels)) {
-  assert(taps_.size() % 2 == 1);
+Decimator::Decimator(std::vector<DecimatorChannel> channels, int columns)
+    : channels_(std::move(channels)),
+      delay_steps_(longest_half(channels_)),
+      length_(2 * delay_steps_ + 1),
+      ring_(RowMajor::Zero(columns, 2 * length_)),
+      output_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(channels_.size()))) {
+  for ([[maybe_unused]] const DecimatorChannel& c : channels_)
+    assert(c.taps.size() % 2 == 1 && c.column >= 0 && c.column < columns);
 }
 
 void Decimator::push(const Eigen::VectorXd& fine) {
-  newest_ = (newest_ + 1) % static_cast<int>(taps_.size());
+  newest_ = newest_ == 0 ? length_ - 1 : newest_ - 1;
   ring_.col(newest_) = fine;
+  ring_.col(newest_ + length_) = fine;
 }
 
 const Eigen::VectorXd& Decimator::output() {
-  output_.setZero();
-  int at = newest_;
-  for (const double tap : taps_) {
-    const double* column = ring_.data() + ring_.rows() * at;
-    for (Eigen::Index c = 0; c < ring_.rows(); ++c) output_.data()[c] += tap * column[c];
-    at = at == 0 ? static_cast<int>(taps_.size()) - 1 : at - 1;
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const std::vector<double>& taps = channels_[c].taps;
+    const int skipped = delay_steps_ - static_cast<int>(taps.size() / 2);
+    const double* newest_first =
+        ring_.data() + channels_[c].column * ring_.cols() + newest_ + skipped;
+    double sum = 0;
+    for (std::size_t i = 0; i < taps.size(); ++i) sum += taps[i] * newest_first[i];
+    output_[static_cast<Eigen::Index>(c)] = sum;
   }
   return output_;
 }

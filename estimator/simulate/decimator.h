@@ -6,24 +6,35 @@
 
 namespace framewatch {
 
-/// Linear-phase low-pass (Kaiser-windowed sinc), unit gain at 0 Hz, odd length: passes up to 0.4 of
-/// the output rate within 1e-4 and stops from 0.6 on by 80 dB; `ratio` fine steps per output step.
-std::vector<double> anti_alias_taps(int ratio);
+/// Linear-phase low-pass (Kaiser-windowed sinc), unit gain at 0 Hz: passes up to 0.4 of the output
+/// rate within 1e-4 and stops from 0.6 on by 80 dB; `ratio` fine steps per output step. An odd
+/// number of taps, centred; what they give is late by `delay` fine steps, not necessarily whole.
+std::vector<double> anti_alias_taps(int ratio, double delay = 0);
 
-/// The same low-pass on every channel of a fine stream; its delay is delay_steps() fine steps.
+/// One output of a Decimator.
+struct DecimatorChannel {
+  int column;                ///< of the fine stream
+  std::vector<double> taps;  ///< odd number, centred; {1} passes the stream through
+};
+
+/// Low-passes a fine stream where it is asked to. All channels have one delay, delay_steps() fine
+/// steps, besides what their taps add.
 class Decimator {
  public:
-  /// Odd number of taps; {1} passes the stream through.
-  Decimator(std::vector<double> taps, int channels);
+  Decimator(std::vector<DecimatorChannel> channels, int columns);
 
-  int delay_steps() const { return static_cast<int>(taps_.size() / 2); }
+  int delay_steps() const { return delay_steps_; }
   void push(const Eigen::VectorXd& fine);
-  /// Filtered channels as they were delay_steps() pushes before the newest.
+  /// Channels as they were delay_steps() pushes before the newest.
   const Eigen::VectorXd& output();
 
  private:
-  std::vector<double> taps_;
-  Eigen::MatrixXd ring_;  ///< channels x taps
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  std::vector<DecimatorChannel> channels_;
+  int delay_steps_;
+  int length_;
+  RowMajor ring_;  ///< columns x (history twice), so that a history is always in one piece
   int newest_ = 0;
   Eigen::VectorXd output_;
 };

@@ -1,5 +1,6 @@
 #include "estimator/simulate/linear_response.h"
 
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -13,18 +14,33 @@ int steps_per_instant(const ResponseOptions& options) {
   return static_cast<int>(std::ceil(1 / (options.rate_hz * options.longest_step_s) - 1e-9));
 }
 
+Decimator decimator(const std::vector<ResponseChannel>& wanted, const ResponseOptions& options,
+                    int ratio, int columns) {
+  std::vector<DecimatorChannel> channels;
+  const auto add = [&](int column, double delay_s) {
+    assert(options.anti_alias || delay_s == 0);
+    channels.push_back({column, options.anti_alias
+                                    ? anti_alias_taps(ratio, delay_s * options.rate_hz * ratio)
+                                    : std::vector<double>{1.0}});
+  };
+  for (const ResponseChannel& c : wanted) add(c.column, c.delay_s);
+  if (wanted.empty())
+    for (int column = 0; column < columns; ++column) add(column, 0);
+  return {std::move(channels), columns};
+}
+
 }  // namespace
 
 ResponseStream::ResponseStream(const Structure& structure, const ParameterTable& table,
                                const Eigen::VectorXd& theta, PlanMotion motion,
-                               ResponseOptions options, std::vector<ParameterChange> changes)
+                               ResponseOptions options, std::vector<ParameterChange> changes,
+                               const std::vector<ResponseChannel>& channels)
     : motion_(std::move(motion)),
       options_(options),
       changes_(std::move(changes)),
       ratio_(steps_per_instant(options)),
       building_(structure, table, theta, 1 / (options.rate_hz * ratio_)),
-      decimator_(options.anti_alias ? anti_alias_taps(ratio_) : std::vector<double>{1.0},
-                 structure.degrees_of_freedom() + 2),
+      decimator_(decimator(channels, options, ratio_, structure.degrees_of_freedom() + 2)),
       step_(-decimator_.delay_steps() - 1),
       fine_(Eigen::VectorXd::Zero(structure.degrees_of_freedom() + 2)) {}
 

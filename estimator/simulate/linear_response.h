@@ -24,18 +24,27 @@ struct ParameterChange {
   Eigen::VectorXd theta;
 };
 
+/// What a stream gives: a degree of freedom, or after the last one base x and base y, as it was
+/// delay_s before the instant.
+struct ResponseChannel {
+  int column;
+  double delay_s = 0;  ///< only 0 without the anti-alias filter, which makes it
+};
+
 /// The response of a linear building, one output instant after the other. The ground motion is
 /// taken at the fine steps and linear between them; the response to it is exact. Not the
 /// estimator's scheme, on purpose.
 class ResponseStream {
  public:
   /// Changes in ascending order of time; each acts from the first fine step at or after its time.
+  /// No channels: every degree of freedom (Structure::dof), base x and base y, without delay.
   ResponseStream(const Structure& structure, const ParameterTable& table,
                  const Eigen::VectorXd& theta, PlanMotion motion, ResponseOptions options,
-                 std::vector<ParameterChange> changes = {});
+                 std::vector<ParameterChange> changes = {},
+                 const std::vector<ResponseChannel>& channels = {});
 
-  /// Absolute accelerations, m/s^2, at the next instant, the first being time 0: every degree of
-  /// freedom (Structure::dof), then base x, base y. After the motion's end the ground rests.
+  /// Absolute accelerations of the channels, m/s^2, at the next instant, the first being time 0.
+  /// After the motion's end the ground rests.
   const Eigen::VectorXd& next();
   /// Of the instant next() gave last, s.
   double time_s() const;

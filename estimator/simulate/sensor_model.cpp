@@ -38,34 +38,38 @@ double noise_density_of(double ratio, double rms, double rate_hz) {
   return ratio * rms / std::sqrt(rate_hz / 2);
 }
 
-int response_column(const Structure& structure, const SensorAxis& axis) {
-  if (axis.story > 0) return structure.dof(axis.story, axis.frame);
-  const Direction d = axis.frame >= 0 ? structure.direction(axis.frame) : axis.direction;
-  return structure.degrees_of_freedom() + (d == Direction::x ? 0 : 1);
+std::vector<ResponseChannel> response_channels(const Structure& structure,
+                                               const std::vector<SensorAxis>& axes) {
+  std::vector<ResponseChannel> out;
+  for (const SensorAxis& axis : axes) {
+    const Direction direction = axis.frame >= 0 ? structure.direction(axis.frame) : axis.direction;
+    const int base = structure.degrees_of_freedom() + (direction == Direction::x ? 0 : 1);
+    out.push_back({axis.story > 0 ? structure.dof(axis.story, axis.frame) : base, axis.delay});
+  }
+  return out;
 }
 
-SensorArray::SensorArray(const Structure& structure, std::vector<SensorAxis> axes,
-                         std::vector<SensorModel> models, double rate_hz, std::uint64_t seed)
+SensorArray::SensorArray(std::vector<SensorAxis> axes, std::vector<SensorModel> models,
+                         double rate_hz, std::uint64_t seed)
     : axes_(std::move(axes)),
       models_(std::move(models)),
       noise_gain_(std::sqrt(rate_hz / 2)),
       raw_(axes_.size()) {
   assert(axes_.size() == models_.size());
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    columns_.push_back(response_column(structure, axes_[i]));
     noise_.emplace_back(seed, 2 * i);
     loss_.emplace_back(seed, 2 * i + 1);
   }
 }
 
-const std::vector<double>& SensorArray::measure(double time_s, const Eigen::VectorXd& response) {
+const std::vector<double>& SensorArray::measure(double time_s, const Eigen::VectorXd& motion) {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const SensorModel& m = models_[i];
     const double noise = m.noise_density * noise_gain_ * noise_[i].normal();
     const bool lost = loss_[i].uniform() < m.loss_ratio;
     const bool dead = time_s >= m.dead_from_s && time_s < m.dead_to_s;
-    const double seen =
-        quantised(response[columns_[i]] + noise + m.bias + m.thermal_ramp * time_s, m);
+    const double seen = quantised(
+        motion[static_cast<Eigen::Index>(i)] + noise + m.bias + m.thermal_ramp * time_s, m);
     raw_[i] = lost || dead ? std::numeric_limits<double>::quiet_NaN()
                            : (axes_[i].polarity * seen + axes_[i].offset) / axes_[i].scale;
   }

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
@@ -32,25 +33,25 @@ std::vector<std::string> problems(const SensorModel& model);
 /// Noise density, m/s^2/sqrt(Hz), whose samples at rate_hz have `ratio` times the rms `rms`.
 double noise_density_of(double ratio, double rms, double rate_hz);
 
-/// Column of a response (degrees of freedom, base x, base y) that `axis` senses.
-int response_column(const Structure& structure, const SensorAxis& axis);
+/// What every axis senses, its delay included.
+std::vector<ResponseChannel> response_channels(const Structure& structure,
+                                               const std::vector<SensorAxis>& axes);
 
 /// All axes of a building. The same seed gives the same samples; every axis has its own numbers,
 /// whatever the others do.
 class SensorArray {
  public:
   /// One model per axis; rate_hz is that of the instants given to measure().
-  SensorArray(const Structure& structure, std::vector<SensorAxis> axes,
-              std::vector<SensorModel> models, double rate_hz, std::uint64_t seed);
+  SensorArray(std::vector<SensorAxis> axes, std::vector<SensorModel> models, double rate_hz,
+              std::uint64_t seed);
 
   /// Raw values of the next instant in axis order, NaN where lost: what SensorAxis' calibration
-  /// turns back into m/s^2. `response` is ResponseStream::next()'s.
-  const std::vector<double>& measure(double time_s, const Eigen::VectorXd& response);
+  /// turns back into m/s^2. `motion` has what every axis senses.
+  const std::vector<double>& measure(double time_s, const Eigen::VectorXd& motion);
 
  private:
   std::vector<SensorAxis> axes_;
   std::vector<SensorModel> models_;
-  std::vector<int> columns_;
   std::vector<Random> noise_;
   std::vector<Random> loss_;
   double noise_gain_;  ///< sqrt(Hz): density to standard deviation of a sample

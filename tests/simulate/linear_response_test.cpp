@@ -33,6 +33,22 @@ TEST(LinearResponse, PassesTheUsableBandWithoutDelay) {
     ASSERT_NEAR(r.accel_abs(i, 20), std::sin(2 * M_PI * 20 * 0.01 * static_cast<double>(i)), 1e-3);
 }
 
+TEST(LinearResponse, DelaysAChannelByPartsOfAStep) {
+  const Structure s = test::table1();
+  const ParameterTable table(s);
+  for (const double delay_s : {0.0037, -0.0018, 0.025}) {
+    ResponseStream stream(s, table, test::table1_theta(), sine(15, 4), {}, {},
+                          {{20, delay_s}, {20, 0}});
+    for (int i = 0; i < 300; ++i) {
+      const Eigen::VectorXd& both = stream.next();
+      if (i < 100) continue;
+      const double t = stream.time_s();
+      ASSERT_NEAR(both[0], std::sin(2 * M_PI * 15 * (t - delay_s)), 1e-3);
+      ASSERT_NEAR(both[1], std::sin(2 * M_PI * 15 * t), 1e-3);
+    }
+  }
+}
+
 TEST(LinearResponse, StopsWhatWouldAlias) {
   const Structure s = test::table1();
   const ParameterTable table(s);

@@ -16,23 +16,39 @@ struct Bench {
   Structure structure = test::table1();
   std::vector<SensorAxis> axes = test::full_sensor_axes(structure);
   std::vector<SensorModel> models{axes.size()};
-  Eigen::VectorXd response = Eigen::VectorXd::Zero(structure.degrees_of_freedom() + 2);
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(axes.size()));
 
   /// `count` samples of every axis, [sample][axis].
   std::vector<std::vector<double>> run(int count, std::uint64_t seed = kSeed) {
-    SensorArray array(structure, axes, models, kRate_hz, seed);
+    SensorArray array(axes, models, kRate_hz, seed);
     std::vector<std::vector<double>> out;
-    for (int i = 0; i < count; ++i) out.push_back(array.measure(i / kRate_hz, response));
+    for (int i = 0; i < count; ++i) out.push_back(array.measure(i / kRate_hz, motion));
     return out;
   }
 };
 
 TEST(SensorModel, AnIdealSensorGivesTheMotion) {
   Bench b;
-  for (Eigen::Index i = 0; i < b.response.size(); ++i) b.response[i] = static_cast<double>(i) - 7.5;
+  for (Eigen::Index i = 0; i < b.motion.size(); ++i) b.motion[i] = static_cast<double>(i) - 7.5;
   const auto samples = b.run(1);
   for (std::size_t i = 0; i < b.axes.size(); ++i)
-    EXPECT_EQ(samples[0][i], b.response[response_column(b.structure, b.axes[i])]);
+    EXPECT_EQ(samples[0][i], b.motion[static_cast<Eigen::Index>(i)]);
+}
+
+TEST(SensorModel, EveryAxisSensesItsPlace) {
+  Bench b;
+  b.axes[5].delay = 0.002;
+  std::swap(b.axes[0], b.axes[20]);
+  b.axes.push_back(b.axes[21]);
+  b.axes.back().frame = 3;  // a base axis under a frame
+  const auto channels = response_channels(b.structure, b.axes);
+  ASSERT_EQ(channels.size(), 23u);
+  EXPECT_EQ(channels[0].column, 20);
+  EXPECT_EQ(channels[20].column, 0);
+  EXPECT_EQ(channels[5].column, 5);
+  EXPECT_EQ(channels[5].delay_s, 0.002);
+  EXPECT_EQ(channels[21].column, 21);
+  EXPECT_EQ(channels[22].column, 21);
 }
 
 TEST(SensorModel, NoiseHasItsDensityAndChannelsAreIndependent) {
@@ -81,11 +97,11 @@ TEST(SensorModel, QuantisesAndSaturates) {
   Bench b;
   b.models[0] = {.full_scale = 20, .bits = 16};
   const double lsb = 20 / 32768.0;
-  b.response[0] = 10.4 * lsb;
+  b.motion[0] = 10.4 * lsb;
   EXPECT_DOUBLE_EQ(b.run(1)[0][0], 10 * lsb);
-  b.response[0] = 35;
+  b.motion[0] = 35;
   EXPECT_DOUBLE_EQ(b.run(1)[0][0], 20 - lsb);
-  b.response[0] = -35;
+  b.motion[0] = -35;
   EXPECT_DOUBLE_EQ(b.run(1)[0][0], -20);
   b.models[0].bits = 0;
   EXPECT_DOUBLE_EQ(b.run(1)[0][0], -20);
@@ -114,7 +130,7 @@ TEST(SensorModel, CalibrationGivesTheMotionBack) {
   b.axes[0].scale = 0.0024;
   b.axes[0].offset = 0.3;
   b.axes[0].polarity = -1;
-  b.response[0] = 1.25;
+  b.motion[0] = 1.25;
   const double raw = b.run(1)[0][0];
   EXPECT_NEAR(b.axes[0].polarity * (b.axes[0].scale * raw - b.axes[0].offset), 1.25, 1e-14);
 }
