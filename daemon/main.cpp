@@ -9,6 +9,7 @@
 #include "daemon/check_command.h"
 #include "daemon/convert_command.h"
 #include "daemon/demo_command.h"
+#include "daemon/refine_command.h"
 #include "daemon/replay_command.h"
 #include "daemon/run_command.h"
 #include "daemon/simulate_command.h"
@@ -65,6 +66,32 @@ void add_replay(CLI::App& app, Action& action) {
   command->add_flag("--json", arguments->json, "the summary as JSON");
   command->callback([&action, arguments] {
     action = [arguments] { return framewatch::daemon::replay(*arguments); };
+  });
+}
+
+void add_refine(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "refine",
+      "maximum-likelihood estimate from one stretch of recorded motion, and the least error\n"
+      "(Cramer-Rao bound) that any estimate from it could have");
+  command->footer(
+      "Exit status: 0 refined, 1 not (too short, quiet, ...), 2 bad usage or input.\n"
+      "Example: framewatch refine building.toml record.lcmlog --from 12 --to 22");
+  auto arguments = std::make_shared<framewatch::daemon::RefineArguments>();
+  command->add_option("CONFIG", arguments->config, "configuration file (TOML)")->required();
+  command
+      ->add_option("LOG", arguments->inputs,
+                   "LCM event logs and record files (CSV), in order of time")
+      ->required();
+  command->add_option("--from", arguments->from_s, "seconds after the first sample")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--to", arguments->to_s, "likewise (default: one window after --from)")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("!--no-prior", arguments->prior, "do not pull toward the design");
+  command->add_flag("--json", arguments->json, "print what a program would read");
+  command->callback([&action, arguments] {
+    action = [arguments] { return framewatch::daemon::refine(*arguments); };
   });
 }
 
@@ -159,6 +186,7 @@ int main(int argc, char** argv) {
   add_demo(app, action);
   add_run(app, action);
   add_replay(app, action);
+  add_refine(app, action);
   add_check(app, action);
   add_convert(app, action);
   add_simulate(app, action);

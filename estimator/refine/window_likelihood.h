@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <optional>
 #include <vector>
 
@@ -10,11 +11,11 @@
 
 namespace framewatch {
 
-/// Unknowns beside theta that a stretch needs per equation, docs/equations.md (33).
+/// Unknowns beside theta that a stretch needs per equation, docs/equations.md (32).
 /// states: displacement and velocity at its ends; sampled: also what sampling adds to them.
 enum class EndTerms { states = 2, sampled = 4 };
 
-/// What the misfit of a stretch is and how it depends on theta; docs/equations.md (32)-(36).
+/// What the misfit of a stretch is and how it depends on theta; docs/equations.md (33)-(36).
 struct LikelihoodPoint {
   double misfit = 0;            ///< sum of e^H Omega^-1 e, end terms fitted
   Eigen::VectorXd gradient;     ///< of misfit, per unit of theta
@@ -55,7 +56,7 @@ class WindowLikelihood {
   Eigen::Index terms_;
   Eigen::VectorXd noise_;  ///< per axis in one bin
   std::vector<Bin> bins_;
-  Eigen::MatrixXd ends_;  ///< factored scale: information of the end unknowns
+  Eigen::MatrixXd ends_;  ///< information of the end unknowns
 };
 
 }  // namespace framewatch

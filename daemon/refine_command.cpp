@@ -1,0 +1,175 @@
+#include "daemon/refine_command.h"
+
+#include <cmath>
+#include <optional>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/estimation.h"
+#include "daemon/replay_survey.h"
+#include "daemon/stretch_collector.h"
+#include "drivers/accel_intake.h"
+#include "drivers/lcm_log.h"
+#include "estimator/identify/design.h"
+#include "estimator/refine/max_likelihood.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kNotRefined = 1;
+constexpr int kBadInput = 2;
+using Json = nlohmann::ordered_json;
+
+/// Everything a person is told.
+struct Report {
+  double from_s, to_s;
+  Refinement refinement;
+  std::vector<double> streaming;  ///< theta order; NaN: not published
+};
+
+void push_record(const ReplayInput& input, const drivers::AccelIntake::Sink& sink) {
+  const drivers::Record& record = input.record;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const Time time = from_microseconds(std::llround(record.time_s[i] * 1e6));
+    for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
+      if (input.axis_of_column[c] >= 0)
+        sink({time, input.axis_of_column[c], record.accel_mps2[c][i]});
+  }
+}
+
+std::string push_log(const std::string& path, drivers::AccelIntake& intake) {
+  drivers::LcmLogReader reader;
+  drivers::LogEvent event;
+  auto read = reader.open(path) ? reader.next(event) : drivers::LogRead::error;
+  for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
+       read = reader.next(event))
+    if (read == drivers::LogRead::event)
+      intake.message(event.channel, event.data.data(), event.data.size());
+  return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
+}
+
+/// A number, or null when there is none.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::string json(const RefineArguments& a, const Config& config, const ParameterTable& table,
+                 const Report& report) {
+  const Refinement& r = report.refinement;
+  Json out{{"schema", "framewatch.refine/1"},
+           {"config", a.config},
+           {"config_sha256", config.sha256},
+           {"inputs", a.inputs},
+           {"version", FRAMEWATCH_VERSION},
+           {"from_s", report.from_s},
+           {"to_s", report.to_s},
+           {"prior", a.prior},
+           {"status", status_word(r.status)}};
+  if (r.has_values()) {
+    out["iterations"] = r.iterations;
+    out["log_likelihood"] = number(r.log_likelihood);
+    out["misfit_ratio"] = number(r.misfit_ratio);
+    out["band_hz"] = {r.band.low_hz, r.band.high_hz};
+    out["bins"] = r.bins;
+    out["parameters"] = Json::array();
+    for (int p = 0; p < table.size(); ++p)
+      out["parameters"].push_back({{"name", table[p].name},
+                                   {"unit", table[p].unit},
+                                   {"streaming", number(report.streaming[std::size_t(p)])},
+                                   {"refined", number(r.theta[p])},
+                                   {"std_error", number(r.std_error[p])},
+                                   {"cramer_rao_bound", number(r.bound[p])}});
+  }
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string value_text(double value) {
+  return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-";
+}
+
+std::string text(const ParameterTable& table, const Report& report) {
+  const Refinement& r = report.refinement;
+  std::string out =
+      fmt::format("{:.3f} s to {:.3f} s: {}\n", report.from_s, report.to_s, status_word(r.status));
+  if (!r.has_values()) return out;
+  out += fmt::format(
+      "{} steps, {:.2f} to {:.2f} Hz, log-likelihood {:.6g}; misfit {:.3g} of what sensor noise "
+      "explains\n",
+      r.iterations, r.band.low_hz, r.band.high_hz, r.log_likelihood, r.misfit_ratio);
+  out += fmt::format("{:<12} {:>12} {:>12} {:>12} {:>12}  {}\n", "parameter", "streaming",
+                     "refined", "std error", "least error", "unit");
+  for (int p = 0; p < table.size(); ++p)
+    out += fmt::format("{:<12} {:>12} {:>12} {:>12} {:>12}  {}\n", table[p].name,
+                       value_text(report.streaming[std::size_t(p)]), value_text(r.theta[p]),
+                       value_text(r.std_error[p]), value_text(r.bound[p]), table[p].unit);
+  out +=
+      "streaming: the last published value up to the end of the stretch, - if none; least "
+      "error: Cramer-Rao bound\n";
+  return out;
+}
+
+}  // namespace
+
+int refine(const RefineArguments& a) {
+  std::vector<ConfigProblem> config_problems;
+  const std::optional<Config> config = load_config(a.config, config_problems);
+  for (const ConfigProblem& p : config_problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  if (!config) return kBadInput;
+  const PipelineConfig& pipeline_config = config->pipeline;
+  const double to_s = a.to_s < 0 ? a.from_s + pipeline_config.options.window_s : a.to_s;
+  if (!(to_s > a.from_s)) {
+    fmt::print(stderr, "framewatch refine: --to must be later than --from\n");
+    return kBadInput;
+  }
+  ReplaySurvey survey(*config);
+  for (const std::string& path : a.inputs) survey.add(path);
+  survey.finish();
+  for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", note);
+  for (const std::string& problem : survey.problems()) fmt::print(stderr, "{}\n", problem);
+  if (!survey.problems().empty()) return kBadInput;
+
+  const ParameterTable table(pipeline_config.structure);
+  StretchCollector collector(pipeline_config, a.from_s, to_s);
+  Report report{a.from_s, to_s, {}, {}};
+  report.streaming.assign(std::size_t(table.size()), std::nan(""));
+  Pipeline pipeline(pipeline_config, [&](const WindowEstimate& estimate) {
+    const auto end_us = static_cast<double>(to_microseconds(estimate.end) - collector.first_us());
+    if (end_us > 1e6 * to_s + 1) return;
+    for (std::size_t p = 0; p < report.streaming.size(); ++p)
+      if (estimate.reason[p] == Observability::observable) report.streaming[p] = estimate.value[p];
+  });
+  const auto sink = [&](const AccelSample& sample) {
+    collector.push(sample);
+    if (static_cast<double>(to_microseconds(sample.time) - collector.first_us()) <=
+        1e6 * (to_s + pipeline_config.options.lateness_s))
+      pipeline.push(sample);
+  };
+  drivers::AccelIntake intake(wanted_axes(*config), sink);
+  for (const ReplayInput& input : survey.inputs()) {
+    if (input.is_record) push_record(input, sink);
+    const std::string problem = input.is_record ? "" : push_log(input.path, intake);
+    if (problem.empty()) continue;
+    fmt::print(stderr, "{}\n", problem);
+    return kBadInput;
+  }
+  pipeline.finish();
+  collector.finish();
+
+  const Eigen::VectorXd design = pipeline_config.design.size() > 0
+                                     ? pipeline_config.design
+                                     : guessed_design(pipeline_config.structure, table);
+  Eigen::VectorXd start = pipeline.design();
+  for (int p = 0; p < table.size(); ++p)
+    if (report.streaming[std::size_t(p)] > 0) start[p] = report.streaming[std::size_t(p)];
+  RefineOptions options;
+  // Without drawings the design is a guess: nothing to be pulled to.
+  options.prior = a.prior && pipeline_config.options.prior && pipeline_config.design.size() > 0;
+  report.refinement = refine_max_likelihood(pipeline_config.structure, collector.axes(),
+                                            pipeline_config.options.rate_hz, collector.accel(),
+                                            options.prior ? design : start, start, options);
+  fmt::print("{}", a.json ? json(a, *config, table, report) : text(table, report));
+  return report.refinement.status == RefineStatus::converged ? 0 : kNotRefined;
+}
+
+}  // namespace framewatch::daemon
