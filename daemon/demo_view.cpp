@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
+
+#include "drivers/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -24,13 +26,8 @@ std::size_t terminal_columns() {
   return size.ws_col;
 }
 
-template <typename Message>
-bool decode(const lcm::ReceiveBuffer* buffer, Message& out) {
-  try {
-    return out.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) >= 0;
-  } catch (const std::exception&) {
-    return false;
-  }
+std::span<const std::uint8_t> payload(const lcm::ReceiveBuffer* buffer) {
+  return {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
 }
 
 std::string describe(const GroupError& error, double limit_ratio) {
@@ -54,10 +51,10 @@ void DemoView::subscribe(lcm::LCM& lcm, const std::string& prefix) {
 }
 
 void DemoView::on_parameters(const lcm::ReceiveBuffer* buffer, const std::string&) {
-  framewatch::parameter_table_t table{};
-  if (!decode(buffer, table)) return;
+  auto table = drivers::decode_parameter_table(payload(buffer));
+  if (!table) return;
   truth_.clear();
-  for (const std::string& name : table.name) {
+  for (const std::string& name : table->name) {
     const auto at = truth_by_name_.find(name);
     truth_.push_back(at == truth_by_name_.end() ? std::numeric_limits<double>::quiet_NaN()
                                                 : at->second);
@@ -66,8 +63,9 @@ void DemoView::on_parameters(const lcm::ReceiveBuffer* buffer, const std::string
 }
 
 void DemoView::on_estimate(const lcm::ReceiveBuffer* buffer, const std::string&) {
-  framewatch::window_estimate_t estimate{};
-  if (!decode(buffer, estimate)) return;
+  auto decoded = drivers::decode_window_estimate(payload(buffer));
+  if (!decoded) return;
+  window_estimate_t& estimate = *decoded;
   if (next_sequence_ >= 0) lost_ += std::max<std::int64_t>(estimate.sequence - next_sequence_, 0);
   next_sequence_ = estimate.sequence + 1;
   ++windows_;

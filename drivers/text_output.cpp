@@ -15,7 +15,7 @@ TextOutput::~TextOutput() {
 }
 
 bool TextOutput::fail() {
-  if (error_.empty()) error_ = path_ + ": " + std::strerror(errno);
+  if (error_.empty()) error_ = std::strerror(errno);
   return false;
 }
 
