@@ -28,4 +28,7 @@ function(framewatch_lcm_types target package)
   add_library(${target} INTERFACE)
   add_dependencies(${target} ${target}_headers)
   target_include_directories(${target} SYSTEM INTERFACE ${out} ${LCM_INCLUDE_DIR})
+  # LCM's own headers write doubles through int64_t pointers; with strict aliasing g++ 12 drops the
+  # doubles at -O2 and every sample leaves as 0.
+  target_compile_options(${target} INTERFACE -fno-strict-aliasing)
 endfunction()
