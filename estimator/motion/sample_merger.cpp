@@ -87,18 +87,18 @@ bool SampleMerger::push(const AccelSample& sample) {
     return true;
   }
   const double off = time_us - (phase_us_ + step_us_ * static_cast<double>(index - origin_));
-  if (!std::isfinite(sample.accel) || std::abs(off) > kOffGrid * step_us_) {
+  Instant& slot = instant(index);
+  if (std::abs(off) > kOffGrid * step_us_ || slot.has[axis] != 0) {
     ++counter.rejected;
     return true;
   }
   newest_ = std::max(newest_, index);
-  Instant& slot = instant(index);
-  if (slot.has[axis] != 0) {
+  // A sample that is no number still says that nothing better will come: nobody waits for it.
+  if (std::isfinite(sample.accel))
+    slot.accel[axis] = sample.accel;
+  else
     ++counter.rejected;
-    return true;
-  }
   slot.has[axis] = 1;
-  slot.accel[axis] = sample.accel;
   ++slot.delivered;
   silent_[axis] = 0;
   phase_us_ += kPhaseGain * off / static_cast<double>(silent_.size());
