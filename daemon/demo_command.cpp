@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -23,8 +22,6 @@
 
 namespace framewatch::daemon {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Beside LCM's usual port, so that a demo and a live system or another demo do not mix.
 int demo_port() {
@@ -124,8 +121,12 @@ int demo(const DemoArguments& a) {
     look();
     view.update(simulation.time_s(), a.seconds);
   }
-  const auto until = Clock::now() + std::chrono::milliseconds(200);
-  while (Clock::now() < until && source.handle(10)) look();
+  // The last messages may still be on their way on a busy machine.
+  for (std::int64_t seen = -1; seen != estimation.intake().counters().messages;) {
+    seen = estimation.intake().counters().messages;
+    if (!source.handle(300)) break;
+    look();
+  }
   estimation.finish();
   while (bus.view().handleTimeout(200) > 0) {
   }

@@ -12,15 +12,13 @@
 #include "daemon/config_section.h"
 #include "daemon/file_digest.h"
 #include "daemon/scenario_motion.h"
+#include "daemon/scenario_sensors.h"
 #include "daemon/scenario_truth.h"
 #include "daemon/toml_document.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;
-/// The delay is made by a filter that is longer by this at both ends.
-constexpr double kLongestDelay_s = 1;
 constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change"};
 
 /// The file in three parts: top keys, sections of the scenario, the rest (the building).
@@ -59,23 +57,6 @@ std::vector<const TomlValue*> tables(const Parts& parts, std::string_view name,
   return out;
 }
 
-/// Keys that are given replace what `model` holds.
-void read_sensor(ConfigSection& s, SensorModel& model, double& noise_ratio) {
-  const auto take = [&](const char* key, double& value, double factor = 1) {
-    if (s.given(key)) value = factor * s.number(key);
-  };
-  take("noise_mps2_per_rthz", model.noise_density);
-  take("noise_ratio", noise_ratio);
-  take("bias_mps2", model.bias);
-  take("ramp_mps3", model.thermal_ramp);
-  take("full_scale_g", model.full_scale, kStandardGravity);
-  if (s.given("bits")) model.bits = s.integer("bits");
-  take("loss_ratio", model.loss_ratio);
-  take("dead_from_s", model.dead_from_s);
-  take("dead_to_s", model.dead_to_s);
-  for (const std::string& rule : problems(model)) s.problem("", rule);
-}
-
 class ScenarioReader {
  public:
   ScenarioReader(Parts parts, std::string path, std::string digest, const Config* building,
@@ -91,6 +72,7 @@ class ScenarioReader {
     Scenario s;
     ConfigSection top("scenario", "scenario", &parts_.top, {1, 1}, problems_);
     const bool building = read_building(top, s.config);
+    if (!building) s.config = {};
     s.rate_hz = top.given("rate_hz") ? top.number("rate_hz") : s.config.pipeline.options.rate_hz;
     s.seed = static_cast<std::uint64_t>(top.integer("seed"));
 
@@ -102,7 +84,7 @@ class ScenarioReader {
       const PipelineConfig& p = s.config.pipeline;
       s.truth = read_truth(truth, p.structure, p.design);
     }
-    read_sensors(s, building);
+    read_sensors(section(parts_, "sensors"), tables(parts_, "sensor", problems_), s, problems_);
     read_changes(s, building);
 
     for (const TextProblem& p : problems_)
@@ -138,35 +120,6 @@ class ScenarioReader {
     config.path = path_;
     config.sha256 = sha256_;
     return read_config(parts_.building, config, problems_);
-  }
-
-  void read_sensors(Scenario& s, bool building) {
-    SensorModel common;
-    double common_ratio = 0;
-    ConfigSection all("sensors", "sensors", section(parts_, "sensors"), {1, 1}, problems_);
-    read_sensor(all, common, common_ratio);
-    const std::vector<SensorAxis>& axes = s.config.pipeline.axes;
-    s.sensors.assign(axes.size(), common);
-    s.noise_ratio.assign(axes.size(), common_ratio);
-    for (const TomlValue* table : tables(parts_, "sensor", problems_)) {
-      ConfigSection one("sensor", "sensor", table, {}, problems_);
-      const std::string name = one.text("channel");
-      const auto at = std::find_if(axes.begin(), axes.end(),
-                                   [&](const SensorAxis& a) { return a.name == name; });
-      const auto index = static_cast<std::size_t>(at - axes.begin());
-      SensorModel unknown;
-      double unknown_ratio = 0;
-      if (building && at == axes.end() && one.given("channel"))
-        one.problem("channel", fmt::format("no channel is named \"{}\"", name));
-      const bool known = at != axes.end();
-      read_sensor(one, known ? s.sensors[index] : unknown,
-                  known ? s.noise_ratio[index] : unknown_ratio);
-    }
-    for (const SensorAxis& axis : axes)
-      if (std::abs(axis.delay) > kLongestDelay_s)
-        out_.push_back(
-            {path_, fmt::format("channel \"{}\": a delay_s beyond {:g} s is not simulated",
-                                axis.name, kLongestDelay_s)});
   }
 
   void read_changes(Scenario& s, bool building) {
