@@ -62,6 +62,8 @@ void add_replay(CLI::App& app, Action& action) {
                    "LCM event logs and record files (CSV), in order of time")
       ->required();
   command->add_option("--out", arguments->out, "LCM event log to write the estimates to");
+  command->add_flag("--salvage", arguments->salvage,
+                    "replay what is intact of a damaged log instead of refusing it");
   command->add_flag("--quiet", arguments->quiet, "no progress, no summary");
   command->add_flag("--json", arguments->json, "the summary as JSON");
   command->callback([&action, arguments] {

@@ -122,7 +122,7 @@ int refine(const RefineArguments& a) {
     fmt::print(stderr, "framewatch refine: --to must be later than --from\n");
     return kBadInput;
   }
-  ReplaySurvey survey(*config);
+  ReplaySurvey survey(*config, false);
   for (const std::string& path : a.inputs) survey.add(path);
   survey.finish();
   for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", note);

@@ -88,11 +88,13 @@ int replay(const ReplayArguments& a) {
   if (!config) return kBadInput;
 
   const Clock::time_point start = Clock::now();
-  ReplaySurvey survey(*config);
+  ReplaySurvey survey(*config, a.salvage);
   for (const std::string& path : a.inputs) survey.add(path);
   survey.finish();
   for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", note);
   for (const std::string& problem : survey.problems()) fmt::print(stderr, "{}\n", problem);
+  if (survey.salvageable())
+    fmt::print(stderr, "framewatch replay: --salvage uses what is intact\n");
   if (!survey.problems().empty()) return kBadInput;
 
   drivers::LcmLogWriter writer;

@@ -39,8 +39,13 @@ std::string list(const std::map<std::string, std::int64_t>& channels) {
 
 }  // namespace
 
-ReplaySurvey::ReplaySurvey(const Config& config)
-    : config_(config), intake_(wanted_axes(config), [](const AccelSample&) {}) {}
+ReplaySurvey::ReplaySurvey(const Config& config, bool salvage)
+    : config_(config), salvage_(salvage), intake_(wanted_axes(config), [](const AccelSample&) {}) {}
+
+void ReplaySurvey::fault(std::string message) {
+  if (!salvage_) ++faults_;
+  (salvage_ ? notes_ : problems_).push_back(std::move(message));
+}
 
 void ReplaySurvey::add(const std::string& path) {
   std::error_code failure;
@@ -110,14 +115,13 @@ void ReplaySurvey::add_log(const std::string& path) {
     }
     damaged_bytes_ += reader.damage().bytes;
     if (++damages <= kDamageLines)
-      notes_.push_back(fmt::format("{}: byte {}: {}, {} bytes skipped: {}", path,
-                                   reader.damage().offset,
-                                   read == drivers::LogRead::truncated ? "truncated" : "damaged",
-                                   reader.damage().bytes, reader.damage().reason));
+      fault(fmt::format("{}: byte {}: {}, {} bytes skipped: {}", path, reader.damage().offset,
+                        read == drivers::LogRead::truncated ? "truncated" : "damaged",
+                        reader.damage().bytes, reader.damage().reason));
   }
   if (damages > kDamageLines)
-    notes_.push_back(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
-                                 damaged_bytes_ - damaged_before));
+    fault(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
+                      damaged_bytes_ - damaged_before));
   judge_log(path, seen, intake_.counters().malformed - malformed);
   inputs_.push_back({path, false, {}, {}});
 }
@@ -144,14 +148,14 @@ void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
 }
 
 void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed) {
-  if (malformed > 0)
-    (seen.samples == 0 ? problems_ : notes_)
-        .push_back(fmt::format("{}: byte {}: {} messages on our channels are no accel_t (size or "
-                               "fingerprint), this is the first",
-                               path, seen.first_malformed_offset, malformed));
+  const std::string malformed_text = fmt::format(
+      "{}: byte {}: {} messages on our channels are no accel_t (size or fingerprint), "
+      "this is the first",
+      path, seen.first_malformed_offset, malformed);
+  if (malformed > 0 && seen.samples > 0) fault(malformed_text);
+  if (malformed > 0 && seen.samples == 0) problems_.push_back(malformed_text);
   if (seen.infinite_offset >= 0)
-    notes_.push_back(fmt::format("{}: byte {}: infinite acceleration, rejected with all others",
-                                 path, seen.infinite_offset));
+    fault(fmt::format("{}: byte {}: infinite acceleration", path, seen.infinite_offset));
   if (seen.events == 0)
     problems_.push_back(fmt::format("{}: holds no intact LCM event", path));
   else if (seen.samples == 0 && malformed == 0)

@@ -25,7 +25,8 @@ struct ReplayInput {
 /// and whether it can be what the configuration describes.
 class ReplaySurvey {
  public:
-  explicit ReplaySurvey(const Config& config);
+  /// salvage: damaged, undecodable and infinite input is noted and left out instead of refused.
+  ReplaySurvey(const Config& config, bool salvage);
 
   void add(const std::string& path);
   /// To be called after the last add(): problems of the whole.
@@ -38,6 +39,8 @@ class ReplaySurvey {
   std::vector<ReplayInput>& inputs() { return inputs_; }
   std::int64_t bytes() const { return bytes_; }
   std::int64_t damaged_bytes() const { return damaged_bytes_; }
+  /// Nothing else is wrong than what --salvage leaves out.
+  bool salvageable() const { return faults_ > 0 && faults_ == problems_.size(); }
   double measured_seconds() const { return static_cast<double>(last_us_ - first_us_) * 1e-6; }
 
  private:
@@ -57,7 +60,10 @@ class ReplaySurvey {
   void check_rate(const std::string& place, double rate_hz);
   void extend(const std::string& path, std::int64_t first_us, std::int64_t last_us);
 
+  void fault(std::string message);
+
   const Config& config_;
+  bool salvage_;
   drivers::AccelIntake intake_;
   std::vector<ReplayInput> inputs_;
   std::vector<std::string> problems_, notes_;
@@ -66,6 +72,7 @@ class ReplaySurvey {
   std::int64_t first_us_ = 0, last_us_ = 0;  ///< of all samples
   std::int64_t log_first_us_ = 0, log_last_us_ = 0;
   bool any_ = false;
+  std::size_t faults_ = 0;
 };
 
 }  // namespace framewatch::daemon

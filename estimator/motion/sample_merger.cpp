@@ -88,18 +88,19 @@ bool SampleMerger::push(const AccelSample& sample) {
   }
   const double off = time_us - (phase_us_ + step_us_ * static_cast<double>(index - origin_));
   Instant& slot = instant(index);
-  if (std::abs(off) > kOffGrid * step_us_ || slot.has[axis] != 0) {
+  const bool taken = std::isfinite(slot.accel[axis]);
+  if (std::abs(off) > kOffGrid * step_us_ || taken) {
     ++counter.rejected;
     return true;
   }
   newest_ = std::max(newest_, index);
-  // A sample that is no number still says that nothing better will come: nobody waits for it.
+  // A sample that is no number still says the axis has delivered: nobody waits for a better one.
   if (std::isfinite(sample.accel))
     slot.accel[axis] = sample.accel;
   else
     ++counter.rejected;
+  if (slot.has[axis] == 0) ++slot.delivered;
   slot.has[axis] = 1;
-  ++slot.delivered;
   silent_[axis] = 0;
   phase_us_ += kPhaseGain * off / static_cast<double>(silent_.size());
   return true;

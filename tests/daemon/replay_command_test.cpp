@@ -35,7 +35,15 @@ Outcome replay_of(std::vector<std::string> inputs, const std::string& out = "", 
                   const std::string& config = test::table_config()) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  const int code = replay({config, std::move(inputs), out, false, json});
+  const int code = replay({config, std::move(inputs), out, false, false, json});
+  return {code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
+}
+
+/// replay --salvage of one log.
+Outcome salvage_of(const std::string& input, const std::string& out) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  const int code = replay({test::table_config(), {input}, out, true, false, false});
   return {code, testing::internal::GetCapturedStdout(), testing::internal::GetCapturedStderr()};
 }
 
@@ -156,21 +164,23 @@ TEST_F(Replay, SummaryCountsAndJson) {
   EXPECT_NE(json.out.find("\"name\": \"Gk_2_x1y1\", \"unit\": \"N/(rad*m)\""), std::string::npos);
 }
 
-TEST_F(Replay, TruncatedLogIsUsedUpToItsEndAndTold) {
+TEST_F(Replay, TruncatedLogIsRefusedOrSalvagedUpToItsEnd) {
   const std::string bytes = read_file(log());
   write_file(path("cut"), bytes.substr(0, bytes.size() - 10));
-  const Outcome o = replay_of({path("cut")}, path("est"));
+  expect_refused(path("cut"), "--salvage uses what is intact");
+  const Outcome o = salvage_of(path("cut"), path("est"));
   EXPECT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("truncated, "), std::string::npos) << o.err;
   EXPECT_NE(o.err.find("cut: byte "), std::string::npos) << o.err;
 }
 
-TEST_F(Replay, DamageCostsItsEventsOnly) {
+TEST_F(Replay, SalvagedDamageCostsItsEventsOnly) {
   std::string bytes = read_file(log());
   const auto offset = static_cast<std::size_t>(events_of(log())[3000].offset);
   bytes.erase(offset + 40, 1);
   write_file(path("bad"), bytes);
-  const Outcome o = replay_of({path("bad")}, path("est"));
+  expect_refused(path("bad"), "byte " + std::to_string(offset) + ": damaged");
+  const Outcome o = salvage_of(path("bad"), path("est"));
   EXPECT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("byte " + std::to_string(offset) + ": damaged"), std::string::npos) << o.err;
   EXPECT_NE(o.out.find("lost messages 1,"), std::string::npos) << o.out;
@@ -254,7 +264,7 @@ TEST_F(Replay, RefusesARecordWithoutOurChannels) {
   expect_refused(path("other.csv"), "no column is named like a channel");
 }
 
-TEST_F(Replay, TellsOfInfiniteSamples) {
+TEST_F(Replay, RefusesOrSalvagesInfiniteSamples) {
   rewrite(log(), path("inf"), [](LogEvent& event) {
     if (event.channel != "ACCEL") return true;
     auto sample = *drivers::decode_accel(event.data.data(), event.data.size());
@@ -262,7 +272,8 @@ TEST_F(Replay, TellsOfInfiniteSamples) {
     event.data = drivers::encode_accel(sample);
     return true;
   });
-  const Outcome o = replay_of({path("inf")}, path("est"));
+  expect_refused(path("inf"), "infinite acceleration");
+  const Outcome o = salvage_of(path("inf"), path("est"));
   EXPECT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("infinite acceleration"), std::string::npos) << o.err;
 }

@@ -96,7 +96,7 @@ TEST(SampleMerger, LateSampleIsCountedAndDropped) {
   EXPECT_EQ(b.counters(1).rejected, 0);
 }
 
-TEST(SampleMerger, BadSamplesAreRejectedAndTheirInstantStaysOpen) {
+TEST(SampleMerger, BadSamplesAreRejectedAndAGoodOneStillCounts) {
   Bench b;
   b.both(0);
   b.push(1, 0, std::numeric_limits<double>::quiet_NaN());
