@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "daemon/accuracy_trial.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"
 #include "estimator/structure/parameter_table.h"
+#include "tests/support/paper_buildings.h"
 
 namespace framewatch::test {
 namespace {
@@ -22,7 +22,7 @@ ExactStretch exact_stretch(const Structure& structure, const Eigen::VectorXd& tr
       linear_response(structure, ParameterTable(structure), truth, motion, {}, kWhole_s);
   const auto first = static_cast<Eigen::Index>(std::llround(from_s * kRate_hz));
   const auto last = static_cast<Eigen::Index>(std::llround(to_s * kRate_hz));
-  ExactStretch out{daemon::complete_axes(structure),
+  ExactStretch out{full_sensor_axes(structure),
                    response.accel_abs.middleRows(first, last - first + 1)};
   for (std::size_t a = 0; a < out.axes.size(); ++a) {
     const double rms =

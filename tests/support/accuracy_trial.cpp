@@ -1,4 +1,4 @@
-#include "daemon/accuracy_trial.h"
+#include "tests/support/accuracy_trial.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,9 @@
 #include <random>
 
 #include "estimator/simulate/linear_response.h"
+#include "tests/support/paper_buildings.h"
 
-namespace framewatch::daemon {
+namespace framewatch::test {
 namespace {
 
 /// Two-sided 95 % point of Student's t with 20 degrees of freedom: batch means have 20 blocks.
@@ -31,7 +32,7 @@ std::vector<WindowEstimate> run_trial(const AccuracyTrial& trial) {
   response_options.rate_hz = trial.options.rate_hz;
   const Response response = linear_response(trial.structure, table, trial.truth, trial.motion,
                                             response_options, trial.duration_s);
-  PipelineConfig config{trial.structure, complete_axes(trial.structure), trial.options,
+  PipelineConfig config{trial.structure, full_sensor_axes(trial.structure), trial.options,
                         trial.design};
   std::vector<double> sigma;
   for (std::size_t a = 0; a < config.axes.size(); ++a) {
@@ -75,27 +76,6 @@ Eigen::VectorXd perturbed_design(const ParameterTable& table, const Eigen::Vecto
   return design;
 }
 
-std::vector<SensorAxis> complete_axes(const Structure& s) {
-  std::vector<SensorAxis> axes;
-  for (int story = 1; story <= s.stories; ++story) {
-    for (int f = 0; f < s.frames(); ++f) {
-      SensorAxis axis;
-      axis.name = "F" + std::to_string(story) + "-" + s.frame_name(f);
-      axis.story = story;
-      axis.frame = f;
-      axis.direction = s.direction(f);
-      axes.push_back(axis);
-    }
-  }
-  for (const Direction direction : {Direction::x, Direction::y}) {
-    SensorAxis axis;
-    axis.name = direction == Direction::x ? "F0-x" : "F0-y";
-    axis.direction = direction;
-    axes.push_back(axis);
-  }
-  return axes;
-}
-
 void collect_errors(const std::vector<WindowEstimate>& windows, const ParameterTable& table,
                     const Eigen::VectorXd& truth, ErrorsByKind& errors) {
   for (const WindowEstimate& window : windows) {
@@ -127,4 +107,4 @@ double ErrorStatistics::coverage_ratio() const {
   return static_cast<double>(covered) / published;
 }
 
-}  // namespace framewatch::daemon
+}  // namespace framewatch::test

@@ -9,7 +9,7 @@
 #include "estimator/pipeline.h"
 #include "estimator/simulate/ground_motion.h"
 
-namespace framewatch::daemon {
+namespace framewatch::test {
 
 /// One run of the whole pipeline on exact motion of a known building with noisy accelerometers.
 struct AccuracyTrial {
@@ -32,9 +32,6 @@ std::vector<WindowEstimate> run_trial(const AccuracyTrial& trial);
 Eigen::VectorXd perturbed_design(const ParameterTable& table, const Eigen::VectorXd& truth,
                                  double frame_stiffness_off, double other_off, std::uint64_t seed);
 
-/// A sensor on every degree of freedom, story-major, named F1-y1, then the base axes F0-x, F0-y.
-std::vector<SensorAxis> complete_axes(const Structure& structure);
-
 /// Errors of one kind of parameter over windows and trials.
 struct ErrorStatistics {
   std::vector<double> relative_error;  ///< |solution / truth - 1|, published or not
@@ -52,4 +49,4 @@ using ErrorsByKind = std::array<ErrorStatistics, 4>;
 void collect_errors(const std::vector<WindowEstimate>& windows, const ParameterTable& table,
                     const Eigen::VectorXd& truth, ErrorsByKind& errors);
 
-}  // namespace framewatch::daemon
+}  // namespace framewatch::test
