@@ -1,5 +1,4 @@
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -18,60 +17,53 @@
 // into plain argument structs; every command lives in its own file.
 namespace {
 
+using namespace framewatch::daemon;
+
 /// What the chosen subcommand will do; set by its CLI11 callback.
 using Action = std::function<int()>;
 
-void add_demo(CLI::App& app, Action& action) {
+void add_demo(CLI::App& app, Action& action, DemoArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "demo",
       "a virtual two-story shaking-table test over LCM, with a table of truth and estimate");
   command->footer("Example: framewatch demo --seconds 30");
-  auto arguments = std::make_shared<framewatch::daemon::DemoArguments>();
-  command->add_option("--seconds", arguments->seconds, "how long the table shakes")
+  command->add_option("--seconds", arguments.seconds, "how long the table shakes")
       ->check(CLI::Range(1, 3600))
       ->capture_default_str();
-  command->add_flag("--quiet", arguments->quiet, "only whether the stiffnesses were found");
-  command->callback([&action, arguments] {
-    action = [arguments] { return framewatch::daemon::demo(*arguments); };
-  });
+  command->add_flag("--quiet", arguments.quiet, "only whether the stiffnesses were found");
+  command->callback([&action, &arguments] { action = [&arguments] { return demo(arguments); }; });
 }
 
-void add_run(CLI::App& app, Action& action) {
+void add_run(CLI::App& app, Action& action, RunArguments& arguments) {
   CLI::App* command = app.add_subcommand("run", "the daemon: live samples in, estimates out (LCM)");
   command->footer("Example: framewatch run configs/table_two_story.toml");
-  auto arguments = std::make_shared<framewatch::daemon::RunArguments>();
-  command->add_option("CONFIG", arguments->config, "configuration file (TOML)")->required();
-  command->add_option("--url", arguments->url, "LCM provider instead of the configuration's");
-  command->add_flag("--quiet", arguments->quiet, "only what goes wrong");
-  command->callback([&action, arguments] {
-    action = [arguments] { return framewatch::daemon::run(*arguments); };
-  });
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");
+  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  command->callback([&action, &arguments] { action = [&arguments] { return run(arguments); }; });
 }
 
-void add_replay(CLI::App& app, Action& action) {
+void add_replay(CLI::App& app, Action& action, ReplayArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "replay", "the estimates of recorded motion, as fast as possible, the same bytes every time");
   command->footer(
       "Examples:\n"
       "  framewatch replay building.toml monday.lcmlog tuesday.lcmlog --out estimates.lcmlog\n"
       "  framewatch replay building.toml record.csv --json");
-  auto arguments = std::make_shared<framewatch::daemon::ReplayArguments>();
-  command->add_option("CONFIG", arguments->config, "configuration file (TOML)")->required();
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
   command
-      ->add_option("LOG", arguments->inputs,
+      ->add_option("LOG", arguments.inputs,
                    "LCM event logs and record files (CSV), in order of time")
       ->required();
-  command->add_option("--out", arguments->out, "LCM event log to write the estimates to");
-  command->add_flag("--salvage", arguments->salvage,
+  command->add_option("--out", arguments.out, "LCM event log to write the estimates to");
+  command->add_flag("--salvage", arguments.salvage,
                     "replay what is intact of a damaged log instead of refusing it");
-  command->add_flag("--quiet", arguments->quiet, "no progress, no summary");
-  command->add_flag("--json", arguments->json, "the summary as JSON");
-  command->callback([&action, arguments] {
-    action = [arguments] { return framewatch::daemon::replay(*arguments); };
-  });
+  command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
+  command->add_flag("--json", arguments.json, "the summary as JSON");
+  command->callback([&action, &arguments] { action = [&arguments] { return replay(arguments); }; });
 }
 
-void add_refine(CLI::App& app, Action& action) {
+void add_refine(CLI::App& app, Action& action, RefineArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "refine",
       "maximum-likelihood estimate from one stretch of recorded motion, and the least error\n"
@@ -79,40 +71,36 @@ void add_refine(CLI::App& app, Action& action) {
   command->footer(
       "Exit status: 0 refined, 1 not (too short, quiet, ...), 2 bad usage or input.\n"
       "Example: framewatch refine building.toml record.lcmlog --from 12 --to 22");
-  auto arguments = std::make_shared<framewatch::daemon::RefineArguments>();
-  command->add_option("CONFIG", arguments->config, "configuration file (TOML)")->required();
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
   command
-      ->add_option("LOG", arguments->inputs,
+      ->add_option("LOG", arguments.inputs,
                    "LCM event logs and record files (CSV), in order of time")
       ->required();
-  command->add_option("--from", arguments->from_s, "seconds after the first sample")
+  command->add_option("--from", arguments.from_s, "seconds after the first sample")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command->add_option("--to", arguments->to_s, "likewise (default: one window after --from)")
+  command->add_option("--to", arguments.to_s, "likewise (default: one window after --from)")
       ->check(CLI::PositiveNumber);
-  command->add_flag("!--no-prior", arguments->prior, "do not pull toward the design");
-  command->add_flag("--json", arguments->json, "print what a program would read");
-  command->callback([&action, arguments] {
-    action = [arguments] { return framewatch::daemon::refine(*arguments); };
-  });
+  command->add_flag("!--no-prior", arguments.prior, "do not pull toward the design");
+  command->add_flag("--json", arguments.json, "print what a program would read");
+  command->callback([&action, &arguments] { action = [&arguments] { return refine(arguments); }; });
 }
 
-void add_check(CLI::App& app, Action& action) {
+void add_check(CLI::App& app, Action& action, CheckArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "check", "every problem of a configuration at once, and what will be identifiable with it");
   command->footer("Example: framewatch check configs/table_two_story.toml");
-  auto arguments = std::make_shared<framewatch::daemon::CheckArguments>();
-  command->add_option("CONFIG", arguments->config, "configuration file (TOML)");
-  command->add_flag("--json", arguments->json, "print what a program would read");
-  command->add_flag("--print-options-markdown", arguments->print_options_markdown)->group("");
-  command->callback([&action, arguments] {
-    if (arguments->config.empty() && !arguments->print_options_markdown)
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
+  command->add_flag("--json", arguments.json, "print what a program would read");
+  command->add_flag("--print-options-markdown", arguments.print_options_markdown)->group("");
+  command->callback([&action, &arguments] {
+    if (arguments.config.empty() && !arguments.print_options_markdown)
       throw CLI::RequiredError("CONFIG");
-    action = [arguments] { return framewatch::daemon::check_command(*arguments); };
+    action = [&arguments] { return check_command(arguments); };
   });
 }
 
-void add_convert(CLI::App& app, Action& action) {
+void add_convert(CLI::App& app, Action& action, ConvertArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "convert", "records to LCM event logs or CSV, logs of accelerations or estimates to CSV");
   command->footer(
@@ -124,54 +112,63 @@ void add_convert(CLI::App& app, Action& action) {
       "  framewatch convert hachi.txt --unit gal --step 0.01 hachi.lcmlog\n"
       "  framewatch convert ground.csv.gz first.csv.gz second.csv.gz top.csv.gz run.lcmlog\n"
       "  framewatch convert est.lcmlog --boxplot est.csv");
-  auto files = std::make_shared<std::vector<std::string>>();
-  auto arguments = std::make_shared<framewatch::daemon::ConvertArguments>();
-  command->add_option("FILES", *files, "IN... OUT: record files or one event log, then the output")
+  command
+      ->add_option("FILES", arguments.inputs,
+                   "IN... OUT: record files or one event log, then the output")
       ->required()
       ->expected(2, 1000)
       ->type_name("");
-  command->add_option("--unit", arguments->unit, "of a file that does not say it: g, gal, mps2");
-  command->add_option("--step", arguments->step_s,
-                      "seconds between samples of a file without time");
-  command->add_option("--format", arguments->format, "csv, at2, two-columns, rows or xsens")
+  command->add_option("--unit", arguments.unit, "of a file that does not say it: g, gal, mps2");
+  command->add_option("--step", arguments.step_s, "seconds between samples of a file without time");
+  command->add_option("--format", arguments.format, "csv, at2, two-columns, rows or xsens")
       ->capture_default_str();
-  command->add_option("--config", arguments->config,
+  command->add_option("--config", arguments.config,
                       "configuration whose channels say where the columns of their names travel");
-  command->add_option("--channel", arguments->channel,
+  command->add_option("--channel", arguments.channel,
                       "LCM channel to write (default ACCEL) or to read");
-  command->add_flag("--boxplot", arguments->boxplot, "boxplot columns beside the estimates");
-  command->add_option("--start-us", arguments->start_us, "sensor time of a record's time zero");
-  command->callback([&action, files, arguments] {
-    arguments->inputs.assign(files->begin(), files->end() - 1);
-    arguments->out = files->back();
-    action = [arguments] { return framewatch::daemon::convert(*arguments); };
+  command->add_flag("--boxplot", arguments.boxplot, "boxplot columns beside the estimates");
+  command->add_option("--start-us", arguments.start_us, "sensor time of a record's time zero");
+  command->callback([&action, &arguments] {
+    arguments.out = arguments.inputs.back();
+    arguments.inputs.pop_back();
+    action = [&arguments] { return convert(arguments); };
   });
 }
 
-void add_simulate(CLI::App& app, Action& action) {
+void add_simulate(CLI::App& app, Action& action, SimulateArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("simulate", "a virtual building's accelerometers, to LCM or to a file");
   command->footer(
       "Examples:\n"
       "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
       "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2");
-  auto arguments = std::make_shared<framewatch::daemon::SimulateArguments>();
-  command->add_option("SCENARIO", arguments->scenario, "scenario file (TOML)")->required();
-  command->add_option("--out", arguments->out, "file to write: .csv, .csv.gz or .lcmlog");
-  CLI::Option* lcm = command->add_option("--lcm", arguments->lcm_url,
+  command->add_option("SCENARIO", arguments.scenario, "scenario file (TOML)")->required();
+  command->add_option("--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog");
+  CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
                                          "publish live, on this URL or the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
-  command->add_option("--speed", arguments->speed, "of --lcm, times real time")
+  command->add_option("--speed", arguments.speed, "of --lcm, times real time")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
-  command->add_option("--seconds", arguments->seconds, "instead of the scenario's duration")
+  command->add_option("--seconds", arguments.seconds, "instead of the scenario's duration")
       ->check(CLI::Range(1e-3, 1e6));
-  command->add_flag("--quiet", arguments->quiet, "no progress, no summary");
-  command->callback([&action, arguments, lcm] {
-    arguments->lcm = lcm->count() > 0;
-    action = [arguments] { return framewatch::daemon::simulate(*arguments); };
+  command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
+  command->callback([&action, &arguments, lcm] {
+    arguments.lcm = lcm->count() > 0;
+    action = [&arguments] { return simulate(arguments); };
   });
 }
+
+/// What every command can be told, as far as the command line tells it.
+struct Arguments {
+  DemoArguments demo;
+  RunArguments run;
+  ReplayArguments replay;
+  RefineArguments refine;
+  CheckArguments check;
+  ConvertArguments convert;
+  SimulateArguments simulate;
+};
 
 }  // namespace
 
@@ -183,15 +180,15 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", FRAMEWATCH_VERSION);
   Action action;
+  Arguments arguments;
 
-  // add_<command>(app, action) calls go here, one per command, in the order people meet them.
-  add_demo(app, action);
-  add_run(app, action);
-  add_replay(app, action);
-  add_refine(app, action);
-  add_check(app, action);
-  add_convert(app, action);
-  add_simulate(app, action);
+  add_demo(app, action, arguments.demo);
+  add_run(app, action, arguments.run);
+  add_replay(app, action, arguments.replay);
+  add_refine(app, action, arguments.refine);
+  add_check(app, action, arguments.check);
+  add_convert(app, action, arguments.convert);
+  add_simulate(app, action, arguments.simulate);
 
   try {
     app.parse(argc, argv);

@@ -1,6 +1,8 @@
 // What the estimator must reach on exact motion of the paper's buildings. The motion is the exact
 // response (first-order hold at 1 ms, band-limited, decimated), not the estimator's own scheme.
 
+#include <cmath>
+#include <ostream>
 #include <tuple>
 
 #include <gtest/gtest.h>
@@ -67,6 +69,10 @@ struct NoisyCase {
   double noise_ratio;
   double limit[3];  ///< k, G, c
 };
+
+void PrintTo(const NoisyCase& c, std::ostream* out) {
+  *out << "table " << c.which << ", noise " << c.noise_ratio;
+}
 
 class Noisy : public testing::TestWithParam<NoisyCase> {};
 
