@@ -11,29 +11,10 @@ namespace {
 
 /// Matched filters above this share of the sampling rate leave the triple's accurate band.
 constexpr double kHighestCorner = 0.2;
-
-/// Response of high-pass and one tap set to a unit impulse, long enough for the high-pass to decay.
-std::vector<double> impulse_response(const std::vector<double>& taps, const HighPass& hp,
-                                     std::size_t length) {
-  std::vector<double> high(length), out(length, 0.0);
-  double y1 = 0, y2 = 0;
-  for (std::size_t t = 0; t < length; ++t) {
-    const double change = t == 0 ? 1.0 : t == 1 ? -2.0 : t == 2 ? 1.0 : 0.0;
-    const double y = hp.gain * change - hp.a1 * y1 - hp.a2 * y2;
-    y2 = y1;
-    y1 = y;
-    high[t] = y;
-  }
-  for (std::size_t t = 0; t < length; ++t)
-    for (std::size_t k = 0; k < taps.size() && k <= t; ++k) out[t] += taps[k] * high[t - k];
-  return out;
-}
+/// Periods of the high-pass after which its impulse response is forgotten.
+constexpr double kDecay = 3;
 
 }  // namespace
-
-struct RowTuning::Noise {
-  double g00 = 0, g11 = 0, g22 = 0, g20 = 0;
-};
 
 RowTuning::RowTuning(const Structure& structure, const FloorLayout& layout,
                      const Deformations& deformations, const EstimatorOptions& options,
@@ -43,13 +24,12 @@ RowTuning::RowTuning(const Structure& structure, const FloorLayout& layout,
       layout_(&layout),
       deformations_(&deformations),
       options_(&options),
+      noise_filter_(triple, high_pass,
+                    static_cast<std::size_t>(kDecay * options.rate_hz / options.high_pass_hz)),
       theta0_(theta0) {
   for (int story = 1; story <= structure.stories; ++story)
     for (int f = 0; f < structure.frames(); ++f) mass_.push_back(structure.frame_mass(story, f));
   if (structure.floor == FloorModel::rigid) constraint_ = floor_constraint(structure);
-  const auto length = static_cast<std::size_t>(3 * options.rate_hz / options.high_pass_hz);
-  for (const std::vector<double>* taps : {&triple.value, &triple.first, &triple.second})
-    impulse_.push_back(impulse_response(*taps, high_pass, length));
 }
 
 std::vector<int> RowTuning::usable_equations(int floor,
@@ -125,76 +105,12 @@ Eigen::MatrixXd RowTuning::floor_modes(int floor, const std::vector<int>& equati
   return basis * solver.eigenvectors();
 }
 
-RowTuning::Noise RowTuning::filtered_noise(double gain, double a1, double a2) const {
-  Noise noise;
-  double s[3][2] = {};
-  for (std::size_t t = 0; t < impulse_[0].size(); ++t) {
-    double y[3];
-    for (std::size_t d = 0; d < 3; ++d) {
-      y[d] = gain * impulse_[d][t] - a1 * s[d][0] - a2 * s[d][1];
-      s[d][1] = s[d][0];
-      s[d][0] = y[d];
-    }
-    noise.g00 += y[0] * y[0];
-    noise.g11 += y[1] * y[1];
-    noise.g22 += y[2] * y[2];
-    noise.g20 += y[2] * y[0];
-  }
-  return noise;
-}
-
-RowTuning::FloorNoise RowTuning::floor_noise(int floor) const {
-  const int frames = layout_->frames();
-  const int panels = layout_->panels();
-  const int own = layout_->own();
-  const int unknowns = own + layout_->next(floor);
-  FloorNoise out;
-  const auto column = [&](int axis) {
-    const auto found = std::find(out.axes.begin(), out.axes.end(), axis);
-    if (found == out.axes.end()) out.axes.push_back(axis);
-    return found - out.axes.begin();
-  };
-  const int levels = layout_->next(floor) > 0 ? 3 : 2;
-  for (int level = floor; level < floor + levels; ++level)
-    for (int f = 0; f < frames; ++f)
-      for (const auto& share : deformations_->at(level, f)) column(share.axis);
-  const auto axes = static_cast<Eigen::Index>(out.axes.size());
-  out.motion = Eigen::MatrixXd::Zero(frames, axes);
-  out.deformation = Eigen::MatrixXd::Zero(unknowns, axes);
-  const auto add = [&](auto row, int level, int f, double coefficient) {
-    for (const auto& [axis, weight] : deformations_->at(level, f))
-      row[column(axis)] += coefficient * weight;
-  };
-  for (int f = 0; f < frames; ++f) add(out.motion.row(f), floor + 1, f, 1);
-  for (int p = 0; p < unknowns; ++p) {
-    const bool of_next = p >= own;
-    const int local = of_next ? p - own : p;
-    if (of_next || local < 2 * frames) {
-      const int upper = floor + (of_next ? 2 : 1);
-      add(out.deformation.row(p), upper, local % frames, 1);
-      add(out.deformation.row(p), upper - 1, local % frames, -1);
-    } else {
-      for (int f = 0; f < frames; ++f)
-        if (layout_->coefficient(p, f) != 0)
-          add(out.deformation.row(p), floor + 1, f, layout_->coefficient(p, f));
-    }
-    out.damping.push_back(of_next || local < 2 * frames ? local >= frames
-                                                        : local - 2 * frames >= panels);
-  }
-  out.variance.resize(axes);
-  for (Eigen::Index a = 0; a < axes; ++a)
-    out.variance[a] =
-        deformations_->noise_variance(out.axes[static_cast<std::size_t>(a)], options_->rate_hz);
-  out.covariance = out.deformation * out.variance.asDiagonal() * out.deformation.transpose();
-  return out;
-}
-
 void RowTuning::weigh(int floor, int r, const Eigen::VectorXd& phi, const FloorNoise& floor_noise,
                       FloorRows& out) const {
   const int frames = layout_->frames();
   const int unknowns = layout_->own() + layout_->next(floor);
   const auto row = static_cast<std::size_t>(r);
-  const Noise noise = filtered_noise(out.gain[row], out.a1[row], out.a2[row]);
+  const NoiseMoments noise = noise_filter_.through(out.gain[row], out.a1[row], out.a2[row]);
 
   Eigen::VectorXd force(unknowns);  // of the element, projected on the row, per unit deformation
   for (int p = 0; p < unknowns; ++p) {
@@ -315,7 +231,7 @@ FloorRows RowTuning::rows(int floor, const std::vector<std::uint8_t>& known) con
   const auto unknowns = static_cast<std::size_t>(layout_->front(floor) - 1);
   out.noise_energy.assign(unknowns * unknowns, 0.0);
   out.noise_right.assign(unknowns, 0.0);
-  const FloorNoise noise = floor_noise(floor);
+  const FloorNoise noise = floor_noise(*layout_, *deformations_, options_->rate_hz, floor);
   const double zeta = damping();
   for (int r = 0; r < out.rows; ++r) {
     const double w = std::tan(M_PI * frequency[r] / options_->rate_hz);

@@ -7,6 +7,8 @@
 
 #include "estimator/identify/deformations.h"
 #include "estimator/identify/floor_layout.h"
+#include "estimator/identify/floor_noise.h"
+#include "estimator/identify/noise_moments.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/motion_filter.h"
 #include "estimator/options.h"
@@ -69,22 +71,10 @@ class RowTuning {
   double detuning(const Eigen::VectorXd& theta) const;
 
  private:
-  struct Noise;  ///< second moments of filtered unit white noise
-  /// How the axes' noise enters a floor's motion and deformations.
-  struct FloorNoise {
-    std::vector<int> axes;
-    Eigen::VectorXd variance;     ///< per axis
-    Eigen::MatrixXd motion;       ///< frames x axes
-    Eigen::MatrixXd deformation;  ///< unknowns x axes
-    Eigen::MatrixXd covariance;   ///< unknowns x unknowns, of deformations
-    std::vector<bool> damping;    ///< per unknown: multiplies a rate, not a deformation
-  };
-  FloorNoise floor_noise(int floor) const;
   void pack_noise(int floor, FloorRows& out) const;
   double damping() const;
   std::vector<int> all_frames() const;
   std::vector<int> usable_equations(int floor, const std::vector<std::uint8_t>& known) const;
-  Noise filtered_noise(double gain, double a1, double a2) const;
   double design_at(int floor, int position) const {
     return theta0_[layout_->parameter(floor, position)];
   }
@@ -101,10 +91,10 @@ class RowTuning {
   const FloorLayout* layout_;
   const Deformations* deformations_;
   const EstimatorOptions* options_;
+  NoiseFilter noise_filter_;
   Eigen::VectorXd theta0_;
-  std::vector<double> mass_;                  ///< floors x frames
-  Eigen::MatrixXd constraint_;                ///< of rigid floors; empty when flexible
-  std::vector<std::vector<double>> impulse_;  ///< of high-pass and triple: p, p', p''
+  std::vector<double> mass_;    ///< floors x frames
+  Eigen::MatrixXd constraint_;  ///< of rigid floors; empty when flexible
 };
 
 }  // namespace framewatch

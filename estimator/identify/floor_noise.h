@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/deformations.h"
+#include "estimator/identify/floor_layout.h"
+
+namespace framewatch {
+
+/// How the sensor axes' noise enters one floor's motion and deformations.
+struct FloorNoise {
+  std::vector<int> axes;        ///< those that do
+  Eigen::VectorXd variance;     ///< of one sample, per axis, (m/s^2)^2
+  Eigen::MatrixXd motion;       ///< frames x axes
+  Eigen::MatrixXd deformation;  ///< front unknowns x axes
+  Eigen::MatrixXd covariance;   ///< front unknowns x front unknowns, of deformations
+  std::vector<bool> damping;    ///< per unknown: multiplies a rate, not a deformation
+};
+
+FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformations, double rate_hz,
+                       int floor);
+
+}  // namespace framewatch
