@@ -36,8 +36,8 @@ struct PipelineConfig {
 
 std::vector<std::string> problems(const PipelineConfig& config);
 
-/// Samples in, window estimates out. Never asks the time, never throws after construction, never
-/// allocates per sample once the input is steady.
+/// Samples in, window estimates out. Never asks the time, never throws after construction. Steady
+/// input is not allocated for, except by the tuning check once per window (options.self_tune).
 class Pipeline {
  public:
   using Sink = std::function<void(const WindowEstimate&)>;
