@@ -1,19 +1,18 @@
 #include "daemon/log.h"
 
-#include <unistd.h>
-
 #include <cstdio>
+#include <cstdlib>
 
 #include <fmt/core.h>
 
 namespace framewatch::daemon {
 
 void log(LogLevel level, const std::string& message) {
-  static const bool terminal = isatty(STDERR_FILENO) == 1;
-  if (terminal)
-    fmt::print(stderr, "framewatch: {}\n", message);
-  else
+  static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
+  if (journal)
     fmt::print(stderr, "<{}>framewatch: {}\n", static_cast<int>(level), message);
+  else
+    fmt::print(stderr, "framewatch: {}\n", message);
 }
 
 void RateLimitedLog::operator()(std::int64_t now_us, const std::string& message) {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include <fmt/core.h>
@@ -79,9 +80,25 @@ void replay_record(const ReplayInput& input, Estimation& estimation) {
   }
 }
 
+/// What is wrong with the name of the output; empty when nothing is.
+std::string output_problem(const ReplayArguments& a) {
+  if (a.out.empty()) return {};
+  if (!a.out.ends_with(".lcmlog"))
+    return a.out + ": the output's name must end in .lcmlog; framewatch convert makes a CSV of it";
+  std::vector<std::string> inputs = a.inputs;
+  inputs.push_back(a.config);
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (input == a.out || std::filesystem::equivalent(input, a.out, error))
+      return input + ": is input and output";
+  }
+  return {};
+}
+
 }  // namespace
 
 int replay(const ReplayArguments& a) {
+  if (const std::string problem = output_problem(a); !problem.empty()) return refuse(problem);
   std::vector<ConfigProblem> config_problems;
   const std::optional<Config> config = load_config(a.config, config_problems);
   for (const ConfigProblem& p : config_problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);

@@ -20,7 +20,10 @@ struct NodeSample {
 /// Bytes of one encoded accel_t.
 inline constexpr std::size_t kAccelBytes = 8 + 8 + 8 + 4 + 3 * 8;
 
-/// Empty unless `size` and fingerprint are exactly those of accel_t.
+/// Stamps beyond this, 285 years either way, are no stamps: arithmetic on them stays exact.
+inline constexpr std::int64_t kLatestTime_us = std::int64_t{1} << 53;
+
+/// Empty unless `size` and fingerprint are exactly those of accel_t and the stamp is one.
 std::optional<NodeSample> decode_accel(const void* data, std::size_t size);
 std::vector<std::uint8_t> encode_accel(const NodeSample& sample);
 

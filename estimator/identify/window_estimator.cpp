@@ -125,6 +125,7 @@ void WindowEstimator::restart() {
   active_->start(0);
   candidate_.reset();
   errors_known_ = false;
+  noise_scale_ = residual_energy_ = 0;
   since_hop_ = 0;
 }
 

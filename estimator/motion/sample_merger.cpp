@@ -76,7 +76,9 @@ bool SampleMerger::push(const AccelSample& sample) {
     }
   }
   strays_ = 0;
-  if (index >= first_open_ + static_cast<std::int64_t>(open_.size())) {
+  const double off = time_us - (phase_us_ + step_us_ * static_cast<double>(index - origin_));
+  const bool off_grid = std::abs(off) > kOffGrid * step_us_;
+  if (index >= first_open_ + static_cast<std::int64_t>(open_.size()) && !off_grid) {
     newest_ = index;
     return false;
   }
@@ -86,10 +88,8 @@ bool SampleMerger::push(const AccelSample& sample) {
     silent_[axis] = 0;
     return true;
   }
-  const double off = time_us - (phase_us_ + step_us_ * static_cast<double>(index - origin_));
   Instant& slot = instant(index);
-  const bool taken = std::isfinite(slot.accel[axis]);
-  if (std::abs(off) > kOffGrid * step_us_ || taken) {
+  if (off_grid || std::isfinite(slot.accel[axis])) {
     ++counter.rejected;
     return true;
   }

@@ -68,13 +68,14 @@ TEST(LiveEstimation, GivesTheBytesThatReplayGives) {
   const Collected live = run_live(config, directory.path("rec.lcmlog"));
   ASSERT_EQ(replay({test::table_config(),
                     {directory.path("rec.lcmlog")},
-                    directory.path("est"),
+                    directory.path("est.lcmlog"),
+                    false,
                     true,
                     false}),
             0);
   Payloads replayed;
   LcmLogReader reader;
-  ASSERT_TRUE(reader.open(directory.path("est")));
+  ASSERT_TRUE(reader.open(directory.path("est.lcmlog")));
   LogEvent event;
   while (reader.next(event) == LogRead::event)
     if (event.channel == "FRAMEWATCH_ESTIMATE") replayed.push_back(event.data);

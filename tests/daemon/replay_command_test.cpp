@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 
@@ -107,11 +108,11 @@ class Replay : public testing::Test {
 };
 
 TEST_F(Replay, TwoReplaysAreByteIdenticalAndHoldNoWallClock) {
-  ASSERT_EQ(replay_of({log()}, path("a")).exit_code, 0);
-  ASSERT_EQ(replay_of({log()}, path("b")).exit_code, 0);
-  EXPECT_GT(read_file(path("a")).size(), 100000u);
-  EXPECT_EQ(read_file(path("a")), read_file(path("b")));
-  for (const auto& bytes : payloads(path("a"), "FRAMEWATCH_STATUS")) {
+  ASSERT_EQ(replay_of({log()}, path("a.lcmlog")).exit_code, 0);
+  ASSERT_EQ(replay_of({log()}, path("b.lcmlog")).exit_code, 0);
+  EXPECT_GT(read_file(path("a.lcmlog")).size(), 100000u);
+  EXPECT_EQ(read_file(path("a.lcmlog")), read_file(path("b.lcmlog")));
+  for (const auto& bytes : payloads(path("a.lcmlog"), "FRAMEWATCH_STATUS")) {
     framewatch::status_t status{};
     ASSERT_GT(status.decode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
     EXPECT_EQ(status.latency_s, 0);
@@ -119,13 +120,13 @@ TEST_F(Replay, TwoReplaysAreByteIdenticalAndHoldNoWallClock) {
 }
 
 TEST_F(Replay, PublishesTableAndStatusEverySecondAndEveryWindow) {
-  ASSERT_EQ(replay_of({log()}, path("est")).exit_code, 0);
-  const std::vector<LogEvent> events = events_of(path("est"));
+  ASSERT_EQ(replay_of({log()}, path("est.lcmlog")).exit_code, 0);
+  const std::vector<LogEvent> events = events_of(path("est.lcmlog"));
   EXPECT_EQ(events.front().channel, "FRAMEWATCH_PARAMETERS");
-  EXPECT_EQ(payloads(path("est"), "FRAMEWATCH_PARAMETERS").size(), 14u);  // 0 to 12 s, end
-  EXPECT_EQ(payloads(path("est"), "FRAMEWATCH_STATUS").size(), 14u);
+  EXPECT_EQ(payloads(path("est.lcmlog"), "FRAMEWATCH_PARAMETERS").size(), 14u);  // 0 to 12 s, end
+  EXPECT_EQ(payloads(path("est.lcmlog"), "FRAMEWATCH_STATUS").size(), 14u);
   std::int64_t sequence = 0;
-  for (const auto& bytes : payloads(path("est"), "FRAMEWATCH_ESTIMATE")) {
+  for (const auto& bytes : payloads(path("est.lcmlog"), "FRAMEWATCH_ESTIMATE")) {
     framewatch::window_estimate_t estimate{};
     ASSERT_EQ(estimate.decode(bytes.data(), 0, static_cast<int>(bytes.size())),
               static_cast<int>(bytes.size()));
@@ -136,11 +137,11 @@ TEST_F(Replay, PublishesTableAndStatusEverySecondAndEveryWindow) {
 }
 
 TEST_F(Replay, ARecordGivesTheEstimatesOfItsLog) {
-  ASSERT_EQ(replay_of({log()}, path("log")).exit_code, 0);
-  ASSERT_EQ(replay_of({csv()}, path("csv")).exit_code, 0);
-  const auto from_log = payloads(path("log"), "FRAMEWATCH_ESTIMATE");
+  ASSERT_EQ(replay_of({log()}, path("of_log.lcmlog")).exit_code, 0);
+  ASSERT_EQ(replay_of({csv()}, path("of_csv.lcmlog")).exit_code, 0);
+  const auto from_log = payloads(path("of_log.lcmlog"), "FRAMEWATCH_ESTIMATE");
   EXPECT_GT(from_log.size(), 600u);
-  EXPECT_EQ(from_log, payloads(path("csv"), "FRAMEWATCH_ESTIMATE"));
+  EXPECT_EQ(from_log, payloads(path("of_csv.lcmlog"), "FRAMEWATCH_ESTIMATE"));
 }
 
 TEST_F(Replay, ALogInTwoPartsGivesTheSame) {
@@ -149,10 +150,10 @@ TEST_F(Replay, ALogInTwoPartsGivesTheSame) {
   const auto cut = static_cast<std::size_t>(events_of(log())[5001].offset);
   write_file(path("1"), bytes.substr(0, cut));
   write_file(path("2"), bytes.substr(cut));
-  ASSERT_EQ(replay_of({log()}, path("whole")).exit_code, 0);
-  const Outcome parts = replay_of({path("1"), path("2")}, path("parts"));
+  ASSERT_EQ(replay_of({log()}, path("whole.lcmlog")).exit_code, 0);
+  const Outcome parts = replay_of({path("1"), path("2")}, path("parts.lcmlog"));
   ASSERT_EQ(parts.exit_code, 0) << parts.err;
-  EXPECT_EQ(read_file(path("whole")), read_file(path("parts")));
+  EXPECT_EQ(read_file(path("whole.lcmlog")), read_file(path("parts.lcmlog")));
 }
 
 TEST_F(Replay, SummaryCountsAndJson) {
@@ -168,7 +169,7 @@ TEST_F(Replay, TruncatedLogIsRefusedOrSalvagedUpToItsEnd) {
   const std::string bytes = read_file(log());
   write_file(path("cut"), bytes.substr(0, bytes.size() - 10));
   expect_refused(path("cut"), "--salvage uses what is intact");
-  const Outcome o = salvage_of(path("cut"), path("est"));
+  const Outcome o = salvage_of(path("cut"), path("est.lcmlog"));
   EXPECT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("truncated, "), std::string::npos) << o.err;
   EXPECT_NE(o.err.find("cut: byte "), std::string::npos) << o.err;
@@ -180,7 +181,7 @@ TEST_F(Replay, SalvagedDamageCostsItsEventsOnly) {
   bytes.erase(offset + 40, 1);
   write_file(path("bad"), bytes);
   expect_refused(path("bad"), "byte " + std::to_string(offset) + ": damaged");
-  const Outcome o = salvage_of(path("bad"), path("est"));
+  const Outcome o = salvage_of(path("bad"), path("est.lcmlog"));
   EXPECT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("byte " + std::to_string(offset) + ": damaged"), std::string::npos) << o.err;
   EXPECT_NE(o.out.find("lost messages 1,"), std::string::npos) << o.out;
@@ -206,10 +207,10 @@ TEST_F(Replay, ForeignChannelsAreCountedAndIgnored) {
     ASSERT_TRUE(writer.write(e.timestamp_us, "CAMERA", "jpeg", 4));
   }
   ASSERT_TRUE(writer.close());
-  ASSERT_EQ(replay_of({log()}, path("pure.est")).exit_code, 0);
-  ASSERT_EQ(replay_of({path("mixed")}, path("mixed.est")).exit_code, 0);
-  EXPECT_EQ(payloads(path("pure.est"), "FRAMEWATCH_ESTIMATE"),
-            payloads(path("mixed.est"), "FRAMEWATCH_ESTIMATE"));
+  ASSERT_EQ(replay_of({log()}, path("pure.lcmlog")).exit_code, 0);
+  ASSERT_EQ(replay_of({path("mixed")}, path("mixed_est.lcmlog")).exit_code, 0);
+  EXPECT_EQ(payloads(path("pure.lcmlog"), "FRAMEWATCH_ESTIMATE"),
+            payloads(path("mixed_est.lcmlog"), "FRAMEWATCH_ESTIMATE"));
 }
 
 TEST_F(Replay, RefusesWhatIsNotThere) {
@@ -254,7 +255,7 @@ TEST_F(Replay, RefusesTimeRunningBackwards) {
     return true;
   });
   expect_refused(path("back"), "time runs backwards");
-  const Outcome twice = replay_of({log(), log()}, path("est"));
+  const Outcome twice = replay_of({log(), log()}, path("est.lcmlog"));
   EXPECT_EQ(twice.exit_code, 2);
   EXPECT_NE(twice.err.find("time runs backwards"), std::string::npos);
 }
@@ -273,14 +274,30 @@ TEST_F(Replay, RefusesOrSalvagesInfiniteSamples) {
     return true;
   });
   expect_refused(path("inf"), "infinite acceleration");
-  const Outcome o = salvage_of(path("inf"), path("est"));
+  const Outcome o = salvage_of(path("inf"), path("est.lcmlog"));
   EXPECT_EQ(o.exit_code, 0);
   EXPECT_NE(o.err.find("infinite acceleration"), std::string::npos) << o.err;
 }
 
+TEST_F(Replay, NeverWritesOverItsInputs) {
+  const std::string before = read_file(log());
+  EXPECT_EQ(replay_of({log()}, log()).exit_code, 2);
+  EXPECT_EQ(read_file(log()), before);
+  const Outcome config = replay_of({log()}, path("own.lcmlog"), false, path("own.lcmlog"));
+  EXPECT_EQ(config.exit_code, 2);
+  EXPECT_NE(config.err.find("is input and output"), std::string::npos) << config.err;
+}
+
+TEST_F(Replay, RefusesAnOutputThatIsNoLog) {
+  const Outcome o = replay_of({log()}, path("est.csv"));
+  EXPECT_EQ(o.exit_code, 2);
+  EXPECT_NE(o.err.find("must end in .lcmlog"), std::string::npos) << o.err;
+  EXPECT_FALSE(std::filesystem::exists(path("est.csv")));
+}
+
 TEST_F(Replay, RefusesABadConfigurationOrOutput) {
-  EXPECT_EQ(replay_of({log()}, path("est"), false, "/nonexistent.toml").exit_code, 2);
-  const Outcome o = replay_of({log()}, path("no/such/directory/est"));
+  EXPECT_EQ(replay_of({log()}, path("est.lcmlog"), false, "/nonexistent.toml").exit_code, 2);
+  const Outcome o = replay_of({log()}, path("no/such/directory/est.lcmlog"));
   EXPECT_EQ(o.exit_code, 2);
   EXPECT_NE(o.err.find("No such file or directory"), std::string::npos);
 }
