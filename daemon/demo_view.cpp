@@ -119,9 +119,9 @@ int DemoView::finish() {
     fmt::print("FAILED: no estimate was received\n");
     return 1;
   }
-  if (terminal_ && !quiet_) {
-    draw(state());
-  } else if (!quiet_) {
+  if (!quiet_) {
+    // The live table is cut to the terminal's width; the last one is whole.
+    if (lines_drawn_ > 0) fmt::print("\x1b[{}A\x1b[0J", lines_drawn_);
     for (const std::string& line : estimate_table(*table_, estimate_, truth_))
       fmt::print("{}\n", line);
     fmt::print("{}\n", state());
