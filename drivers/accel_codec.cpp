@@ -1,7 +1,5 @@
 #include "drivers/accel_codec.h"
 
-#include <cstdlib>
-
 #include <framewatch/accel_t.hpp>
 
 namespace framewatch::drivers {
@@ -11,7 +9,7 @@ std::optional<NodeSample> decode_accel(const void* data, std::size_t size) {
   if (size != kAccelBytes) return std::nullopt;
   if (message.decode(data, 0, static_cast<int>(size)) != static_cast<int>(size))
     return std::nullopt;
-  if (std::abs(message.time_us) > kLatestTime_us) return std::nullopt;
+  if (message.time_us > kLatestTime_us || message.time_us < -kLatestTime_us) return std::nullopt;
   NodeSample sample{from_microseconds(message.time_us), message.sequence, message.node, {}};
   for (std::size_t i = 0; i < 3; ++i) sample.accel_abs_mps2[i] = message.accel_abs_mps2[i];
   return sample;
