@@ -87,7 +87,6 @@ class RowTuning {
     return mass_[static_cast<std::size_t>(floor * layout_->frames() + f)];
   }
 
-  const Structure* structure_;
   const FloorLayout* layout_;
   const Deformations* deformations_;
   const EstimatorOptions* options_;

@@ -32,24 +32,11 @@ std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o,
   return triples;
 }
 
-/// How far a design may usually be off, relative: also the width of the prior.
-double tolerance(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::frame_stiffness:
-      return 0.1;
-    case ParameterKind::panel_stiffness:
-    case ParameterKind::frame_damping:
-      return 0.3;
-    case ParameterKind::panel_damping:
-      return 0.5;
-  }
-  return 0.1;
-}
-
 std::vector<double> tolerances(const FloorLayout& layout, const ParameterTable& table) {
   std::vector<double> out;
   for (int u = 0; u < layout.unknowns(); ++u)
-    out.push_back(tolerance(table[layout.parameter(u / layout.own(), u % layout.own())].kind));
+    out.push_back(
+        design_tolerance(table[layout.parameter(u / layout.own(), u % layout.own())].kind));
   return out;
 }
 
@@ -85,12 +72,12 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
                                2 * kCatchUp),
       noise_(layout_),
       solver_(layout_),
-      batch_means_(layout_, kBlocks, tolerances(layout_, table_)),
+      tolerance_(tolerances(layout_, table_)),
+      batch_means_(layout_, kBlocks, tolerance_),
       boxplots_(static_cast<std::size_t>(table_.size()), BoxplotWindow(options_.boxplot_windows)) {
   const auto unknowns = static_cast<std::size_t>(layout_.unknowns());
   prior_.assign(unknowns, 0.0);
   prior_share_.assign(unknowns, 0.0);
-  tolerance_ = tolerances(layout_, table_);
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const int parameter = layout_.parameter(u / layout_.own(), u % layout_.own());
     const ParameterKind kind = table_[parameter].kind;

@@ -54,6 +54,7 @@ class WindowEstimator {
   std::unique_ptr<Machine> active_, candidate_;
   NoiseShare noise_;
   StorySolver solver_;
+  std::vector<double> tolerance_;  ///< of the design, internal order
   BatchMeans batch_means_;
   bool errors_known_ = false;  ///< batch means exist for the present run of windows
   bool tuned_ = false;         ///< a check has found the filters right
@@ -62,7 +63,7 @@ class WindowEstimator {
   double residual_energy_ = 0;
   double noise_scale_ = 0;         ///< residual energy over what sensor noise explains
   std::vector<Unknown> unknowns_;  ///< internal order
-  std::vector<double> tolerance_, prior_, inverse_diagonal_, prior_share_;
+  std::vector<double> prior_, inverse_diagonal_, prior_share_;
   bool noise_configured_;  ///< of every axis
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;

@@ -23,17 +23,6 @@ constexpr double kLeastSnr = 10;         ///< of a frame stiffness' information 
 constexpr double kLeastCurvature = 0.2;  ///< of a step's information over that with noise
 constexpr double kLeastSignal = 1e-3;    ///< the same, of the standard errors
 
-double tolerance_of(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::frame_stiffness:
-      return 0.1;
-    case ParameterKind::panel_damping:
-      return 0.5;
-    default:
-      return 0.3;
-  }
-}
-
 /// `information` without the part that is noise, no direction of it below `least` of the whole.
 MatrixXd signal_part(const MatrixXd& information, const MatrixXd& noise_part, double least) {
   const VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();
@@ -61,7 +50,7 @@ class Refiner {
         prior_(VectorXd::Zero(table.size())) {
     if (!options.prior) return;
     for (int p = 0; p < table.size(); ++p)
-      prior_[p] = 1 / (tolerance_of(table[p].kind) * tolerance_of(table[p].kind));
+      prior_[p] = 1 / (design_tolerance(table[p].kind) * design_tolerance(table[p].kind));
   }
 
   Refinement run(VectorXd x) {

@@ -52,6 +52,19 @@ std::optional<int> ParameterTable::find(const std::string& name) const {
   return std::nullopt;
 }
 
+double design_tolerance(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::frame_stiffness:
+      return 0.1;
+    case ParameterKind::panel_stiffness:
+    case ParameterKind::frame_damping:
+      return 0.3;
+    case ParameterKind::panel_damping:
+      return 0.5;
+  }
+  return 0.1;
+}
+
 Eigen::VectorXd with_proportional_damping(const Structure& structure, const ParameterTable& table,
                                           Eigen::VectorXd theta, double damping_ratio) {
   const double w1 = 2 * M_PI * natural_frequencies_hz(structure, table, theta).front();

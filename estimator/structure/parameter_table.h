@@ -50,6 +50,9 @@ class ParameterTable {
   std::vector<Parameter> parameters_;
 };
 
+/// How far a design may usually be off, relative: also the width of the estimators' priors.
+double design_tolerance(ParameterKind kind);
+
 /// theta with every stiffness given and damping proportional to it, C = (2 h / w1) K, where w1 is
 /// the lowest undamped natural circular frequency: how the paper's examples set damping.
 Eigen::VectorXd with_proportional_damping(const Structure& structure, const ParameterTable& table,
