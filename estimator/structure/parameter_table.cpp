@@ -3,17 +3,9 @@
 #include <cmath>
 
 #include "estimator/structure/matrices.h"
+#include "estimator/structure/place_names.h"
 
 namespace framewatch {
-namespace {
-
-std::string panel_name(const Structure& s, int panel) {
-  const int columns = s.m() - 1;
-  return s.frames_y[static_cast<std::size_t>(panel % columns)] +
-         s.frames_x[static_cast<std::size_t>(panel / columns)];
-}
-
-}  // namespace
 
 ParameterTable::ParameterTable(const Structure& s)
     : stories_(s.stories), n_(s.n()), m_(s.m()), panels_(s.panels()) {

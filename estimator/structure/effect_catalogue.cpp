@@ -1,0 +1,280 @@
+#include <limits>
+
+#include "estimator/structure/effect.h"
+
+namespace framewatch {
+namespace {
+
+using enum EffectKind;
+
+constexpr double kAny = 1e15;
+constexpr double kLong_s = 1e6;
+
+/// Any size of either sign.
+EffectParameter either_sign(std::string_view key, std::string_view unit, std::string_view meaning) {
+  return {key, unit, std::nullopt, -kAny, kAny, false, meaning};
+}
+
+EffectParameter positive(std::string_view key, std::string_view unit, std::string_view meaning) {
+  return {key, unit, std::nullopt, 0, kAny, true, meaning};
+}
+
+/// An effect's size: 0 is no effect.
+EffectParameter not_negative(std::string_view key, std::string_view unit,
+                             std::string_view meaning) {
+  return {key, unit, std::nullopt, 0, kAny, false, meaning};
+}
+
+EffectParameter within(std::string_view key, std::string_view unit, std::optional<double> usual,
+                       double min, double max, std::string_view meaning) {
+  return {key, unit, usual, min, max, false, meaning};
+}
+
+constexpr std::string_view kHystereticSign =
+    "kh > 0 resists. It comes on top of k: k + kh at first, k after yielding. Dissipates.";
+
+const EffectParameter kHystereticStiffness =
+    not_negative("kh_npm", "N/m", "stiffness of the hysteretic part");
+const EffectParameter kYieldDeformation =
+    positive("dy_m", "m", "largest elastic deformation z of the hysteretic part");
+const EffectParameter kSmoothness =
+    within("exponent", "", 2.0, 1, 50, "n: sharpness of yielding, 1 round");
+const EffectParameter kUnloading =
+    within("beta", "", 0.5, 0.5, 1,
+           "share of the loop's shape that dissipates; 0.5: unloading "
+           "is linear");
+
+std::vector<EffectDescription> make_catalogue() {
+  const std::vector<PlaceKind> element{PlaceKind::frame, PlaceKind::panel};
+  const std::vector<PlaceKind> frame{PlaceKind::frame};
+  const std::vector<PlaceKind> node{PlaceKind::node};
+  const std::vector<PlaceKind> pair{PlaceKind::node_pair};
+  const std::vector<PlaceKind> building{PlaceKind::building};
+  const std::vector<PlaceKind> channel{PlaceKind::channel};
+  const std::vector<PlaceKind> channels{PlaceKind::channel_pair};
+  return {
+      {cubic_stiffness,
+       "cubic_stiffness",
+       element,
+       {either_sign("k3_npm3", "N/m^3", "cubic stiffness")},
+       "f = k3 d^3",
+       "k3 > 0 hardens, k3 < 0 softens.",
+       "Duffing 1918; Wigren and Schoukens 2013 (Silverbox)"},
+      {quadratic_stiffness,
+       "quadratic_stiffness",
+       element,
+       {either_sign("k2_npm2", "N/m^2", "quadratic stiffness")},
+       "f = k2 d abs(d)",
+       "k2 > 0 hardens, k2 < 0 softens, alike in both directions.",
+       "Nayfeh and Mook, Nonlinear Oscillations, 1979"},
+      {bilinear_hysteresis,
+       "bilinear_hysteresis",
+       element,
+       {kHystereticStiffness, kYieldDeformation},
+       "f = kh z; z' = v while abs(z) < dy or z v < 0, else 0",
+       kHystereticSign,
+       "Caughey, J. Appl. Mech. 27 (1960)"},
+      {bouc_wen,
+       "bouc_wen",
+       element,
+       {kHystereticStiffness, kYieldDeformation, kSmoothness, kUnloading},
+       "f = kh z; z' = v (1 - abs(z/dy)^n (beta sgn(v z) + 1 - beta))",
+       kHystereticSign,
+       "Wen, J. Eng. Mech. Div. 102 (1976), normalised so that z ends at dy"},
+      {pinching,
+       "pinching",
+       frame,
+       {kHystereticStiffness,
+        kYieldDeformation,
+        kSmoothness,
+        kUnloading,
+        within("slip_ratio", "", std::nullopt, 0, 0.99,
+               "p: share of the stiffness that is lost where the force is small"),
+        {"slip_width", "", 0.2, 0, 2, true, "w: half width of the slip zone, in units of dy"}},
+       "f = kh z; z' = h v (1 - abs(z/dy)^n (beta sgn(v z) + 1 - beta)); "
+       "h = 1 - p exp(-(z/(w dy))^2)",
+       "As bouc_wen; p = 0 is bouc_wen.",
+       "Baber and Noori, J. Eng. Mech. 111 (1985), slip zone about zero force"},
+      {coulomb_friction,
+       "coulomb_friction",
+       element,
+       {not_negative("fc_n", "N", "friction force"),
+        positive("v0_mps", "m/s", "velocity below which the force gives way smoothly")},
+       "f = fc tanh(v/v0)",
+       "fc > 0 resists the velocity. Dissipates.",
+       "Den Hartog, Trans. ASME 53 (1931), regularised"},
+      {quadratic_damping,
+       "quadratic_damping",
+       frame,
+       {not_negative("c2_ns2pm2", "N*s^2/m^2", "quadratic damping")},
+       "f = c2 v abs(v)",
+       "c2 > 0 resists the velocity. Dissipates.",
+       "Nayfeh and Mook, Nonlinear Oscillations, 1979"},
+      {one_sided_gap,
+       "one_sided_gap",
+       frame,
+       {not_negative("kg_npm", "N/m", "stiffness in contact"),
+        within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact"),
+        within("side", "", 1.0, -1, 1, "s: 1 closes toward positive deformation, -1 negative")},
+       "f = s kg max(s d - g, 0)",
+       "kg > 0 pushes back.",
+       "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988), without dashpot"},
+      {two_sided_gap,
+       "two_sided_gap",
+       frame,
+       {not_negative("kg_npm", "N/m", "stiffness in contact"),
+        within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact")},
+       "f = kg (max(d - g, 0) - max(-d - g, 0))",
+       "kg > 0 pushes back. A brace with play.",
+       "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988), without dashpot"},
+      {p_delta,
+       "p_delta",
+       frame,
+       {not_negative("weight_n", "N", "W: weight that the frame story carries")},
+       "f = -(W/h) d, h the story height",
+       "W > 0 weakens. The same as a lower k: only known weights tell them apart.",
+       "Wilson and Habibullah, Eng. J. AISC 24 (1987)"},
+      {extra_mass,
+       "extra_mass",
+       {PlaceKind::crossing},
+       {either_sign("mass_kg", "kg", "mass beside node_mass_kg")},
+       "m y'' grows by dm y'' in both directions at the crossing, and so does its inertia under "
+       "the ground's acceleration",
+       "dm > 0: heavier than configured.",
+       "Newton's second law"},
+      {tuned_mass_damper,
+       "tuned_mass_damper",
+       node,
+       {not_negative("mass_kg", "kg", "m: hidden mass, beside node_mass_kg"),
+        positive("frequency_hz", "Hz", "F: of the mass on its spring, the floor held"),
+        within("damping_ratio", "", std::nullopt, 0, 2, "h: likewise")},
+       "m (q'' + a_abs) + c q' + k q = 0, q relative to the node, a_abs its absolute acceleration; "
+       "k = m (2 pi F)^2; c = 2 h m 2 pi F; k q + c q' pulls the node",
+       "q > 0 pulls the node toward positive.",
+       "Den Hartog, Mechanical Vibrations, 1956"},
+      {base_rocking,
+       "base_rocking",
+       building,
+       {positive("kr_nmprad", "N*m/rad", "K: rotational stiffness of the base")},
+       "every story's frames of the direction deform by d = drift - h_i phi, phi the base's "
+       "rotation; K phi = sum over stories of h_i k d (moment of the elastic story shears); "
+       "dashpots and added laws take the same d",
+       "Smaller K is softer; 1/K = 0 is none. phi > 0 leans toward positive.",
+       "Veletsos and Meek, Earthquake Eng. Struct. Dyn. 3 (1974), without rotary inertia"},
+      {frame_bending,
+       "frame_bending",
+       building,
+       {positive("kr_nmprad", "N*m/rad", "K: rotational stiffness of every frame at every floor")},
+       "in each frame of the direction a hinge at every floor j = 0..N-1 turns all above it: "
+       "d_i = drift_i - h_i sum over j < i of phi_j; K phi_j = sum over i > j of h_i k_i d_i; "
+       "dashpots and added laws take the same d",
+       "Smaller K is softer; 1/K = 0 is none. phi > 0 leans toward positive.",
+       "Stafford Smith and Coull, Tall Building Structures, 1991, columns as hinged segments"},
+      {added_spring,
+       "added_spring",
+       pair,
+       {either_sign("k_npm", "N/m", "stiffness between the two floors")},
+       "f = k (y_story - y_to_story), on one frame",
+       "k > 0 resists.",
+       "Hooke's law"},
+      {added_damper,
+       "added_damper",
+       pair,
+       {not_negative("c_nspm", "N*s/m", "dashpot between the two floors")},
+       "f = c (y'_story - y'_to_story), on one frame; to_story = 0: the base",
+       "c > 0 resists. Dissipates.",
+       "Newton's law of viscosity"},
+      {stiffness_drop,
+       "stiffness_drop",
+       element,
+       {either_sign("dk_npm", "N/m", "change of the stiffness"),
+        within("at_s", "s", std::nullopt, 0, kLong_s, "t0: when")},
+       "f = dk d from t0 on",
+       "dk < 0 loses stiffness.",
+       "Shintani, Yoshitomi and Takewaki, Front. Built Environ. 5:103 (2019), section on damage"},
+      {stiffness_drift,
+       "stiffness_drift",
+       element,
+       {either_sign("dk_npm", "N/m", "change of the stiffness at the end"),
+        within("from_s", "s", 0.0, 0, kLong_s, "t0: when it begins"),
+        {"duration_s", "s", std::nullopt, 0, kLong_s, true, "T: how long it takes"}},
+       "f = dk clip((t - t0)/T, 0, 1) d",
+       "dk < 0 loses stiffness.",
+       "Clinton et al., Bull. Seismol. Soc. Am. 96 (2006): wander of frequencies"},
+      {floor_flexibility,
+       "floor_flexibility",
+       {PlaceKind::floor},
+       {positive("gk_nprad", "N/(rad*m)", "G: shear stiffness of each panel of the floor"),
+        not_negative("gc_nsprad", "N*s/(rad*m)", "its damping")},
+       "the floor of a building with floor = \"rigid\" moves as with floor = \"flexible\"",
+       "Smaller G is softer; 1/G = 0 is rigid.",
+       "Shintani, Yoshitomi and Takewaki, Front. Built Environ. 5:103 (2019), equation (12)"},
+      {unmeasured_force,
+       "unmeasured_force",
+       node,
+       {within("amplitude_n", "N", 0.0, 0, kAny, "F: of a harmonic force"),
+        {"frequency_hz", "Hz", 1.0, 0, 1e4, true, "f: of the harmonic force"},
+        within("phase_rad", "rad", 0.0, -100, 100, "p: of the harmonic force"),
+        within("rms_n", "N", 0.0, 0, kAny, "of a stationary Gaussian force with a flat band"),
+        within("low_hz", "Hz", 0.1, 0, 1e4, "the band's lower end"),
+        {"high_hz", "Hz", 10.0, 0, 1e4, true, "the band's upper end"},
+        within("seed", "", 1.0, 0, 9e15, "of the Gaussian force"),
+        within("from_s", "s", 0.0, 0, kLong_s, "no force before")},
+       "p(t) = F sin(2 pi f t + p) + Gaussian force, on one degree of freedom",
+       "Positive pushes toward +x or +y.",
+       "Wind and machines: Chopra, Dynamics of Structures, 2017"},
+      {gain_error,
+       "gain_error",
+       channel,
+       {within("gain", "", std::nullopt, -1, 100, "g: relative error")},
+       "out = (1 + g) a",
+       "g > 0 reads too much.",
+       "IEEE Std 1293"},
+      {polarity, "polarity", channel, {}, "out = -a", "", "IEEE Std 1293"},
+      {misalignment,
+       "misalignment",
+       channels,
+       {within("angle_deg", "deg", std::nullopt, -90, 90, "q: from the channel's axis")},
+       "out = cos(q) a + sin(q) a_with",
+       "q > 0 turns the axis toward that of with_channel.",
+       "IEEE Std 1293"},
+      {time_shift,
+       "time_shift",
+       channel,
+       {within("shift_s", "s", std::nullopt, -0.5, 0.5, "T: delay")},
+       "out(t) = a(t - T)",
+       "T > 0: the channel is late.",
+       "definition of a delay"},
+      {clipping,
+       "clipping",
+       channel,
+       {positive("level_mps2", "m/s^2", "L: largest value")},
+       "out = min(max(a, -L), L)",
+       "",
+       "IEEE Std 1293"},
+      {bias_drift,
+       "bias_drift",
+       channel,
+       {either_sign("ramp_mps3", "m/s^2 per s", "slope"),
+        within("from_s", "s", 0.0, 0, kLong_s, "t0: when it begins")},
+       "out = a + ramp max(t - t0, 0)",
+       "ramp > 0 rises.",
+       "IEEE Std 1293"},
+      {swapped,
+       "swapped",
+       channels,
+       {},
+       "out = a_with, out_with = a: the two channels' motions are exchanged",
+       "",
+       "wiring"},
+  };
+}
+
+}  // namespace
+
+std::span<const EffectDescription> effect_catalogue() {
+  static const std::vector<EffectDescription> kCatalogue = make_catalogue();
+  return kCatalogue;
+}
+
+}  // namespace framewatch

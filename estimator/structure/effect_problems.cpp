@@ -1,0 +1,125 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "estimator/structure/effect.h"
+
+namespace framewatch {
+namespace {
+
+class Checker {
+ public:
+  Checker(const Effect& effect, const Structure& structure, const std::vector<SensorAxis>& axes)
+      : effect_(effect), place_(effect.place), s_(structure), axes_(axes) {}
+
+  std::vector<Problem> run() {
+    const EffectDescription& d = describe(effect_.kind);
+    if (std::find(d.places.begin(), d.places.end(), place_.kind) == d.places.end()) {
+      add("", "this kind of effect has no such place");
+      return found_;
+    }
+    check_place();
+    check_values(d);
+    if (found_.empty()) check_together();
+    return found_;
+  }
+
+ private:
+  void add(std::string_view field, const std::string& rule) {
+    found_.push_back({std::string(field), -1,
+                      std::string(name_of(effect_.kind)) + (field.empty() ? "" : ".") +
+                          std::string(field) + ": " + rule});
+  }
+
+  static bool inside(int index, int count) { return index >= 0 && index < count; }
+
+  void check_place() {
+    const PlaceKind kind = place_.kind;
+    const bool in_channels = kind == PlaceKind::channel || kind == PlaceKind::channel_pair;
+    if (in_channels) {
+      check_channels();
+      return;
+    }
+    if (kind == PlaceKind::building) {
+      if ((place_.direction == Direction::x ? s_.n() : s_.m()) == 0)
+        add("direction", "the building has no frame in this direction");
+      return;
+    }
+    if (place_.story < 1 || place_.story > s_.stories)
+      add("story", "must be 1 to " + std::to_string(s_.stories));
+    const bool on_frame =
+        kind == PlaceKind::frame || kind == PlaceKind::node || kind == PlaceKind::node_pair;
+    if (on_frame && !inside(place_.frame, s_.frames())) add("frame", "no such frame");
+    if (kind == PlaceKind::panel && !inside(place_.panel, s_.panels()))
+      add("panel", s_.panels() > 0 ? "no such panel" : "this building has no floor panels");
+    if (kind == PlaceKind::crossing && !inside(place_.crossing, s_.nodes() / s_.stories))
+      add("node", "no such node");
+    if (kind == PlaceKind::node_pair && (place_.to_story < 0 || place_.to_story > place_.story - 2))
+      add("to_story", "must be 0 to " + std::to_string(place_.story - 2) +
+                          ": neighbouring floors are joined by their frame already");
+    if (kind == PlaceKind::floor && (s_.floor != FloorModel::rigid || s_.n() < 2 || s_.m() < 2))
+      add("story", "only a building with floor = \"rigid\" and two frames each way at least");
+  }
+
+  void check_channels() {
+    const int count = static_cast<int>(axes_.size());
+    const bool one = inside(place_.channel, count);
+    if (!one) add("channel", "no such channel");
+    if (place_.kind == PlaceKind::channel) return;
+    const bool other = inside(place_.with_channel, count);
+    if (!other) add("with_channel", "no such channel");
+    if (one && place_.channel == place_.with_channel)
+      add("with_channel", "must be another channel");
+  }
+
+  void check_values(const EffectDescription& d) {
+    if (effect_.values.size() != d.parameters.size()) {
+      add("", "needs " + std::to_string(d.parameters.size()) + " values");
+      return;
+    }
+    for (std::size_t i = 0; i < d.parameters.size(); ++i) {
+      const EffectParameter& p = d.parameters[i];
+      const double v = effect_.values[i];
+      if (std::isfinite(v) && v <= p.max && (p.above_min ? v > p.min : v >= p.min)) continue;
+      std::ostringstream rule;
+      rule << "must be " << (p.above_min ? "> " : ">= ") << p.min << " and <= " << p.max;
+      if (!p.unit.empty()) rule << ' ' << p.unit;
+      add(p.key, rule.str());
+    }
+  }
+
+  void check_together() {
+    if (effect_.kind == EffectKind::one_sided_gap && std::abs(effect_.value("side")) != 1)
+      add("side", "must be 1 or -1");
+    if (effect_.kind == EffectKind::unmeasured_force &&
+        effect_.value("low_hz") >= effect_.value("high_hz"))
+      add("low_hz", "must be below high_hz");
+    if (effect_.kind == EffectKind::extra_mass) {
+      const auto node = static_cast<std::size_t>((place_.story - 1) * (s_.nodes() / s_.stories) +
+                                                 place_.crossing);
+      if (s_.node_mass[node] + effect_.value("mass_kg") <= 0)
+        add("mass_kg", "leaves the node without mass");
+    }
+    if (effect_.kind == EffectKind::misalignment) {
+      const SensorAxis& a = axes_[static_cast<std::size_t>(place_.channel)];
+      const SensorAxis& b = axes_[static_cast<std::size_t>(place_.with_channel)];
+      if (a.direction == b.direction || a.story != b.story)
+        add("with_channel", "must be on the same floor, in the other direction");
+    }
+  }
+
+  const Effect& effect_;
+  const EffectPlace& place_;
+  const Structure& s_;
+  const std::vector<SensorAxis>& axes_;
+  std::vector<Problem> found_;
+};
+
+}  // namespace
+
+std::vector<Problem> find_problems(const Effect& effect, const Structure& structure,
+                                   const std::vector<SensorAxis>& axes) {
+  return Checker(effect, structure, axes).run();
+}
+
+}  // namespace framewatch
