@@ -18,6 +18,7 @@ void BoxplotWindow::reset() {
 }
 
 void BoxplotWindow::push(double value) {
+  if (ring_.empty()) return;
   const double leaving = ring_[next_];
   ring_[next_] = value;
   next_ = (next_ + 1) % ring_.size();

@@ -48,6 +48,8 @@ class Machine {
 
   /// Takes instant next() in; the window's sum is ready for factor() until finish().
   void advance(const MotionRing& ring);
+  /// Whether finish() will close a block.
+  bool closes_block() const { return counting_ && sums_.block_full(); }
   /// Prepares the following instant; true when a block closed.
   bool finish(const MotionRing& ring);
 

@@ -71,8 +71,8 @@ void RowChain::push(const DeformationSet& set) {
       signal_[static_cast<std::size_t>(own + next)] = response;
       for (int j = own + next + 1; j < stride; ++j) signal_[static_cast<std::size_t>(j)] = 0;
       const std::size_t at = row * static_cast<std::size_t>(stride);
-      kernels::filter_row(signal_.data(), f.rows.gain[row], f.rows.a1[row], f.rows.a2[row],
-                          &f.s1[at], &f.s2[at], &f.rows.beta[at], out + at, stride);
+      kernels::in_use->filter_row(signal_.data(), f.rows.gain[row], f.rows.a1[row], f.rows.a2[row],
+                                  &f.s1[at], &f.s2[at], &f.rows.beta[at], out + at, stride);
     }
   }
 }

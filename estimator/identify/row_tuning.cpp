@@ -169,6 +169,7 @@ void RowTuning::pack_noise(int floor, FloorRows& out) const {
   for (int p = 0; p < unknowns; ++p) {
     for (int q = p; q < unknowns; ++q) {
       const double w = out.noise_energy[static_cast<std::size_t>(p * unknowns + q)];
+      out.noise_energy[static_cast<std::size_t>(q * unknowns + p)] = w;
       part(p, q) = kTakenOff * w;
       part(p, unknowns) -= (1 - kTakenOff) * w;
       if (q != p) part(q, unknowns) -= (1 - kTakenOff) * w;

@@ -8,6 +8,7 @@
 #include "estimator/identify/deformations.h"
 #include "estimator/identify/floor_layout.h"
 #include "estimator/identify/floor_noise.h"
+#include "estimator/identify/kernels.h"
 #include "estimator/identify/noise_moments.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/motion_filter.h"
@@ -15,23 +16,11 @@
 
 namespace framewatch {
 
-/// Length of a front padded to whole vector lanes.
-inline constexpr int kLane = 4;
-constexpr int padded(int length) {
-  return (length + kLane - 1) / kLane * kLane;
-}
-
 /// Share of the sensor noise in the normal matrix that the solver takes off. All of it would be
 /// unbiased but blows up where there is little but noise; so this share goes, and the right-hand
 /// side is corrected such that what is left pulls toward the design only.
 /// docs/equations.md, noise in the regressors.
 inline constexpr double kTakenOff = 0.8;
-
-/// Packed upper rows of a symmetric front: row i holds columns from i rounded down to a lane up to
-/// padded(front).
-constexpr int packed_row_begin(int i) {
-  return i / kLane * kLane;
-}
 
 /// One floor's projected equations: each row r is sum_f phi_rf (equation f), low-passed by an
 /// all-pole section s = gain x - a1 s' - a2 s'' and scaled by the root of its weight.
@@ -42,8 +31,8 @@ struct FloorRows {
   /// rows x padded(front): multiplies the filtered front signals [deformations..., response].
   std::vector<double> beta;
   std::vector<double> response;  ///< rows x frames: -phi_rf, forms the response from m p''
-  /// What sensor noise adds per instant, for the design: to the normal matrix (unknowns x unknowns,
-  /// upper), to the right-hand side, and to the energy of the response.
+  /// What sensor noise adds per instant, for the design: to the normal matrix (unknowns x
+  /// unknowns), to the right-hand side, and to the energy of the response.
   std::vector<double> noise_energy;
   std::vector<double> noise_right;
   double noise_response = 0;

@@ -77,7 +77,7 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
       boxplots_(static_cast<std::size_t>(table_.size()), BoxplotWindow(options_.boxplot_windows)) {
   const auto unknowns = static_cast<std::size_t>(layout_.unknowns());
   prior_.assign(unknowns, 0.0);
-  prior_share_.assign(unknowns, 0.0);
+  steps_per_instant_ = (batch_means_.steps() + block_rows_ - 2) / (block_rows_ - 1);
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const int parameter = layout_.parameter(u / layout_.own(), u % layout_.own());
     const ParameterKind kind = table_[parameter].kind;
@@ -111,6 +111,7 @@ void WindowEstimator::restart() {
   ring_.reset();
   active_->start(0);
   candidate_.reset();
+  batch_means_.cancel();
   errors_known_ = false;
   noise_scale_ = residual_energy_ = 0;
   since_hop_ = 0;
@@ -128,12 +129,10 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
   active_->advance(ring_);
   ++since_hop_;
   const bool due = since_hop_ >= hop_rows_;
-  if (active_->full()) solve();
+  if (active_->full() && (due || active_->closes_block())) solve();
   if (active_->finish(ring_) && active_->full()) {
-    batch_means_.compute(active_->sums(), solver_, prior_, noise_, noise_scale_);
-    solver_.inverse_diagonal(inverse_diagonal_);
-    for (std::size_t u = 0; u < prior_.size(); ++u)
-      prior_share_[u] = prior_[u] * inverse_diagonal_[u];
+    batch_means_.begin(active_->sums(), solver_, kBlocks, prior_, noise_, noise_scale_);
+  } else if (batch_means_.advance(steps_per_instant_)) {
     errors_known_ = true;
     consider_retuning();
   }
@@ -195,6 +194,7 @@ void WindowEstimator::catch_up() {
       batch_means_.rescale(
           u, active_->tuning().design()[parameter] / candidate_->tuning().design()[parameter]);
     }
+    batch_means_.cancel();
     active_ = std::move(candidate_);
     ++retunes_;
   }
@@ -261,7 +261,8 @@ void WindowEstimator::fill_estimate(Time time) {
     estimate_.std_error[p] = observable ? design * batch_means_.std_error()[i] : kNaN;
     const double noise = noise_.energy()[i] * noise_scale_;
     estimate_.snr[p] = solved && noise > 0 ? solver_.information()[i] / noise : 0;
-    estimate_.prior_share[p] = solved && errors_known_ ? std::min(prior_share_[i], 1.0) : 0;
+    estimate_.prior_share[p] =
+        solved && errors_known_ ? std::min(batch_means_.prior_share()[i], 1.0) : 0;
   }
   for (std::size_t p = 0; p < estimate_.reason.size(); ++p) {
     if (estimate_.reason[p] == Observability::ill_determined && !any_frame)

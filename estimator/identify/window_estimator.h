@@ -56,6 +56,7 @@ class WindowEstimator {
   StorySolver solver_;
   std::vector<double> tolerance_;  ///< of the design, internal order
   BatchMeans batch_means_;
+  int steps_per_instant_ = 1;  ///< of a pass of batch_means_: done before the next block closes
   bool errors_known_ = false;  ///< batch means exist for the present run of windows
   bool tuned_ = false;         ///< a check has found the filters right
   int tuning_passes_ = 0;
@@ -63,7 +64,7 @@ class WindowEstimator {
   double residual_energy_ = 0;
   double noise_scale_ = 0;         ///< residual energy over what sensor noise explains
   std::vector<Unknown> unknowns_;  ///< internal order
-  std::vector<double> prior_, inverse_diagonal_, prior_share_;
+  std::vector<double> prior_;
   bool noise_configured_;  ///< of every axis
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
