@@ -16,6 +16,7 @@
 #include "daemon/scenario_sensors.h"
 #include "daemon/scenario_truth.h"
 #include "daemon/toml_document.h"
+#include "estimator/simulate/building_model.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -118,6 +119,11 @@ class ScenarioReader {
     s.effects = s.config.effects;
     const std::vector<Effect> own = read_effects(tables, p.structure, p.axes, problems_);
     s.effects.insert(s.effects.end(), own.begin(), own.end());
+    const bool known = problems_.empty() && s.truth.size() > 0;
+    if (known && !stands(p.structure, ParameterTable(p.structure), s.truth, s.effects))
+      problems_.push_back({tables.empty() ? TextPlace{} : tables.front()->place,
+                           "effect: the building cannot stand: with what is lost its stiffness is "
+                           "not positive"});
   }
 
   void read_changes(Scenario& s, bool building) {

@@ -44,7 +44,9 @@ Simulation::Simulation(const Scenario& s)
       sensors_(s.config.pipeline.axes, sensors_of(s), s.rate_hz, s.seed) {}
 
 const std::vector<double>& Simulation::next() {
+  constexpr double kLargest_mps2 = 1e6;
   const Eigen::VectorXd& motion = response_.next();
+  collapsed_ = !(motion.cwiseAbs().maxCoeff() < kLargest_mps2);
   return sensors_.measure(response_.time_s(), channel_effects_.apply(response_.time_s(), motion));
 }
 

@@ -35,6 +35,8 @@ class Simulation {
 
   /// Raw values in axis order, NaN where lost.
   const std::vector<double>& next();
+  /// Whether what next() gave last is no motion of a building: a softening law has run away.
+  bool collapsed() const { return collapsed_; }
   /// Of the instant next() gave last, s.
   double time_s() const { return response_.time_s(); }
 
@@ -42,6 +44,7 @@ class Simulation {
   ResponseStream response_;
   ChannelEffects channel_effects_;
   SensorArray sensors_;
+  bool collapsed_ = false;
 };
 
 /// Instants in the scenario's duration, both ends included.
