@@ -46,7 +46,7 @@ Simulation::Simulation(const Scenario& s)
 const std::vector<double>& Simulation::next() {
   constexpr double kLargest_mps2 = 1e6;
   const Eigen::VectorXd& motion = response_.next();
-  collapsed_ = !(motion.cwiseAbs().maxCoeff() < kLargest_mps2);
+  collapsed_ = !motion.allFinite() || motion.cwiseAbs().maxCoeff() > kLargest_mps2;
   return sensors_.measure(response_.time_s(), channel_effects_.apply(response_.time_s(), motion));
 }
 
