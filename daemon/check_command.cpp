@@ -4,12 +4,17 @@
 
 #include "daemon/check_report.h"
 #include "daemon/config_markdown.h"
+#include "daemon/effects_markdown.h"
 
 namespace framewatch::daemon {
 
 int check_command(const CheckArguments& arguments) {
   if (arguments.print_options_markdown) {
     fmt::print("{}", options_markdown());
+    return 0;
+  }
+  if (arguments.print_effects_markdown) {
+    fmt::print("{}", effects_markdown());
     return 0;
   }
   std::vector<ConfigProblem> problems;

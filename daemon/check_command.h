@@ -7,6 +7,7 @@ namespace framewatch::daemon {
 struct CheckArguments {
   std::string config;
   bool json = false;
+  bool print_effects_markdown = false;  ///< docs/effects.md
   bool print_options_markdown = false;  ///< docs/configuration.md instead of a check
 };
 

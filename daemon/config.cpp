@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config_effects.h"
 #include "daemon/config_parts.h"
 #include "daemon/config_suggest.h"
 #include "daemon/file_digest.h"
@@ -13,7 +14,7 @@ namespace framewatch::daemon {
 namespace {
 
 void check_sections(const TomlValue& document, std::vector<TextProblem>& problems) {
-  const std::vector<std::string> known{"structure", "channel", "estimator", "lcm"};
+  const std::vector<std::string> known{"structure", "channel", "estimator", "lcm", "effect"};
   for (const TomlEntry& entry : document.entries) {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
     const std::string meant = nearest(entry.key, known);
@@ -21,7 +22,7 @@ void check_sections(const TomlValue& document, std::vector<TextProblem>& problem
         {entry.place,
          fmt::format("unknown section or key {}: {}", entry.key,
                      meant.empty() ? "the sections are [structure], [structure.design], "
-                                     "[[channel]], [estimator], [lcm]"
+                                     "[[channel]], [estimator], [lcm], [[effect]]"
                                    : fmt::format("did you mean {}?", meant))});
   }
 }
@@ -52,6 +53,10 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   if (problems.size() == before)
     for (const std::string& rule : framewatch::problems(config.pipeline))
       problems.push_back({{}, rule});
+  const bool sound = problems.size() == before;
+  const std::vector<const TomlValue*> effects = tables_of(document, "effect", problems);
+  if (sound)
+    config.effects = read_effects(effects, structure.structure, config.pipeline.axes, problems);
   return problems.size() == before;
 }
 

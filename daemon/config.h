@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "estimator/pipeline.h"
+#include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
 
@@ -30,6 +31,7 @@ struct Config {
   PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
   LcmSettings lcm;
+  std::vector<Effect> effects;  ///< that the building has beyond the linear model
 };
 
 struct ConfigProblem {

@@ -101,10 +101,33 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
   axis.offset = section.number("offset_mps2");
   axis.polarity = section.number("polarity");
   axis.delay = section.number("delay_s");
+  axis.tilt = section.number("tilt_deg") * M_PI / 180;
+  axis.mount_angle = section.number("mount_angle_deg") * M_PI / 180;
+  axis.range = section.number("range_mps2");
   axis.noise_density = section.number("noise_mps2_per_rthz");
   config.pipeline.axes.push_back(axis);
   config.sources.push_back(read_source(section, label, problems));
   channels.push_back(std::move(section));
+}
+
+/// Cross channels are names: known once all channels are.
+void find_cross_channels(Config& config, Channels& channels) {
+  std::vector<SensorAxis>& axes = config.pipeline.axes;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!channels[i].given("cross_channel")) continue;
+    const std::string name = channels[i].text("cross_channel");
+    std::vector<std::string> names;
+    for (std::size_t b = 0; b < axes.size(); ++b) {
+      names.push_back(axes[b].name);
+      if (axes[b].name == name) axes[i].cross = static_cast<int>(b);
+    }
+    if (axes[i].cross >= 0) continue;
+    const std::string meant = nearest(name, names);
+    channels[i].problem(
+        "cross_channel",
+        fmt::format("no channel is named \"{}\"{}", name,
+                    meant.empty() ? "" : fmt::format(", did you mean \"{}\"?", meant)));
+  }
 }
 
 void check_sources(const Config& config, Channels& channels) {
@@ -162,6 +185,7 @@ void read_channels(const TomlValue& document, const StructureReading& reading, C
     for (const TomlValue& table : entry->value.items)
       read_channel(table, reading, config, channels, problems);
   }
+  find_cross_channels(config, channels);
   check_sources(config, channels);
   check_against_structure(reading, config, where, channels, problems);
 }

@@ -37,6 +37,10 @@ constexpr SectionText kSections[] = {
     {"sensors", "[sensors]", "What every virtual accelerometer is like."},
     {"sensor", "[[sensor]]", "One that is different."},
     {"change", "[[change]]", "Something in the building that changes while it is shaken."},
+    {"effect", "[[effect]]",
+     "What the linear building leaves out, in a scenario or a configuration, once for each: kind, "
+     "place and numbers; [effects](effects.md) has the equations, and which keys belong to which "
+     "kind."},
 };
 
 /// | would end the cell.

@@ -180,13 +180,46 @@ const Option kOptions[] = {
      .max = 10,
      .meaning = "The true instant of a sample is its stamp minus this."},
     {.section = "channel",
+     .key = "tilt_deg",
+     .type = number,
+     .unit = "deg",
+     .default_value = "0.0",
+     .min = -60,
+     .max = 60,
+     .meaning = "Angle of the positive axis above the horizontal: gravity on it is taken off, and "
+                "its smaller share of the motion corrected."},
+    {.section = "channel",
+     .key = "mount_angle_deg",
+     .type = number,
+     .unit = "deg",
+     .default_value = "0.0",
+     .min = -60,
+     .max = 60,
+     .meaning = "Angle in plan, counter-clockwise seen from above, between the axis and the "
+                "direction it stands for; corrected with cross_channel."},
+    {.section = "channel",
+     .key = "cross_channel",
+     .type = text,
+     .meaning = "Channel of the other horizontal direction, at the same place or the nearest on "
+                "the floor; needed for a mounting angle."},
+    {.section = "channel",
+     .key = "range_mps2",
+     .type = number,
+     .unit = "m/s^2",
+     .default_value = "0.0",
+     .min = 0,
+     .max = 1e6,
+     .meaning = "Full scale of scale times raw: samples at it are clipped and taken out. 0 when "
+                "not known: then a flat peak shows it."},
+    {.section = "channel",
      .key = "noise_mps2_per_rthz",
      .type = number,
      .unit = "m/s^2/sqrt(Hz)",
      .default_value = "0.0",
      .min = 0,
      .max = 1e3,
-     .meaning = "Noise density of the sensor, used for uncertainty; 0 when it is not known."},
+     .meaning = "Noise density of the sensor; 0 when it is not known: then it is measured "
+                "between 0.25 and 0.45 of the sampling rate."},
 
     {.section = "channel.source",
      .key = "lcm",
@@ -386,6 +419,8 @@ std::span<const Option> options() {
     std::vector<Option> all(std::begin(kOptions), std::end(kOptions));
     const std::span<const Option> scenario = scenario_options();
     all.insert(all.end(), scenario.begin(), scenario.end());
+    const std::span<const Option> effect = effect_options();
+    all.insert(all.end(), effect.begin(), effect.end());
     return all;
   }();
   return kAll;

@@ -29,8 +29,9 @@ struct Option {
   std::string_view meaning = "";
 };
 
-/// Of the configuration file, then of the scenario file.
+/// Of the configuration file, then of the scenario file, then of [[effect]], which both may have.
 std::span<const Option> options();
+std::span<const Option> effect_options();
 std::span<const Option> scenario_options();
 
 /// Null when the section has no such key.

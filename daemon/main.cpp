@@ -93,8 +93,10 @@ void add_check(CLI::App& app, Action& action, CheckArguments& arguments) {
   command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
   command->add_flag("--json", arguments.json, "print what a program would read");
   command->add_flag("--print-options-markdown", arguments.print_options_markdown)->group("");
+  command->add_flag("--print-effects-markdown", arguments.print_effects_markdown)->group("");
   command->callback([&action, &arguments] {
-    if (arguments.config.empty() && !arguments.print_options_markdown)
+    if (arguments.config.empty() && !arguments.print_options_markdown &&
+        !arguments.print_effects_markdown)
       throw CLI::RequiredError("CONFIG");
     action = [&arguments] { return check_command(arguments); };
   });
@@ -152,6 +154,7 @@ void add_simulate(CLI::App& app, Action& action, SimulateArguments& arguments) {
       ->capture_default_str();
   command->add_option("--seconds", arguments.seconds, "instead of the scenario's duration")
       ->check(CLI::Range(1e-3, 1e6));
+  command->add_option("--truth", arguments.truth, "JSON file to write what is hidden to");
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
   command->callback([&action, &arguments, lcm] {
     arguments.lcm = lcm->count() > 0;

@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config_effects.h"
 #include "daemon/config_parts.h"
 #include "daemon/config_section.h"
 #include "daemon/file_digest.h"
@@ -15,11 +16,12 @@
 #include "daemon/scenario_sensors.h"
 #include "daemon/scenario_truth.h"
 #include "daemon/toml_document.h"
+#include "estimator/simulate/building_model.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change"};
+constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change", "effect"};
 
 /// The file in three parts: top keys, sections of the scenario, the rest (the building).
 struct Parts {
@@ -41,20 +43,6 @@ Parts split(const TomlValue& root) {
 const TomlValue* section(const Parts& parts, std::string_view name) {
   const TomlEntry* entry = parts.sections.find(name);
   return entry ? &entry->value : nullptr;
-}
-
-/// Tables of [[name]]; a problem when it is something else.
-std::vector<const TomlValue*> tables(const Parts& parts, std::string_view name,
-                                     std::vector<TextProblem>& problems) {
-  std::vector<const TomlValue*> out;
-  const TomlValue* array = section(parts, name);
-  if (!array) return out;
-  if (array->kind != TomlKind::array) {
-    problems.push_back({array->place, fmt::format("{0}: write [[{0}]], once for each", name)});
-    return out;
-  }
-  for (const TomlValue& item : array->items) out.push_back(&item);
-  return out;
 }
 
 class ScenarioReader {
@@ -84,8 +72,10 @@ class ScenarioReader {
       const PipelineConfig& p = s.config.pipeline;
       s.truth = read_truth(truth, p.structure, p.design);
     }
-    read_sensors(section(parts_, "sensors"), tables(parts_, "sensor", problems_), s, problems_);
+    read_sensors(section(parts_, "sensors"), tables_of(parts_.sections, "sensor", problems_), s,
+                 problems_);
     read_changes(s, building);
+    read_effects_of(s, building);
 
     for (const TextProblem& p : problems_)
       out_.push_back(
@@ -122,6 +112,20 @@ class ScenarioReader {
     return read_config(parts_.building, config, problems_);
   }
 
+  void read_effects_of(Scenario& s, bool building) {
+    const auto tables = tables_of(parts_.sections, "effect", problems_);
+    if (!building) return;
+    const PipelineConfig& p = s.config.pipeline;
+    s.effects = s.config.effects;
+    const std::vector<Effect> own = read_effects(tables, p.structure, p.axes, problems_);
+    s.effects.insert(s.effects.end(), own.begin(), own.end());
+    const bool known = problems_.empty() && s.truth.size() > 0;
+    if (known && !stands(p.structure, ParameterTable(p.structure), s.truth, s.effects))
+      problems_.push_back({tables.empty() ? TextPlace{} : tables.front()->place,
+                           "effect: the building cannot stand: with what is lost its stiffness is "
+                           "not positive"});
+  }
+
   void read_changes(Scenario& s, bool building) {
     struct Change {
       double at_s;
@@ -131,7 +135,7 @@ class ScenarioReader {
     std::vector<Change> changes;
     std::optional<ParameterTable> table;
     if (building) table.emplace(s.config.pipeline.structure);
-    for (const TomlValue* value : tables(parts_, "change", problems_)) {
+    for (const TomlValue* value : tables_of(parts_.sections, "change", problems_)) {
       ConfigSection c("change", "change", value, {}, problems_);
       if (!table || !c.given("at_s") || !c.given("parameter") || !c.given("factor")) continue;
       const auto index = table->find(c.text("parameter"));

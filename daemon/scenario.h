@@ -11,8 +11,8 @@ namespace framewatch::daemon {
 
 /// Reads and validates a scenario file: the building as a configuration file has it ([structure],
 /// [[channel]], or `config = "FILE"`), and what happens to it ([truth], [motion], [sensors],
-/// [[sensor]], [[change]]). Empty optional and every problem at once when it is not valid.
-/// Paths in the file are relative to it.
+/// [[sensor]], [[change]], [[effect]]). Empty optional and every problem at once when it is not
+/// valid. Paths in the file are relative to it.
 std::optional<Scenario> load_scenario(const std::string& path,
                                       std::vector<ConfigProblem>& problems);
 

@@ -12,7 +12,9 @@
 #include "daemon/scenario.h"
 #include "daemon/simulation.h"
 #include "daemon/simulation_output.h"
+#include "daemon/simulation_truth.h"
 #include "drivers/lcm_source.h"
+#include "drivers/text_output.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -85,6 +87,9 @@ int simulate(const SimulateArguments& a) {
     Progress progress(count, a.quiet);
     for (std::int64_t i = 0; i < count; ++i) {
       const std::vector<double>& raw = simulation.next();
+      if (simulation.collapsed())
+        return refuse(
+            fmt::format("{}: the building collapses at {:.2f} s", a.scenario, simulation.time_s()));
       for (const auto& output : outputs)
         if (!output->put(simulation.time_s(), raw)) return refuse(output->error());
       progress(i + 1);
@@ -92,6 +97,10 @@ int simulate(const SimulateArguments& a) {
   }
   for (const auto& output : outputs)
     if (!output->close()) return refuse(output->error());
+  drivers::TextOutput truth;
+  if (!a.truth.empty() &&
+      !(truth.open(a.truth) && truth.write(truth_json(*scenario)) && truth.close()))
+    return refuse(truth.error());
   if (!a.quiet)
     fmt::print(stderr, "{}: {} channels, {} instants at {:g} Hz{}{}\n",
                scenario->config.pipeline.structure.name, scenario->config.pipeline.axes.size(),

@@ -7,6 +7,7 @@ namespace framewatch::daemon {
 struct SimulateArguments {
   std::string scenario;
   std::string out;      ///< .csv, .csv.gz or .lcmlog; empty: no file
+  std::string truth;    ///< JSON of what is hidden; empty: none
   bool lcm = false;     ///< publish live
   std::string lcm_url;  ///< empty: the configuration's
   double speed = 1;     ///< of the live stream, times real time

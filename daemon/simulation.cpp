@@ -10,18 +10,16 @@ ResponseStream response_of(const Scenario& s) {
   const Structure& structure = s.config.pipeline.structure;
   ResponseOptions options;
   options.rate_hz = s.rate_hz;
-  return {structure,
-          ParameterTable(structure),
-          s.truth,
-          s.motion,
-          options,
-          s.changes,
-          response_channels(structure, s.config.pipeline.axes)};
+  std::vector<ResponseChannel> channels = response_channels(structure, s.config.pipeline.axes);
+  ChannelEffects(s.effects).delay(channels);
+  return {structure, ParameterTable(structure), s.truth, s.motion, options, s.changes, channels,
+          s.effects};
 }
 
 /// The sensors with their noise ratios turned into densities, which takes a run ahead.
 std::vector<SensorModel> sensors_of(const Scenario& s) {
   std::vector<SensorModel> models = s.sensors;
+  ChannelEffects(s.effects).limit(models);
   const bool wanted = std::any_of(s.noise_ratio.begin(), s.noise_ratio.end(),
                                   [](double ratio) { return ratio > 0; });
   if (!wanted) return models;
@@ -42,11 +40,14 @@ std::vector<SensorModel> sensors_of(const Scenario& s) {
 
 Simulation::Simulation(const Scenario& s)
     : response_(response_of(s)),
+      channel_effects_(s.effects),
       sensors_(s.config.pipeline.axes, sensors_of(s), s.rate_hz, s.seed) {}
 
 const std::vector<double>& Simulation::next() {
+  constexpr double kLargest_mps2 = 1e6;
   const Eigen::VectorXd& motion = response_.next();
-  return sensors_.measure(response_.time_s(), motion);
+  collapsed_ = !motion.allFinite() || motion.cwiseAbs().maxCoeff() > kLargest_mps2;
+  return sensors_.measure(response_.time_s(), channel_effects_.apply(response_.time_s(), motion));
 }
 
 std::int64_t instants(const Scenario& s) {

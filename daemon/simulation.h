@@ -6,8 +6,10 @@
 #include <Eigen/Core>
 
 #include "daemon/config.h"
+#include "estimator/simulate/channel_effects.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/sensor_model.h"
+#include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
 
@@ -18,6 +20,7 @@ struct Scenario {
   Eigen::VectorXd truth;  ///< table order, SI
   PlanMotion motion;
   std::vector<ParameterChange> changes;
+  std::vector<Effect> effects;       ///< those of config and the scenario's own
   std::vector<SensorModel> sensors;  ///< parallel to config.pipeline.axes
   std::vector<double> noise_ratio;   ///< of the axis' rms over the test, beside sensors' density
   double rate_hz = 100;
@@ -32,12 +35,16 @@ class Simulation {
 
   /// Raw values in axis order, NaN where lost.
   const std::vector<double>& next();
+  /// Whether what next() gave last is no motion of a building: a softening law has run away.
+  bool collapsed() const { return collapsed_; }
   /// Of the instant next() gave last, s.
   double time_s() const { return response_.time_s(); }
 
  private:
   ResponseStream response_;
+  ChannelEffects channel_effects_;
   SensorArray sensors_;
+  bool collapsed_ = false;
 };
 
 /// Instants in the scenario's duration, both ends included.

@@ -5,14 +5,12 @@
 
 #include <Eigen/Core>
 
-#include "estimator/motion/gap_filler.h"
-#include "estimator/motion/sample_merger.h"
+#include "estimator/motion/acquisition.h"
 #include "estimator/pipeline.h"
 
 namespace framewatch::daemon {
 
-/// Samples in, one stretch of calibrated instants out, as the pipeline would see them: whole-sample
-/// delays taken off, single losses filled.
+/// Samples in, one stretch of calibrated instants out, as the pipeline would see them.
 class StretchCollector {
  public:
   /// from_s, to_s: since the first sample.
@@ -24,19 +22,15 @@ class StretchCollector {
   /// instants x axes, m/s^2; NaN where samples are missing.
   Eigen::MatrixXd accel() const;
   /// The axes with what is left of their delay, less than a sample.
-  const std::vector<SensorAxis>& axes() const { return axes_; }
+  const std::vector<SensorAxis>& axes() const { return acquisition_.axes(); }
   bool started() const { return started_; }
   std::int64_t first_us() const { return first_us_; }
 
  private:
-  void drain();
   void keep(const SampleSet& set);
 
-  std::vector<SensorAxis> axes_;
-  std::vector<std::int64_t> whole_delay_us_;
   double from_us_, to_us_;
-  SampleMerger merger_;
-  GapFiller filler_;
+  Acquisition acquisition_;
   bool started_ = false;
   std::int64_t first_us_ = 0, next_index_ = -1;
   std::vector<double> kept_;

@@ -70,6 +70,23 @@ constexpr int kMaxDuplicates = 100;
 
 }  // namespace
 
+std::vector<const TomlValue*> tables_of(const TomlValue& table, std::string_view name,
+                                        std::vector<TextProblem>& problems) {
+  std::vector<const TomlValue*> out;
+  const TomlEntry* entry = table.find(name);
+  if (!entry) return out;
+  const std::vector<TomlValue>& items = entry->value.items;
+  const bool every = std::all_of(items.begin(), items.end(),
+                                 [](const TomlValue& v) { return v.kind == TomlKind::table; });
+  if (entry->value.kind != TomlKind::array || !every) {
+    problems.push_back(
+        {entry->place, std::string(name) + ": write [[" + std::string(name) + "]], once for each"});
+    return out;
+  }
+  for (const TomlValue& item : items) out.push_back(&item);
+  return out;
+}
+
 std::optional<TomlValue> parse_toml(std::string text, std::vector<TextProblem>& problems) {
   for (int removed = 0; removed < kMaxDuplicates; ++removed) {
     try {

@@ -46,6 +46,10 @@ struct TextProblem {
   std::string message;
 };
 
+/// Tables of [[name]] in `table`; a problem when it is something else, none when it is absent.
+std::vector<const TomlValue*> tables_of(const TomlValue& table, std::string_view name,
+                                        std::vector<TextProblem>& problems);
+
 /// Parses TOML 1.0. A key given twice is a problem and the first is kept; any other error of syntax
 /// ends the reading with an empty optional.
 std::optional<TomlValue> parse_toml(std::string text, std::vector<TextProblem>& problems);

@@ -3,8 +3,7 @@
 #include <cmath>
 
 #include "estimator/identify/window_estimator.h"
-#include "estimator/motion/gap_filler.h"
-#include "estimator/motion/sample_merger.h"
+#include "estimator/motion/acquisition.h"
 
 namespace framewatch {
 
@@ -36,50 +35,21 @@ class Pipeline::Implementation {
  public:
   Implementation(const PipelineConfig& config, Sink sink)
       : table_(config.structure),
-        axes_(config.axes),
-        merger_(static_cast<int>(axes_.size()), config.options.rate_hz, config.options.lateness_s),
-        filler_(static_cast<int>(axes_.size()), config.options.fill_single_losses),
+        acquisition_(config.axes, config.options, [this](const SampleSet& set) { estimate(set); }),
         estimator_(config, table_),
-        sink_(std::move(sink)) {
-    const double rate = config.options.rate_hz;
-    for (const SensorAxis& axis : axes_)
-      whole_delay_us_.push_back(std::llround(std::round(axis.delay * rate) / rate * 1e6));
-  }
+        sink_(std::move(sink)) {}
 
-  void push(const AccelSample& raw) {
-    const SensorAxis& axis = axes_[static_cast<std::size_t>(raw.axis)];
-    AccelSample sample = raw;
-    sample.accel = axis.polarity * (axis.scale * raw.accel - axis.offset);
-    sample.time -= SensorClock::duration(whole_delay_us_[static_cast<std::size_t>(raw.axis)]);
-    bool taken = merger_.push(sample);
-    drain();
-    if (taken) return;
-    taken = merger_.push(sample);
-    drain();
-  }
-
-  void finish() {
-    merger_.finish();
-    drain();
-    while (const SampleSet* set = filler_.drain()) estimate(*set);
-  }
+  void push(const AccelSample& raw) { acquisition_.push(raw); }
+  void finish() { acquisition_.finish(); }
 
   PipelineCounters counters() const {
-    PipelineCounters out{sets_, estimator_.gaps(), windows_, estimator_.retunes(),
-                         merger_.counters()};
-    for (std::size_t a = 0; a < out.axes.size(); ++a) out.axes[a].repaired = filler_.repaired()[a];
-    return out;
+    return {sets_, estimator_.gaps(), windows_, estimator_.retunes(), acquisition_.counters()};
   }
 
   const ParameterTable& table() const { return table_; }
   const WindowEstimator& estimator() const { return estimator_; }
 
  private:
-  void drain() {
-    while (const SampleSet* set = merger_.next())
-      if (const SampleSet* repaired = filler_.push(*set)) estimate(*repaired);
-  }
-
   void estimate(const SampleSet& set) {
     ++sets_;
     if (const WindowEstimate* estimate = estimator_.push(set)) {
@@ -89,10 +59,7 @@ class Pipeline::Implementation {
   }
 
   ParameterTable table_;
-  std::vector<SensorAxis> axes_;
-  std::vector<std::int64_t> whole_delay_us_;
-  SampleMerger merger_;
-  GapFiller filler_;
+  Acquisition acquisition_;
   WindowEstimator estimator_;
   Sink sink_;
   std::int64_t sets_ = 0, windows_ = 0;

@@ -40,11 +40,8 @@ class Deformations {
   const std::vector<Weighted>& at(int floor, int frame) const {
     return place_[static_cast<std::size_t>(floor * layout_->frames() + frame)];
   }
-  /// Variance of one sample of white sensor noise of an axis, (m/s^2)^2.
-  double noise_variance(int axis, double rate_hz) const {
-    const double density = noise_density_[static_cast<std::size_t>(axis)];
-    return density * density * rate_hz / 2;
-  }
+  /// Configured noise of every axis, m/s^2/sqrt(Hz); kDefaultNoiseDensity where it is not.
+  const std::vector<double>& noise_density() const { return noise_density_; }
 
  private:
   const FloorLayout* layout_;
@@ -58,8 +55,13 @@ class Deformations {
   std::vector<Panel> panels_;
 };
 
-/// Assumed when a sensor's noise is not configured, m/s^2/sqrt(Hz). Only ratios between axes matter
-/// to the estimate: the level is taken from the residuals.
+/// Variance of one sample of white sensor noise, (m/s^2)^2; density one-sided, m/s^2/sqrt(Hz).
+inline double noise_variance(double density, double rate_hz) {
+  return density * density * rate_hz / 2;
+}
+
+/// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
+/// axes matter to the estimate: the level is taken from the residuals.
 inline constexpr double kDefaultNoiseDensity = 1e-4;
 
 }  // namespace framewatch

@@ -4,8 +4,8 @@
 
 namespace framewatch {
 
-FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformations, double rate_hz,
-                       int floor) {
+FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformations,
+                       const std::vector<double>& noise_density, double rate_hz, int floor) {
   const int frames = layout.frames();
   const int panels = layout.panels();
   const int own = layout.own();
@@ -45,7 +45,8 @@ FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformatio
   }
   out.variance.resize(axes);
   for (Eigen::Index a = 0; a < axes; ++a)
-    out.variance[a] = deformations.noise_variance(out.axes[static_cast<std::size_t>(a)], rate_hz);
+    out.variance[a] = noise_variance(
+        noise_density[static_cast<std::size_t>(out.axes[static_cast<std::size_t>(a)])], rate_hz);
   out.covariance = out.deformation * out.variance.asDiagonal() * out.deformation.transpose();
   return out;
 }

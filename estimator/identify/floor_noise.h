@@ -19,7 +19,8 @@ struct FloorNoise {
   std::vector<bool> damping;    ///< per unknown: multiplies a rate, not a deformation
 };
 
-FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformations, double rate_hz,
-                       int floor);
+/// noise_density: of every axis, m/s^2/sqrt(Hz).
+FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformations,
+                       const std::vector<double>& noise_density, double rate_hz, int floor);
 
 }  // namespace framewatch

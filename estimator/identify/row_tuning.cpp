@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 
@@ -19,13 +20,15 @@ constexpr double kDecay = 3;
 RowTuning::RowTuning(const Structure& structure, const FloorLayout& layout,
                      const Deformations& deformations, const EstimatorOptions& options,
                      const DerivativeTriple& triple, const HighPass& high_pass,
-                     const Eigen::VectorXd& theta0)
+                     const Eigen::VectorXd& theta0, std::vector<double> noise_density)
     : layout_(&layout),
       deformations_(&deformations),
       options_(&options),
       noise_filter_(triple, high_pass,
                     static_cast<std::size_t>(kDecay * options.rate_hz / options.high_pass_hz)),
-      theta0_(theta0) {
+      theta0_(theta0),
+      noise_density_(noise_density.empty() ? deformations.noise_density()
+                                           : std::move(noise_density)) {
   for (int story = 1; story <= structure.stories; ++story)
     for (int f = 0; f < structure.frames(); ++f) mass_.push_back(structure.frame_mass(story, f));
   if (structure.floor == FloorModel::rigid) constraint_ = floor_constraint(structure);
@@ -231,7 +234,8 @@ FloorRows RowTuning::rows(int floor, const std::vector<std::uint8_t>& known) con
   const auto unknowns = static_cast<std::size_t>(layout_->front(floor) - 1);
   out.noise_energy.assign(unknowns * unknowns, 0.0);
   out.noise_right.assign(unknowns, 0.0);
-  const FloorNoise noise = floor_noise(*layout_, *deformations_, options_->rate_hz, floor);
+  const FloorNoise noise =
+      floor_noise(*layout_, *deformations_, noise_density_, options_->rate_hz, floor);
   const double zeta = damping();
   for (int r = 0; r < out.rows; ++r) {
     const double w = std::tan(M_PI * frequency[r] / options_->rate_hz);

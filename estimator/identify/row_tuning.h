@@ -44,16 +44,19 @@ struct FloorRows {
 /// How the rows of every floor are formed for one design theta0. docs/equations.md, matched rows.
 class RowTuning {
  public:
-  /// All arguments but theta0 must outlive the object. theta0 > 0, theta order.
+  /// Structure to high_pass must outlive the object. theta0 > 0, theta order. noise_density: of
+  /// every axis, m/s^2/sqrt(Hz), > 0; empty: the configured ones.
   RowTuning(const Structure& structure, const FloorLayout& layout, const Deformations& deformations,
             const EstimatorOptions& options, const DerivativeTriple& triple,
-            const HighPass& high_pass, const Eigen::VectorXd& theta0);
+            const HighPass& high_pass, const Eigen::VectorXd& theta0,
+            std::vector<double> noise_density = {});
 
   /// known: (floors + 1) x frames flags of DeformationSet. Equations that need an unknown motion
   /// are left out and the rest projected on their own eigenvectors.
   FloorRows rows(int floor, const std::vector<std::uint8_t>& known) const;
 
   const Eigen::VectorXd& design() const { return theta0_; }
+  const std::vector<double>& noise_density() const { return noise_density_; }
   /// Instants the slowest row filter needs to forget its start: 3 / (zeta w), and at least `least`.
   int settle_rows(int least) const;
   /// Largest relative change of a row filter's corner between this design and `theta`.
@@ -81,6 +84,7 @@ class RowTuning {
   const EstimatorOptions* options_;
   NoiseFilter noise_filter_;
   Eigen::VectorXd theta0_;
+  std::vector<double> noise_density_;
   std::vector<double> mass_;    ///< floors x frames
   Eigen::MatrixXd constraint_;  ///< of rigid floors; empty when flexible
 };

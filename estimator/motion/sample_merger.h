@@ -13,6 +13,8 @@ struct AxisCounters {
   std::int64_t missing = 0;   ///< instants closed without a value
   std::int64_t late = 0;      ///< came after their instant was closed
   std::int64_t repaired = 0;  ///< single losses filled by interpolation
+  std::int64_t stuck = 0;     ///< taken out: the value stood still while the building moved
+  std::int64_t clipped = 0;   ///< taken out: at the end of the sensor's range
   std::int64_t rejected = 0;  ///< NaN, infinite, duplicate, off the grid or far from the others
 };
 

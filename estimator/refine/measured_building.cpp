@@ -42,7 +42,8 @@ std::optional<MeasuredBuilding> measured_building(const Structure& s, const Para
   out.delay.resize(count);
   for (Index a = 0; a < count; ++a) {
     const SensorAxis& axis = axes[static_cast<std::size_t>(a)];
-    out.variance[a] = deformations.noise_variance(static_cast<int>(a), rate_hz);
+    out.variance[a] =
+        noise_variance(deformations.noise_density()[static_cast<std::size_t>(a)], rate_hz);
     out.delay[a] = axis.delay;
     out.noise_known = out.noise_known && axis.noise_density > 0;
   }

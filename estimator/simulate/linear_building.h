@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "estimator/simulate/simulated_building.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
@@ -10,25 +11,26 @@ namespace framewatch {
 /// M y'' + C y' + K y = -M r a_g advanced in time exactly (first-order-hold state space by the
 /// matrix exponential): no error while the ground acceleration is linear within a step. Floors are
 /// rigid or flexible as the structure says. Starts at rest.
-class LinearBuilding {
+class LinearBuilding : public SimulatedBuilding {
  public:
   /// theta in table order; step_s > 0.
   LinearBuilding(const Structure& structure, const ParameterTable& table,
                  const Eigen::VectorXd& theta, double step_s);
 
   /// New stiffness and damping from now on; displacements and velocities go on from where they are.
-  void set_theta(const Eigen::VectorXd& theta);
+  void set_theta(const Eigen::VectorXd& theta) override;
   /// Relative to the ground, one entry per degree of freedom, m and m/s.
   void set_state(const Eigen::VectorXd& disp_rel, const Eigen::VectorXd& vel_rel);
 
   /// One step; ground acceleration (x, y) at its start and end, m/s^2.
-  void advance(const Eigen::Vector2d& ground_before, const Eigen::Vector2d& ground_after);
+  void advance(const Eigen::Vector2d& ground_before, const Eigen::Vector2d& ground_after) override;
 
-  double step_s() const { return step_s_; }
-  Eigen::VectorXd disp_rel() const;
-  Eigen::VectorXd vel_rel() const;
+  double step_s() const override { return step_s_; }
+  void set_time(double) override {}
+  Eigen::VectorXd disp_rel() const override;
+  Eigen::VectorXd vel_rel() const override;
   /// m/s^2 per degree of freedom (Structure::dof), positive toward +x or +y.
-  const Eigen::VectorXd& accel_abs() const { return accel_abs_; }
+  const Eigen::VectorXd& accel_abs() const override { return accel_abs_; }
 
  private:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/simulate/linear_building.h"
+#include "estimator/simulate/nonlinear_building.h"
+
 namespace framewatch {
 namespace {
 
@@ -29,20 +32,44 @@ Decimator decimator(const std::vector<ResponseChannel>& wanted, const ResponseOp
   return {std::move(channels), columns};
 }
 
+std::unique_ptr<SimulatedBuilding> make_building(const Structure& structure,
+                                                 const ParameterTable& table,
+                                                 const Eigen::VectorXd& theta,
+                                                 const std::vector<Effect>& effects,
+                                                 double step_s) {
+  if (concerns_building(effects))
+    return std::make_unique<NonlinearBuilding>(structure, table, theta, effects, step_s);
+  return std::make_unique<LinearBuilding>(structure, table, theta, step_s);
+}
+
 }  // namespace
+
+double fine_step_s(const ResponseOptions& options) {
+  return 1 / (options.rate_hz * steps_per_instant(options));
+}
 
 ResponseStream::ResponseStream(const Structure& structure, const ParameterTable& table,
                                const Eigen::VectorXd& theta, PlanMotion motion,
+                               ResponseOptions options, std::vector<ParameterChange> changes,
+                               const std::vector<ResponseChannel>& channels,
+                               const std::vector<Effect>& effects)
+    : ResponseStream(make_building(structure, table, theta, effects, fine_step_s(options)),
+                     std::move(motion), options, std::move(changes), channels) {}
+
+ResponseStream::ResponseStream(std::unique_ptr<SimulatedBuilding> building, PlanMotion motion,
                                ResponseOptions options, std::vector<ParameterChange> changes,
                                const std::vector<ResponseChannel>& channels)
     : motion_(std::move(motion)),
       options_(options),
       changes_(std::move(changes)),
       ratio_(steps_per_instant(options)),
-      building_(structure, table, theta, 1 / (options.rate_hz * ratio_)),
-      decimator_(decimator(channels, options, ratio_, structure.degrees_of_freedom() + 2)),
+      building_(std::move(building)),
+      decimator_(decimator(channels, options, ratio_,
+                           static_cast<int>(building_->accel_abs().size()) + 2)),
       step_(-decimator_.delay_steps() - 1),
-      fine_(Eigen::VectorXd::Zero(structure.degrees_of_freedom() + 2)) {}
+      fine_(Eigen::VectorXd::Zero(building_->accel_abs().size() + 2)) {
+  building_->set_time(static_cast<double>(step_) * fine_step_s(options));
+}
 
 const Eigen::VectorXd& ResponseStream::next() {
   ++instant_;
@@ -62,11 +89,11 @@ Eigen::Vector2d ResponseStream::ground(long long step) const {
 void ResponseStream::advance() {
   const double now_s = static_cast<double>(step_) / (options_.rate_hz * ratio_);
   while (next_change_ < changes_.size() && changes_[next_change_].at_s <= now_s + kRounding_s)
-    building_.set_theta(changes_[next_change_++].theta);
+    building_->set_theta(changes_[next_change_++].theta);
   const Eigen::Vector2d before = fine_.tail<2>();
   fine_.tail<2>() = ground(++step_);
-  building_.advance(before, fine_.tail<2>());
-  fine_.head(building_.accel_abs().size()) = building_.accel_abs();
+  building_->advance(before, fine_.tail<2>());
+  fine_.head(building_->accel_abs().size()) = building_->accel_abs();
   decimator_.push(fine_);
 }
 

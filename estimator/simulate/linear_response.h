@@ -1,12 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "estimator/simulate/decimator.h"
 #include "estimator/simulate/ground_motion.h"
-#include "estimator/simulate/linear_building.h"
+#include "estimator/simulate/simulated_building.h"
+#include "estimator/structure/effect.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
@@ -31,8 +33,11 @@ struct ResponseChannel {
   double delay_s = 0;  ///< only 0 without the anti-alias filter, which makes it
 };
 
-/// The response of a linear building, one output instant after the other. The ground motion is
-/// taken at the fine steps and linear between them; the response to it is exact. Not the
+/// Of the integration, s.
+double fine_step_s(const ResponseOptions& options);
+
+/// The response of a building, one output instant after the other. The ground motion is taken at
+/// the fine steps and linear between them; a linear building's response to it is exact. Not the
 /// estimator's scheme, on purpose.
 class ResponseStream {
  public:
@@ -41,7 +46,12 @@ class ResponseStream {
   ResponseStream(const Structure& structure, const ParameterTable& table,
                  const Eigen::VectorXd& theta, PlanMotion motion, ResponseOptions options,
                  std::vector<ParameterChange> changes = {},
-                 const std::vector<ResponseChannel>& channels = {});
+                 const std::vector<ResponseChannel>& channels = {},
+                 const std::vector<Effect>& effects = {});
+  /// Of any building at rest whose step is fine_step_s(options).
+  ResponseStream(std::unique_ptr<SimulatedBuilding> building, PlanMotion motion,
+                 ResponseOptions options, std::vector<ParameterChange> changes,
+                 const std::vector<ResponseChannel>& channels);
 
   /// Absolute accelerations of the channels, m/s^2, at the next instant, the first being time 0.
   /// After the motion's end the ground rests.
@@ -57,7 +67,7 @@ class ResponseStream {
   ResponseOptions options_;
   std::vector<ParameterChange> changes_;
   int ratio_;  ///< fine steps per output instant
-  LinearBuilding building_;
+  std::unique_ptr<SimulatedBuilding> building_;
   Decimator decimator_;
   std::size_t next_change_ = 0;
   long long step_;          ///< fine step the building stands at

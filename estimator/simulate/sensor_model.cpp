@@ -68,8 +68,9 @@ const std::vector<double>& SensorArray::measure(double time_s, const Eigen::Vect
     const double noise = m.noise_density * noise_gain_ * noise_[i].normal();
     const bool lost = loss_[i].uniform() < m.loss_ratio;
     const bool dead = time_s >= m.dead_from_s && time_s < m.dead_to_s;
-    const double seen = quantised(
-        motion[static_cast<Eigen::Index>(i)] + noise + m.bias + m.thermal_ramp * time_s, m);
+    double analog = motion[static_cast<Eigen::Index>(i)] + noise + m.bias + m.thermal_ramp * time_s;
+    if (m.clip_level > 0) analog = std::clamp(analog, -m.clip_level, m.clip_level);
+    const double seen = quantised(analog, m);
     raw_[i] = lost || dead ? std::numeric_limits<double>::quiet_NaN()
                            : (axes_[i].polarity * seen + axes_[i].offset) / axes_[i].scale;
   }

@@ -20,6 +20,7 @@ struct SensorModel {
   double noise_density = 0;  ///< white, one-sided, m/s^2/sqrt(Hz)
   double bias = 0;           ///< m/s^2
   double thermal_ramp = 0;   ///< m/s^2 per s, added to the bias from time 0 on
+  double clip_level = 0;     ///< m/s^2: likewise, before the converter; 0 = unlimited
   double full_scale = 0;     ///< m/s^2: values stop at + and - this; 0 = unlimited
   int bits = 0;              ///< of the converter over the full scale; 0 = no quantisation
   double loss_ratio = 0;     ///< 0..1, chance of every sample to be lost

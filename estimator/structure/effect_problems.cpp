@@ -1,11 +1,25 @@
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "estimator/structure/effect.h"
 
 namespace framewatch {
 namespace {
+
+std::string number_text(double value) {
+  const bool whole = value == std::round(value);
+  return whole ? std::to_string(static_cast<long long>(value)) : std::to_string(value);
+}
+
+/// "must be > 0 and <= 2 s"; bounds that only keep numbers sane are not named.
+std::string range_text(const EffectParameter& p) {
+  constexpr double kSane = 1e9;
+  std::string out;
+  if (p.min > -kSane) out = (p.above_min ? "> " : ">= ") + number_text(p.min);
+  if (p.max < kSane) out += (out.empty() ? "<= " : " and <= ") + number_text(p.max);
+  if (out.empty()) return "must be finite and below 1e15";
+  return "must be " + out + (p.unit.empty() ? "" : " ") + std::string(p.unit);
+}
 
 class Checker {
  public:
@@ -81,10 +95,7 @@ class Checker {
       const EffectParameter& p = d.parameters[i];
       const double v = effect_.values[i];
       if (std::isfinite(v) && v <= p.max && (p.above_min ? v > p.min : v >= p.min)) continue;
-      std::ostringstream rule;
-      rule << "must be " << (p.above_min ? "> " : ">= ") << p.min << " and <= " << p.max;
-      if (!p.unit.empty()) rule << ' ' << p.unit;
-      add(p.key, rule.str());
+      add(p.key, range_text(p));
     }
   }
 

@@ -6,6 +6,11 @@
 #include <tuple>
 
 namespace framewatch {
+namespace {
+
+constexpr double kSteepest = M_PI / 3;
+
+}  // namespace
 
 std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorAxis>& axes) {
   std::vector<Problem> found;
@@ -25,6 +30,23 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
     if (!std::isfinite(a.delay)) add("delay_s", "delay must be a number");
     if (!(std::isfinite(a.noise_density) && a.noise_density >= 0))
       add("noise_mps2_per_rthz", "noise density must be 0 or more");
+    if (!(std::isfinite(a.range) && a.range >= 0)) add("range_mps2", "range must be 0 or more");
+    if (!(std::abs(a.tilt) <= kSteepest)) add("tilt_deg", "tilt must be within +-60 degrees");
+    if (!(std::abs(a.mount_angle) <= kSteepest))
+      add("mount_angle_deg", "mounting angle must be within +-60 degrees");
+    else if (a.mount_angle != 0 && a.cross < 0)
+      add("cross_channel", "an axis at an angle needs a cross_channel of the other direction");
+    if (a.cross >= static_cast<int>(axes.size())) {
+      add("cross_channel", "its cross channel does not exist");
+    } else if (a.cross >= 0) {
+      const SensorAxis& other = axes[static_cast<std::size_t>(a.cross)];
+      if (other.direction == a.direction || other.story != a.story)
+        add("cross_channel",
+            "channel '" + other.name + "' does not measure the other direction on the same floor");
+      else if (std::abs(a.mount_angle - other.mount_angle) > kSteepest)
+        add("mount_angle_deg", "and that of '" + other.name +
+                                   "' leave the axes nearly parallel: over 60 degrees apart");
+    }
     if (a.story < 0 || a.story > s.stories) {
       add("story", "story " + std::to_string(a.story) + " does not exist, 0 (base) to " +
                        std::to_string(s.stories) + " do");

@@ -7,8 +7,9 @@
 
 namespace framewatch {
 
-/// One accelerometer axis and where it sits. Its corrected value is
-/// polarity * (scale * raw - offset), m/s^2, absolute, positive toward +x or +y.
+/// One accelerometer axis and where it sits. Its corrected value, m/s^2, absolute, positive toward
+/// +x or +y, is polarity * (scale * raw - offset), freed from gravity and from the other horizontal
+/// direction where the axis is mounted at an angle (Calibration).
 struct SensorAxis {
   std::string name;
   int story = 0;                       ///< 0 = base
@@ -18,6 +19,10 @@ struct SensorAxis {
   double offset = 0.0;         ///< m/s^2, subtracted after scaling
   double polarity = 1.0;       ///< +1 or -1
   double delay = 0.0;          ///< s, true sample instant = stamp - delay
+  double tilt = 0.0;           ///< rad, of the positive axis above the horizontal
+  double mount_angle = 0.0;    ///< rad, counter-clockwise in plan from the direction it stands for
+  int cross = -1;              ///< axis of the other direction that corrects for mount_angle
+  double range = 0.0;          ///< m/s^2 of scale * raw, at which it clips; 0 = unknown
   double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0 = unknown
 };
 

@@ -7,14 +7,14 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/accuracy_trial.h"
+#include "daemon/accuracy_trial.h"
 #include "tests/support/paper_buildings.h"
 
 namespace framewatch {
 namespace {
 
-using test::AccuracyTrial;
-using test::ErrorsByKind;
+using daemon::AccuracyTrial;
+using daemon::ErrorsByKind;
 
 constexpr double kLimit95[] = {2e-5, 2e-4, 2e-4, 2e-3};  // k, G, c, G_c relative
 constexpr const char* kKind[] = {"k", "G", "c", "G_c"};
@@ -43,11 +43,11 @@ TEST_P(NoiseFree, ParametersWithinLimit) {
   trial.structure = b.structure;
   trial.truth = b.truth;
   trial.motion = directed(*motion, M_PI / 4);
-  trial.design = test::perturbed_design(table, b.truth, 0.1, 0.3, 7);
+  trial.design = daemon::perturbed_design(table, b.truth, 0.1, 0.3, 7);
   trial.duration_s = 20;
   // WHEN the pipeline identifies it, THEN 95 % of the errors are below the limits
   ErrorsByKind errors;
-  test::collect_errors(test::run_trial(trial), table, b.truth, errors);
+  daemon::collect_errors(daemon::run_trial(trial), table, b.truth, errors);
   for (std::size_t kind = 0; kind < errors.size(); ++kind) {
     RecordProperty(kKind[kind], std::to_string(errors[kind].quantile(0.95)));
     EXPECT_LT(errors[kind].quantile(0.95), kLimit95[kind]) << kKind[kind];
@@ -93,8 +93,8 @@ TEST_P(Noisy, MediansWithinLimitAndIntervalsHonest) {
     trial.noise_ratio = c.noise_ratio;
     trial.seed = static_cast<std::uint64_t>(seed);
     trial.design =
-        test::perturbed_design(table, b.truth, 0.1, 0.3, static_cast<std::uint64_t>(seed));
-    test::collect_errors(test::run_trial(trial), table, b.truth, errors);
+        daemon::perturbed_design(table, b.truth, 0.1, 0.3, static_cast<std::uint64_t>(seed));
+    daemon::collect_errors(daemon::run_trial(trial), table, b.truth, errors);
   }
   for (std::size_t kind = 0; kind < 3; ++kind) {
     EXPECT_LT(errors[kind].quantile(0.5), c.limit[kind]) << kKind[kind];

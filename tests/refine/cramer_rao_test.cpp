@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kRate_hz = 100;
 
-CramerRaoBound bound(const test::ExactStretch& stretch) {
+CramerRaoBound bound(const test::ExactRecord& stretch) {
   return cramer_rao_bound(test::table1(), stretch.axes, test::table1_theta(), kRate_hz,
                           stretch.accel_abs);
 }
 
-test::ExactStretch table1(double noise, double from_s = 5, double to_s = 10) {
+test::ExactRecord table1(double noise, double from_s = 5, double to_s = 10) {
   return test::exact_stretch(test::table1(), test::table1_theta(), test::oblique_motion(1), noise,
                              from_s, to_s);
 }
@@ -72,7 +72,7 @@ TEST(CramerRao, IsInfiniteForPanelsThatDoNotShear) {
 
 TEST(CramerRao, RefusesWhatIsNoStretch) {
   const auto good = table1(0.01);
-  test::ExactStretch stretch = good;
+  test::ExactRecord stretch = good;
   stretch.accel_abs.conservativeResize(40, Eigen::NoChange);
   EXPECT_EQ(bound(stretch).status, StretchStatus::too_short);
   stretch.accel_abs.conservativeResize(0, Eigen::NoChange);

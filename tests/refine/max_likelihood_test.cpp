@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/accuracy_trial.h"
+#include "daemon/accuracy_trial.h"
 #include "tests/support/noisy_stretch.h"
 #include "tests/support/paper_buildings.h"
 
@@ -43,10 +43,10 @@ Building two_stories(FloorModel floor = FloorModel::flexible) {
   return {s, with_proportional_damping(s, table, theta, 0.02)};
 }
 
-Refinement refine(const Building& b, const test::ExactStretch& stretch,
+Refinement refine(const Building& b, const test::ExactRecord& stretch,
                   const Eigen::MatrixXd& measured, bool prior, std::uint64_t seed) {
   const Eigen::VectorXd design =
-      test::perturbed_design(ParameterTable(b.structure), b.truth, 0.1, 0.3, seed);
+      daemon::perturbed_design(ParameterTable(b.structure), b.truth, 0.1, 0.3, seed);
   RefineOptions options;
   options.prior = prior;
   return refine_max_likelihood(b.structure, stretch.axes, kRate_hz, measured, design, design,

@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/accuracy_trial.h"
 #include "estimator/refine/cramer_rao.h"
-#include "tests/support/accuracy_trial.h"
 #include "tests/support/noisy_stretch.h"
 #include "tests/support/paper_buildings.h"
 
@@ -45,21 +45,21 @@ Medians measure(Case c, int seeds) {
       c.building == '1' ? test::table1_theta() : test::table2_theta(c.building);
   const ParameterTable table(s);
   std::vector<double> bound[4];
-  test::ErrorsByKind errors;
+  daemon::ErrorsByKind errors;
   for (int i = 1; i <= seeds; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
-    test::AccuracyTrial trial;
+    daemon::AccuracyTrial trial;
     trial.structure = s;
     trial.truth = truth;
-    trial.design = test::perturbed_design(table, truth, 0.1, 0.3, seed);
+    trial.design = daemon::perturbed_design(table, truth, 0.1, 0.3, seed);
     trial.motion = test::oblique_motion(seed);
     trial.noise_ratio = c.noise;
     trial.seed = seed;
-    std::vector<WindowEstimate> windows = test::run_trial(trial);
+    std::vector<WindowEstimate> windows = daemon::run_trial(trial);
     std::erase_if(windows, [](const WindowEstimate& w) {
       return static_cast<double>(to_microseconds(w.end)) < kFirstEnd_s * 1e6;
     });
-    test::collect_errors(windows, table, truth, errors);
+    daemon::collect_errors(windows, table, truth, errors);
     for (const WindowEstimate& w : windows) {
       const double end_s = 1e-6 * static_cast<double>(to_microseconds(w.end));
       const auto stretch = test::exact_stretch(s, truth, trial.motion, c.noise, end_s - 5, end_s);

@@ -1,116 +1,18 @@
 #include "tests/support/paper_buildings.h"
 
-#include <fstream>
-#include <string>
-
-#include "estimator/structure/parameter_table.h"
+#include "daemon/paper_motions.h"
 #include "tests/support/data.h"
 
 namespace framewatch::test {
-namespace {
-
-constexpr double kDampingRatio = 0.02;
-constexpr double kStandardGravity = 9.80665;
-constexpr double kGal = 0.01;
-
-/// theta from stiffnesses in kN/m and kN/(rad*m), table order.
-Eigen::VectorXd theta_of(const Structure& structure, const std::vector<double>& stiffness_kn) {
-  const ParameterTable table(structure);
-  Eigen::VectorXd theta = Eigen::VectorXd::Zero(table.size());
-  theta.head(table.elements()) =
-      1e3 * Eigen::Map<const Eigen::VectorXd>(stiffness_kn.data(), table.elements());
-  return with_proportional_damping(structure, table, theta, kDampingRatio);
-}
-
-std::optional<GroundMotion> read_motion(const std::string& file, double step_s, int columns,
-                                        double unit_mps2) {
-  const auto path = data_path("ground_motions/" + file);
-  if (!path) return std::nullopt;
-  std::ifstream in(*path);
-  GroundMotion motion{step_s, {}};
-  int column = 0;
-  for (double value; in >> value; column = (column + 1) % columns)
-    if (column == columns - 1) motion.accel.push_back(unit_mps2 * value);
-  return motion;
-}
-
-}  // namespace
-
-Structure table1() {
-  Structure s;
-  s.name = "paper, Table 1";
-  s.stories = 5;
-  s.frames_x = {"y1", "y2"};
-  s.frames_y = {"x1", "x2"};
-  s.span_x = {10.7};
-  s.span_y = {15.0};
-  s.story_height.assign(5, 4.0);
-  s.node_mass.assign(static_cast<std::size_t>(s.nodes()), 16.5e3);
-  return s;
-}
-
-Eigen::VectorXd table1_theta() {
-  return theta_of(table1(), {
-                                3500, 2000, 3000, 2500, 2500, 2000, 2300, 2500, 2500, 2000,  // kx
-                                2000, 3000, 3000, 2000, 2500, 3000, 2000, 2500, 2500, 2000,  // ky
-                                250,  230,  200,  210,  230                                  // Gk
-                            });
-}
-
-Structure table2() {
-  Structure s;
-  s.name = "paper, Table 2";
-  s.stories = 2;
-  s.frames_x = {"y1", "y2", "y3", "y4"};
-  s.frames_y = {"x1", "x2", "x3", "x4"};
-  s.span_x = {5.0, 3.0, 4.0};
-  s.span_y = {3.0, 4.0, 2.0};
-  s.story_height.assign(2, 4.0);
-  s.node_mass.assign(static_cast<std::size_t>(s.nodes()), 5.0e3);
-  return s;
-}
-
-Eigen::VectorXd table2_theta(char variant) {
-  std::vector<double> stiffness = {3500, 2000, 2000, 3000, 2500, 2000, 2500, 3000,
-                                   3000, 2500, 3000, 2000, 2300, 2500, 2000, 2500};
-  std::vector<double> floor;
-  if (variant == 'b') floor = {100, 110, 120, 210, 220, 230, 310, 320, 330};
-  if (variant == 'c') floor = {2000, 2500, 2000, 2500, 2500, 2500, 3000, 2500, 3000};
-  if (variant == 'd') floor = {6000, 6500, 6000, 5500, 5000, 5500, 4000, 4500, 4000};
-  for (int story = 0; story < 2; ++story)
-    stiffness.insert(stiffness.end(), floor.begin(), floor.end());
-  return theta_of(table2(), stiffness);
-}
-
-std::vector<SensorAxis> full_sensor_axes(const Structure& s) {
-  std::vector<SensorAxis> axes;
-  for (int story = 1; story <= s.stories; ++story) {
-    for (int f = 0; f < s.frames(); ++f) {
-      SensorAxis axis;
-      axis.name = "F" + std::to_string(story) + "-" + s.frame_name(f);
-      axis.story = story;
-      axis.direction = s.direction(f);
-      axis.frame = f;
-      axes.push_back(axis);
-    }
-  }
-  const auto add_base = [&](const char* name, Direction direction) {
-    SensorAxis axis;
-    axis.name = name;
-    axis.direction = direction;
-    axes.push_back(axis);
-  };
-  if (s.n() > 0) add_base("F0-x", Direction::x);
-  if (s.m() > 0) add_base("F0-y", Direction::y);
-  return axes;
-}
 
 std::optional<GroundMotion> el_centro_ns() {
-  return read_motion("elcentro_NS.dat", 0.02, 2, kStandardGravity);
+  const auto data = data_path("");
+  return data ? daemon::el_centro_ns(*data) : std::nullopt;
 }
 
 std::optional<GroundMotion> hachinohe_ns() {
-  return read_motion("hachi.txt", 0.01, 1, kGal);
+  const auto data = data_path("");
+  return data ? daemon::hachinohe_ns(*data) : std::nullopt;
 }
 
 }  // namespace framewatch::test

@@ -9,7 +9,29 @@
 #include "estimator/pipeline.h"
 #include "estimator/simulate/ground_motion.h"
 
-namespace framewatch::test {
+namespace framewatch::daemon {
+
+/// Sampling rate of the accuracy trials.
+inline constexpr double kTrialRate_hz = 100;
+/// Two-sided 95 % point of Student's t with 19 degrees of freedom: batch means have 20 blocks.
+inline constexpr double kStudent95 = 2.093;
+
+/// Exact motion of a building and the axes that measure it.
+struct ExactRecord {
+  std::vector<SensorAxis> axes;  ///< a sensor everywhere, noise densities set
+  Eigen::MatrixXd accel_abs;     ///< instants x axes at kTrialRate_hz, m/s^2
+};
+
+/// From rest, for duration_s; white noise of every axis: noise_ratio times the rms of its motion.
+ExactRecord exact_record(const Structure& structure, const Eigen::VectorXd& truth,
+                         const PlanMotion& motion, double noise_ratio, double duration_s);
+/// The record with the axes' noise on it.
+Eigen::MatrixXd with_noise(const ExactRecord& record, std::uint64_t seed);
+
+/// The full windows that a pipeline gives for accelerations (instants x axes, the first at time 0),
+/// the first to end at from_s or later, the others every_s apart.
+std::vector<WindowEstimate> run_windows(const PipelineConfig& config, const Eigen::MatrixXd& accel,
+                                        double from_s, double every_s);
 
 /// One run of the whole pipeline on exact motion of a known building with noisy accelerometers.
 struct AccuracyTrial {
@@ -24,11 +46,10 @@ struct AccuracyTrial {
   double every_s = 1;  ///< full windows are kept at this distance
 };
 
-/// The full windows of the run, every_s apart.
 std::vector<WindowEstimate> run_trial(const AccuracyTrial& trial);
 
-/// truth with every stiffness off by at most stiffness_off and every other parameter by at most
-/// other_off, relative, signs and sizes drawn by seed.
+/// truth with every frame stiffness off by at most frame_stiffness_off and every other parameter by
+/// at most other_off, relative, uniformly drawn by seed.
 Eigen::VectorXd perturbed_design(const ParameterTable& table, const Eigen::VectorXd& truth,
                                  double frame_stiffness_off, double other_off, std::uint64_t seed);
 
@@ -41,6 +62,7 @@ struct ErrorStatistics {
   double quantile(double probability) const;
   double published_ratio() const;
   double coverage_ratio() const;  ///< NaN when nothing was published
+  void add(const ErrorStatistics& other);
 };
 
 /// By ParameterKind.
@@ -49,4 +71,4 @@ using ErrorsByKind = std::array<ErrorStatistics, 4>;
 void collect_errors(const std::vector<WindowEstimate>& windows, const ParameterTable& table,
                     const Eigen::VectorXd& truth, ErrorsByKind& errors);
 
-}  // namespace framewatch::test
+}  // namespace framewatch::daemon

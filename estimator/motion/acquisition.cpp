@@ -1,0 +1,73 @@
+#include "estimator/motion/acquisition.h"
+
+#include <cmath>
+#include <utility>
+
+namespace framewatch {
+namespace {
+
+std::vector<ChannelGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
+  std::vector<ChannelGuard::Axis> out;
+  for (const SensorAxis& axis : axes) out.push_back({axis.range, static_cast<int>(axis.direction)});
+  return out;
+}
+
+}  // namespace
+
+Acquisition::Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOptions& options,
+                         Sink sink)
+    : axes_(axes),
+      merger_(static_cast<int>(axes.size()), options.rate_hz, options.lateness_s),
+      guard_(guarded_axes(axes), options.rate_hz),
+      calibration_(axes),
+      filler_(static_cast<int>(axes.size()), options.fill_single_losses),
+      sink_(std::move(sink)) {
+  for (SensorAxis& axis : axes_) {
+    const double whole = std::round(axis.delay * options.rate_hz) / options.rate_hz;
+    whole_delay_.emplace_back(std::llround(whole * 1e6));
+    axis.delay -= whole;
+  }
+  calibrated_.accel.resize(axes.size());
+}
+
+void Acquisition::push(const AccelSample& raw) {
+  const auto a = static_cast<std::size_t>(raw.axis);
+  AccelSample sample = raw;
+  sample.accel *= axes_[a].scale;
+  sample.time -= whole_delay_[a];
+  const bool taken = merger_.push(sample);
+  drain();
+  if (taken) return;
+  (void)merger_.push(sample);
+  drain();
+}
+
+void Acquisition::finish() {
+  merger_.finish();
+  drain();
+  while (const SampleSet* set = guard_.drain()) guarded(*set);
+  while (const SampleSet* set = filler_.drain()) sink_(*set);
+}
+
+void Acquisition::drain() {
+  while (const SampleSet* set = merger_.next())
+    if (const SampleSet* sound = guard_.push(*set)) guarded(*sound);
+}
+
+void Acquisition::guarded(const SampleSet& set) {
+  calibrated_ = set;
+  calibration_.apply(calibrated_.accel);
+  if (const SampleSet* repaired = filler_.push(calibrated_)) sink_(*repaired);
+}
+
+std::vector<AxisCounters> Acquisition::counters() const {
+  std::vector<AxisCounters> out = merger_.counters();
+  for (std::size_t a = 0; a < out.size(); ++a) {
+    out[a].repaired = filler_.repaired()[a];
+    out[a].stuck = guard_.stuck()[a];
+    out[a].clipped = guard_.clipped()[a];
+  }
+  return out;
+}
+
+}  // namespace framewatch

@@ -1,0 +1,201 @@
+#include "estimator/simulate/building_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+
+#include "estimator/simulate/rotations.h"
+#include "estimator/structure/matrices.h"
+
+namespace framewatch {
+namespace {
+
+using enum EffectKind;
+
+std::vector<const Effect*> of_kind(const std::vector<Effect>& effects, EffectKind kind) {
+  std::vector<const Effect*> out;
+  for (const Effect& e : effects)
+    if (e.kind == kind) out.push_back(&e);
+  return out;
+}
+
+Structure with_extra_mass(Structure s, const std::vector<Effect>& effects) {
+  const int crossings = s.nodes() / s.stories;
+  for (const Effect* e : of_kind(effects, extra_mass))
+    s.node_mass[static_cast<std::size_t>((e->place.story - 1) * crossings + e->place.crossing)] +=
+        e->value("mass_kg");
+  return s;
+}
+
+Eigen::VectorXd dense(const Element& element, Eigen::Index size) {
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(size);
+  for (const auto& [dof, coefficient] : element.b) b[dof] = coefficient;
+  return b;
+}
+
+/// Columns of `rigid` that move none of the flexible floors, and one for every degree of freedom of
+/// those.
+Eigen::MatrixXd freed(const Structure& s, const Eigen::MatrixXd& rigid,
+                      const std::vector<bool>& flexible) {
+  if (s.floor == FloorModel::flexible) return rigid;
+  std::vector<Eigen::VectorXd> columns;
+  for (int story = 1; story <= s.stories; ++story) {
+    const int first = s.dof(story, 0);
+    if (flexible[static_cast<std::size_t>(story)]) {
+      for (int f = 0; f < s.frames(); ++f)
+        columns.push_back(Eigen::VectorXd::Unit(rigid.rows(), first + f));
+      continue;
+    }
+    for (Eigen::Index c = 0; c < rigid.cols(); ++c)
+      if (rigid.col(c).segment(first, s.frames()).any()) columns.push_back(rigid.col(c));
+  }
+  Eigen::MatrixXd out(rigid.rows(), static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    out.col(static_cast<Eigen::Index>(c)) = columns[c];
+  return out;
+}
+
+/// Panels of the floors that flex although the building's are rigid.
+void add_flexible_floors(const Structure& s, const std::vector<Effect>& effects,
+                         LinearModel& model) {
+  Structure flexible = s;
+  flexible.floor = FloorModel::flexible;
+  std::vector<bool> flexes(static_cast<std::size_t>(s.stories) + 1, false);
+  for (const Effect* e : of_kind(effects, floor_flexibility)) {
+    flexes[static_cast<std::size_t>(e->place.story)] = true;
+    for (const Element& panel : elements(flexible, ParameterTable(flexible)))
+      if (panel.panel >= 0 && panel.story == e->place.story)
+        model.linear.push_back(
+            {dense(panel, model.mass.size()), e->value("gk_nprad"), e->value("gc_nsprad")});
+  }
+  const Eigen::MatrixXd floors = freed(s, floor_constraint(s), flexes);
+  const Eigen::Index hidden = model.mass.size() - s.degrees_of_freedom();
+  model.constraint = Eigen::MatrixXd::Zero(model.mass.size(), floors.cols() + hidden);
+  model.constraint.topLeftCorner(floors.rows(), floors.cols()) = floors;
+  model.constraint.bottomRightCorner(hidden, hidden).setIdentity();
+}
+
+void add_hidden_masses(const Structure& s, const std::vector<Effect>& effects, LinearModel& model) {
+  Eigen::Index dof = s.degrees_of_freedom();
+  for (const Effect* e : of_kind(effects, tuned_mass_damper)) {
+    const double mass = e->value("mass_kg");
+    const double omega = 2 * M_PI * e->value("frequency_hz");
+    const int node = s.dof(e->place.story, e->place.frame);
+    // A mass of 0 keeps its place, without effect: it moves, but pulls nobody.
+    model.mass[dof] = mass > 0 ? mass : 1;
+    model.influence.row(dof) = model.influence.row(node);
+    Eigen::VectorXd b = Eigen::VectorXd::Unit(model.mass.size(), dof);
+    if (mass > 0) b[node] = -1;
+    model.linear.push_back({b, model.mass[dof] * omega * omega,
+                            2 * e->value("damping_ratio") * model.mass[dof] * omega});
+    ++dof;
+  }
+}
+
+void add_node_pairs(const Structure& s, const std::vector<Effect>& effects, LinearModel& model) {
+  for (const Effect& e : effects) {
+    if (e.kind != added_spring && e.kind != added_damper) continue;
+    Eigen::VectorXd b =
+        Eigen::VectorXd::Unit(model.mass.size(), s.dof(e.place.story, e.place.frame));
+    if (e.place.to_story > 0) b[s.dof(e.place.to_story, e.place.frame)] = -1;
+    model.linear.push_back({b, e.kind == added_spring ? e.value("k_npm") : 0,
+                            e.kind == added_damper ? e.value("c_nspm") : 0});
+  }
+}
+
+/// Rotational springs of one kind in series are one softer spring.
+double rotational_stiffness(const std::vector<Effect>& effects, EffectKind kind,
+                            Direction direction) {
+  double flexibility = 0;
+  for (const Effect* e : of_kind(effects, kind))
+    if (e->place.direction == direction) flexibility += 1 / e->value("kr_nmprad");
+  return flexibility > 0 ? 1 / flexibility : 0;
+}
+
+}  // namespace
+
+Eigen::MatrixXd LinearModel::stiffness() const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mass.size(), mass.size());
+  for (const LinearElement& e : linear) out += e.stiffness * e.b * e.b.transpose();
+  return out;
+}
+
+Eigen::MatrixXd LinearModel::damping() const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mass.size(), mass.size());
+  for (const LinearElement& e : linear) out += e.damping * e.b * e.b.transpose();
+  return out;
+}
+
+LinearModel linear_model(const Structure& structure, const ParameterTable& table,
+                         const Eigen::VectorXd& theta, const std::vector<Effect>& effects) {
+  const Structure s = with_extra_mass(structure, effects);
+  const int nd = s.degrees_of_freedom();
+  const auto size = nd + static_cast<Eigen::Index>(of_kind(effects, tuned_mass_damper).size());
+  LinearModel model{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, 2), {}, {}};
+  for (int story = 1; story <= s.stories; ++story) {
+    for (int f = 0; f < s.frames(); ++f) {
+      model.mass[s.dof(story, f)] = s.frame_mass(story, f);
+      model.influence(s.dof(story, f), s.direction(f) == Direction::x ? 0 : 1) = 1;
+    }
+  }
+  for (const Element& e : elements(s, table))
+    model.linear.push_back(
+        {dense(e, size), theta[e.stiffness], theta[e.stiffness + table.elements()]});
+  for (const Direction direction : {Direction::x, Direction::y}) {
+    const double base = rotational_stiffness(effects, base_rocking, direction);
+    const double floors = rotational_stiffness(effects, frame_bending, direction);
+    if (base > 0 || floors > 0) add_rotations(s, table, direction, base, floors, model);
+  }
+  add_hidden_masses(s, effects, model);
+  add_node_pairs(s, effects, model);
+  add_flexible_floors(s, effects, model);
+  return model;
+}
+
+std::vector<PlacedLaw> placed_laws(const Structure& s, const ParameterTable& table,
+                                   const std::vector<Effect>& effects) {
+  std::vector<PlacedLaw> out;
+  for (const Effect& e : effects) {
+    std::unique_ptr<ElementLaw> law = make_law(e, s);
+    if (!law) continue;
+    const int element = e.place.kind == PlaceKind::panel
+                            ? table.panel_stiffness(e.place.story, e.place.panel)
+                            : table.frame_stiffness(e.place.story, e.place.frame);
+    out.push_back({element, std::move(law)});
+  }
+  return out;
+}
+
+std::vector<PlacedForce> placed_forces(const Structure& s, const std::vector<Effect>& effects) {
+  std::vector<PlacedForce> out;
+  for (const Effect* e : of_kind(effects, unmeasured_force))
+    out.push_back({s.dof(e->place.story, e->place.frame), AppliedForce(*e)});
+  return out;
+}
+
+bool stands(const Structure& s, const ParameterTable& table, const Eigen::VectorXd& theta,
+            const std::vector<Effect>& effects) {
+  const LinearModel model = linear_model(s, table, theta, effects);
+  Eigen::MatrixXd stiffness = model.stiffness();
+  for (const Effect& e : effects) {
+    const bool losing = e.kind == stiffness_drop || e.kind == stiffness_drift;
+    const std::vector<PlacedLaw> placed =
+        losing || e.kind == p_delta ? placed_laws(s, table, {e}) : std::vector<PlacedLaw>{};
+    for (const PlacedLaw& p : placed) {
+      const bool gaining = losing && e.value("dk_npm") > 0;
+      const Eigen::VectorXd& b = model.linear[static_cast<std::size_t>(p.element)].b;
+      if (!gaining) stiffness -= p.law->stiffness_bound() * b * b.transpose();
+    }
+  }
+  const Eigen::MatrixXd reduced = model.constraint.transpose() * stiffness * model.constraint;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(reduced, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().minCoeff() > 0;
+}
+
+bool concerns_building(const std::vector<Effect>& effects) {
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const Effect& e) { return !is_channel_effect(e.kind); });
+}
+
+}  // namespace framewatch

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/simulate/applied_force.h"
+#include "estimator/simulate/element_law.h"
+#include "estimator/structure/effect.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+/// A spring and a dashpot along b: force k b'y + c b'y' on the degrees of freedom b.
+struct LinearElement {
+  Eigen::VectorXd b;
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N*s/m
+};
+
+/// The linear part of a building with its effects. Degrees of freedom are the structure's, then
+/// one for each hidden mass, all relative to the ground.
+struct LinearModel {
+  Eigen::VectorXd mass;               ///< kg
+  Eigen::MatrixXd influence;          ///< x (x, y): 1 where the ground moves it
+  Eigen::MatrixXd constraint;         ///< x independent coordinates
+  std::vector<LinearElement> linear;  ///< first those of theta, in its order, then the effects'
+
+  Eigen::MatrixXd stiffness() const;  ///< of the degrees of freedom
+  Eigen::MatrixXd damping() const;
+};
+
+/// extra_mass, tuned_mass_damper, base_rocking, frame_bending, added_spring, added_damper and
+/// floor_flexibility act here, the other kinds do not.
+LinearModel linear_model(const Structure& structure, const ParameterTable& table,
+                         const Eigen::VectorXd& theta, const std::vector<Effect>& effects);
+
+/// A law on an element of LinearModel::linear.
+struct PlacedLaw {
+  int element;
+  std::unique_ptr<ElementLaw> law;
+};
+
+struct PlacedForce {
+  int dof;
+  AppliedForce force;
+};
+
+/// The laws of `effects`, in their order.
+std::vector<PlacedLaw> placed_laws(const Structure& structure, const ParameterTable& table,
+                                   const std::vector<Effect>& effects);
+std::vector<PlacedForce> placed_forces(const Structure& structure,
+                                       const std::vector<Effect>& effects);
+
+/// Whether the building with its effects stands: its linear stiffness, with every p_delta and all
+/// that is lost by stiffness_drop and stiffness_drift, is positive definite.
+bool stands(const Structure& structure, const ParameterTable& table, const Eigen::VectorXd& theta,
+            const std::vector<Effect>& effects);
+
+/// Whether any effect needs more than LinearBuilding: all but those of channels do.
+bool concerns_building(const std::vector<Effect>& effects);
+
+}  // namespace framewatch

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "estimator/structure/effect.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+/// The force that an effect adds to k d + c v of one element: a restoring force, N, positive when
+/// it acts against positive deformation d, m; v = d', m/s. Internal states, if any, start at 0.
+class ElementLaw {
+ public:
+  virtual ~ElementLaw() = default;
+  virtual int states() const { return 0; }
+  virtual double force(double time_s, double d, double v, std::span<const double> z) const = 0;
+  /// z' of the internal states.
+  virtual void rates(double d, double v, std::span<const double> z, std::span<double> z_rate) const;
+  /// Before every step from time_s, where the deformation is d: what is remembered of the past.
+  virtual void begin_step(double time_s, double d);
+  /// Bounds of abs(df/dd), N/m, and abs(df/dv), N*s/m, while abs(d) and abs(v) stay moderate: they
+  /// choose the step.
+  virtual double stiffness_bound() const { return 0; }
+  virtual double damping_bound() const { return 0; }
+};
+
+/// Null when the effect is not a law of one element. The effect must be without problems.
+std::unique_ptr<ElementLaw> make_law(const Effect& effect, const Structure& structure);
+
+}  // namespace framewatch

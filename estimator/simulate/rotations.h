@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/simulate/building_model.h"
+
+namespace framewatch {
+
+/// base_rocking and frame_bending along one direction: replaces the frames' deformations in
+/// model.linear by those beside the rotations, and adds the rotational springs. The rotations have
+/// no inertia and follow the elastic moments (docs/effects.md); a stiffness <= 0 means no such
+/// rotation.
+void add_rotations(const Structure& structure, const ParameterTable& table, Direction direction,
+                   double base_stiffness, double floor_stiffness, LinearModel& model);
+
+}  // namespace framewatch
