@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 namespace framewatch {
 
 /// matched: every floor's equations on its own eigenvectors, each filtered at its own frequency
@@ -11,6 +13,8 @@ struct EstimatorOptions {
   Variant variant = Variant::matched;
   double rate_hz = 100;  ///< sampling rate of the common grid
   double window_s = 5;   ///< rounded to 20 blocks of whole samples
+  /// Further windows, once per block of the main one; rounded to whole blocks, at least four.
+  std::vector<double> other_windows_s = {1, 2.5, 10};
   double hop_s = 0.01;   ///< between published windows; rounded to whole samples, >= 1
   int boxplot_windows = 500;
   double high_pass_hz = 0.3;       ///< drift control, second order; the paper's variant: 0.1

@@ -18,6 +18,10 @@ std::vector<std::string> problems(const PipelineConfig& config) {
   };
   at_least("rate_hz", o.rate_hz, 1);
   at_least("window_s", o.window_s, 40 / o.rate_hz);
+  for (const double s : o.other_windows_s) {
+    at_least("other_windows_s", s, 8 / o.rate_hz);
+    if (s > 20 * o.window_s) found.push_back("other_windows_s: at most 20 times window_s");
+  }
   at_least("hop_s", o.hop_s, 0);
   at_least("boxplot_windows", o.boxplot_windows, 1);
   at_least("high_pass_hz", o.high_pass_hz, 0.001);
@@ -33,11 +37,12 @@ std::vector<std::string> problems(const PipelineConfig& config) {
 
 class Pipeline::Implementation {
  public:
-  Implementation(const PipelineConfig& config, Sink sink)
+  Implementation(const PipelineConfig& config, Sink sink, Sink others)
       : table_(config.structure),
         acquisition_(config.axes, config.options, [this](const SampleSet& set) { estimate(set); }),
         estimator_(config, table_),
-        sink_(std::move(sink)) {}
+        sink_(std::move(sink)),
+        others_(std::move(others)) {}
 
   void push(const AccelSample& raw) { acquisition_.push(raw); }
   void finish() { acquisition_.finish(); }
@@ -56,17 +61,20 @@ class Pipeline::Implementation {
       ++windows_;
       sink_(*estimate);
     }
+    if (const WindowEstimate* other = estimator_.other(); other != nullptr && others_)
+      others_(*other);
   }
 
   ParameterTable table_;
   Acquisition acquisition_;
   WindowEstimator estimator_;
-  Sink sink_;
+  Sink sink_, others_;
   std::int64_t sets_ = 0, windows_ = 0;
 };
 
-Pipeline::Pipeline(const PipelineConfig& config, Sink sink)
-    : implementation_(std::make_unique<Implementation>(config, std::move(sink))) {}
+Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others)
+    : implementation_(
+          std::make_unique<Implementation>(config, std::move(sink), std::move(others))) {}
 Pipeline::~Pipeline() = default;
 void Pipeline::push(const AccelSample& sample) {
   implementation_->push(sample);
@@ -79,6 +87,10 @@ const ParameterTable& Pipeline::parameters() const {
 }
 const Eigen::VectorXd& Pipeline::design() const {
   return implementation_->estimator().design();
+}
+std::vector<double> Pipeline::noise_density() const {
+  const WindowEstimator& estimator = implementation_->estimator();
+  return estimator.noise_known() ? estimator.noise_density() : std::vector<double>{};
 }
 int Pipeline::window_rows() const {
   return implementation_->estimator().window_rows();

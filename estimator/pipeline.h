@@ -42,8 +42,9 @@ class Pipeline {
  public:
   using Sink = std::function<void(const WindowEstimate&)>;
 
-  /// Precondition: problems(config) is empty.
-  Pipeline(const PipelineConfig& config, Sink sink);
+  /// Precondition: problems(config) is empty. others: gets the estimates of the other windows, if
+  /// anybody wants them.
+  Pipeline(const PipelineConfig& config, Sink sink, Sink others = {});
   ~Pipeline();
 
   /// One axis at one instant. Any order within options.lateness_s.
@@ -54,6 +55,9 @@ class Pipeline {
   const ParameterTable& parameters() const;
   /// Design the filters are tuned to now, theta order.
   const Eigen::VectorXd& design() const;
+  /// Noise the channels' rows are weighted by now, m/s^2/sqrt(Hz), configured or measured; empty
+  /// while it is not known.
+  std::vector<double> noise_density() const;
   int window_rows() const;
   int hop_rows() const;
   PipelineCounters counters() const;

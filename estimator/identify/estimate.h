@@ -9,8 +9,17 @@ namespace framewatch {
 
 enum class WindowStatus { warming_up, valid, nothing_identifiable };
 
-/// Why a parameter has no value; observable means it has one.
-enum class Observability { observable, warming_up, quiet, ill_determined, channel_lost };
+/// Why a parameter has no value; observable means it has one. quiet: its element moves too little
+/// over the sensors' noise; floor_too_stiff: the frames move, this floor panel does not shear
+/// enough; symmetric_plan: nor could it, the frames of each direction being alike.
+enum class Observability {
+  observable,
+  warming_up,
+  quiet,
+  floor_too_stiff,
+  symmetric_plan,
+  channel_lost
+};
 
 /// Statistics of one parameter over the last windows in which it was observable, as MATLAB's
 /// boxplot draws them; NaN when there was none.
@@ -27,6 +36,10 @@ struct BoxplotStatistics {
 /// What one window says. Vectors follow the parameter table; entries that are not observable are
 /// NaN. A value-initialised estimate is not valid.
 struct WindowEstimate {
+  WindowEstimate() = default;
+  explicit WindowEstimate(std::size_t parameters);
+
+  int window = 0;  ///< 0 = the main window, i = EstimatorOptions::other_windows_s[i - 1]
   Time start;
   Time end;
   std::int64_t sequence = -1;
@@ -37,7 +50,12 @@ struct WindowEstimate {
   std::vector<double> std_error;  ///< SI, one standard deviation
   std::vector<Observability> reason;
   std::vector<double> snr;          ///< regressor energy over its expected noise energy
-  std::vector<double> prior_share;  ///< 0..1
+  std::vector<double> prior_share;  ///< 0..1: how far a wrong design pulls the value, by the prior
+  std::vector<double> noise_share;  ///< 0..1: the same, by sensor noise in the regressors
+  /// The newest value that was observable, this window's or an older one's, with the end of its
+  /// window; NaN when there was none. Main window only.
+  std::vector<double> last_value, last_std_error;
+  std::vector<Time> last_end;
   std::vector<BoxplotStatistics> boxplot;
   /// What the normal equations say before the gate, SI; for study, never published.
   std::vector<double> solution;

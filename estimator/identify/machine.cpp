@@ -8,13 +8,13 @@ MotionRing::MotionRing(const Deformations& deformations, int capacity)
     : sets_(static_cast<std::size_t>(capacity), deformations.make_set()) {}
 
 Machine::Machine(const RowTuning& tuning, const FloorLayout& layout, int blocks, int block_rows,
-                 int least_settle)
+                 const std::vector<int>& spans, int least_settle)
     : tuning_(tuning),
       layout_(layout),
       settle_(tuning_.settle_rows(least_settle)),
       entering_(tuning_, layout_, settle_),
       delayed_(tuning_, layout_, settle_),
-      sums_(layout_, blocks, block_rows) {}
+      sums_(layout_, blocks, block_rows, spans) {}
 
 void Machine::start(std::int64_t instant) {
   next_ = delayed_next_ = instant;

@@ -36,15 +36,15 @@ class MotionRing {
 /// serves.
 class Machine {
  public:
-  /// least_settle: see RowTuning::settle_rows.
+  /// blocks, block_rows, spans: see WindowSums. least_settle: see RowTuning::settle_rows.
   Machine(const RowTuning& tuning, const FloorLayout& layout, int blocks, int block_rows,
-          int least_settle);
+          const std::vector<int>& spans, int least_settle);
 
   /// Starts anew at an instant of the ring.
   void start(std::int64_t instant);
   std::int64_t next() const { return next_; }
-  /// Instants from the start to the first full window.
-  int warm_up() const { return settle_ + sums_.window_rows(); }
+  /// Instants from the start to the first full window of every length.
+  int warm_up() const { return settle_ + sums_.longest_rows(); }
 
   /// Takes instant next() in; the window's sum is ready for factor() until finish().
   void advance(const MotionRing& ring);
@@ -55,7 +55,7 @@ class Machine {
 
   bool full() const { return counting_ && sums_.full(); }
   const RowTuning& tuning() const { return tuning_; }
-  const WindowSums& sums() const { return sums_; }
+  WindowSums& sums() { return sums_; }
   const RowChain& rows() const { return entering_; }
 
  private:

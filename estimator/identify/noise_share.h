@@ -14,8 +14,8 @@ class NoiseShare {
  public:
   explicit NoiseShare(const FloorLayout& layout);
 
-  /// level: variance of the noise over the configured one.
-  void update(const RowChain& rows, const WindowSums& sums, double level);
+  /// level: variance of the noise over the tuning's.
+  void update(const RowChain& rows, const WindowParts& sums, double level);
 
   /// Values times scale.
   struct Part {
@@ -31,11 +31,13 @@ class NoiseShare {
   Part left(int floor) const {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
     if (f.rows == nullptr) return {nullptr, 0};
-    return {f.rows->noise_energy.data(), f.instants * (level_ > 0 ? 1 - kTakenOff : 1)};
+    return {f.rows->noise_energy.data(), f.instants * left_share()};
   }
 
   /// W's diagonal, internal order: energy each regressor has from noise.
   const std::vector<double>& energy() const { return energy_; }
+  /// Share of W that is left in the matrix.
+  double left_share() const { return level_ > 0 ? 1 - kTakenOff : 1; }
   /// Expected weighted residual energy from noise alone.
   double residual() const { return residual_; }
 

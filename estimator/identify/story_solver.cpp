@@ -24,13 +24,13 @@ StorySolver::StorySolver(const FloorLayout& layout) : layout_(layout), factor_(l
   usable_.assign(unknowns, 0);
 }
 
-void StorySolver::gather_information(const WindowSums& sums, int floor) {
-  const SumsShape::Floor& shape = sums.shape().floor[static_cast<std::size_t>(floor)];
+void StorySolver::gather_information(const WindowParts& sums, int floor) {
+  const SumsShape::Floor& shape = sums.shape->floor[static_cast<std::size_t>(floor)];
   const int own = layout_.own();
   std::size_t at = shape.offset;
   for (int i = 0; i < shape.front; ++i) {
     const std::size_t diagonal = at + static_cast<std::size_t>(i - packed_row_begin(i));
-    const double sum = sums.newest()[diagonal] + sums.middle()[diagonal] + sums.oldest()[diagonal];
+    const double sum = sums.newest[diagonal] + sums.middle[diagonal] + sums.oldest[diagonal];
     const auto unknown = static_cast<std::size_t>(floor * own + i);
     if (i + 1 == shape.front)
       response_energy_ += sum;
@@ -44,20 +44,20 @@ void StorySolver::gather_information(const WindowSums& sums, int floor) {
   }
 }
 
-void StorySolver::factor(const WindowSums& sums, const std::vector<double>& prior,
+void StorySolver::factor(const WindowParts& sums, const std::vector<double>& prior,
                          const NoiseShare& noise) {
   const int own = layout_.own();
   const int passed = 2 * layout_.frames();
   response_energy_ = 0;
   double prior_energy = 0;
   for (int floor = 0; floor < layout_.floors(); ++floor) {
-    const SumsShape::Floor& shape = sums.shape().floor[static_cast<std::size_t>(floor)];
+    const SumsShape::Floor& shape = sums.shape->floor[static_cast<std::size_t>(floor)];
     const int stride = shape.stride;
     const int last = shape.front - 1;
     double* a = front_[floor % 2].data();
     const NoiseShare::Part taken_off = noise.taken_off(floor);
-    kernels::in_use->sum_into_front(sums.newest() + shape.offset, sums.middle() + shape.offset,
-                                    sums.oldest() + shape.offset, taken_off.scale, taken_off.values,
+    kernels::in_use->sum_into_front(sums.newest + shape.offset, sums.middle + shape.offset,
+                                    sums.oldest + shape.offset, taken_off.scale, taken_off.values,
                                     a, shape.front, stride);
     gather_information(sums, floor);
     if (floor > 0) {

@@ -18,7 +18,7 @@ class StorySolver {
   explicit StorySolver(const FloorLayout& layout);
 
   /// prior: precision of every unknown about 1, in the rows' units, internal order; 0 = none.
-  void factor(const WindowSums& sums, const std::vector<double>& prior, const NoiseShare& noise);
+  void factor(const WindowParts& sums, const std::vector<double>& prior, const NoiseShare& noise);
 
   /// Unknowns in internal order (floor by floor); unusable ones are 1 (the design).
   const std::vector<double>& solution() const { return x_; }
@@ -33,7 +33,7 @@ class StorySolver {
   void swap_factor(StoryFactor& other) { factor_.swap(other); }
 
  private:
-  void gather_information(const WindowSums& sums, int floor);
+  void gather_information(const WindowParts& sums, int floor);
 
   FloorLayout layout_;
   StoryFactor factor_;

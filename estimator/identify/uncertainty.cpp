@@ -27,21 +27,20 @@ double sign(int row, int column) {
 
 }  // namespace
 
-BatchMeans::BatchMeans(const FloorLayout& layout, int most_blocks,
-                       const std::vector<double>& tolerance)
+BatchMeans::BatchMeans(const FloorLayout& layout, const std::vector<double>& tolerance)
     : layout_(layout),
-      most_blocks_(padded(most_blocks)),
-      columns_(most_blocks_ + kWrongDesigns),
+      columns_(kBlocks + kWrongDesigns),
       factor_(layout),
       inverse_(layout),
       noise_(layout),
       next_step_(steps()),
-      block_(static_cast<std::size_t>(most_blocks), nullptr) {
-  static_assert(kWrongDesigns % kLane == 0);
+      block_(kBlocks, nullptr) {
+  static_assert(kBlocks % kLane == 0 && kWrongDesigns % kLane == 0);
   const auto unknowns = static_cast<std::size_t>(layout.unknowns());
   columns_values_.assign(unknowns * static_cast<std::size_t>(columns_), 0.0);
-  for (std::vector<double>* v : {&solution_, &prior_, &inverse_diagonal_, &new_error_, &new_share_,
-                                 &std_error_, &prior_share_})
+  for (std::vector<double>* v :
+       {&solution_, &score_scale_, &prior_, &inverse_diagonal_, &new_error_, &new_share_,
+        &new_noise_share_, &std_error_, &prior_share_, &noise_share_})
     v->assign(unknowns, 0.0);
   const auto front = static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1));
   score_.assign(front, 0.0);
@@ -51,17 +50,20 @@ BatchMeans::BatchMeans(const FloorLayout& layout, int most_blocks,
       wrong_.push_back(kUniform * tolerance[u] * sign(static_cast<int>(u), c));
 }
 
-void BatchMeans::begin(const WindowSums& sums, StorySolver& solver, int blocks,
+void BatchMeans::begin(const WindowSums& sums, StorySolver& solver, const Fit& fit,
                        const std::vector<double>& prior, const NoiseShare& noise,
                        double noise_level) {
   solver.swap_factor(factor_);
-  solution_ = solver.solution();
+  solution_ = *fit.solution;
+  for (std::size_t u = 0; u < score_scale_.size(); ++u)
+    score_scale_[u] = (*fit.information)[u] > 0
+                          ? std::sqrt(solver.information()[u] / (*fit.information)[u])
+                          : 0.0;
   prior_ = prior;
   noise_ = noise;
   noise_level_ = noise_level;
-  blocks_ = blocks;
   shape_ = &sums.shape();
-  for (int b = 0; b < blocks; ++b) block_[static_cast<std::size_t>(b)] = sums.block(b);
+  for (int b = 0; b < kBlocks; ++b) block_[static_cast<std::size_t>(b)] = sums.block(b);
   std::fill(columns_values_.begin(), columns_values_.end(), 0.0);
   next_step_ = 0;
 }
@@ -82,6 +84,7 @@ bool BatchMeans::advance(int count) {
   if (running()) return false;
   std_error_.swap(new_error_);
   prior_share_.swap(new_share_);
+  noise_share_.swap(new_noise_share_);
   return true;
 }
 
@@ -99,7 +102,7 @@ void BatchMeans::add_block_scores(int floor) {
   const SumsShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
   const int first = floor * layout_.own();
   const int unknowns = shape.front - 1;
-  for (int b = 0; b < blocks_; ++b) {
+  for (int b = 0; b < kBlocks; ++b) {
     std::fill(score_.begin(), score_.end(), 0.0);
     kernels::in_use->add_residual(block_[static_cast<std::size_t>(b)] + shape.offset,
                                   &solution_[static_cast<std::size_t>(first)], score_.data(),
@@ -110,9 +113,10 @@ void BatchMeans::add_block_scores(int floor) {
   for (int u = first; u < first + layout_.own(); ++u) {
     double* row = columns(u);
     double mean = 0;
-    for (int b = 0; b < blocks_; ++b) mean += row[b];
-    mean /= blocks_;
-    for (int b = 0; b < blocks_; ++b) row[b] -= mean;
+    for (int b = 0; b < kBlocks; ++b) mean += row[b];
+    mean /= kBlocks;
+    const double scale = score_scale_[static_cast<std::size_t>(u)];
+    for (int b = 0; b < kBlocks; ++b) row[b] = scale * (row[b] - mean);
   }
 }
 
@@ -128,26 +132,28 @@ void BatchMeans::add_pulls(int floor) {
     const double scale = noise_level_ * left.scale;
     for (int i = 0; i < unknowns; ++i)
       for (int c = 0; c < kWrongDesigns; ++c)
-        columns(first + i)[most_blocks_ + c] +=
+        columns(first + i)[kBlocks + c] +=
             scale * pulled_[static_cast<std::size_t>(i * kWrongDesigns + c)];
   }
   for (int i = 0; i < layout_.own(); ++i)
     for (int c = 0; c < kWrongDesigns; ++c)
-      columns(first + i)[most_blocks_ + c] +=
+      columns(first + i)[kBlocks + c] +=
           prior_[static_cast<std::size_t>(first + i)] * wrong[i * kWrongDesigns + c];
 }
 
 void BatchMeans::finish(int floor) {
   inverse_.step(factor_, floor, inverse_diagonal_.data());
-  const double spread_scale = kCorrection * kCorrection * blocks_ / (blocks_ - 1);
+  const double spread_scale = kCorrection * kCorrection * kBlocks / (kBlocks - 1);
   for (int u = floor * layout_.own(); u < (floor + 1) * layout_.own(); ++u) {
     const auto i = static_cast<std::size_t>(u);
     const double* row = columns(u);
     double spread = 0, pull = 0;
-    for (int c = 0; c < blocks_; ++c) spread += row[c] * row[c];
-    for (int c = most_blocks_; c < columns_; ++c) pull += row[c] * row[c];
+    for (int c = 0; c < kBlocks; ++c) spread += row[c] * row[c];
+    for (int c = kBlocks; c < columns_; ++c) pull += row[c] * row[c];
     new_error_[i] = std::sqrt(spread_scale * spread + pull / kWrongDesigns);
     new_share_[i] = prior_[i] * inverse_diagonal_[i];
+    new_noise_share_[i] =
+        noise_level_ * noise_.left_share() * noise_.energy()[i] * inverse_diagonal_[i];
   }
 }
 

@@ -17,16 +17,25 @@ namespace framewatch {
 ///
 /// A pass is begun when a block closes and done in steps(), spread over the instants of the next
 /// block by their count, so that none is late. What is read is always of the last completed pass.
+/// The scores are those of the newest kBlocks blocks about a solution that fits them, whatever the
+/// window's length: a short window has too few blocks, so its scores are these, scaled to its own
+/// information.
 class BatchMeans {
  public:
-  /// most_blocks: that a window may have. tolerance: how far the design may be off, relative, per
-  /// unknown.
-  BatchMeans(const FloorLayout& layout, int most_blocks, const std::vector<double>& tolerance);
+  static constexpr int kBlocks = 20;
 
-  /// Right after maintain() closed the block that ends the window `solver` solved: the newest
-  /// `blocks` of `sums`, which must stay as they are until the pass is done. Takes the solver's
-  /// factor; its solution stays. noise_level: variance of the noise over the configured one.
-  void begin(const WindowSums& sums, StorySolver& solver, int blocks,
+  /// tolerance: how far the design may be off, relative, per unknown.
+  BatchMeans(const FloorLayout& layout, const std::vector<double>& tolerance);
+
+  /// The window of kBlocks blocks and the solution that fits it.
+  struct Fit {
+    const std::vector<double>* solution;
+    const std::vector<double>* information;
+  };
+  /// After maintain() closed the block that ends the window `solver` solved and `fit` fits, and
+  /// before the next one closes: the pass must be done by then. Takes the solver's factor; its
+  /// solution stays. noise_level: variance of the noise over the tuning's.
+  void begin(const WindowSums& sums, StorySolver& solver, const Fit& fit,
              const std::vector<double>& prior, const NoiseShare& noise, double noise_level);
   /// Of a whole pass.
   int steps() const { return 2 * layout_.floors(); }
@@ -44,6 +53,8 @@ class BatchMeans {
   const std::vector<double>& std_error() const { return std_error_; }
   /// Share of the prior in the solution, 0..1 and rounding.
   const std::vector<double>& prior_share() const { return prior_share_; }
+  /// Share of the pull of the noise left in the equations, 0..1 and rounding.
+  const std::vector<double>& noise_share() const { return noise_share_; }
 
  private:
   void assemble(int floor);
@@ -55,18 +66,19 @@ class BatchMeans {
   }
 
   FloorLayout layout_;
-  int most_blocks_, columns_;
+  int columns_;
   StoryFactor factor_;
   InverseDiagonal inverse_;
   NoiseShare noise_;
   double noise_level_ = 0;
-  int blocks_ = 0, next_step_;
+  int next_step_;
   const SumsShape* shape_ = nullptr;
   std::vector<const double*> block_;
   std::vector<double> columns_values_;  ///< unknowns x (blocks, then pulls)
   std::vector<double> wrong_;           ///< unknowns x wrong designs
-  std::vector<double> solution_, prior_, score_, pulled_, inverse_diagonal_;
-  std::vector<double> new_error_, new_share_, std_error_, prior_share_;
+  std::vector<double> solution_, score_scale_, prior_, score_, pulled_, inverse_diagonal_;
+  std::vector<double> new_error_, new_share_, new_noise_share_;
+  std::vector<double> std_error_, prior_share_, noise_share_;
 };
 
 }  // namespace framewatch

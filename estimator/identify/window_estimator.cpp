@@ -9,19 +9,20 @@
 namespace framewatch {
 namespace {
 
-constexpr int kBlocks = 20;       // per window
-constexpr int kCatchUp = 8;       // instants a new tuning takes in per instant of input
-constexpr int kMostPasses = 6;    // of tuning before the first estimate
-constexpr double kDetuned = 0.1;  // change of a filter's corner that asks for re-tuning
-constexpr double kInflation = 4;  // information is overstated by correlated residuals
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kBlocks = BatchMeans::kBlocks;  // per window
+constexpr int kFewestBlocks = 4;              // of another window
+constexpr int kCatchUp = 8;                   // instants a new tuning takes in per instant of input
+constexpr int kMostPasses = 6;                // of tuning before the first estimate
+constexpr double kDetuned = 0.1;              // change of a filter's corner that asks for re-tuning
+constexpr double kNoiseChanged = 2;   // change of an axis' noise against the others' that does too
+constexpr double kLeastNoise = 1e-3;  // of the noisiest axis: nothing is noise-free
 
 DerivativeTriple triple_of(const EstimatorOptions& o, double advance) {
   return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz)
                                      : matched_triple(o.rate_hz, advance);
 }
 
-/// Whole samples of a delay are taken off the stamps (Pipeline), the rest is filtered away here.
+/// Whole samples of a delay are taken off the stamps (Acquisition), the rest is filtered away here.
 std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o,
                                          const std::vector<SensorAxis>& axes) {
   std::vector<DerivativeTriple> triples;
@@ -32,16 +33,16 @@ std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o,
   return triples;
 }
 
-std::vector<double> tolerances(const FloorLayout& layout, const ParameterTable& table) {
-  std::vector<double> out;
-  for (int u = 0; u < layout.unknowns(); ++u)
-    out.push_back(
-        design_tolerance(table[layout.parameter(u / layout.own(), u % layout.own())].kind));
-  return out;
-}
-
 int rows_of(double seconds, double rate) {
   return std::max(1, static_cast<int>(std::lround(seconds * rate)));
+}
+
+std::vector<int> blocks_of(const std::vector<double>& windows_s, double rate_hz, int block_rows) {
+  std::vector<int> blocks;
+  for (const double s : windows_s)
+    blocks.push_back(
+        std::max(kFewestBlocks, static_cast<int>(std::lround(s * rate_hz / block_rows))));
+  return blocks;
 }
 
 /// Instants the slowest filter a design can ask for needs to settle: no corner is below the
@@ -51,12 +52,23 @@ int longest_settle(const EstimatorOptions& o) {
   return rows_of(std::max(o.settle_s, slowest_s), o.rate_hz) + 1;
 }
 
+int longest_window(int block_rows, const std::vector<int>& other_blocks) {
+  int longest = kBlocks;
+  for (const int blocks : other_blocks) longest = std::max(longest, blocks);
+  return longest * block_rows;
+}
+
+SensorClock::duration duration_of(double rows, double rate_hz) {
+  return SensorClock::duration(std::llround(rows * 1e6 / rate_hz));
+}
+
 }  // namespace
 
 WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTable& table)
     : structure_(config.structure),
       axes_(config.axes),
       options_(config.options),
+      matched_(options_.variant == Variant::matched),
       table_(table),
       layout_(structure_, table_),
       deformations_(structure_, layout_, axes_),
@@ -66,44 +78,31 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
       block_rows_(std::max(2, rows_of(options_.window_s / kBlocks, options_.rate_hz))),
       hop_rows_(rows_of(options_.hop_s, options_.rate_hz)),
       settle_rows_(rows_of(options_.settle_s, options_.rate_hz)),
+      other_blocks_(blocks_of(options_.other_windows_s, options_.rate_hz, block_rows_)),
       filter_(triples_of(options_, axes_), high_pass_),
-      ring_(deformations_, (longest_settle(options_) + kBlocks * block_rows_ + triple_.length()) *
+      meter_(static_cast<int>(axes_.size()), options_.rate_hz),
+      ring_(deformations_, (longest_settle(options_) + longest_window(block_rows_, other_blocks_) +
+                            triple_.length()) *
                                    (kCatchUp + 1) / kCatchUp +
                                2 * kCatchUp),
-      noise_(layout_),
-      solver_(layout_),
-      tolerance_(tolerances(layout_, table_)),
-      batch_means_(layout_, kBlocks, tolerance_),
-      boxplots_(static_cast<std::size_t>(table_.size()), BoxplotWindow(options_.boxplot_windows)) {
-  const auto unknowns = static_cast<std::size_t>(layout_.unknowns());
-  prior_.assign(unknowns, 0.0);
-  steps_per_instant_ = (batch_means_.steps() + block_rows_ - 2) / (block_rows_ - 1);
-  for (int u = 0; u < layout_.unknowns(); ++u) {
-    const int parameter = layout_.parameter(u / layout_.own(), u % layout_.own());
-    const ParameterKind kind = table_[parameter].kind;
-    const bool frame_stiffness = kind == ParameterKind::frame_stiffness;
-    unknowns_.push_back({parameter, frame_stiffness,
-                         frame_stiffness                          ? options_.max_error_k
-                         : kind == ParameterKind::panel_stiffness ? options_.max_error_g
-                                                                  : options_.max_error_c});
-  }
-  noise_configured_ = std::all_of(axes_.begin(), axes_.end(),
-                                  [](const SensorAxis& a) { return a.noise_density > 0; });
-  const auto parameters = static_cast<std::size_t>(table_.size());
-  for (std::vector<double>* v :
-       {&estimate_.value, &estimate_.std_error, &estimate_.snr, &estimate_.prior_share})
-    v->assign(parameters, kNaN);
-  estimate_.reason.assign(parameters, Observability::warming_up);
-  estimate_.boxplot.assign(parameters, BoxplotStatistics{kNaN, kNaN, kNaN, kNaN, kNaN, 0, 0});
-  estimate_.solution.assign(parameters, kNaN);
-  active_ =
-      make_machine(config.design.size() > 0 ? config.design : guessed_design(structure_, table_));
-  tuned_ = !options_.self_tune || options_.variant == Variant::paper;
+      main_(structure_, layout_, table_, options_),
+      others_(structure_, layout_, table_, options_, other_blocks_, block_rows_),
+      noise_known_(std::all_of(axes_.begin(), axes_.end(),
+                               [](const SensorAxis& a) { return a.noise_density > 0; })),
+      tuned_(!options_.self_tune || !matched_),
+      boxplots_(static_cast<std::size_t>(table_.size()), BoxplotWindow(options_.boxplot_windows)),
+      estimate_(static_cast<std::size_t>(table_.size())) {
+  steps_per_instant_ = (main_.error_steps() + block_rows_ - 2) / (block_rows_ - 1);
+  active_ = make_machine(
+      config.design.size() > 0 ? config.design : guessed_design(structure_, table_), {});
 }
 
-std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& design) const {
-  const RowTuning tuning(structure_, layout_, deformations_, options_, triple_, high_pass_, design);
-  return std::make_unique<Machine>(tuning, layout_, blocks_, block_rows_, settle_rows_);
+std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& design,
+                                                       const std::vector<double>& noise) const {
+  const RowTuning tuning(structure_, layout_, deformations_, options_, triple_, high_pass_, design,
+                         noise);
+  return std::make_unique<Machine>(tuning, layout_, blocks_, block_rows_, other_blocks_,
+                                   settle_rows_);
 }
 
 void WindowEstimator::restart() {
@@ -111,13 +110,13 @@ void WindowEstimator::restart() {
   ring_.reset();
   active_->start(0);
   candidate_.reset();
-  batch_means_.cancel();
-  errors_known_ = false;
-  noise_scale_ = residual_energy_ = 0;
+  main_.restart();
+  others_.restart();
   since_hop_ = 0;
 }
 
 const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
+  other_ = nullptr;
   if (set.index != expected_index_) {
     if (expected_index_ >= 0) ++gaps_;
     restart();
@@ -125,59 +124,79 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
   expected_index_ = set.index + 1;
 
   filter_.push(set.accel);
+  meter_.push(set.accel);
   deformations_.compute(filter_, ring_.push());
   active_->advance(ring_);
   ++since_hop_;
   const bool due = since_hop_ >= hop_rows_;
-  if (active_->full() && (due || active_->closes_block())) solve();
-  if (active_->finish(ring_) && active_->full()) {
-    batch_means_.begin(active_->sums(), solver_, kBlocks, prior_, noise_, noise_scale_);
-  } else if (batch_means_.advance(steps_per_instant_)) {
-    errors_known_ = true;
-    consider_retuning();
-  }
+  if (active_->full() && (due || active_->closes_block()))
+    main_.solve(active_->sums().window(), active_->rows(), trust());
+  const Time window_end = set.time - duration_of(triple_.delay, options_.rate_hz);
+  advance_errors(window_end);
   // The first sets only fill the filters: a window cannot end before the first sample.
   const bool given = due && ring_.end() > triple_.length();
   if (due) since_hop_ = 0;
-  if (given) fill_estimate(set.time);
+  if (given) fill_estimate(window_end);
   catch_up();
   return given ? &estimate_ : nullptr;
 }
 
-void WindowEstimator::solve() {
-  const bool regularise = options_.variant == Variant::matched && tuned_;
-  const double taken_off = regularise && noise_configured_ ? std::min(noise_scale_, 1.0) : 0.0;
-  noise_.update(active_->rows(), active_->sums(), taken_off);
-  for (std::size_t u = 0; u < prior_.size(); ++u)
-    prior_[u] = regularise && options_.prior
-                    ? kInflation / (tolerance_[u] * tolerance_[u]) * noise_scale_
-                    : 0.0;
-  solver_.factor(active_->sums(), prior_, noise_);
-  residual_energy_ = std::max(solver_.residual_energy() + taken_off * noise_.residual(), 0.0);
-  noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
+void WindowEstimator::advance_errors(Time window_end) {
+  if (active_->finish(ring_) && active_->full()) {
+    main_.begin_errors(active_->sums(), main_);
+    others_.block_closed(active_->sums(), window_end);
+    return;
+  }
+  if (main_.advance_errors(steps_per_instant_)) consider_retuning();
+  other_ =
+      others_.advance({active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned_});
+}
+
+std::vector<double> WindowEstimator::measured_noise() const {
+  std::vector<double> densities;
+  double largest = 0;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const double configured = axes_[a].noise_density;
+    densities.push_back(configured > 0 ? configured : meter_.density(static_cast<int>(a)));
+    if (!(densities.back() > 0)) return {};
+    largest = std::max(largest, densities.back());
+  }
+  for (double& density : densities) density = std::max(density, kLeastNoise * largest);
+  return densities;
+}
+
+bool WindowEstimator::noise_differs(const std::vector<double>& measured) const {
+  if (measured.empty()) return false;
+  if (!noise_known_) return true;
+  double lowest = std::numeric_limits<double>::infinity(), highest = 0;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    if (axes_[a].noise_density > 0) continue;
+    const double ratio = measured[a] / noise_density()[a];
+    lowest = std::min(lowest, ratio);
+    highest = std::max(highest, ratio);
+  }
+  return highest > kNoiseChanged * lowest;
 }
 
 void WindowEstimator::consider_retuning() {
-  if (!options_.self_tune || options_.variant == Variant::paper || candidate_ != nullptr) return;
+  if (!options_.self_tune || !matched_ || candidate_ != nullptr) return;
   if (tuned_ && ++blocks_since_check_ < kBlocks) return;
   blocks_since_check_ = 0;
   std::vector<bool> shown;
-  for (std::size_t u = 0; u < prior_.size(); ++u)
-    shown.push_back(solver_.usable(static_cast<int>(u)) &&
-                    solver_.information()[u] >
-                        options_.min_snr * noise_.energy()[u] * noise_scale_ &&
-                    solver_.solution()[u] > 0);
+  for (int u = 0; u < layout_.unknowns(); ++u) shown.push_back(main_.shown(u));
   if (std::none_of(shown.begin(), shown.end(), [](bool s) { return s; })) return;
-  const Eigen::VectorXd design =
-      retuned_design(layout_, table_, active_->tuning().design(), solver_.solution(),
-                     batch_means_.std_error(), shown);
-  if (active_->tuning().detuning(design) <= kDetuned || tuning_passes_ >= kMostPasses) {
+  const Eigen::VectorXd retuned = retuned_design(
+      layout_, table_, design(), main_.solver().solution(), main_.std_error(), shown);
+  const std::vector<double> noise = measured_noise();
+  const bool right = active_->tuning().detuning(retuned) <= kDetuned && !noise_differs(noise);
+  if (right || tuning_passes_ >= kMostPasses) {
     tuned_ = true;
     tuning_passes_ = 0;
     return;
   }
   if (!tuned_) ++tuning_passes_;
-  candidate_ = make_machine(design);
+  candidate_ = make_machine(retuned, noise);
+  candidate_noise_known_ = !noise.empty();
   const std::int64_t back = candidate_->warm_up() + triple_.length();
   candidate_->start(std::max(ring_.begin(), ring_.end() - back));
 }
@@ -188,95 +207,37 @@ void WindowEstimator::catch_up() {
       candidate_->advance(ring_);
       candidate_->finish(ring_);
     }
-    if (candidate_->next() < ring_.end() || (active_->full() && !candidate_->full())) continue;
-    for (int u = 0; u < layout_.unknowns(); ++u) {
-      const int parameter = unknowns_[static_cast<std::size_t>(u)].parameter;
-      batch_means_.rescale(
-          u, active_->tuning().design()[parameter] / candidate_->tuning().design()[parameter]);
-    }
-    batch_means_.cancel();
-    active_ = std::move(candidate_);
-    ++retunes_;
+    if (candidate_->next() == ring_.end() && (!active_->full() || candidate_->full()))
+      swap_machines();
   }
 }
 
-bool WindowEstimator::element_known(int unknown, const std::vector<std::uint8_t>& known) const {
-  const int frames = layout_.frames();
-  const int floor = unknown / layout_.own();
-  const int position = unknown % layout_.own();
-  const auto is_known = [&](int level, int f) {
-    return known[static_cast<std::size_t>(level * frames + f)] != 0;
-  };
-  if (position < 2 * frames)
-    return is_known(floor, position % frames) && is_known(floor + 1, position % frames);
-  for (int f = 0; f < frames; ++f)
-    if (layout_.coefficient(position, f) != 0 && !is_known(floor + 1, f)) return false;
-  return true;
-}
-
-Observability WindowEstimator::judge(int unknown, bool known, bool warm) const {
-  const auto u = static_cast<std::size_t>(unknown);
-  if (!known) return Observability::channel_lost;
-  if (!warm) return Observability::warming_up;
-  const double x = solver_.solution()[u];
-  const bool excited =
-      solver_.information()[u] > options_.min_snr * noise_.energy()[u] * noise_scale_;
-  if (solver_.usable(unknown) && excited && x > 0 &&
-      batch_means_.std_error()[u] < unknowns_[u].error_limit * x)
-    return Observability::observable;
-  return Observability::ill_determined;
-}
-
-void WindowEstimator::fill_estimate(Time time) {
-  const double rate = options_.rate_hz;
-  const auto since = [&](double rows) {
-    return SensorClock::duration(std::llround(rows * 1e6 / rate));
-  };
-  estimate_.end = time - since(triple_.delay);
-  estimate_.rows = active_->full() ? window_rows() : 0;
-  estimate_.start = estimate_.end - since(std::max(estimate_.rows - 1, 0));
-  ++estimate_.sequence;
-  estimate_.residual_ratio = estimate_.rows > 0 && solver_.response_energy() > 0
-                                 ? std::sqrt(residual_energy_ / solver_.response_energy())
-                                 : 0;
-  const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
-  const bool all_known = std::all_of(known.begin(), known.end(), [](auto k) { return k != 0; });
-  const bool filling = ring_.end() < triple_.length();  // no axis can be valid yet
-  const bool solved = active_->full();
-  bool any = false, any_frame = false, floor_warm = false;
+void WindowEstimator::swap_machines() {
   for (int u = 0; u < layout_.unknowns(); ++u) {
-    const auto i = static_cast<std::size_t>(u);
-    const Unknown& unknown = unknowns_[i];
-    const auto p = static_cast<std::size_t>(unknown.parameter);
-    const double design = active_->tuning().design()[unknown.parameter];
-    if (u % layout_.own() == 0)
-      floor_warm = solved && errors_known_ && tuned_ &&
-                   2 * active_->sums().floor_instants(u / layout_.own()) >= window_rows();
-    estimate_.reason[p] = judge(u, filling || all_known || element_known(u, known), floor_warm);
-    const bool observable = estimate_.reason[p] == Observability::observable;
-    any = any || observable;
-    any_frame = any_frame || (observable && unknown.frame_stiffness);
-    estimate_.solution[p] = solved ? design * solver_.solution()[i] : kNaN;
-    estimate_.value[p] = observable ? estimate_.solution[p] : kNaN;
-    estimate_.std_error[p] = observable ? design * batch_means_.std_error()[i] : kNaN;
-    const double noise = noise_.energy()[i] * noise_scale_;
-    estimate_.snr[p] = solved && noise > 0 ? solver_.information()[i] / noise : 0;
-    estimate_.prior_share[p] =
-        solved && errors_known_ ? std::min(batch_means_.prior_share()[i], 1.0) : 0;
+    const int p = layout_.parameter(u / layout_.own(), u % layout_.own());
+    main_.rescale(u, design()[p] / candidate_->tuning().design()[p]);
   }
-  for (std::size_t p = 0; p < estimate_.reason.size(); ++p) {
-    if (estimate_.reason[p] == Observability::ill_determined && !any_frame)
-      estimate_.reason[p] = Observability::quiet;
+  main_.retuned();
+  others_.retuned();
+  active_ = std::move(candidate_);
+  noise_known_ = candidate_noise_known_;
+  ++retunes_;
+}
+
+void WindowEstimator::fill_estimate(Time end) {
+  estimate_.end = end;
+  estimate_.rows = active_->full() ? window_rows() : 0;
+  estimate_.start = end - duration_of(std::max(estimate_.rows - 1, 0), options_.rate_hz);
+  ++estimate_.sequence;
+  main_.fill({&design(), &ring_.at(ring_.end() - 1).known, tuned_}, estimate_);
+  for (std::size_t p = 0; p < boxplots_.size(); ++p) {
     boxplots_[p].push(estimate_.value[p]);
     estimate_.boxplot[p] = boxplots_[p].statistics();
+    if (estimate_.reason[p] != Observability::observable) continue;
+    estimate_.last_value[p] = estimate_.value[p];
+    estimate_.last_std_error[p] = estimate_.std_error[p];
+    estimate_.last_end[p] = end;
   }
-  const bool warming =
-      std::all_of(estimate_.reason.begin(), estimate_.reason.end(), [](Observability o) {
-        return o == Observability::warming_up || o == Observability::channel_lost;
-      });
-  estimate_.status = any       ? WindowStatus::valid
-                     : warming ? WindowStatus::warming_up
-                               : WindowStatus::nothing_identifiable;
 }
 
 }  // namespace framewatch

@@ -6,6 +6,9 @@
 #include "estimator/identify/boxplot.h"
 #include "estimator/identify/estimate.h"
 #include "estimator/identify/machine.h"
+#include "estimator/identify/other_windows.h"
+#include "estimator/identify/window_solution.h"
+#include "estimator/motion/noise_meter.h"
 #include "estimator/pipeline.h"
 
 namespace framewatch {
@@ -17,8 +20,14 @@ class WindowEstimator {
 
   /// One instant. Returns the estimate of the window that ends there, or null between hops.
   const WindowEstimate* push(const SampleSet& set);
+  /// The estimate of another window that the last push completed, or null.
+  const WindowEstimate* other() const { return other_; }
 
   const Eigen::VectorXd& design() const { return active_->tuning().design(); }
+  /// The noise densities the rows are weighted by, per axis, m/s^2/sqrt(Hz); known: configured or
+  /// measured, of every axis.
+  const std::vector<double>& noise_density() const { return active_->tuning().noise_density(); }
+  bool noise_known() const { return noise_known_; }
   int window_rows() const { return blocks_ * block_rows_; }
   int hop_rows() const { return hop_rows_; }
   std::int64_t gaps() const { return gaps_; }
@@ -26,48 +35,42 @@ class WindowEstimator {
 
  private:
   void restart();
+  void advance_errors(Time window_end);
   void catch_up();
+  void swap_machines();
   void consider_retuning();
-  std::unique_ptr<Machine> make_machine(const Eigen::VectorXd& design) const;
-  void solve();
-  void fill_estimate(Time time);
-  Observability judge(int unknown, bool known, bool warm) const;
-  bool element_known(int unknown, const std::vector<std::uint8_t>& known) const;
-
-  struct Unknown {
-    int parameter;
-    bool frame_stiffness;
-    double error_limit;  ///< relative standard error above which it is not published
-  };
+  std::vector<double> measured_noise() const;
+  bool noise_differs(const std::vector<double>& measured) const;
+  std::unique_ptr<Machine> make_machine(const Eigen::VectorXd& design,
+                                        const std::vector<double>& noise) const;
+  WindowSolution::Trust trust() const { return {matched_ && tuned_, noise_known_}; }
+  void fill_estimate(Time end);
 
   Structure structure_;
   std::vector<SensorAxis> axes_;
   EstimatorOptions options_;
+  bool matched_;  ///< the variant
   ParameterTable table_;
   FloorLayout layout_;
   Deformations deformations_;
   DerivativeTriple triple_;
   HighPass high_pass_;
   int blocks_, block_rows_, hop_rows_, settle_rows_;
+  std::vector<int> other_blocks_;
   MotionFilter filter_;
+  NoiseMeter meter_;
   MotionRing ring_;
   std::unique_ptr<Machine> active_, candidate_;
-  NoiseShare noise_;
-  StorySolver solver_;
-  std::vector<double> tolerance_;  ///< of the design, internal order
-  BatchMeans batch_means_;
-  int steps_per_instant_ = 1;  ///< of a pass of batch_means_: done before the next block closes
-  bool errors_known_ = false;  ///< batch means exist for the present run of windows
-  bool tuned_ = false;         ///< a check has found the filters right
+  WindowSolution main_;
+  OtherWindows others_;
+  int steps_per_instant_ = 1;  ///< of a pass of errors: done before the next block closes
+  bool noise_known_, candidate_noise_known_ = false;
+  bool tuned_;  ///< a check has found the filters right
   int tuning_passes_ = 0;
   int blocks_since_check_ = 0;
-  double residual_energy_ = 0;
-  double noise_scale_ = 0;         ///< residual energy over what sensor noise explains
-  std::vector<Unknown> unknowns_;  ///< internal order
-  std::vector<double> prior_;
-  bool noise_configured_;  ///< of every axis
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
+  const WindowEstimate* other_ = nullptr;
   std::int64_t expected_index_ = -1, since_hop_ = 0, gaps_ = 0, retunes_ = 0;
 };
 

@@ -15,11 +15,21 @@ SumsShape::SumsShape(const FloorLayout& layout) {
   }
 }
 
-WindowSums::WindowSums(const FloorLayout& layout, int blocks, int block_rows)
-    : shape_(layout), floors_(layout.floors()), blocks_(blocks), block_rows_(block_rows) {
+WindowSums::WindowSums(const FloorLayout& layout, int blocks, int block_rows,
+                       const std::vector<int>& spans)
+    : shape_(layout),
+      floors_(layout.floors()),
+      blocks_(blocks),
+      block_rows_(block_rows),
+      held_blocks_(blocks) {
+  for (const int span : spans) {
+    held_blocks_ = std::max(held_blocks_, span);
+    spans_.push_back(
+        {span, std::vector<double>(shape_.size, 0.0), std::vector<double>(shape_.size, 0.0)});
+  }
   for (std::vector<double>* state : {&current_, &middle_, &next_middle_, &zero_})
     state->assign(shape_.size, 0.0);
-  blocks_ring_.assign(shape_.size * static_cast<std::size_t>(blocks), 0.0);
+  blocks_ring_.assign(shape_.size * static_cast<std::size_t>(held_blocks_), 0.0);
   suffixes_.assign(shape_.size * static_cast<std::size_t>(std::max(block_rows - 1, 0)), 0.0);
   for (int f = 0; f < floors_; ++f) {
     row_offset_.push_back(instant_rows_);
@@ -29,7 +39,8 @@ WindowSums::WindowSums(const FloorLayout& layout, int blocks, int block_rows)
   const auto floors = static_cast<std::size_t>(floors_);
   stored_rows_.assign(instant_rows_ * rows, 0.0);
   stored_counts_.assign(floors * rows, 0);
-  counts_.assign(floors * static_cast<std::size_t>(blocks), 0);
+  counts_.assign(floors * static_cast<std::size_t>(held_blocks_ + 1), 0);
+  instants_.assign(floors, 0);
   reset();
 }
 
@@ -38,6 +49,7 @@ void WindowSums::reset() {
   std::fill(current_.begin(), current_.end(), 0.0);
   std::fill(middle_.begin(), middle_.end(), 0.0);
   std::fill(next_middle_.begin(), next_middle_.end(), 0.0);
+  for (Span& span : spans_) std::fill(span.next.begin(), span.next.end(), 0.0);
   std::fill(blocks_ring_.begin(), blocks_ring_.end(), 0.0);
   std::fill(suffixes_.begin(), suffixes_.end(), 0.0);
   std::fill(stored_counts_.begin(), stored_counts_.end(), 0);
@@ -53,13 +65,34 @@ int WindowSums::rows() const {
 
 const double* WindowSums::block(int age) const {
   const std::int64_t newest = pushed_ / block_rows_ - 1;
-  return &blocks_ring_[static_cast<std::size_t>((newest - age) % blocks_) * shape_.size];
+  return &blocks_ring_[static_cast<std::size_t>((newest - age) % held_blocks_) * shape_.size];
 }
 
-int WindowSums::floor_instants(int floor) const {
-  int sum = 0;
-  for (int b = 0; b < blocks_; ++b) sum += counts_[static_cast<std::size_t>(b * floors_ + floor)];
-  return sum;
+/// Of the blocks first..last, into instants_.
+void WindowSums::count_instants(std::int64_t first, std::int64_t last) {
+  std::fill(instants_.begin(), instants_.end(), 0);
+  for (std::int64_t b = std::max<std::int64_t>(first, 0); b <= last; ++b)
+    for (int f = 0; f < floors_; ++f) instants_[static_cast<std::size_t>(f)] += counts(b)[f];
+}
+
+WindowParts WindowSums::window() {
+  const std::int64_t block = (pushed_ - 1) / block_rows_;
+  count_instants(block - blocks_ + 1, block);
+  const auto into_block = static_cast<int>((pushed_ - 1) % block_rows_) + 1;
+  // Of the oldest block, which leaves row by row, the count is to a row's share.
+  if (block >= blocks_)
+    for (int f = 0; f < floors_; ++f)
+      instants_[static_cast<std::size_t>(f)] +=
+          counts(block - blocks_)[f] * (block_rows_ - into_block) / block_rows_;
+  return {&shape_, current_.data(), middle_.data(), oldest_, window_rows(), &instants_};
+}
+
+WindowParts WindowSums::span(int i) {
+  const Span& span = spans_[static_cast<std::size_t>(i)];
+  const std::int64_t newest = pushed_ / block_rows_ - 1;
+  count_instants(newest - span.blocks + 1, newest);
+  return {&shape_,      span.sum.data(),           zero_.data(),
+          zero_.data(), span.blocks * block_rows_, &instants_};
 }
 
 void WindowSums::push(const RowChain& entering) {
@@ -83,7 +116,8 @@ bool WindowSums::maintain(const RowChain* delayed) {
   const int j = static_cast<int>((pushed_ - 1) % block_rows_) + 1;
   if (j < block_rows_) build_suffix(j);
   if (delayed != nullptr) store_delayed(*delayed, j);
-  add_slice(j);
+  add_slice(j, blocks_ - 2, next_middle_);
+  for (Span& span : spans_) add_slice(j, span.blocks - 1, span.next);
   if (j < block_rows_) return false;
   close_block();
   return true;
@@ -114,9 +148,9 @@ void WindowSums::store_delayed(const RowChain& delayed, int j) {
         delayed.count(f);
 }
 
-void WindowSums::add_slice(int j) {
+void WindowSums::add_slice(int j, int completed, std::vector<double>& sum) {
   const std::int64_t block = (pushed_ - 1) / block_rows_;
-  const std::int64_t oldest = std::max<std::int64_t>(block - blocks_ + 2, 0);
+  const std::int64_t oldest = std::max<std::int64_t>(block - completed, 0);
   const auto total = static_cast<std::size_t>(block - oldest) * shape_.size;
   const auto rows = static_cast<std::size_t>(block_rows_);
   std::size_t at = total * static_cast<std::size_t>(j - 1) / rows;
@@ -124,19 +158,24 @@ void WindowSums::add_slice(int j) {
   while (at < end) {
     const std::size_t within = at % shape_.size;
     const std::size_t length = std::min(shape_.size - within, end - at);
-    const auto ring =
-        static_cast<std::size_t>((oldest + static_cast<std::int64_t>(at / shape_.size)) % blocks_);
-    kernels::in_use->add(&next_middle_[within], &blocks_ring_[ring * shape_.size + within],
+    const auto ring = static_cast<std::size_t>(
+        (oldest + static_cast<std::int64_t>(at / shape_.size)) % held_blocks_);
+    kernels::in_use->add(&sum[within], &blocks_ring_[ring * shape_.size + within],
                          static_cast<long>(length));
     at += length;
   }
 }
 
 void WindowSums::close_block() {
-  const auto ring = static_cast<std::size_t>((pushed_ / block_rows_ - 1) % blocks_);
+  const auto ring = static_cast<std::size_t>((pushed_ / block_rows_ - 1) % held_blocks_);
   kernels::in_use->add(next_middle_.data(), current_.data(), static_cast<long>(shape_.size));
   std::copy(current_.begin(), current_.end(),
             blocks_ring_.begin() + static_cast<std::ptrdiff_t>(ring * shape_.size));
+  for (Span& span : spans_) {
+    kernels::in_use->add(span.next.data(), current_.data(), static_cast<long>(shape_.size));
+    span.sum.swap(span.next);
+    std::fill(span.next.begin(), span.next.end(), 0.0);
+  }
   middle_.swap(next_middle_);
   std::fill(next_middle_.begin(), next_middle_.end(), 0.0);
   std::fill(current_.begin(), current_.end(), 0.0);

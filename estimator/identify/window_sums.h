@@ -20,6 +20,16 @@ struct SumsShape {
   std::size_t size = 0;
 };
 
+/// A window's sums in three parts that are to be added.
+struct WindowParts {
+  const SumsShape* shape;
+  const double* newest;
+  const double* middle;
+  const double* oldest;
+  int rows;                          ///< instants
+  const std::vector<int>* instants;  ///< per floor: those in which it had rows
+};
+
 /// Sum over the window of (row)(row)^T, floor by floor, kept without a single subtraction: whole
 /// blocks, the block being filled, and ready-made sums of what remains of the oldest block.
 /// Rounding errors of a strong motion leave with its rows. docs/equations.md, block sums.
@@ -27,15 +37,19 @@ struct SumsShape {
 /// In block b, row j (1-based): window = suffix of block b-blocks (rows j+1..) + blocks between +
 /// rows 1..j of block b. The suffixes are built backwards, one row per instant, during block b-1,
 /// from rows a second chain produced during block b-2.
+///
+/// Spans are further windows of whole blocks, summed from the same blocks whenever one closes.
 class WindowSums {
  public:
-  WindowSums(const FloorLayout& layout, int blocks, int block_rows);
+  /// spans: their lengths in blocks.
+  WindowSums(const FloorLayout& layout, int blocks, int block_rows,
+             const std::vector<int>& spans = {});
 
   void reset();
   /// Instants the second chain lags behind the first.
   int lag() const { return (blocks_ - 2) * block_rows_; }
 
-  /// Adds one instant; the window's sum is then newest() + middle() + oldest().
+  /// Adds one instant; the window's sum is then that of window().
   void push(const RowChain& entering);
   /// Prepares the next instant, once the sum has been used. delayed: the second chain at the
   /// instant lag() before the one pushed, or null while there is none. True when a block closed.
@@ -49,32 +63,44 @@ class WindowSums {
   int rows() const;
 
   const SumsShape& shape() const { return shape_; }
-  /// The three parts whose sum is the window's; valid from push() to maintain().
-  const double* newest() const { return current_.data(); }
-  const double* middle() const { return middle_.data(); }
-  const double* oldest() const { return oldest_; }
+  /// Valid from push() to maintain().
+  WindowParts window();
+  /// Ending with the newest completed block; valid from the maintain() that closed it to the next.
+  WindowParts span(int i);
+  /// Instants of the longest window.
+  int longest_rows() const { return held_blocks_ * block_rows_; }
+  bool span_full(int i) const {
+    return pushed_ / block_rows_ >= spans_[static_cast<std::size_t>(i)].blocks;
+  }
+  int spans() const { return static_cast<int>(spans_.size()); }
   int blocks() const { return blocks_; }
+  int block_rows() const { return block_rows_; }
   /// Completed block, age 0 = the newest; valid after maintain().
   const double* block(int age) const;
-  /// Instants, to a block, in which a floor had rows in the window.
-  int floor_instants(int floor) const;
 
  private:
   double* suffix(int slot) { return &suffixes_[static_cast<std::size_t>(slot - 1) * shape_.size]; }
   void build_suffix(int j);
   void store_delayed(const RowChain& delayed, int j);
-  void add_slice(int j);
+  void count_instants(std::int64_t first, std::int64_t last);
+  void add_slice(int j, int completed, std::vector<double>& sum);
   void close_block();
   int* counts(std::int64_t block) {
-    return &counts_[static_cast<std::size_t>(block % blocks_ * floors_)];
+    return &counts_[static_cast<std::size_t>(block % (held_blocks_ + 1) * floors_)];
   }
 
   SumsShape shape_;
   int floors_;
   int blocks_, block_rows_;
+  int held_blocks_;  ///< of the longest window
   std::int64_t pushed_ = 0;
   std::vector<double> current_, middle_, next_middle_, zero_;
-  std::vector<double> blocks_ring_;      ///< blocks x state
+  struct Span {
+    int blocks;
+    std::vector<double> next, sum;
+  };
+  std::vector<Span> spans_;
+  std::vector<double> blocks_ring_;      ///< held blocks x state
   std::vector<double> suffixes_;         ///< (block_rows - 1) x state
   std::vector<double> stored_rows_;      ///< block_rows x rows of one instant
   std::vector<int> stored_counts_;       ///< block_rows x floors
@@ -82,7 +108,8 @@ class WindowSums {
   std::size_t instant_rows_ = 0;
   bool forward_ = true;  ///< direction in which this block uses the slots
   const double* oldest_ = nullptr;
-  std::vector<int> counts_;  ///< blocks x floors, the current block's among them
+  std::vector<int> instants_;
+  std::vector<int> counts_;  ///< (held blocks + 1) x floors, the current block's among them
 };
 
 }  // namespace framewatch

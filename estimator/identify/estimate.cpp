@@ -1,0 +1,17 @@
+#include "estimator/identify/estimate.h"
+
+#include <limits>
+
+namespace framewatch {
+
+WindowEstimate::WindowEstimate(std::size_t parameters) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (std::vector<double>* v : {&value, &std_error, &snr, &prior_share, &noise_share, &last_value,
+                                 &last_std_error, &solution})
+    v->assign(parameters, kNaN);
+  last_end.resize(parameters);
+  reason.assign(parameters, Observability::warming_up);
+  boxplot.assign(parameters, BoxplotStatistics{kNaN, kNaN, kNaN, kNaN, kNaN, 0, 0});
+}
+
+}  // namespace framewatch

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/estimate.h"
+#include "estimator/identify/noise_share.h"
+#include "estimator/identify/row_chain.h"
+#include "estimator/identify/story_solver.h"
+#include "estimator/identify/uncertainty.h"
+#include "estimator/identify/window_sums.h"
+#include "estimator/options.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+/// One window at work: its normal equations freed of the noise they are known to hold, solved, with
+/// errors and with a verdict on every parameter. docs/equations.md (18), (21), (22).
+class WindowSolution {
+ public:
+  WindowSolution(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
+                 const EstimatorOptions& options);
+
+  /// A new run of windows: nothing is known of its errors.
+  void restart();
+  /// What the rows of a tuning are good for. regularise: noise may be taken off and the prior pull;
+  /// noise_known: it is configured or measured, of every axis.
+  struct Trust {
+    bool regularise, noise_known;
+  };
+  void solve(const WindowParts& sums, const RowChain& rows, const Trust& trust);
+
+  /// A pass of standard errors, spread over instants (BatchMeans). fit: the solution that fits
+  /// BatchMeans::kBlocks blocks, this one or another.
+  void begin_errors(const WindowSums& all, const WindowSolution& fit);
+  bool advance_errors(int steps);
+  /// The next solution is of other rows: a pass under way is given up, errors stay.
+  void retuned() {
+    errors_.cancel();
+    fresh_ = true;
+  }
+  int error_steps() const { return errors_.steps(); }
+  bool errors_known() const { return errors_known_; }
+  const std::vector<double>& std_error() const { return errors_.std_error(); }
+  void rescale(int unknown, double factor) { errors_.rescale(unknown, factor); }
+
+  const StorySolver& solver() const { return solver_; }
+  /// The window's motion shows the unknown over the sensors' noise.
+  bool shown(int unknown) const;
+
+  /// What decides about a parameter besides the numbers.
+  struct Situation {
+    const Eigen::VectorXd* design;           ///< theta order
+    const std::vector<std::uint8_t>* known;  ///< places with a working sensor, DeformationSet
+    bool tuned;                              ///< the filters have been found right
+  };
+  /// Everything of the estimate that one window says; not its times, boxplots and last values.
+  void fill(const Situation& situation, WindowEstimate& estimate) const;
+
+ private:
+  struct Unknown {
+    int parameter;
+    ParameterKind kind;
+    double tolerance;    ///< of the design, relative
+    double error_limit;  ///< relative standard error above which it is not published
+  };
+  bool place_known(int unknown, const std::vector<std::uint8_t>& known) const;
+  bool published(int unknown) const;
+  bool looks_symmetric(const WindowEstimate& estimate) const;
+
+  Structure structure_;
+  FloorLayout layout_;
+  ParameterTable table_;
+  EstimatorOptions options_;
+  std::vector<Unknown> unknowns_;  ///< internal order
+  NoiseShare noise_;
+  StorySolver solver_;
+  BatchMeans errors_;
+  std::vector<double> prior_;
+  std::vector<std::uint8_t> warm_;  ///< floors whose rows fill most of the window
+  bool errors_known_ = false;
+  bool solved_ = false;
+  bool fresh_ = true;  ///< the noise level is that of other rows or of none
+  double residual_energy_ = 0;
+  double noise_scale_ = 0;  ///< residual energy over what sensor noise explains
+};
+
+}  // namespace framewatch
