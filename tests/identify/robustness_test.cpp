@@ -26,7 +26,7 @@ TEST_P(Silence, PublishesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(NoiseDensity, Silence, testing::Bool(),
-                         [](const auto& info) { return info.param ? "configured" : "unknown"; });
+                         [](const auto& given) { return given.param ? "configured" : "unknown"; });
 
 TEST(Excitation, FewPublishedStiffnessesAreWrong) {
   const daemon::ExcitationSweep sweep = daemon::study_excitation(
