@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "tests/study/practice.h"
 #include "tests/study/study_case.h"
 #include "tests/study/study_score.h"
 
@@ -18,12 +19,14 @@ namespace {
 constexpr const char* kUsage =
     R"(usage: diagnose_study generate DIR [--each N] [--seed N] [--seconds S] [--building KIND]
                                [--group GROUP] [--effect NAME]
+       diagnose_study practice DIR [--data FOLDER]
        diagnose_study run DIR --program FRAMEWATCH
        diagnose_study table DIR
 
 generate  writes cases: config.toml, train.csv.gz, holdout.csv.gz, truth.json. Each effect N times (1)
           per building, noise 1, 2, 5 % in turn. Groups: catalogue, nothing (10 N per building),
           other_form, outside, two_effects (6 N per building).
+practice  imports the practice cases of FOLDER (that of the data folder), made with another program
 run       runs `framewatch diagnose` on every case without a diagnosis
 table     prints rates, confusion and gaps as Markdown; exit 1 when there is no case
 )";
@@ -112,6 +115,26 @@ std::vector<std::string> cases(const std::string& directory) {
   return out;
 }
 
+int practice(const Arguments& a) {
+  const char* data = std::getenv("FRAMEWATCH_DATA");
+  const std::filesystem::path folder =
+      a.text("--data", std::string(data ? data : FRAMEWATCH_DATA_DEFAULT) + "/practice");
+  int imported = 0;
+  std::error_code code;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
+    if (!entry.is_directory()) continue;
+    const std::string name = entry.path().filename().string();
+    std::string error;
+    if (!import_practice(entry.path().string(), a.directory + "/" + name, error)) {
+      fmt::print(stderr, "{}\n", error);
+      return 2;
+    }
+    ++imported;
+  }
+  fmt::print("{} cases\n", imported);
+  return imported > 0 ? 0 : 1;
+}
+
 int run(const Arguments& a) {
   const std::string program = a.text("--program", "framewatch");
   for (const std::string& directory : cases(a.directory)) {
@@ -143,11 +166,12 @@ int main_of(int argc, char** argv) {
   for (int i = 3; i + 1 < argc; i += 2) {
     const std::string key = argv[i];
     const std::vector<std::string> known{"--each",  "--seed",   "--seconds", "--building",
-                                         "--group", "--effect", "--program"};
+                                         "--group", "--effect", "--program", "--data"};
     good = good && std::find(known.begin(), known.end(), key) != known.end();
     a.options[key] = argv[i + 1];
   }
   if (good && a.action == "generate") return generate(a);
+  if (good && a.action == "practice") return practice(a);
   if (good && a.action == "run") return run(a);
   if (good && a.action == "table") return table(a);
   fmt::print(stderr, "{}", kUsage);

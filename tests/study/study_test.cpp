@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config.h"
+#include "tests/study/practice.h"
 #include "tests/study/study_case.h"
 #include "tests/study/study_record.h"
 #include "tests/study/study_score.h"
+#include "tests/support/data.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::study {
@@ -83,6 +85,23 @@ TEST(StudyCase, WhatIsHiddenShows) {
               0.05 * clean_record(nothing, 0).norm())
         << name;
   }
+}
+
+TEST(Practice, IsImportedInTheCataloguesWords) {
+  FRAMEWATCH_DATA_OR_SKIP(truth, "practice/case-009/truth.json");
+  const std::string source = std::filesystem::path(truth).parent_path().string();
+  const test::TemporaryDirectory folder;
+  const std::string directory = folder.path("case");
+  std::string error;
+  ASSERT_TRUE(import_practice(source, directory, error)) << error;
+  std::vector<daemon::ConfigProblem> problems;
+  EXPECT_TRUE(daemon::load_config(directory + "/config.toml", problems));
+  std::filesystem::create_directory(directory + "/out");
+  std::ofstream(directory + "/out/diagnosis.json")
+      << R"({"verdict": "explained", "effects": [{"effect": "cubic_stiffness", "location":
+            {"kind": "frame", "direction": "y", "story": 2, "frame": "x2"}}]})";
+  EXPECT_TRUE(score(directory).value().all_right());
+  EXPECT_FALSE(import_practice(folder.path("nowhere"), directory, error));
 }
 
 TEST(StudyScore, JudgesNamePlaceAndGap) {
