@@ -8,6 +8,7 @@
 #include "daemon/random_building.h"
 #include "estimator/identify/batch_least_squares.h"
 #include "estimator/refine/cramer_rao.h"
+#include "estimator/refine/max_likelihood.h"
 #include "estimator/simulate/exact_motion.h"
 
 namespace framewatch::daemon {
@@ -44,16 +45,33 @@ void run_paper_example(const Structure& structure, const ParameterTable& table,
           errors_of(result, Method::paper_denoised));
 }
 
+/// First row of the record that a window saw.
+Eigen::Index first_row(const WindowEstimate& window) {
+  const double end_s = 1e-6 * static_cast<double>(to_microseconds(window.end));
+  return std::llround(end_s * kTrialRate_hz) - window.rows;
+}
+
+void run_refinement(const PipelineConfig& config, const ParameterTable& table,
+                    const Eigen::VectorXd& truth, const Eigen::MatrixXd& noisy,
+                    SeedResult& result) {
+  const WindowEstimate& window = result.first_window;
+  Eigen::VectorXd start = config.design;
+  for (int p = 0; p < table.size(); ++p)
+    if (window.value[static_cast<std::size_t>(p)] > 0)
+      start[p] = window.value[static_cast<std::size_t>(p)];
+  const Refinement refinement = refine_max_likelihood(
+      config.structure, config.axes, kTrialRate_hz,
+      noisy.middleRows(first_row(window), window.rows + 1), config.design, start);
+  collect(refinement.theta, table, truth, errors_of(result, Method::refined));
+}
+
 void add_bounds(const Structure& structure, const ParameterTable& table,
                 const Eigen::VectorXd& truth, const ExactRecord& record,
                 const std::vector<WindowEstimate>& windows, SeedResult& result) {
   for (const WindowEstimate& window : windows) {
-    const auto last = static_cast<Eigen::Index>(
-        std::llround(1e-6 * static_cast<double>(to_microseconds(window.end)) * kTrialRate_hz));
-    const auto rows = static_cast<Eigen::Index>(window.rows);
     const CramerRaoBound bound =
         cramer_rao_bound(structure, record.axes, truth, kTrialRate_hz,
-                         record.accel_abs.middleRows(last - rows, rows + 1));
+                         record.accel_abs.middleRows(first_row(window), window.rows + 1));
     if (result.first_bound.size() == 0) result.first_bound = bound.std_error;
     for (int p = 0; p < table.size(); ++p)
       result.bound[static_cast<std::size_t>(table[p].kind)].push_back(bound.std_error[p] /
@@ -118,7 +136,10 @@ SeedResult run_seed(const Structure& structure, const Eigen::VectorXd& truth, do
     return windows;
   };
   const std::vector<WindowEstimate> windows = run(Method::matched);
-  if (!windows.empty()) result.first_window = windows.front();
+  if (!windows.empty()) {
+    result.first_window = windows.front();
+    run_refinement(config, table, truth, noisy, result);
+  }
   add_bounds(structure, table, truth, record, windows, result);
 
   for (SensorAxis& axis : config.axes) axis.noise_density = 0;

@@ -19,11 +19,12 @@ inline constexpr double kMedianOfNormal = 0.6745;
 enum class Method {
   matched,          ///< ours, the sensors' noise densities configured
   matched_unaware,  ///< ours, noise densities not configured
+  refined,          ///< framewatch refine: maximum likelihood, the first window of each motion only
   paper_accel,      ///< estimator.variant = "paper": integrated accelerations
   paper_example,    ///< as the paper's examples: 10 s, independent noise on a, v and d
   paper_denoised,   ///< the same behind the paper's removal of noise
 };
-inline constexpr int kMethods = 5;
+inline constexpr int kMethods = 6;
 
 /// One row of the accuracy table.
 struct AccuracyCase {
