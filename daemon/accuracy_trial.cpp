@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "daemon/paper_buildings.h"
 #include "estimator/simulate/linear_response.h"
@@ -10,6 +11,13 @@
 #include "estimator/simulate/sensor_model.h"
 
 namespace framewatch::daemon {
+
+PlanMotion oblique_motion(std::uint64_t seed) {
+  KanaiTajimi motion;
+  motion.duration_s = 15;
+  motion.seed = seed;
+  return directed(kanai_tajimi(motion), std::numbers::pi / 4);
+}
 
 ExactRecord exact_record(const Structure& structure, const Eigen::VectorXd& truth,
                          const PlanMotion& motion, double noise_ratio, double duration_s) {

@@ -16,6 +16,9 @@ inline constexpr double kTrialRate_hz = 100;
 /// Two-sided 95 % point of Student's t with 19 degrees of freedom: batch means have 20 blocks.
 inline constexpr double kStudent95 = 2.093;
 
+/// A seeded Kanai-Tajimi motion of 15 s at 45 degrees.
+PlanMotion oblique_motion(std::uint64_t seed);
+
 /// Exact motion of a building and the axes that measure it.
 struct ExactRecord {
   std::vector<SensorAxis> axes;  ///< a sensor everywhere, noise densities set

@@ -17,6 +17,7 @@
 #include "drivers/record_csv_writer.h"
 #include "drivers/record_file.h"
 #include "drivers/record_merge.h"
+#include "estimator/motion/svd_denoise.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -177,6 +178,27 @@ void report(const Record& record) {
   for (const std::string& note : record.notes) log(LogLevel::notice, note);
 }
 
+/// The paper's removal of noise, P1 (22)-(27), on every channel.
+void denoise(Record& record, Problems& problems) {
+  const SvdDenoising denoising;
+  if (record.time_s.size() < static_cast<std::size_t>(denoising.stretch_rows())) {
+    problems.push_back({"--denoise", fmt::format("needs {} samples at least, the record has {}",
+                                                 denoising.stretch_rows(), record.time_s.size())});
+    return;
+  }
+  for (std::size_t c = 0; c < record.names.size(); ++c) {
+    Eigen::Map<Eigen::VectorXd> channel(record.accel_mps2[c].data(),
+                                        static_cast<Eigen::Index>(record.accel_mps2[c].size()));
+    if (channel.allFinite())
+      channel = svd_denoised(channel, denoising);
+    else
+      problems.push_back({"--denoise", record.names[c] + " has missing samples"});
+  }
+  record.notes.push_back(fmt::format("noise removed, p = {}, q = {}, s(r) >= {}",
+                                     denoising.interval_rows, denoising.intervals,
+                                     denoising.norm_ratio));
+}
+
 void convert_log(const ConvertArguments& a, Problems& problems) {
   const std::string& in = a.inputs[0];
   if (a.inputs.size() > 1) problems.push_back({in, "an event log is converted alone"});
@@ -196,12 +218,15 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
     return;
   }
   if (!estimates.empty()) {
+    if (a.denoise) problems.push_back({"--denoise", "is for accelerations; this log has none"});
+    if (!problems.empty()) return;
     write_estimates_csv(in, estimates, a.boxplot, a.out, problems);
     return;
   }
   if (a.boxplot) problems.push_back({"--boxplot", "is for estimates; this log has none"});
-  const auto record = drivers::read_accel_log(in, accel, problems);
-  if (!record) return;
+  auto record = drivers::read_accel_log(in, accel, problems);
+  if (record && a.denoise) denoise(*record, problems);
+  if (!record || !problems.empty()) return;
   report(*record);
   write_csv(a.out, *record, problems);
 }
@@ -214,6 +239,7 @@ void convert_records(const ConvertArguments& a, Problems& problems) {
   if (!record) return;
   auto where = numbered(*record, devices, a.channel);
   if (!a.config.empty()) where = configured(a.config, *record, problems);
+  if (a.denoise && problems.empty()) denoise(*record, problems);
   if (!problems.empty()) return;
   report(*record);
   if (is_csv(a.out)) {

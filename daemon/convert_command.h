@@ -15,6 +15,7 @@ struct ConvertArguments {
   std::string config;   ///< whose channels say where named columns travel; empty: by column number
   std::string channel;  ///< LCM channel to write or read; empty: ACCEL, or the only one of its kind
   bool boxplot = false;
+  bool denoise = false;       ///< the paper's removal of noise on every channel of a record
   std::int64_t start_us = 0;  ///< sensor time of a record's time zero
 };
 

@@ -23,7 +23,7 @@ constexpr const char* kStyle =
     "table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums;margin:1em 0}"
     "th,td{padding:.25em .7em;text-align:right;border-bottom:1px solid var(--rule)}"
     "th{border-bottom:2px solid var(--rule);vertical-align:bottom}"
-    "th:first-child,td:first-child{text-align:left}tr:nth-child(even) td{background:var(--stripe)}"
+    "th:first-child,td:first-child{text-align:left}td:first-child{white-space:nowrap}tr:nth-child(even) td{background:var(--stripe)}"
     "figure{margin:1.2em 0;break-inside:avoid}figure>div{display:flex;flex-wrap:wrap;gap:.4em}"
     "figcaption{color:var(--soft);font-size:13px;max-width:60em}"
     "details summary{cursor:pointer;color:var(--soft)}"

@@ -55,9 +55,11 @@ SvgAxis fitted(SvgAxis axis, const std::vector<double>& values) {
     low = axis.logarithmic ? 0.1 : 0.0;
     high = 1;
   } else if (axis.logarithmic) {
-    low /= 1.2;
-    high *= 1.2;
+    low /= 1.5;
+    high *= 1.5;
   } else {
+    if (!std::isnan(axis.low)) low = axis.low;
+    if (!std::isnan(axis.high)) high = axis.high;
     const double range = high > low ? high - low : std::max(1e-12, std::abs(high));
     low -= kMargin * range;
     high += kMargin * range;

@@ -17,7 +17,7 @@ struct SvdDenoising {
 /// with the record (what two stretches share is taken from the earlier). For comparison with the
 /// paper; the matched rows do without (docs/accuracy.md).
 /// Precondition: at least stretch_rows() samples, all finite.
-/// Source: docs/equations.md, the paper's removal of noise; P1 (22)-(27).
+/// Source: docs/equations.md, removal of noise; P1 (22)-(27).
 Eigen::VectorXd svd_denoised(const Eigen::VectorXd& samples, const SvdDenoising& denoising = {});
 
 }  // namespace framewatch

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
@@ -245,6 +246,47 @@ TEST(ConvertProgram, HasHelpWithExamplesAndExitCodes) {
   EXPECT_EQ(std::system((program + " convert --help | grep -q Examples").c_str()), 0);
   const int status = std::system((program + " convert only-one 2>/dev/null >&2").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 2);
+}
+
+TEST_F(Convert, DenoisesEveryChannelOfARecord) {
+  // GIVEN a channel that repeats every 200 samples and the same with noise
+  std::string text = "time_s,clean,noisy\n";
+  for (int i = 0; i < 1000; ++i) {
+    const double clean = std::sin(2 * M_PI * 3 * i / 200);
+    const double noise = 0.1 * std::sin(17.0 * i * i);
+    text += fmt::format("{},{},{}\n", 0.01 * i, clean, clean + noise);
+  }
+  test::write_file(path("rec.csv"), text);
+  auto arguments = from({path("rec.csv")}, "out.csv");
+  arguments.denoise = true;
+  testing::internal::CaptureStderr();
+  ASSERT_EQ(convert(arguments), 0);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("p = 200, q = 5"), std::string::npos);
+  // THEN the first is as it was, and the second nearer to it
+  std::vector<drivers::Problem> problems;
+  const auto out = drivers::read_record(path("out.csv"), {}, problems);
+  ASSERT_TRUE(out);
+  double before = 0, after = 0;
+  for (std::size_t i = 0; i < 1000; ++i) {
+    const double clean = std::sin(2 * M_PI * 3 * static_cast<double>(i) / 200);
+    EXPECT_NEAR(out->accel_mps2[0][i], clean, 1e-9);
+    before += std::pow(0.1 * std::sin(17.0 * static_cast<double>(i * i)), 2);
+    after += std::pow(out->accel_mps2[1][i] - clean, 2);
+  }
+  EXPECT_LT(after, 0.5 * before);
+}
+
+TEST_F(Convert, DenoisingNeedsAWholeStretchWithoutHoles) {
+  test::write_file(path("short.csv"), "time_s,a\n0,1\n0.01,2\n");
+  std::string text = "time_s,a,b\n";
+  for (int i = 0; i < 1000; ++i)
+    text += fmt::format("{},{},{}\n", 0.01 * i, i % 7, i == 500 ? "" : "1");
+  test::write_file(path("holes.csv"), text);
+  auto arguments = from({path("short.csv")}, "out.csv");
+  arguments.denoise = true;
+  expect_refused(arguments, "needs 1000 samples");
+  arguments.inputs = {path("holes.csv")};
+  expect_refused(arguments, "b has missing samples");
 }
 
 }  // namespace

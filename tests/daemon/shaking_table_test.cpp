@@ -9,38 +9,12 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config.h"
-#include "drivers/record_file.h"
-#include "drivers/record_merge.h"
+#include "daemon/measured_table.h"
 #include "estimator/structure/matrices.h"
 #include "tests/support/data.h"
 
 namespace framewatch {
 namespace {
-
-const std::string kFolder = "mini_shake_table_xsens_2025/Flexible_vs_Stiff/Flexible_3_story/";
-
-/// File of each level, from the ground up, of one run.
-const std::map<std::string, std::vector<std::string>> kRuns = {
-    {"Northridge",
-     {"Ground_Floor/(Northridge)Xsens_DOT_20250306_122607.csv.gz",
-      "1st_Floor/(Northridge)Xsens_DOT_20250306_122607.csv.gz",
-      "2nd_Floor/(Northridge)left_leg_20250306_122607.csv.gz",
-      "3rd_Floor_top/(Northridge)Xsens_DOT_20250306_122607.csv.gz"}},
-    {"Sine_1.0",
-     {"Ground_Floor/(Sine_1.0)Xsens_DOT_20250306_122116.csv.gz",
-      "1st_Floor/(Sine_1.0)Xsens_DOT_20250306_122116.csv.gz",
-      "2nd_Floor/(Sine_1.0)left_leg_20250306_122116.csv.gz",
-      "3rd_Floor_top/(Sine_1.0)Xsens_DOT_20250306_122116.csv.gz"}},
-    {"Sine_1.5",
-     {"Ground_Floor/(Sine_1.5)Xsens_DOT_20250306_121949.csv.gz",
-      "1st_Floor/(Sine_1.5)Xsens_DOT_20250306_121949.csv.gz",
-      "2nd_Floor/(Sine_1.5)left_leg_20250306_121949.csv.gz",
-      "3rd_Floor_top/(Sine_1.5)Xsens_DOT_20250306_121949.csv.gz"}},
-    {"Sine_2.0",
-     {"Ground_Floor/(Sine_2.0)Xsens_DOT_20250306_122410.csv.gz",
-      "1st_Floor/(Sine_2.0)Xsens_DOT_20250306_122410.csv.gz",
-      "2nd_Floor/(Sine_2.0)left_leg_20250306_122410.csv.gz",
-      "3rd_Floor_top/(Sine_2.0)Xsens_DOT_20250306_122410.csv.gz"}}};
 
 struct Identified {
   std::vector<double> stiffness;  ///< N/m for 1 kg floors: median over published windows
@@ -53,25 +27,10 @@ double median(std::vector<double> values) {
 }
 
 std::optional<drivers::Record> read_run(const std::string& run) {
-  std::vector<drivers::Record> levels;
-  std::vector<std::string> where;
-  std::vector<drivers::Problem> problems;
-  for (const std::string& file : kRuns.at(run)) {
-    const auto path = test::data_path(kFolder + file);
-    if (!path) return std::nullopt;
-    auto record = drivers::read_record(*path, {}, problems);
-    if (!record) return std::nullopt;
-    const std::string level = "level" + std::to_string(levels.size());
-    const auto x = std::find_if(record->names.begin(), record->names.end(), [](const auto& name) {
-      return name.ends_with(".x") || name.ends_with("_X") || name == "x";
-    });
-    if (x == record->names.end()) return std::nullopt;
-    record->accel_mps2 = {record->accel_mps2[static_cast<std::size_t>(x - record->names.begin())]};
-    record->names = {level};
-    levels.push_back(std::move(*record));
-    where.push_back(file);
-  }
-  return drivers::merge_records(std::move(levels), where, drivers::MergeSpan::common, problems);
+  const auto data = test::data_path("");
+  for (const daemon::MeasuredRun& known : daemon::measured_runs())
+    if (data && known.name == run) return daemon::read_measured_run(*data, known);
+  return std::nullopt;
 }
 
 Identified identify(const drivers::Record& record) {
@@ -102,7 +61,7 @@ Identified identify(const drivers::Record& record) {
 
 TEST(ShakingTable, ModesOfTheNorthridgeRunMatchTheTransferFunctions) {
   const auto record = read_run("Northridge");
-  if (!record) GTEST_SKIP() << "no " << kFolder << " under FRAMEWATCH_DATA";
+  if (!record) GTEST_SKIP() << "no measured table under FRAMEWATCH_DATA";
   const Identified found = identify(*record);
   ASSERT_EQ(found.mode_hz.size(), 3u);
   EXPECT_NEAR(found.mode_hz[0], 3.69, 0.03 * 3.69);
@@ -115,9 +74,10 @@ TEST(ShakingTable, RunsDifferByWhatTheAmplitudeExplains) {
   // excites mode 3 most, where this table is stiffer (docs/shaking-table.md). Together: every story
   // of every run within 12 % of the runs' mean, and the strongest run the softest.
   std::map<std::string, Identified> found;
-  for (const auto& [run, files] : kRuns) {
+  for (const daemon::MeasuredRun& measured : daemon::measured_runs()) {
+    const std::string& run = measured.name;
     const auto record = read_run(run);
-    if (!record) GTEST_SKIP() << "no " << kFolder << " under FRAMEWATCH_DATA";
+    if (!record) GTEST_SKIP() << "no measured table under FRAMEWATCH_DATA";
     found[run] = identify(*record);
     ASSERT_EQ(found[run].stiffness.size(), 3u) << run;
   }

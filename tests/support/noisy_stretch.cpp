@@ -19,11 +19,4 @@ ExactRecord exact_stretch(const Structure& structure, const Eigen::VectorXd& tru
   return out;
 }
 
-PlanMotion oblique_motion(std::uint64_t seed) {
-  KanaiTajimi motion;
-  motion.duration_s = kWhole_s;
-  motion.seed = seed;
-  return directed(kanai_tajimi(motion), M_PI / 4);
-}
-
 }  // namespace framewatch::test

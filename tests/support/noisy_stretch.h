@@ -7,6 +7,7 @@
 namespace framewatch::test {
 
 using daemon::ExactRecord;
+using daemon::oblique_motion;
 using daemon::with_noise;
 
 /// The stretch from_s..to_s of the response to a motion that starts at rest at 0; noise of every
@@ -14,8 +15,5 @@ using daemon::with_noise;
 ExactRecord exact_stretch(const Structure& structure, const Eigen::VectorXd& truth,
                           const PlanMotion& motion, double noise_ratio, double from_s = 5,
                           double to_s = 10);
-
-/// An artificial motion of 15 s at 45 degrees.
-PlanMotion oblique_motion(std::uint64_t seed);
 
 }  // namespace framewatch::test

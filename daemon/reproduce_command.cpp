@@ -1,0 +1,89 @@
+#include "daemon/reproduce_command.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include "daemon/reproduction.h"
+#include "daemon/reproduction_report.h"
+#include "drivers/text_output.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kBroken = 1;
+constexpr int kBadInput = 2;
+
+int refuse(const std::string& message) {
+  fmt::print(stderr, "framewatch reproduce: {}\n", message);
+  return kBadInput;
+}
+
+std::string data_folder() {
+  const char* set = std::getenv("FRAMEWATCH_DATA");
+  return set != nullptr ? set : "";
+}
+
+/// What is missing of the data, for the person; empty when nothing is.
+void tell_what_is_missing(const Reproduction& all) {
+  if (all.hachinohe.starts_with("a seeded") || all.el_centro.starts_with("a seeded"))
+    fmt::print(stderr,
+               "reproduce: the paper's ground motions are not in FRAMEWATCH_DATA{}; seeded "
+               "Kanai-Tajimi motions stand in\n",
+               data_folder().empty() ? " (not set)" : " (" + data_folder() + ")");
+  if (all.measured_table_missing)
+    fmt::print(stderr, "reproduce: the measured shaking table is not there; the virtual one is\n");
+}
+
+bool write(const std::string& path, const std::string& text) {
+  drivers::TextOutput file;
+  if (file.open(path) && file.write(text) && file.close()) return true;
+  refuse(path + ": " + file.error());
+  return false;
+}
+
+}  // namespace
+
+int reproduce(const ReproduceArguments& a) {
+  const auto& cases = reproduction_cases();
+  if (!a.only.empty() && std::find(cases.begin(), cases.end(), a.only) == cases.end())
+    return refuse(
+        fmt::format("--case {}: there is no such case, only {}", a.only, fmt::join(cases, ", ")));
+  std::error_code error;
+  std::filesystem::create_directories(a.out, error);
+  if (error) return refuse(fmt::format("{}: {}", a.out, error.message()));
+  const bool shows_progress = !a.quiet && ::isatty(2) == 1;
+  const Workers workers(
+      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
+      [&](const std::string& what, int done, int count) {
+        if (shows_progress)
+          fmt::print(stderr, "\r\033[Kreproduce: {}, {} of {}{}", what, done, count,
+                     done == count ? "\n" : "");
+      });
+  const Reproduction all = reproduce_paper(a.only, a.seeds, data_folder(), workers);
+  if (!a.quiet) tell_what_is_missing(all);
+  if (!write(a.out + "/report.html", reproduction_html(all, a.only))) return kBadInput;
+  if (a.only.empty() && !write(a.out + "/accuracy.md", accuracy_markdown(all))) return kBadInput;
+
+  const std::vector<Promise> list = promises(all);
+  const auto broken =
+      std::count_if(list.begin(), list.end(), [](const Promise& p) { return !p.kept; });
+  for (const Promise& promise : list)
+    if (!promise.kept) fmt::print("not kept: {}: {}\n", promise.what, promise.measured);
+  if (!a.quiet)
+    fmt::print("{}/report.html{}; {}\n", a.out,
+               a.only.empty() ? fmt::format(", {}/accuracy.md", a.out) : "",
+               list.empty()
+                   ? fmt::format("fewer than {} seeds: nothing judged", kSeedsToJudge)
+                   : fmt::format("{} of {} promises kept",
+                                 static_cast<std::ptrdiff_t>(list.size()) - broken, list.size()));
+  return broken > 0 ? kBroken : 0;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tests/study/hidden.h"
+
+namespace framewatch::study {
+namespace {
+
+double sign(double x) {
+  return x < 0 ? -1 : 1;
+}
+
+/// f(t, d, v) without memory.
+class PlainLaw : public ElementLaw {
+ public:
+  using Function = std::function<double(double t, double d, double v)>;
+  PlainLaw(Function f, double stiffness) : f_(std::move(f)), stiffness_(stiffness) {}
+  double force(double t, double d, double v, std::span<const double>) const override {
+    return f_(t, d, v);
+  }
+  double stiffness_bound() const override { return stiffness_; }
+
+ private:
+  Function f_;
+  double stiffness_;
+};
+
+/// Sliders in parallel, each giving way at its own, perhaps lopsided, deformation.
+class Sliders : public ElementLaw {
+ public:
+  struct Part {
+    double k, down, up, slider = 0;
+  };
+  explicit Sliders(std::vector<Part> parts) : parts_(std::move(parts)) {}
+  double force(double, double d, double, std::span<const double>) const override {
+    double sum = 0;
+    for (const Part& p : parts_) sum += p.k * std::clamp(d - p.slider, -p.down, p.up);
+    return sum;
+  }
+  void begin_step(double, double d) override {
+    for (Part& p : parts_) p.slider = d - std::clamp(d - p.slider, -p.down, p.up);
+  }
+  double stiffness_bound() const override {
+    double sum = 0;
+    for (const Part& p : parts_) sum += p.k;
+    return sum;
+  }
+
+ private:
+  std::vector<Part> parts_;
+};
+
+double softplus(double x) {
+  return x > 30 ? x : std::log1p(std::exp(x));
+}
+
+struct LawScale {
+  double k, d, v, seconds;
+};
+
+std::unique_ptr<ElementLaw> plain(PlainLaw::Function f, double stiffness) {
+  return std::make_unique<PlainLaw>(std::move(f), stiffness);
+}
+
+std::unique_ptr<ElementLaw> make_other(const std::string& name, const LawScale& e, double s,
+                                       double u, int record) {
+  if (name == "smooth gap") {
+    const double g = (0.3 + 0.3 * u) * e.d, w = 0.1 * e.d;
+    return plain(
+        [=](double, double d, double) {
+          return s * e.k * w * (softplus((d - g) / w) - softplus((-d - g) / w));
+        },
+        s * e.k);
+  }
+  if (name == "power 2.5")
+    return plain([=](double, double d,
+                     double) { return s * e.k * e.d * sign(d) * std::pow(std::abs(d) / e.d, 2.5); },
+                 3 * s * e.k);
+  if (name == "damping power 1.6")
+    return plain(
+        [=](double, double, double v) {
+          return s * e.k * e.d * sign(v) * std::pow(std::abs(v) / e.v, 1.6);
+        },
+        0);
+  if (name == "stick and slip")
+    return std::make_unique<Sliders>(
+        std::vector<Sliders::Part>{{10 * e.k, 0.1 * s * e.d, 0.1 * s * e.d}});
+  if (name == "three sliders") {
+    std::vector<Sliders::Part> parts;
+    for (const double dy : {0.15, 0.3, 0.6}) parts.push_back({s * e.k / 3, dy * e.d, dy * e.d});
+    return std::make_unique<Sliders>(parts);
+  }
+  if (name == "smooth drop") {
+    const double at = (record == 0 ? 0.3 + 0.2 * u : 0.6 - 0.2 * u) * e.seconds;
+    return plain([=](double t, double d,
+                     double) { return -s * e.k * d * 0.5 * (1 + std::tanh((t - at) / 1.5)); },
+                 s * e.k);
+  }
+  if (name == "lopsided yield")
+    return std::make_unique<Sliders>(std::vector<Sliders::Part>{{s * e.k, 0.12 * e.d, 0.5 * e.d}});
+  if (name == "wavy spring")
+    return plain([=](double, double d,
+                     double) { return s * e.k * e.d * 0.2 * std::sin(2 * M_PI * d / (0.5 * e.d)); },
+                 2.6 * s * e.k);
+  // "damping that grows": d^2 v
+  return plain(
+      [=](double, double d, double v) { return s * e.k * e.d * d * d * v / (e.d * e.d * e.v); }, 0);
+}
+
+std::vector<std::string> accepted(const std::string& name) {
+  if (name == "smooth gap") return {"two_sided_gap", "cubic_stiffness"};
+  if (name == "power 2.5") return {"cubic_stiffness", "quadratic_stiffness"};
+  if (name == "damping power 1.6") return {"quadratic_damping"};
+  if (name == "stick and slip") return {"coulomb_friction", "bilinear_hysteresis", "bouc_wen"};
+  if (name == "three sliders") return {"bilinear_hysteresis", "bouc_wen"};
+  if (name == "smooth drop") return {"stiffness_drop", "stiffness_drift"};
+  return {};
+}
+
+bool takes_over(const std::string& name) {
+  return name == "three sliders" || name == "lopsided yield";
+}
+
+}  // namespace
+
+const std::vector<std::string>& other_forms() {
+  static const std::vector<std::string> kNames{"smooth gap",        "power 2.5",
+                                               "damping power 1.6", "stick and slip",
+                                               "three sliders",     "smooth drop"};
+  return kNames;
+}
+
+const std::vector<std::string>& outsiders() {
+  static const std::vector<std::string> kNames{"lopsided yield", "wavy spring",
+                                               "damping that grows"};
+  return kNames;
+}
+
+Draw draw_law(const std::string& name, const StudyBuilding& b, const Peaks& peaks, Random& random) {
+  EffectPlace place;
+  place.kind = PlaceKind::frame;
+  place.story = 1 + static_cast<int>(random.uniform() * b.truth.stories);
+  place.frame = static_cast<int>(random.uniform() * b.truth.frames());
+  const double u = random.uniform();
+  Draw draw;
+  draw.name = name;
+  draw.largest = takes_over(name) ? 0.9 : name == "smooth drop" ? 0.7 : 2;
+  draw.make = [=](double s, Hidden& hidden) {
+    const int i = b.table().frame_stiffness(place.story, place.frame);
+    const LawScale e{b.theta[i], peaks.deformation[i], peaks.rate[i], peaks.seconds};
+    if (takes_over(name)) hidden.theta[i] -= s * e.k;
+    hidden.laws.push_back({name, accepted(name), place,
+                           [=](int record) { return make_other(name, e, s, u, record); }});
+  };
+  return draw;
+}
+
+}  // namespace framewatch::study

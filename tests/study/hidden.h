@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "estimator/simulate/element_law.h"
+#include "tests/study/study_building.h"
+
+namespace framewatch::study {
+
+/// Largest deformation and rate of every element of theta in the linear building, m and m/s, and
+/// rms absolute acceleration of every degree of freedom, m/s^2.
+struct Peaks {
+  Eigen::VectorXd deformation, rate, accel_rms;
+  double first_mode_hz = 1;
+  double last_mode_hz = 1;
+  double seconds = 0;  ///< of the record
+};
+
+/// A law that the catalogue does not have, on a frame story.
+struct OtherLaw {
+  std::string name;
+  std::vector<std::string> accepted;  ///< names of the catalogue that describe it about
+  EffectPlace place;
+  std::function<std::unique_ptr<ElementLaw>(int record)> make;
+};
+
+/// What a case hides, of a certain size.
+struct Hidden {
+  std::vector<Effect> effects;  ///< of record 0
+  std::vector<OtherLaw> laws;
+  Eigen::VectorXd theta;  ///< the building's, less what the effects have taken over
+};
+
+/// A hidden effect with everything drawn but its size: `make` gives it for a size in (0, largest],
+/// added to what `hidden` has.
+struct Draw {
+  std::string name;
+  double largest = 1;
+  bool sizeless = false;  ///< polarity, swapped
+  bool of_channel = false;
+  std::function<void(double size, Hidden& hidden)> make;
+};
+
+/// An effect of the catalogue at a random place.
+Draw draw_effect(EffectKind kind, const StudyBuilding& building, const Peaks& peaks,
+                 Random& random);
+
+/// Names of laws that are like one of the catalogue's, and of those that are like none.
+const std::vector<std::string>& other_forms();
+const std::vector<std::string>& outsiders();
+Draw draw_law(const std::string& name, const StudyBuilding& building, const Peaks& peaks,
+              Random& random);
+
+/// The effects as they act in another record: what begins at a time, or has a phase, differs.
+std::vector<Effect> in_record(std::vector<Effect> effects, int record, double seconds);
+
+}  // namespace framewatch::study

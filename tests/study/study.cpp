@@ -1,0 +1,185 @@
+// diagnose_study: seeded cases for `framewatch diagnose`, and what it makes of them.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "tests/study/practice.h"
+#include "tests/study/study_case.h"
+#include "tests/study/study_score.h"
+
+namespace framewatch::study {
+namespace {
+
+constexpr const char* kUsage =
+    R"(usage: diagnose_study generate DIR [--each N] [--seed N] [--seconds S] [--building KIND]
+                               [--group GROUP] [--effect NAME]
+       diagnose_study practice DIR [--data FOLDER]
+       diagnose_study run DIR --program FRAMEWATCH
+       diagnose_study table DIR
+
+generate  writes cases: config.toml, train.csv.gz, holdout.csv.gz, truth.json. Each effect N times (1)
+          per building, noise 1, 2, 5 % in turn. Groups: catalogue, nothing (10 N per building),
+          other_form, outside, two_effects (6 N per building).
+practice  imports the practice cases of FOLDER (that of the data folder), made with another program
+run       runs `framewatch diagnose` on every case without a diagnosis
+table     prints rates, confusion and gaps as Markdown; exit 1 when there is no case
+)";
+
+struct Arguments {
+  std::string action, directory;
+  std::map<std::string, std::string> options;
+
+  std::string text(const std::string& key, const std::string& usual) const {
+    const auto at = options.find(key);
+    return at == options.end() ? usual : at->second;
+  }
+  long number(const std::string& key, long usual) const {
+    return std::strtol(text(key, std::to_string(usual)).c_str(), nullptr, 10);
+  }
+};
+
+struct Wanted {
+  std::string group, name;
+};
+
+/// Effects that two records cannot show, or that need a second state of the building.
+bool can_be_found(EffectKind kind) {
+  return kind != EffectKind::p_delta;  // the same as a lower stiffness
+}
+
+std::vector<Wanted> wanted_cases(long each) {
+  std::vector<Wanted> out;
+  for (long i = 0; i < each; ++i) {
+    for (const EffectDescription& d : effect_catalogue())
+      if (can_be_found(d.kind)) out.push_back({"catalogue", std::string(d.name)});
+    for (const std::string& name : other_forms()) out.push_back({"other_form", name});
+    for (const std::string& name : outsiders()) out.push_back({"outside", name});
+    for (int n = 0; n < 10; ++n) out.push_back({"nothing", "none"});
+    for (const char* pair : {"cubic_stiffness+gain_error", "bouc_wen+time_shift",
+                             "coulomb_friction+stiffness_drop", "tuned_mass_damper+two_sided_gap",
+                             "quadratic_damping+extra_mass", "unmeasured_force+cubic_stiffness"})
+      out.push_back({"two_effects", pair});
+  }
+  return out;
+}
+
+int generate(const Arguments& a) {
+  int written = 0, skipped = 0;
+  std::uint64_t number = 0;
+  for (const std::string& building : building_kinds()) {
+    for (const Wanted& wanted : wanted_cases(a.number("--each", 1))) {
+      ++number;
+      if (a.text("--building", building) != building ||
+          a.text("--group", wanted.group) != wanted.group ||
+          a.text("--effect", wanted.name) != wanted.name)
+        continue;
+      CaseOptions options;
+      options.building = building;
+      options.seconds = static_cast<double>(a.number("--seconds", 60));
+      constexpr double kNoise[] = {0.01, 0.02, 0.05};
+      options.noise_ratio = kNoise[number % 3];
+      options.seed = static_cast<std::uint64_t>(a.number("--seed", 1)) * 100000 + number;
+      std::string why;
+      const auto made = make_case(wanted.group, wanted.name, options, why);
+      std::string name = fmt::format("{:04d}-{}-{}", number, building, wanted.name);
+      std::replace(name.begin(), name.end(), ' ', '_');
+      if (!made) {
+        ++skipped;
+        fmt::print(stderr, "{}: skipped: {}\n", name, why);
+        continue;
+      }
+      if (!write_case(*made, a.directory + "/" + name, why)) {
+        fmt::print(stderr, "{}: {}\n", name, why);
+        return 2;
+      }
+      ++written;
+      fmt::print(stderr, "{}: gap {:.1f} times the noise floor\n", name, made->gap_over_floor);
+    }
+  }
+  fmt::print("{} cases, {} skipped\n", written, skipped);
+  return written > 0 ? 0 : 1;
+}
+
+std::vector<std::string> cases(const std::string& directory) {
+  std::vector<std::string> out;
+  std::error_code code;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, code))
+    if (std::filesystem::exists(entry.path() / "truth.json")) out.push_back(entry.path().string());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+int practice(const Arguments& a) {
+  const char* data = std::getenv("FRAMEWATCH_DATA");
+  const std::filesystem::path folder =
+      a.text("--data", std::string(data ? data : FRAMEWATCH_DATA_DEFAULT) + "/practice");
+  int imported = 0;
+  std::error_code code;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, code)) {
+    if (!entry.is_directory()) continue;
+    const std::string name = entry.path().filename().string();
+    std::string error;
+    if (!import_practice(entry.path().string(), a.directory + "/" + name, error)) {
+      fmt::print(stderr, "{}\n", error);
+      return 2;
+    }
+    ++imported;
+  }
+  fmt::print("{} cases\n", imported);
+  return imported > 0 ? 0 : 1;
+}
+
+int run(const Arguments& a) {
+  const std::string program = a.text("--program", "framewatch");
+  for (const std::string& directory : cases(a.directory)) {
+    if (std::filesystem::exists(directory + "/out/diagnosis.json")) continue;
+    const std::string command = fmt::format(
+        "'{0}' diagnose '{1}/config.toml' --train '{1}/train.csv.gz' --holdout "
+        "'{1}/holdout.csv.gz' --out '{1}/out' --quiet >'{1}/log.txt' 2>&1",
+        program, directory);
+    const int status = std::system(command.c_str());
+    fmt::print(stderr, "{}: {}\n", directory, status == 0 ? "done" : "not done, see log.txt");
+  }
+  return 0;
+}
+
+int table(const Arguments& a) {
+  std::vector<Outcome> outcomes;
+  for (const std::string& directory : cases(a.directory))
+    if (const auto outcome = score(directory)) outcomes.push_back(*outcome);
+  fmt::print("{}", tables(outcomes));
+  return outcomes.empty() ? 1 : 0;
+}
+
+}  // namespace
+
+int main_of(int argc, char** argv) {
+  Arguments a;
+  if (argc >= 3) a = {argv[1], argv[2], {}};
+  bool good = argc >= 3 && argc % 2 == 1;
+  for (int i = 3; i + 1 < argc; i += 2) {
+    const std::string key = argv[i];
+    const std::vector<std::string> known{"--each",  "--seed",   "--seconds", "--building",
+                                         "--group", "--effect", "--program", "--data"};
+    good = good && std::find(known.begin(), known.end(), key) != known.end();
+    a.options[key] = argv[i + 1];
+  }
+  if (good && a.action == "generate") return generate(a);
+  if (good && a.action == "practice") return practice(a);
+  if (good && a.action == "run") return run(a);
+  if (good && a.action == "table") return table(a);
+  fmt::print(stderr, "{}", kUsage);
+  return 2;
+}
+
+}  // namespace framewatch::study
+
+int main(int argc, char** argv) {
+  return framewatch::study::main_of(argc, argv);
+}

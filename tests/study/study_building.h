@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "estimator/simulate/random.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/sensors.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch::study {
+
+/// What a building really is and what its engineer believes.
+struct StudyBuilding {
+  std::string kind;
+  Structure truth;         ///< with the true masses
+  Eigen::VectorXd theta;   ///< true stiffness and damping
+  Structure believed;      ///< masses off by 1 %
+  Eigen::VectorXd design;  ///< stiffness off by 5 %
+  double design_damping_ratio = 0.01;
+  std::vector<SensorAxis> axes;
+  std::vector<double> gain_error;   ///< of each axis, 0.5 %
+  std::vector<double> clock_error;  ///< s, 0.25 ms
+
+  ParameterTable table() const { return ParameterTable(truth); }
+};
+
+/// The kinds of building: 2story_1x1, 2story_3x3, 5story_1x1 (stories, bays).
+const std::vector<std::string>& building_kinds();
+
+/// A random one. Standard deviations of what is wrong are scaled by `tolerance`.
+StudyBuilding random_building(const std::string& kind, FloorModel floor, Random& random,
+                              double tolerance = 1);
+
+/// The engineer's belief as a configuration file.
+std::string config_toml(const StudyBuilding& building, double rate_hz);
+
+}  // namespace framewatch::study

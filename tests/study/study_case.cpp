@@ -1,0 +1,133 @@
+#include "tests/study/study_case.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/simulate/building_model.h"
+#include "estimator/structure/matrices.h"
+#include "tests/study/linear_share.h"
+#include "tests/study/study_record.h"
+
+namespace framewatch::study {
+namespace {
+
+constexpr double kQuiet_s = 4;
+constexpr double kLargestGap = 0.45;  ///< NRMSE; beyond it is another building
+constexpr int kSizes = 10;            ///< steps of the search
+constexpr int kDraws = 6;             ///< places tried
+
+double uniform(Random& random, double low, double high) {
+  return low + (high - low) * random.uniform();
+}
+
+PlanMotion shaking(const CaseOptions& o, double first_mode_hz, std::uint64_t seed, Random& random) {
+  const auto along = [&](std::uint64_t own) {
+    KanaiTajimi p;
+    p.ground_frequency_hz = first_mode_hz * uniform(random, 1.0, 2.0);
+    p.high_pass_hz = 0.3 * first_mode_hz;
+    p.peak_mps2 = uniform(random, 1.5, 2.5);
+    p.duration_s = o.seconds - kQuiet_s;
+    p.strong_s = 0.6 * o.seconds;
+    p.decay_s = 0.1 * o.seconds;
+    p.seed = own;
+    GroundMotion motion = kanai_tajimi(p);
+    motion.accel.insert(motion.accel.begin(), static_cast<std::size_t>(kQuiet_s / motion.step_s),
+                        0.0);
+    return motion;
+  };
+  return {along(2 * seed), along(2 * seed + 1)};
+}
+
+Draw draw_hidden(const std::string& name, const StudyBuilding& b, const Peaks& peaks,
+                 Random& random) {
+  if (const auto kind = find_effect(name)) return draw_effect(*kind, b, peaks, random);
+  return draw_law(name, b, peaks, random);
+}
+
+/// Smallest size, of a geometric ladder, whose gap reaches `wanted`; 0 when none does.
+double size_for(const Draw& draw, double wanted, const StudyCase& c, const LinearShare& share,
+                double& gap) {
+  const auto gap_of = [&](double size) {
+    StudyCase trial = c;
+    trial.hidden = {{}, {}, c.building.theta};
+    draw.make(size, trial.hidden);
+    if (!stands(trial.building.truth, trial.building.table(), trial.hidden.theta,
+                trial.hidden.effects))
+      return -1.0;
+    const Eigen::MatrixXd accel = clean_record(trial, 0);
+    return accel.allFinite() ? share.unexplained(accel, draw.of_channel) : -1.0;
+  };
+  if (draw.sizeless) return gap = gap_of(1), gap >= 0 ? 1.0 : 0.0;
+  double low = 0, high = draw.largest;
+  gap = gap_of(high);
+  for (int i = 0; gap < 0 && i < kSizes; ++i) gap = gap_of(high *= 0.7);
+  if (gap < wanted) return 0;
+  for (int i = 0; i < kSizes && gap > 1.1 * wanted; ++i) {
+    const double middle = low > 0 ? std::sqrt(low * high) : high / 3;
+    const double found = gap_of(middle);
+    if (found >= wanted) {
+      high = middle;
+      gap = found;
+    } else {
+      low = middle;
+    }
+  }
+  return high;
+}
+
+std::vector<std::string> parts_of(const std::string& name) {
+  const std::size_t plus = name.find('+');
+  if (name.empty() || name == "none") return {};
+  if (plus == std::string::npos) return {name};
+  return {name.substr(0, plus), name.substr(plus + 1)};
+}
+
+}  // namespace
+
+std::optional<StudyCase> make_case(const std::string& group, const std::string& name,
+                                   const CaseOptions& options, std::string& why_not) {
+  StudyCase c;
+  c.options = options;
+  c.group = group;
+  c.name = name;
+  Random random(options.seed, 1);
+  const bool rigid = name.find("floor_flexibility") != std::string::npos;
+  c.building =
+      random_building(options.building, rigid ? FloorModel::rigid : FloorModel::flexible, random);
+  c.hidden.theta = c.building.theta;
+  const double f1 =
+      natural_frequencies_hz(c.building.truth, c.building.table(), c.building.theta).front();
+  for (std::uint64_t record = 0; record < 2; ++record)
+    c.motions.push_back(shaking(options, f1, 2 * options.seed + record, random));
+  const std::vector<std::string> parts = parts_of(name);
+  if (parts.empty()) return c;
+
+  const LinearShare share(c);
+  const double floor = std::sqrt(2.0) * options.noise_ratio;  // of a channel, and of the base
+  c.gap_over_floor = 1e9;
+  Hidden all = c.hidden;
+  for (const std::string& part : parts) {
+    bool found = false;
+    for (int attempt = 0; attempt < kDraws && !found; ++attempt) {
+      const Draw draw = draw_hidden(part, c.building, share.peaks(), random);
+      const double wanted =
+          std::min(options.least_gap * floor * std::exp(uniform(random, 0.05, 0.9)),
+                   std::max(kLargestGap, 1.05 * options.least_gap * floor));
+      double gap = 0;
+      double size = size_for(draw, wanted, c, share, gap);
+      if (size == 0 && gap >= options.least_gap * floor) size = draw.largest;
+      if (size == 0 || gap < options.least_gap * floor) continue;
+      found = true;
+      draw.make(size, all);
+      c.gap_over_floor = std::min(c.gap_over_floor, gap / floor);
+    }
+    if (!found) {
+      why_not = part + ": no size of it shows above the noise";
+      return std::nullopt;
+    }
+  }
+  c.hidden = all;
+  return c;
+}
+
+}  // namespace framewatch::study

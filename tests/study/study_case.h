@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "estimator/simulate/ground_motion.h"
+#include "tests/study/hidden.h"
+
+namespace framewatch::study {
+
+struct CaseOptions {
+  std::string building = "2story_1x1";
+  double noise_ratio = 0.02;  ///< of every channel's rms
+  double seconds = 60;        ///< of each record
+  double rate_hz = 100;
+  double least_gap = 3;  ///< in noise floors
+  std::uint64_t seed = 1;
+};
+
+/// A building, what it hides and how it is shaken, twice.
+struct StudyCase {
+  CaseOptions options;
+  std::string group;  ///< catalogue, nothing, other_form, outside, two_effects
+  std::string name;   ///< of what is hidden
+  StudyBuilding building;
+  Hidden hidden;
+  std::vector<PlanMotion> motions;  ///< train, holdout
+  double gap_over_floor = 0;        ///< what no linear model explains, of the train record
+};
+
+/// Empty when no size at all makes it show; the reason is then in `why_not`.
+std::optional<StudyCase> make_case(const std::string& group, const std::string& name,
+                                   const CaseOptions& options, std::string& why_not);
+
+/// Sampled channels of a record with noise, instants x axes, m/s^2.
+Eigen::MatrixXd measured(const StudyCase& c, int record);
+
+/// config.toml, train.csv.gz, holdout.csv.gz and truth.json in `directory`. False, and the reason,
+/// when they cannot be written.
+bool write_case(const StudyCase& c, const std::string& directory, std::string& error);
+
+}  // namespace framewatch::study

@@ -1,0 +1,172 @@
+#include "tests/study/study_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/effect_json.h"
+#include "daemon/simulation_truth.h"
+#include "drivers/record_csv_writer.h"
+#include "drivers/text_output.h"
+#include "estimator/simulate/channel_effects.h"
+#include "estimator/simulate/nonlinear_building.h"
+#include "estimator/simulate/sensor_model.h"
+
+namespace framewatch::study {
+namespace {
+
+/// Steps of the integration's input: fine for what is written, the sampling's own for sizing.
+constexpr double kFine_s = 1e-3;
+constexpr double kBias_mps2 = 0.02;
+constexpr double kFullScale_mps2 = 4 * 9.80665;
+constexpr int kBits = 16;
+
+Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<Effect>& more,
+                    bool anti_alias) {
+  const StudyBuilding& b = c.building;
+  std::vector<Effect> effects = in_record(c.hidden.effects, record, c.options.seconds);
+  effects.insert(effects.end(), more.begin(), more.end());
+  std::vector<ResponseChannel> channels = response_channels(b.truth, b.axes);
+  ChannelEffects channel_effects(effects);
+  channel_effects.delay(channels);
+  ResponseOptions options;
+  options.rate_hz = c.options.rate_hz;
+  options.anti_alias = anti_alias;
+  options.longest_step_s = anti_alias ? kFine_s : 1 / options.rate_hz;
+  std::vector<PlacedLaw> laws;
+  for (const OtherLaw& law : c.hidden.laws)
+    laws.push_back({b.table().frame_stiffness(law.place.story, law.place.frame), law.make(record)});
+  ResponseStream stream(
+      std::make_unique<NonlinearBuilding>(b.truth, b.table(), c.hidden.theta, effects,
+                                          std::move(laws), fine_step_s(options)),
+      c.motions[static_cast<std::size_t>(record)], options, {}, channels);
+  const auto rows = static_cast<Eigen::Index>(c.options.seconds * c.options.rate_hz);
+  Eigen::MatrixXd out(rows, static_cast<Eigen::Index>(b.axes.size()));
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const Eigen::VectorXd& motion = stream.next();
+    out.row(i) = channel_effects.apply(stream.time_s(), motion).transpose();
+  }
+  std::vector<SensorModel> models(b.axes.size());
+  channel_effects.limit(models);
+  for (std::size_t a = 0; a < models.size(); ++a) {
+    const double level = models[a].clip_level;
+    if (level <= 0) continue;
+    auto column = out.col(static_cast<Eigen::Index>(a));
+    column = column.cwiseMax(-level).cwiseMin(level).eval();
+  }
+  return out;
+}
+
+bool any_late(const std::vector<Effect>& effects) {
+  return std::any_of(effects.begin(), effects.end(),
+                     [](const Effect& e) { return e.kind == EffectKind::time_shift; });
+}
+
+/// The small errors that every instrument has.
+std::vector<Effect> instrument_errors(const StudyBuilding& b) {
+  std::vector<Effect> out;
+  for (std::size_t i = 0; i < b.axes.size(); ++i) {
+    EffectPlace place;
+    place.kind = PlaceKind::channel;
+    place.channel = static_cast<int>(i);
+    out.push_back({EffectKind::gain_error, place, {b.gain_error[i]}});
+    out.push_back({EffectKind::time_shift, place, {b.clock_error[i]}});
+  }
+  return out;
+}
+
+double quantised(double accel) {
+  const double step = kFullScale_mps2 / std::exp2(kBits - 1);
+  return step * std::round(accel / step);
+}
+
+std::string truth_text(const StudyCase& c, const std::string& name) {
+  using Json = nlohmann::ordered_json;
+  daemon::Scenario s;
+  s.config.path = name;
+  s.config.pipeline.structure = c.building.truth;
+  s.config.pipeline.axes = c.building.axes;
+  s.truth = c.hidden.theta;
+  s.effects = c.hidden.effects;
+  s.seed = c.options.seed;
+  Json out = Json::parse(daemon::truth_json(s));
+  for (const OtherLaw& law : c.hidden.laws) {
+    out["effects"].push_back(
+        {{"effect", law.name},
+         {"location", daemon::location_json(law.place, c.building.truth, c.building.axes)},
+         {"accepted", law.accepted}});
+    out["hidden"] = out["effects"].front();
+  }
+  out["study"] = {{"group", c.group},
+                  {"name", c.name},
+                  {"building", c.options.building},
+                  {"noise_ratio", c.options.noise_ratio},
+                  {"gap_over_floor", c.gap_over_floor}};
+  return out.dump(1) + "\n";
+}
+
+bool write_text(const std::string& path, const std::string& text, std::string& error) {
+  drivers::TextOutput out;
+  if (out.open(path) && out.write(text) && out.close()) return true;
+  error = out.error();
+  return false;
+}
+
+bool write_record(const StudyCase& c, int record, const std::string& path, std::string& error) {
+  const Eigen::MatrixXd accel = measured(c, record);
+  std::vector<std::string> names;
+  for (const SensorAxis& axis : c.building.axes) names.push_back(axis.name);
+  drivers::RecordCsvWriter out;
+  bool good = out.open(path, names);
+  std::vector<double> row(names.size());
+  for (Eigen::Index i = 0; good && i < accel.rows(); ++i) {
+    for (std::size_t a = 0; a < row.size(); ++a) row[a] = accel(i, static_cast<Eigen::Index>(a));
+    good = out.write(static_cast<double>(i) / c.options.rate_hz, row);
+  }
+  if (good && out.close()) return true;
+  error = out.error();
+  return false;
+}
+
+}  // namespace
+
+Eigen::MatrixXd clean_record(const StudyCase& c, int record) {
+  return run(c, record, {}, any_late(c.hidden.effects));
+}
+
+Eigen::MatrixXd measured(const StudyCase& c, int record) {
+  Eigen::MatrixXd out = run(c, record, instrument_errors(c.building), true);
+  std::vector<SensorModel> models(c.building.axes.size());
+  ChannelEffects(c.hidden.effects).limit(models);
+  for (Eigen::Index a = 0; a < out.cols(); ++a) {
+    Random noise(c.options.seed,
+                 100 + static_cast<std::uint64_t>(record) * 1000 + static_cast<std::uint64_t>(a));
+    const double deviation = c.options.noise_ratio *
+                             std::sqrt(out.col(a).squaredNorm() / static_cast<double>(out.rows()));
+    const double bias = kBias_mps2 * (2 * noise.uniform() - 1);
+    const double level = models[static_cast<std::size_t>(a)].clip_level;
+    for (Eigen::Index i = 0; i < out.rows(); ++i) {
+      double seen = out(i, a) + deviation * noise.normal() + bias;
+      if (level > 0) seen = std::clamp(seen, -level, level);
+      out(i, a) = quantised(seen);
+    }
+  }
+  return out;
+}
+
+bool write_case(const StudyCase& c, const std::string& directory, std::string& error) {
+  std::error_code code;
+  std::filesystem::create_directories(directory, code);
+  const std::string name = std::filesystem::path(directory).filename().string();
+  return write_text(directory + "/config.toml", config_toml(c.building, c.options.rate_hz),
+                    error) &&
+         write_record(c, 0, directory + "/train.csv.gz", error) &&
+         write_record(c, 1, directory + "/holdout.csv.gz", error) &&
+         write_text(directory + "/truth.json", truth_text(c, name), error);
+}
+
+}  // namespace framewatch::study

@@ -1,0 +1,168 @@
+#include "tests/study/study_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+namespace framewatch::study {
+namespace {
+
+using Json = nlohmann::json;
+
+Json read_json(const std::string& path) {
+  std::ifstream in(path);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  return Json::parse(text, nullptr, false);
+}
+
+std::string text_of(const Json& json, const char* key) {
+  return json.is_object() && json.contains(key) && json[key].is_string() ? json[key] : "";
+}
+
+/// Laws that one curve describes as well as the other.
+std::string family(const std::string& name) {
+  if (name == "bouc_wen") return "bilinear_hysteresis";
+  return name;
+}
+
+/// Whether the diagnosis' place is the truth's, in what both say of it.
+bool same_place(const Json& truth, const Json& found) {
+  const std::string kind = text_of(truth, "kind");
+  const bool channel = kind == "channel" || kind == "base";
+  if (channel) {
+    const std::string a = text_of(truth, "channel"), b = text_of(truth, "with_channel");
+    const std::string c = text_of(found, "channel"), d = text_of(found, "with_channel");
+    return a == c || (!b.empty() && a == d && b == c);
+  }
+  if (text_of(found, "kind") != kind) return false;
+  const auto keys = kind == "building"       ? std::vector<const char*>{"direction"}
+                    : kind == "panel"        ? std::vector<const char*>{"story", "panel"}
+                    : kind == "floor"        ? std::vector<const char*>{"story"}
+                    : truth.contains("node") ? std::vector<const char*>{"story", "node"}
+                                             : std::vector<const char*>{"story", "frame"};
+  return std::all_of(keys.begin(), keys.end(), [&](const char* key) {
+    return truth.contains(key) && found.contains(key) && truth[key] == found[key];
+  });
+}
+
+std::vector<std::string> accepted_names(const Json& truth) {
+  if (truth.contains("accepted")) return truth["accepted"].get<std::vector<std::string>>();
+  return {text_of(truth, "effect")};
+}
+
+bool is_named(const Json& truth, const std::string& name, bool exactly) {
+  for (const std::string& accepted : accepted_names(truth))
+    if (exactly ? accepted == name : family(accepted) == family(name)) return true;
+  return false;
+}
+
+std::optional<double> number(const Json& json, std::initializer_list<const char*> path) {
+  const Json* at = &json;
+  for (const char* key : path) {
+    if (!at->is_object() || !at->contains(key)) return std::nullopt;
+    at = &(*at)[key];
+  }
+  return at->is_number() ? std::optional<double>(at->get<double>()) : std::nullopt;
+}
+
+std::optional<double> first_of(std::initializer_list<std::optional<double>> candidates) {
+  for (const auto& candidate : candidates)
+    if (candidate) return candidate;
+  return std::nullopt;
+}
+
+/// Names that the diagnosis could not tell from the one it gives.
+bool among_indistinguishable(const Json& truth, const Json& effect) {
+  if (!effect.contains("indistinguishable_from")) return false;
+  for (const Json& other : effect["indistinguishable_from"]) {
+    const std::string name =
+        other.is_string() ? other.get<std::string>() : text_of(other, "effect");
+    const bool place = !other.is_object() || !other.contains("location") ||
+                       same_place(truth["location"], other["location"]);
+    if (place && is_named(truth, name, false)) return true;
+  }
+  return false;
+}
+
+void compare_parameters(const Json& truth, const Json& found, std::vector<double>& errors) {
+  if (!truth.contains("parameters") || !found.contains("parameters")) return;
+  for (const auto& [key, value] : truth["parameters"].items()) {
+    const auto size = number(value, {"value"});
+    const auto got = first_of({number(found, {"parameters", key.c_str(), "value"}),
+                               number(found, {"parameters", key.c_str()})});
+    const bool shape = key == "exponent" || key == "beta" || key == "v0_mps" || key == "seed" ||
+                       key == "phase_rad" || key == "side" || key.starts_with("slip");
+    if (size && got && *size != 0 && !shape) errors.push_back(std::abs(*got / *size - 1));
+  }
+}
+
+void compare(const Json& truths, const Json& found, Outcome& out) {
+  std::vector<bool> explained(found.size(), false);
+  for (const Json& truth : truths) {
+    bool place = false, right = false, exact = false;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::string name = text_of(found[i], "effect");
+      const bool here = same_place(truth["location"], found[i]["location"]);
+      const bool named = here && is_named(truth, name, false);
+      const bool among = !named && among_indistinguishable(truth, found[i]);
+      place = place || here || among;
+      if (named || among) {
+        explained[i] = true;
+        right = true;
+        out.told_apart = out.told_apart && named;
+      }
+      if (named && is_named(truth, name, true)) {
+        exact = true;
+        compare_parameters(truth, found[i], out.parameter_errors);
+      }
+    }
+    out.places_right += place;
+    out.right += right;
+    out.exact += exact;
+  }
+  out.extra = std::count(explained.begin(), explained.end(), false) > 0;
+}
+
+}  // namespace
+
+std::optional<double> Outcome::removed() const {
+  if (!gap_before || !gap_after || !noise_floor || *gap_before <= *noise_floor) return std::nullopt;
+  return 1 - std::max(*gap_after - *noise_floor, 0.0) / (*gap_before - *noise_floor);
+}
+
+std::optional<Outcome> score(const std::string& directory) {
+  const Json truth = read_json(directory + "/truth.json");
+  if (truth.is_discarded() || !truth.contains("effects")) return std::nullopt;
+  Outcome out;
+  out.directory = directory;
+  const Json study = truth.value("study", Json::object());
+  out.group = text_of(study, "group");
+  out.building = text_of(study, "building");
+  out.hidden = text_of(study, "name");
+  out.noise_ratio = study.value("noise_ratio", 0.0);
+  out.truths = static_cast<int>(truth["effects"].size());
+  const Json diagnosis = read_json(directory + "/out/diagnosis.json");
+  if (diagnosis.is_discarded()) {
+    out.verdict = "refused";
+    return out;
+  }
+  out.verdict = text_of(diagnosis, "verdict");
+  const Json found = diagnosis.value("effects", Json::array());
+  for (const Json& effect : found) out.named.push_back(text_of(effect, "effect"));
+  compare(truth["effects"], found, out);
+  out.gap_before = first_of({number(diagnosis, {"gap", "before", "holdout", "overall"}),
+                             number(diagnosis, {"gap", "holdout", "before", "overall"})});
+  out.gap_after = first_of({number(diagnosis, {"gap", "after", "holdout", "overall"}),
+                            number(diagnosis, {"gap", "holdout", "after", "overall"})});
+  out.noise_floor = first_of({number(diagnosis, {"gap", "noise_floor", "holdout", "overall"}),
+                              number(diagnosis, {"gap", "holdout", "noise_floor", "overall"}),
+                              number(diagnosis, {"gap", "noise_floor", "holdout"}),
+                              number(diagnosis, {"gap", "noise_floor", "overall"}),
+                              number(diagnosis, {"gap", "noise_floor"})});
+  return out;
+}
+
+}  // namespace framewatch::study

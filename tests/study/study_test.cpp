@@ -1,0 +1,155 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "daemon/config.h"
+#include "tests/study/practice.h"
+#include "tests/study/study_case.h"
+#include "tests/study/study_record.h"
+#include "tests/study/study_score.h"
+#include "tests/support/data.h"
+#include "tests/support/temporary.h"
+
+namespace framewatch::study {
+namespace {
+
+CaseOptions quick(const std::string& building = "2story_1x1") {
+  CaseOptions o;
+  o.building = building;
+  o.seconds = 15;
+  o.seed = 7;
+  return o;
+}
+
+StudyCase made(const std::string& group, const std::string& name, const CaseOptions& options) {
+  std::string why;
+  const auto c = make_case(group, name, options, why);
+  if (!c) {
+    ADD_FAILURE() << name << ": " << why;
+    return {};
+  }
+  return *c;
+}
+
+TEST(StudyCase, IsAConfigurationTwoRecordsAndTheTruth) {
+  const test::TemporaryDirectory folder;
+  for (const std::string& building : building_kinds()) {
+    const std::string directory = folder.path(building);
+    std::string error;
+    ASSERT_TRUE(write_case(made("nothing", "none", quick(building)), directory, error)) << error;
+    std::vector<daemon::ConfigProblem> problems;
+    const auto config = daemon::load_config(directory + "/config.toml", problems);
+    ASSERT_TRUE(config) << problems.front().where << ": " << problems.front().message;
+    EXPECT_GT(config->pipeline.design.size(), 0);
+    for (const char* record : {"/train.csv.gz", "/holdout.csv.gz"})
+      EXPECT_GT(std::filesystem::file_size(directory + record), 10000u);
+    const auto outcome = score(directory);
+    ASSERT_TRUE(outcome);
+    EXPECT_EQ(outcome->verdict, "refused") << "nobody has diagnosed it";
+    EXPECT_EQ(outcome->truths, 0);
+  }
+}
+
+TEST(StudyCase, TheSameSeedGivesTheSameRecords) {
+  const StudyCase a = made("catalogue", "cubic_stiffness", quick());
+  const StudyCase b = made("catalogue", "cubic_stiffness", quick());
+  EXPECT_EQ(measured(a, 1), measured(b, 1));
+  CaseOptions other = quick();
+  other.seed = 8;
+  EXPECT_NE(measured(a, 1), measured(made("catalogue", "cubic_stiffness", other), 1));
+}
+
+TEST(StudyCase, NoiseIsAsLargeAsItIsSaidToBe) {
+  const StudyCase loud = made("nothing", "none", quick());
+  StudyCase still = loud;
+  still.options.noise_ratio = 0;
+  const Eigen::MatrixXd noise = measured(loud, 0) - measured(still, 0);
+  const Eigen::MatrixXd signal = measured(still, 0);
+  for (Eigen::Index a = 0; a < noise.cols(); ++a) {
+    const double bias = signal.col(a).head(100).mean();
+    const double rms = std::sqrt((signal.col(a).array() - bias).square().mean());
+    EXPECT_NEAR(std::sqrt(noise.col(a).squaredNorm() / static_cast<double>(noise.rows())),
+                0.02 * rms, 0.15 * 0.02 * rms);
+  }
+}
+
+TEST(StudyCase, WhatIsHiddenShows) {
+  for (const char* name : {"bouc_wen", "gain_error", "smooth gap", "cubic_stiffness+gain_error"}) {
+    const StudyCase c = made("any", name, quick());
+    EXPECT_GE(c.gap_over_floor, 3) << name;
+    StudyCase nothing = c;
+    nothing.hidden = {{}, {}, c.building.theta};
+    EXPECT_GT((clean_record(c, 0) - clean_record(nothing, 0)).norm(),
+              0.05 * clean_record(nothing, 0).norm())
+        << name;
+  }
+}
+
+TEST(Practice, IsImportedInTheCataloguesWords) {
+  FRAMEWATCH_DATA_OR_SKIP(truth, "practice/case-009/truth.json");
+  const std::string source = std::filesystem::path(truth).parent_path().string();
+  const test::TemporaryDirectory folder;
+  const std::string directory = folder.path("case");
+  std::string error;
+  ASSERT_TRUE(import_practice(source, directory, error)) << error;
+  std::vector<daemon::ConfigProblem> problems;
+  EXPECT_TRUE(daemon::load_config(directory + "/config.toml", problems));
+  std::filesystem::create_directory(directory + "/out");
+  std::ofstream(directory + "/out/diagnosis.json")
+      << R"({"verdict": "explained", "effects": [{"effect": "cubic_stiffness", "location":
+            {"kind": "frame", "direction": "y", "story": 2, "frame": "x2"}}]})";
+  EXPECT_TRUE(score(directory).value().all_right());
+  EXPECT_FALSE(import_practice(folder.path("nowhere"), directory, error));
+}
+
+TEST(StudyScore, JudgesNamePlaceAndGap) {
+  const test::TemporaryDirectory folder;
+  const std::string directory = folder.path("case");
+  std::string error;
+  const StudyCase c = made("catalogue", "bouc_wen", quick());
+  ASSERT_TRUE(write_case(c, directory, error)) << error;
+  std::filesystem::create_directory(directory + "/out");
+  const EffectPlace& place = c.hidden.effects.front().place;
+  const auto diagnosed = [&](const std::string& verdict, const std::string& name, int story) {
+    const std::string where = place.kind == PlaceKind::panel
+                                  ? "\"kind\": \"panel\", \"panel\": \"x1y1\""
+                                  : "\"kind\": \"frame\", \"frame\": \"" +
+                                        c.building.truth.frame_name(place.frame) + "\"";
+    std::ofstream(directory + "/out/diagnosis.json")
+        << "{\"verdict\": \"" << verdict << "\", \"effects\": [{\"effect\": \"" << name
+        << "\", \"location\": {" << where << ", \"story\": " << story
+        << "}, \"parameters\": {\"kh_npm\": {\"value\": "
+        << 1.2 * c.hidden.effects.front().value("kh_npm")
+        << "}}}], \"gap\": {\"before\": {\"holdout\": {\"overall\": 0.2}}, \"after\": "
+           "{\"holdout\": "
+           "{\"overall\": 0.04}}, \"noise_floor\": {\"holdout\": {\"overall\": 0.02}}}}";
+    return score(directory).value();
+  };
+  const Outcome right = diagnosed("explained", "bouc_wen", place.story);
+  EXPECT_TRUE(right.all_right());
+  EXPECT_EQ(right.exact, 1);
+  EXPECT_NEAR(right.removed().value(), 1 - 0.02 / 0.18, 1e-9);
+  ASSERT_EQ(right.parameter_errors.size(), 1u);
+  EXPECT_NEAR(right.parameter_errors[0], 0.2, 1e-5) << "the size was written as text";
+
+  const Outcome family = diagnosed("explained", "bilinear_hysteresis", place.story);
+  EXPECT_TRUE(family.all_right());
+  EXPECT_EQ(family.exact, 0);
+
+  const Outcome elsewhere = diagnosed("explained", "bouc_wen", 3 - place.story);
+  EXPECT_TRUE(elsewhere.confidently_wrong());
+  EXPECT_EQ(elsewhere.places_right, 0);
+
+  const Outcome otherwise = diagnosed("partly_explained", "cubic_stiffness", place.story);
+  EXPECT_FALSE(otherwise.all_right());
+  EXPECT_EQ(otherwise.places_right, 1);
+  EXPECT_FALSE(otherwise.confidently_wrong());
+
+  const std::string table = tables({right, elsewhere});
+  EXPECT_NE(table.find("| bouc_wen | 2 | 1 | 1 |"), std::string::npos) << table;
+}
+
+}  // namespace
+}  // namespace framewatch::study
