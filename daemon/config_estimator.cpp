@@ -4,6 +4,11 @@
 #include "daemon/config_section.h"
 
 namespace framewatch::daemon {
+namespace {
+
+constexpr double kLongestOther = 20;
+
+}  // namespace
 
 EstimatorOptions read_estimator(const TomlValue& document, std::vector<TextProblem>& problems) {
   const TomlEntry* entry = document.find("estimator");
@@ -13,6 +18,11 @@ EstimatorOptions read_estimator(const TomlValue& document, std::vector<TextProbl
   o.variant = section.text("variant") == "paper" ? Variant::paper : Variant::matched;
   o.rate_hz = section.number("rate_hz");
   o.window_s = section.number("window_s");
+  if (section.given("other_windows_s")) {
+    const TomlValue& windows = *section.value("other_windows_s");
+    const auto count = windows.kind == TomlKind::array ? windows.items.size() : 1;
+    o.other_windows_s = section.grid("other_windows_s", {static_cast<int>(count)});
+  }
   o.hop_s = section.number("hop_s");
   o.boxplot_windows = section.integer("boxplot_windows");
   o.high_pass_hz = section.number_for("high_pass_hz", o.variant == Variant::paper);
@@ -34,6 +44,11 @@ EstimatorOptions read_estimator(const TomlValue& document, std::vector<TextProbl
   if (section.good("rate_hz") && section.good("window_s") && o.window_s * o.rate_hz < kLeastRows)
     section.problem("window_s", fmt::format("must hold at least {:g} samples: >= {:g} s at {:g} Hz",
                                             kLeastRows, kLeastRows / o.rate_hz, o.rate_hz));
+  if (section.good("window_s") && section.good("other_windows_s"))
+    for (const double other_s : o.other_windows_s)
+      if (other_s > kLongestOther * o.window_s)
+        section.problem("other_windows_s",
+                        fmt::format("{:g} s is over {:g} times window_s", other_s, kLongestOther));
   if (section.good("window_s") && section.good("hop_s") && o.hop_s > o.window_s)
     section.problem("hop_s", fmt::format("must not be longer than the window, {:g} s", o.window_s));
   return o;
@@ -52,7 +67,7 @@ LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& proble
     section.problem("url", fmt::format("expected a provider such as udpm://, memq:// or "
                                        "file://, got \"{}\"",
                                        out.url));
-  constexpr std::size_t kLongestSuffix = 20;
+  constexpr std::size_t kLongestSuffix = 24;
   if (out.prefix.size() + kLongestSuffix > 63)
     section.problem("prefix", fmt::format("at most {} characters: LCM allows a channel 63",
                                           63 - kLongestSuffix));

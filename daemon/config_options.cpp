@@ -273,6 +273,18 @@ const Option kOptions[] = {
      .above_min = true,
      .meaning = "Length of the window; rounded to 20 blocks of whole samples."},
     {.section = "estimator",
+     .key = "other_windows_s",
+     .type = grid,
+     .unit = "s",
+     .shape = "[window]",
+     .default_value = "[1.0, 2.5, 10.0]",
+     .min = 0,
+     .max = 3600,
+     .above_min = true,
+     .meaning = "Lengths of further windows, summed from the same blocks and published once per "
+                "block of the main one (a twentieth of it) on ESTIMATE_1S and so on; rounded to "
+                "whole blocks, at least four."},
+    {.section = "estimator",
      .key = "hop_s",
      .type = number,
      .unit = "s",

@@ -33,8 +33,10 @@ const char* reason_word(int reason) {
     case 2:
       return "quiet";
     case 3:
-      return "ill determined";
+      return "floor too stiff";
     case 4:
+      return "plan symmetric";
+    case 5:
       return "channel lost";
     default:
       return "?";
@@ -63,7 +65,7 @@ EstimateErrors errors_against(const parameter_table_t& table, const window_estim
 
 std::vector<std::string> estimate_table(const parameter_table_t& table, const window_estimate_t& e,
                                         const std::vector<double>& truth) {
-  constexpr const char* row = "{:<9} {:<11} {:>8} {:>8} {:>7} {:>8} {:<14} {:>8} {:>8} {:>8}";
+  constexpr const char* row = "{:<9} {:<11} {:>8} {:>8} {:>7} {:>8} {:<15} {:>8} {:>8} {:>8}";
   std::vector<std::string> lines{fmt::format(row, "parameter", "unit", "truth", "estimate",
                                              "error %", "std err", "status", "q1", "median", "q3")};
   for (std::size_t i = 0; i < table.name.size(); ++i) {

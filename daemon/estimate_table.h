@@ -31,7 +31,7 @@ std::vector<std::string> estimate_table(const framewatch::parameter_table_t& tab
                                         const framewatch::window_estimate_t& estimate,
                                         const std::vector<double>& truth);
 
-/// "ok", "warming up", "quiet", "ill determined", "channel lost".
+/// "ok", "warming up", "quiet", "floor too stiff", "plan symmetric", "channel lost".
 const char* reason_word(int reason);
 
 }  // namespace framewatch::daemon

@@ -36,12 +36,14 @@ std::vector<drivers::WantedAxis> wanted_axes(const Config& config) {
 Estimation::Estimation(const Config& config, MessageSink sink, Observer observer)
     : observer_(std::move(observer)),
       publisher_(config, std::move(sink)),
-      pipeline_(config.pipeline,
-                [this](const WindowEstimate& estimate) {
-                  if (observer_) observer_(estimate);
-                  publisher_.estimate(estimate);
-                  ++windows_;
-                }),
+      pipeline_(
+          config.pipeline,
+          [this](const WindowEstimate& estimate) {
+            if (observer_) observer_(estimate);
+            publisher_.estimate(estimate);
+            ++windows_;
+          },
+          [this](const WindowEstimate& estimate) { publisher_.other(estimate); }),
       intake_(wanted_axes(config), [this](const AccelSample& s) { sample(s); }) {}
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
@@ -67,12 +69,14 @@ void Estimation::publish_state() {
   counts.sample_sets = pipeline.sample_sets;
   counts.gaps = pipeline.gaps;
   counts.rejected_messages = intake.foreign + intake.malformed + intake.duplicate;
+  const std::vector<double> noise = pipeline_.noise_density();
   for (std::size_t i = 0; i < pipeline.axes.size(); ++i) {
     const AxisCounters& axis = pipeline.axes[i];
     const drivers::SequenceCounter* node = intake_.sequence_of(i);
     counts.axes.push_back({axis.received, node == nullptr ? 0 : node->lost, axis.late,
-                           axis.repaired,
-                           axis.rejected + (node == nullptr ? 0 : node->duplicates)});
+                           axis.repaired, axis.rejected + (node == nullptr ? 0 : node->duplicates),
+                           axis.stuck, axis.clipped});
+    if (!noise.empty()) counts.axes.back().noise_density = noise[i];
   }
   publisher_.parameters(seconds_.newest_us(), pipeline_);
   publisher_.status(seconds_.newest_us(), counts, live_);

@@ -1,7 +1,10 @@
 #include "daemon/publisher.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace framewatch::daemon {
 
@@ -10,7 +13,10 @@ Publisher::Publisher(const Config& config, MessageSink sink)
       sink_(std::move(sink)),
       parameters_channel_(config.lcm.prefix + "PARAMETERS"),
       estimate_channel_(config.lcm.prefix + "ESTIMATE"),
-      status_channel_(config.lcm.prefix + "STATUS") {}
+      status_channel_(config.lcm.prefix + "STATUS") {
+  for (const double window_s : config.pipeline.options.other_windows_s)
+    other_channels_.push_back(fmt::format("{}_{:g}S", estimate_channel_, window_s));
+}
 
 template <typename MessageType>
 void Publisher::send(std::int64_t time_us, const std::string& channel, const MessageType& message) {
@@ -43,10 +49,13 @@ void Publisher::parameters(std::int64_t time_us, const Pipeline& pipeline) {
   }
   m.design.assign(pipeline.design().begin(), pipeline.design().end());
   m.design.resize(m.name.size());
+  m.other_windows = static_cast<std::int32_t>(other_channels_.size());
+  m.other_channel = other_channels_;
+  m.other_rows = pipeline.other_window_rows();
   send(time_us, parameters_channel_, m);
 }
 
-void Publisher::estimate(const WindowEstimate& e) {
+void Publisher::fill_values(const WindowEstimate& e) {
   framewatch::window_estimate_t& m = estimate_;
   m.window_start_us = to_microseconds(e.start);
   m.window_end_us = to_microseconds(e.end);
@@ -63,14 +72,38 @@ void Publisher::estimate(const WindowEstimate& e) {
   for (const double snr : e.snr) m.snr.push_back(static_cast<float>(snr));
   m.prior_share.clear();
   for (const double share : e.prior_share) m.prior_share.push_back(static_cast<float>(share));
+  m.noise_share.clear();
+  for (const double share : e.noise_share) m.noise_share.push_back(static_cast<float>(share));
+  m.held_index.clear();
+  m.held_value.clear();
+  m.held_std_error.clear();
+  m.held_end_us.clear();
+  m.boxplot_windows = m.boxplots = 0;
+  for (auto* column : {&m.q1, &m.median, &m.q3, &m.whisker_low, &m.whisker_high}) column->clear();
+  m.outliers.clear();
+  m.boxplot_count.clear();
+  for (std::size_t p = 0; p < e.reason.size() && e.window == 0; ++p) {
+    if (e.reason[p] == Observability::observable || std::isnan(e.last_value[p])) continue;
+    m.held_index.push_back(static_cast<std::int32_t>(p));
+    m.held_value.push_back(e.last_value[p]);
+    m.held_std_error.push_back(e.last_std_error[p]);
+    m.held_end_us.push_back(to_microseconds(e.last_end[p]));
+  }
+  m.held = static_cast<std::int32_t>(m.held_index.size());
+}
 
+void Publisher::other(const WindowEstimate& e) {
+  fill_values(e);
+  send(estimate_.window_end_us, other_channels_[static_cast<std::size_t>(e.window - 1)], estimate_);
+}
+
+void Publisher::estimate(const WindowEstimate& e) {
+  fill_values(e);
+  framewatch::window_estimate_t& m = estimate_;
   const bool with_boxplot = e.sequence % config_.lcm.boxplot_every == 0;
   m.boxplot_windows = static_cast<std::int32_t>(
       std::min<std::int64_t>(e.sequence + 1, config_.pipeline.options.boxplot_windows));
   m.boxplots = with_boxplot ? static_cast<std::int32_t>(e.boxplot.size()) : 0;
-  for (auto* column : {&m.q1, &m.median, &m.q3, &m.whisker_low, &m.whisker_high}) column->clear();
-  m.outliers.clear();
-  m.boxplot_count.clear();
   if (with_boxplot) {
     for (const BoxplotStatistics& box : e.boxplot) {
       m.q1.push_back(box.q1);
@@ -99,7 +132,10 @@ void Publisher::status(std::int64_t time_us, const StatusCounts& counts, const L
   m.latency_s = live.latency_s;
   m.channels = static_cast<std::int32_t>(counts.axes.size());
   m.name.clear();
-  for (auto* column : {&m.received, &m.lost, &m.late, &m.repaired, &m.rejected}) column->clear();
+  for (auto* column :
+       {&m.received, &m.lost, &m.late, &m.repaired, &m.rejected, &m.stuck, &m.clipped})
+    column->clear();
+  m.noise_mps2_per_rthz.clear();
   for (std::size_t i = 0; i < counts.axes.size(); ++i) {
     m.name.push_back(config_.pipeline.axes[i].name);
     m.received.push_back(counts.axes[i].received);
@@ -107,6 +143,9 @@ void Publisher::status(std::int64_t time_us, const StatusCounts& counts, const L
     m.late.push_back(counts.axes[i].late);
     m.repaired.push_back(counts.axes[i].repaired);
     m.rejected.push_back(counts.axes[i].rejected);
+    m.stuck.push_back(counts.axes[i].stuck);
+    m.clipped.push_back(counts.axes[i].clipped);
+    m.noise_mps2_per_rthz.push_back(counts.axes[i].noise_density);
   }
   send(time_us, status_channel_, m);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct LiveState {
 
 /// One axis' line of the status message.
 struct AxisStatus {
-  std::int64_t received = 0, lost = 0, late = 0, repaired = 0, rejected = 0;
+  std::int64_t received = 0, lost = 0, late = 0, repaired = 0, rejected = 0, stuck = 0, clipped = 0;
+  double noise_density = std::numeric_limits<double>::quiet_NaN();  ///< m/s^2/sqrt(Hz)
 };
 
 struct StatusCounts {
@@ -44,15 +46,19 @@ class Publisher {
   void parameters(std::int64_t time_us, const Pipeline& pipeline);
   /// Boxplot statistics go with every LcmSettings::boxplot_every-th window.
   void estimate(const WindowEstimate& estimate);
+  /// One of the other windows, on its own channel.
+  void other(const WindowEstimate& estimate);
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
 
  private:
+  void fill_values(const WindowEstimate& estimate);
   template <typename MessageType>
   void send(std::int64_t time_us, const std::string& channel, const MessageType& message);
 
   const Config& config_;
   MessageSink sink_;
   std::string parameters_channel_, estimate_channel_, status_channel_;
+  std::vector<std::string> other_channels_;
   framewatch::parameter_table_t parameters_{};
   framewatch::window_estimate_t estimate_{};
   framewatch::status_t status_{};

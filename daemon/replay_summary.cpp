@@ -10,6 +10,7 @@ namespace {
 
 struct Counts {
   std::int64_t windows, gaps, lost, late, repaired, rejected, malformed, foreign;
+  std::int64_t stuck = 0, clipped = 0;
 };
 
 Counts count(const Estimation& estimation) {
@@ -21,6 +22,8 @@ Counts count(const Estimation& estimation) {
     c.late += axis.late;
     c.repaired += axis.repaired;
     c.rejected += axis.rejected;
+    c.stuck += axis.stuck;
+    c.clipped += axis.clipped;
   }
   return c;
 }
@@ -80,12 +83,13 @@ std::string ReplaySummary::text(const Estimation& estimation, const ReplaySurvey
   const Counts c = count(estimation);
   std::string out = fmt::format(
       "{:.2f} s of motion in {:.2f} s ({:.0f} times real time)\n"
-      "windows {}, gaps {}, lost messages {}, late {}, repaired {}, rejected {}\n"
+      "windows {}, gaps {}, lost messages {}, late {}, repaired {}, rejected {}, stuck {}, clipped "
+      "{}\n"
       "undecodable messages {}, foreign {}, damaged bytes {}\n\n"
       "{:<14} {:>12} {:>12} {:>12}  {:<11} {:>10}\n",
       survey.measured_seconds(), work_s, survey.measured_seconds() / work_s, c.windows, c.gaps,
-      c.lost, c.late, c.repaired, c.rejected, c.malformed, c.foreign, survey.damaged_bytes(),
-      "parameter", "q1", "median", "q3", "unit", "observable");
+      c.lost, c.late, c.repaired, c.rejected, c.stuck, c.clipped, c.malformed, c.foreign,
+      survey.damaged_bytes(), "parameter", "q1", "median", "q3", "unit", "observable");
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const Quartiles q = quartiles(i);
     if (values_[i].empty())
@@ -104,9 +108,10 @@ std::string ReplaySummary::json(const Estimation& estimation, const ReplaySurvey
   std::string out = fmt::format(
       "{{\"schema\": \"framewatch.replay/1\", \"motion_s\": {}, \"work_s\": {}, \"windows\": {}, "
       "\"gaps\": {}, \"lost\": {}, \"late\": {}, \"repaired\": {}, \"rejected\": {}, "
+      "\"stuck\": {}, \"clipped\": {}, "
       "\"malformed\": {}, \"foreign\": {}, \"damaged_bytes\": {},\n \"notes\": [",
       number(survey.measured_seconds()), number(work_s), c.windows, c.gaps, c.lost, c.late,
-      c.repaired, c.rejected, c.malformed, c.foreign, survey.damaged_bytes());
+      c.repaired, c.rejected, c.stuck, c.clipped, c.malformed, c.foreign, survey.damaged_bytes());
   for (std::size_t i = 0; i < survey.notes().size(); ++i)
     out += (i == 0 ? "" : ", ") + quoted(survey.notes()[i]);
   out += "],\n \"parameters\": [";

@@ -34,8 +34,10 @@ const char* reason_word(Observability reason) {
       return "warming up";
     case Observability::quiet:
       return "quiet";
-    case Observability::ill_determined:
-      return "not identifiable";
+    case Observability::floor_too_stiff:
+      return "floor too stiff";
+    case Observability::symmetric_plan:
+      return "plan symmetric";
     case Observability::channel_lost:
       return "channel lost";
   }

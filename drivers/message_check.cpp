@@ -77,11 +77,11 @@ std::optional<std::int64_t> fingerprint(std::span<const std::uint8_t> payload) {
 
 // In the layouts the first '8' is the fingerprint.
 std::optional<parameter_table_t> decode_parameter_table(std::span<const std::uint8_t> payload) {
-  return decode<parameter_table_t>(payload, "88sss8444n[ss448]");
+  return decode<parameter_table_t>(payload, "88sss8444n[ss448]n[s4]");
 }
 
 std::optional<window_estimate_t> decode_window_estimate(std::span<const std::uint8_t> payload) {
-  return decode<window_estimate_t>(payload, "8888448n[88444]4n[8888844]");
+  return decode<window_estimate_t>(payload, "8888448n[884444]n[4888]4n[8888844]");
 }
 
 }  // namespace framewatch::drivers

@@ -95,6 +95,9 @@ std::vector<double> Pipeline::noise_density() const {
 int Pipeline::window_rows() const {
   return implementation_->estimator().window_rows();
 }
+std::vector<int> Pipeline::other_window_rows() const {
+  return implementation_->estimator().other_window_rows();
+}
 int Pipeline::hop_rows() const {
   return implementation_->estimator().hop_rows();
 }

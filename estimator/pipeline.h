@@ -59,6 +59,8 @@ class Pipeline {
   /// while it is not known.
   std::vector<double> noise_density() const;
   int window_rows() const;
+  /// Of EstimatorOptions::other_windows_s, rounded to whole blocks.
+  std::vector<int> other_window_rows() const;
   int hop_rows() const;
   PipelineCounters counters() const;
 

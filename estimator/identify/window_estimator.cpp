@@ -105,6 +105,12 @@ std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& de
                                    settle_rows_);
 }
 
+std::vector<int> WindowEstimator::other_window_rows() const {
+  std::vector<int> rows;
+  for (const int blocks : other_blocks_) rows.push_back(blocks * block_rows_);
+  return rows;
+}
+
 void WindowEstimator::restart() {
   filter_.reset();
   ring_.reset();

@@ -29,6 +29,7 @@ class WindowEstimator {
   const std::vector<double>& noise_density() const { return active_->tuning().noise_density(); }
   bool noise_known() const { return noise_known_; }
   int window_rows() const { return blocks_ * block_rows_; }
+  std::vector<int> other_window_rows() const;
   int hop_rows() const { return hop_rows_; }
   std::int64_t gaps() const { return gaps_; }
   std::int64_t retunes() const { return retunes_; }

@@ -135,7 +135,7 @@ window_estimate_t window(std::int32_t status) {
   e.value = {250000.125, kNothing};
   e.std_error = {12.5, kNothing};
   e.reason = {0, 2};
-  e.snr = e.prior_share = {0, 0};
+  e.snr = e.prior_share = e.noise_share = {0, 0};
   return e;
 }
 

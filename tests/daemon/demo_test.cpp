@@ -38,7 +38,7 @@ window_estimate_t example_estimate(double kx, double gk) {
   estimate.std_error = {1, 1};
   estimate.reason = {0, 0};
   estimate.snr = {100, 100};
-  estimate.prior_share = {0, 0};
+  estimate.prior_share = estimate.noise_share = {0, 0};
   return estimate;
 }
 

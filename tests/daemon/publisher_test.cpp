@@ -43,9 +43,13 @@ WindowEstimate estimate(std::int64_t sequence, std::size_t parameters) {
   e.value.back() = std::numeric_limits<double>::quiet_NaN();
   e.std_error.assign(parameters, 0.5);
   e.reason.assign(parameters, Observability::observable);
-  e.reason.back() = Observability::ill_determined;
+  e.reason.back() = Observability::floor_too_stiff;
   e.snr.assign(parameters, 100);
   e.prior_share.assign(parameters, 0.25);
+  e.noise_share.assign(parameters, 0.125);
+  e.last_value.assign(parameters, 2.5);
+  e.last_std_error.assign(parameters, 0.5);
+  e.last_end.assign(parameters, from_microseconds(5'000'000));
   e.boxplot.assign(parameters, {1, 2, 3, 0.5, 3.5, 4, 7});
   return e;
 }
@@ -71,6 +75,11 @@ TEST(Publisher, SendsWhatTheEstimatorSaid) {
   EXPECT_EQ(m.value[0], 2.5);
   EXPECT_TRUE(std::isnan(m.value[19]));
   EXPECT_EQ(m.reason[19], 3);
+  EXPECT_EQ(m.noise_share[3], 0.125F);
+  ASSERT_EQ(m.held, 1);
+  EXPECT_EQ(m.held_index[0], 19);
+  EXPECT_EQ(m.held_value[0], 2.5);
+  EXPECT_EQ(m.held_end_us[0], 5'000'000);
   EXPECT_EQ(m.boxplot_windows, 4);
   ASSERT_EQ(m.boxplots, 20);
   EXPECT_EQ(m.median[7], 2);

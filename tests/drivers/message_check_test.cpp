@@ -23,6 +23,9 @@ parameter_table_t parameter_table() {
   table.kind = {0, 2};
   table.story = {1, 1};
   table.design = {1e6, 1e3};
+  table.other_windows = 1;
+  table.other_channel = {"FRAMEWATCH_ESTIMATE_1S"};
+  table.other_rows = {100};
   return table;
 }
 
@@ -31,7 +34,11 @@ window_estimate_t estimate() {
   e.parameters = 2;
   e.value = e.std_error = {1, 2};
   e.reason = {0, 3};
-  e.snr = e.prior_share = {1, 1};
+  e.snr = e.prior_share = e.noise_share = {1, 1};
+  e.held = 1;
+  e.held_index = {1};
+  e.held_value = e.held_std_error = {2};
+  e.held_end_us = {5};
   e.boxplots = 2;
   e.q1 = e.median = e.q3 = e.whisker_low = e.whisker_high = {1, 2};
   e.outliers = e.boxplot_count = {0, 4};

@@ -177,7 +177,7 @@ TEST(Pipeline, LostChannelTakesItsElementsAloneAndComesBack) {
     if (to_microseconds(e.end) / 10000 > 1000) {
       EXPECT_TRUE(e.reason[far] == Observability::observable ||
                   e.reason[far] == Observability::warming_up ||
-                  e.reason[far] == Observability::ill_determined);
+                  e.reason[far] == Observability::quiet);
     }
   EXPECT_EQ(run.estimates.back().reason[near], Observability::observable);
   EXPECT_LT(worst_frame_error(small(), run.estimates.back(), small_theta()), 0.02);
