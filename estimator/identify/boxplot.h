@@ -9,6 +9,7 @@ namespace framewatch {
 /// Exact boxplot of one parameter over the last `windows` windows, as MATLAB draws it: sorted value
 /// i at probability (i - 0.5)/n, linear between; outliers strictly beyond 1.5 interquartile ranges;
 /// whiskers at the most extreme values that are none. NaN values take a place but do not count.
+/// No windows: no statistics.
 class BoxplotWindow {
  public:
   explicit BoxplotWindow(int windows);

@@ -24,24 +24,4 @@ void NoiseShare::update(const RowChain& rows, const WindowSums& sums, double lev
   }
 }
 
-void NoiseShare::add_remaining(const std::vector<double>& vector, std::vector<double>& out) const {
-  for (int f = 0; f < layout_.floors(); ++f) {
-    const Floor& floor = floor_[static_cast<std::size_t>(f)];
-    if (floor.rows == nullptr) continue;
-    const double left = floor.instants * (1 - (level_ > 0 ? kTakenOff : 0));
-    const int unknowns = layout_.front(f) - 1;
-    const auto base = static_cast<std::size_t>(f * layout_.own());
-    for (int p = 0; p < unknowns; ++p) {
-      for (int q = p; q < unknowns; ++q) {
-        const double w =
-            left * floor.rows->noise_energy[static_cast<std::size_t>(p * unknowns + q)];
-        const auto i = base + static_cast<std::size_t>(p);
-        const auto j = base + static_cast<std::size_t>(q);
-        out[i] += w * vector[j];
-        if (j != i) out[j] += w * vector[i];
-      }
-    }
-  }
-}
-
 }  // namespace framewatch

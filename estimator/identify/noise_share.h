@@ -17,17 +17,22 @@ class NoiseShare {
   /// level: variance of the noise over the configured one.
   void update(const RowChain& rows, const WindowSums& sums, double level);
 
-  /// Packed part of a floor's sums that is taken off, times scale.
-  struct TakenOff {
-    const double* packed;
+  /// Values times scale.
+  struct Part {
+    const double* values;
     double scale;
   };
-  TakenOff taken_off(int floor) const {
+  /// Part of a floor's sums that is taken off, packed like them.
+  Part taken_off(int floor) const {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
     return {f.rows->noise_taken_off.data(), level_ * f.instants};
   }
-  /// out += (1 - kTakenOff) W vector, internal order, over all floors: what is left in the matrix.
-  void add_remaining(const std::vector<double>& vector, std::vector<double>& out) const;
+  /// What is left of W in a floor's equations: front unknowns x front unknowns.
+  Part left(int floor) const {
+    const Floor& f = floor_[static_cast<std::size_t>(floor)];
+    if (f.rows == nullptr) return {nullptr, 0};
+    return {f.rows->noise_energy.data(), f.instants * (level_ > 0 ? 1 - kTakenOff : 1)};
+  }
 
   /// W's diagonal, internal order: energy each regressor has from noise.
   const std::vector<double>& energy() const { return energy_; }

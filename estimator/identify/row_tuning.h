@@ -8,30 +8,20 @@
 #include "estimator/identify/deformations.h"
 #include "estimator/identify/floor_layout.h"
 #include "estimator/identify/floor_noise.h"
+#include "estimator/identify/kernels.h"
 #include "estimator/identify/noise_moments.h"
+#include "estimator/identify/symmetric_eigen.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/motion_filter.h"
 #include "estimator/options.h"
 
 namespace framewatch {
 
-/// Length of a front padded to whole vector lanes.
-inline constexpr int kLane = 4;
-constexpr int padded(int length) {
-  return (length + kLane - 1) / kLane * kLane;
-}
-
 /// Share of the sensor noise in the normal matrix that the solver takes off. All of it would be
 /// unbiased but blows up where there is little but noise; so this share goes, and the right-hand
 /// side is corrected such that what is left pulls toward the design only.
 /// docs/equations.md, noise in the regressors.
 inline constexpr double kTakenOff = 0.8;
-
-/// Packed upper rows of a symmetric front: row i holds columns from i rounded down to a lane up to
-/// padded(front).
-constexpr int packed_row_begin(int i) {
-  return i / kLane * kLane;
-}
 
 /// One floor's projected equations: each row r is sum_f phi_rf (equation f), low-passed by an
 /// all-pole section s = gain x - a1 s' - a2 s'' and scaled by the root of its weight.
@@ -42,8 +32,8 @@ struct FloorRows {
   /// rows x padded(front): multiplies the filtered front signals [deformations..., response].
   std::vector<double> beta;
   std::vector<double> response;  ///< rows x frames: -phi_rf, forms the response from m p''
-  /// What sensor noise adds per instant, for the design: to the normal matrix (unknowns x unknowns,
-  /// upper), to the right-hand side, and to the energy of the response.
+  /// What sensor noise adds per instant, for the design: to the normal matrix (unknowns x
+  /// unknowns), to the right-hand side, and to the energy of the response.
   std::vector<double> noise_energy;
   std::vector<double> noise_right;
   double noise_response = 0;
@@ -53,6 +43,7 @@ struct FloorRows {
 };
 
 /// How the rows of every floor are formed for one design theta0. docs/equations.md, matched rows.
+/// Allocates when constructed, never after.
 class RowTuning {
  public:
   /// Structure to high_pass must outlive the object. theta0 > 0, theta order. noise_density: of
@@ -62,42 +53,57 @@ class RowTuning {
             const HighPass& high_pass, const Eigen::VectorXd& theta0,
             std::vector<double> noise_density = {});
 
+  /// Another design, of the same sizes. Every floor must then be tuned before anything else is
+  /// asked.
+  void set_design(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density);
+  void tune(int floor);
+
+  /// Rows of a floor when every motion is known.
+  const FloorRows& rows(int floor) const { return rows_[static_cast<std::size_t>(floor)]; }
   /// known: (floors + 1) x frames flags of DeformationSet. Equations that need an unknown motion
-  /// are left out and the rest projected on their own eigenvectors.
-  FloorRows rows(int floor, const std::vector<std::uint8_t>& known) const;
+  /// are left out and the rest projected on their own eigenvectors. out: once a copy of
+  /// rows(floor).
+  void rows(int floor, const std::vector<std::uint8_t>& known, FloorRows& out);
 
   const Eigen::VectorXd& design() const { return theta0_; }
   const std::vector<double>& noise_density() const { return noise_density_; }
   /// Instants the slowest row filter needs to forget its start: 3 / (zeta w), and at least `least`.
   int settle_rows(int least) const;
-  /// Largest relative change of a row filter's corner between this design and `theta`.
-  double detuning(const Eigen::VectorXd& theta) const;
+  /// Largest relative change of a floor's filters' corners between this design and `theta`.
+  double detuning(int floor, const Eigen::VectorXd& theta);
 
  private:
+  void form(int floor, FloorRows& out);
+  void weigh(int floor, int r, FloorRows& out);
   void pack_noise(int floor, FloorRows& out) const;
   double damping() const;
-  std::vector<int> all_frames() const;
-  std::vector<int> usable_equations(int floor, const std::vector<std::uint8_t>& known) const;
+  void take_all_equations();
+  void take_usable_equations(int floor, const std::vector<std::uint8_t>& known);
+  int floor_modes(int floor, const Eigen::VectorXd& theta);
+  void floor_stiffness(int floor, const Eigen::VectorXd& theta);
   double design_at(int floor, int position) const {
     return theta0_[layout_->parameter(floor, position)];
   }
-  void weigh(int floor, int r, const Eigen::VectorXd& phi, const FloorNoise& floor_noise,
-             FloorRows& out) const;
-  Eigen::MatrixXd floor_modes(int floor, const std::vector<int>& equations,
-                              const Eigen::VectorXd& theta, Eigen::VectorXd& frequency_hz) const;
-  Eigen::MatrixXd floor_stiffness(int floor, const Eigen::VectorXd& theta) const;
   double mass(int floor, int f) const {
     return mass_[static_cast<std::size_t>(floor * layout_->frames() + f)];
   }
 
   const FloorLayout* layout_;
-  const Deformations* deformations_;
   const EstimatorOptions* options_;
   NoiseFilter noise_filter_;
   Eigen::VectorXd theta0_;
   std::vector<double> noise_density_;
   std::vector<double> mass_;    ///< floors x frames
   Eigen::MatrixXd constraint_;  ///< of rigid floors; empty when flexible
+  std::vector<FloorNoise> noise_;
+  std::vector<FloorRows> rows_;
+
+  // Of one call, kept so that it need not allocate.
+  std::vector<int> equations_;
+  Eigen::MatrixXd basis_, modes_, stiffness_;  ///< frames x rows, frames x rows, frames x frames
+  std::vector<double> projected_;
+  Eigen::VectorXd frequency_hz_, force_, inertia_, common_;
+  SymmetricEigen eigen_;
 };
 
 }  // namespace framewatch

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <array>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "estimator/identify/floor_layout.h"
 #include "estimator/identify/noise_share.h"
+#include "estimator/identify/story_factor.h"
 #include "estimator/identify/window_sums.h"
 
 namespace framewatch {
@@ -29,23 +29,18 @@ class StorySolver {
   double response_energy() const { return response_energy_; }
   double residual_energy() const { return residual_energy_; }
 
-  /// Solves for `columns` right-hand sides in place; right: unknowns x columns, row-major.
-  void solve(std::vector<double>& right, int columns) const;
-  /// Diagonal of the inverse of the factored matrix.
-  void inverse_diagonal(std::vector<double>& diagonal);
+  /// Gives the factor away for another one, which the next factor() overwrites.
+  void swap_factor(StoryFactor& other) { factor_.swap(other); }
 
  private:
-  const double* factor_rows(int floor) const {
-    return &factor_[static_cast<std::size_t>(floor) * factor_stride_];
-  }
-  void gather_information(const WindowSums& sums);
+  void gather_information(const WindowSums& sums, int floor);
 
   FloorLayout layout_;
-  std::size_t factor_stride_;
-  std::vector<double> front_, factor_, carry_, pivot_floor_;
+  StoryFactor factor_;
+  std::array<std::vector<double>, 2> front_;  ///< of this floor and of the one below
+  std::vector<double> pivot_floor_;
   std::vector<double> x_, information_;
   std::vector<unsigned char> usable_;
-  Eigen::MatrixXd upper_, middle_, inverse_, coupling_, coupled_;  ///< of inverse_diagonal()
   double response_energy_ = 0, residual_energy_ = 0;
 };
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "estimator/identify/kernels.h"
+
 namespace framewatch {
 namespace {
 
@@ -25,76 +27,131 @@ double sign(int row, int column) {
 
 }  // namespace
 
-BatchMeans::BatchMeans(const FloorLayout& layout, int blocks, const std::vector<double>& tolerance)
-    : layout_(layout), blocks_(blocks), columns_(blocks + kWrongDesigns), tolerance_(tolerance) {
+BatchMeans::BatchMeans(const FloorLayout& layout, int most_blocks,
+                       const std::vector<double>& tolerance)
+    : layout_(layout),
+      most_blocks_(padded(most_blocks)),
+      columns_(most_blocks_ + kWrongDesigns),
+      factor_(layout),
+      inverse_(layout),
+      noise_(layout),
+      next_step_(steps()),
+      block_(static_cast<std::size_t>(most_blocks), nullptr) {
+  static_assert(kWrongDesigns % kLane == 0);
   const auto unknowns = static_cast<std::size_t>(layout.unknowns());
   columns_values_.assign(unknowns * static_cast<std::size_t>(columns_), 0.0);
-  std_error_.assign(unknowns, 0.0);
-  wrong_.assign(unknowns, 0.0);
-  pulled_.assign(unknowns, 0.0);
+  for (std::vector<double>* v : {&solution_, &prior_, &inverse_diagonal_, &new_error_, &new_share_,
+                                 &std_error_, &prior_share_})
+    v->assign(unknowns, 0.0);
+  const auto front = static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1));
+  score_.assign(front, 0.0);
+  x_.assign(front, 0.0);
+  pulled_.assign(front * kWrongDesigns, 0.0);
+  for (std::size_t u = 0; u < unknowns; ++u)
+    for (int c = 0; c < kWrongDesigns; ++c)
+      wrong_.push_back(kUniform * tolerance[u] * sign(static_cast<int>(u), c));
 }
 
-void BatchMeans::compute(const WindowSums& sums, const StorySolver& solver,
-                         const std::vector<double>& prior, const NoiseShare& noise,
-                         double noise_level) {
+void BatchMeans::begin(const WindowSums& sums, StorySolver& solver, int blocks,
+                       const std::vector<double>& prior, const NoiseShare& noise,
+                       double noise_level) {
+  solver.swap_factor(factor_);
+  solution_ = solver.solution();
+  prior_ = prior;
+  noise_ = noise;
+  noise_level_ = noise_level;
+  blocks_ = blocks;
+  shape_ = &sums.shape();
+  for (int b = 0; b < blocks; ++b) block_[static_cast<std::size_t>(b)] = sums.block(b);
   std::fill(columns_values_.begin(), columns_values_.end(), 0.0);
-  add_block_scores(sums, solver.solution());
-  add_pulls(prior, noise, noise_level);
-  solver.solve(columns_values_, columns_);
-  const double spread_scale = kCorrection * kCorrection * blocks_ / (blocks_ - 1);
-  for (int u = 0; u < layout_.unknowns(); ++u) {
-    const double* row = &columns_values_[static_cast<std::size_t>(u * columns_)];
-    double spread = 0, pull = 0;
-    for (int c = 0; c < blocks_; ++c) spread += row[c] * row[c];
-    for (int c = blocks_; c < columns_; ++c) pull += row[c] * row[c] / kWrongDesigns;
-    std_error_[static_cast<std::size_t>(u)] = std::sqrt(spread_scale * spread + pull);
-  }
+  next_step_ = 0;
 }
 
-void BatchMeans::add_block_scores(const WindowSums& sums, const std::vector<double>& x) {
-  const int own = layout_.own();
-  for (int b = 0; b < blocks_; ++b) {
-    const double* block = sums.block(b);
-    for (int floor = 0; floor < layout_.floors(); ++floor) {
-      const SumsShape::Floor& shape = sums.shape().floor[static_cast<std::size_t>(floor)];
-      const double* row = block + shape.offset;
-      const int unknowns = shape.front - 1;
-      const double* xf = &x[static_cast<std::size_t>(floor * own)];
-      const auto score = [&](int i) -> double& {
-        return columns_values_[static_cast<std::size_t>((floor * own + i) * columns_ + b)];
-      };
-      for (int i = 0; i < unknowns; ++i) {
-        const double* a = row - packed_row_begin(i);
-        double sum = a[unknowns] - a[i] * xf[i];
-        for (int j = i + 1; j < unknowns; ++j) {
-          sum -= a[j] * xf[j];
-          score(j) -= a[j] * xf[i];
-        }
-        score(i) += sum;
-        row += shape.stride - packed_row_begin(i);
-      }
+bool BatchMeans::advance(int count) {
+  if (!running()) return false;
+  for (; count > 0 && running(); --count, ++next_step_) {
+    const bool up = next_step_ < layout_.floors();
+    const int floor = up ? next_step_ : 2 * layout_.floors() - 1 - next_step_;
+    if (up) {
+      assemble(floor);
+      factor_.forward(floor, columns_values_.data(), columns_);
+    } else {
+      factor_.backward(floor, columns_values_.data(), columns_);
+      finish(floor);
     }
   }
-  for (int u = 0; u < layout_.unknowns(); ++u) {
-    double* row = &columns_values_[static_cast<std::size_t>(u * columns_)];
+  if (running()) return false;
+  std_error_.swap(new_error_);
+  prior_share_.swap(new_share_);
+  return true;
+}
+
+void BatchMeans::assemble(int floor) {
+  const auto clear = [&](int f) {
+    std::fill(columns(f * layout_.own()), columns((f + 1) * layout_.own()), 0.0);
+  };
+  if (floor == 0) clear(0);
+  if (floor + 1 < layout_.floors()) clear(floor + 1);
+  add_block_scores(floor);
+  add_pulls(floor);
+}
+
+void BatchMeans::add_block_scores(int floor) {
+  const SumsShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
+  const int first = floor * layout_.own();
+  const int unknowns = shape.front - 1;
+  // The response is the front's last column: x = [solution, -1] leaves its residual.
+  std::fill(x_.begin(), x_.end(), 0.0);
+  std::copy_n(solution_.begin() + first, unknowns, x_.begin());
+  x_[static_cast<std::size_t>(unknowns)] = -1;
+  for (int b = 0; b < blocks_; ++b) {
+    std::fill(score_.begin(), score_.end(), 0.0);
+    kernels::in_use->subtract_product(block_[static_cast<std::size_t>(b)] + shape.offset, x_.data(),
+                                      score_.data(), shape.front, shape.stride);
+    for (int i = 0; i < unknowns; ++i) columns(first + i)[b] += score_[static_cast<std::size_t>(i)];
+  }
+  // The floor's own scores are now whole: what the story above adds went to that story's.
+  for (int u = first; u < first + layout_.own(); ++u) {
+    double* row = columns(u);
     double mean = 0;
-    for (int b = 0; b < blocks_; ++b) mean += row[b] / blocks_;
+    for (int b = 0; b < blocks_; ++b) mean += row[b];
+    mean /= blocks_;
     for (int b = 0; b < blocks_; ++b) row[b] -= mean;
   }
 }
 
-void BatchMeans::add_pulls(const std::vector<double>& prior, const NoiseShare& noise,
-                           double noise_level) {
-  for (int c = 0; c < kWrongDesigns; ++c) {
-    for (std::size_t u = 0; u < wrong_.size(); ++u) {
-      wrong_[u] = kUniform * tolerance_[u] * sign(static_cast<int>(u), c);
-      pulled_[u] = 0;
-    }
-    noise.add_remaining(wrong_, pulled_);
-    for (std::size_t u = 0; u < wrong_.size(); ++u)
-      columns_values_[u * static_cast<std::size_t>(columns_) +
-                      static_cast<std::size_t>(blocks_ + c)] =
-          noise_level * pulled_[u] + prior[u] * wrong_[u];
+void BatchMeans::add_pulls(int floor) {
+  const int first = floor * layout_.own();
+  const int unknowns = layout_.front(floor) - 1;
+  const double* wrong = &wrong_[static_cast<std::size_t>(first * kWrongDesigns)];
+  const NoiseShare::Part left = noise_.left(floor);
+  if (left.values != nullptr) {
+    std::fill(pulled_.begin(), pulled_.end(), 0.0);
+    kernels::in_use->multiply_add(left.values, unknowns, unknowns, unknowns, wrong, pulled_.data(),
+                                  kWrongDesigns);
+    const double scale = noise_level_ * left.scale;
+    for (int i = 0; i < unknowns; ++i)
+      for (int c = 0; c < kWrongDesigns; ++c)
+        columns(first + i)[most_blocks_ + c] +=
+            scale * pulled_[static_cast<std::size_t>(i * kWrongDesigns + c)];
+  }
+  for (int i = 0; i < layout_.own(); ++i)
+    for (int c = 0; c < kWrongDesigns; ++c)
+      columns(first + i)[most_blocks_ + c] +=
+          prior_[static_cast<std::size_t>(first + i)] * wrong[i * kWrongDesigns + c];
+}
+
+void BatchMeans::finish(int floor) {
+  inverse_.step(factor_, floor, inverse_diagonal_.data());
+  const double spread_scale = kCorrection * kCorrection * blocks_ / (blocks_ - 1);
+  for (int u = floor * layout_.own(); u < (floor + 1) * layout_.own(); ++u) {
+    const auto i = static_cast<std::size_t>(u);
+    const double* row = columns(u);
+    double spread = 0, pull = 0;
+    for (int c = 0; c < blocks_; ++c) spread += row[c] * row[c];
+    for (int c = most_blocks_; c < columns_; ++c) pull += row[c] * row[c];
+    new_error_[i] = std::sqrt(spread_scale * spread + pull / kWrongDesigns);
+    new_share_[i] = prior_[i] * inverse_diagonal_[i];
   }
 }
 

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "estimator/identify/floor_layout.h"
+#include "estimator/identify/noise_share.h"
+#include "estimator/identify/story_factor.h"
 #include "estimator/identify/story_solver.h"
 #include "estimator/identify/window_sums.h"
 
@@ -12,32 +14,59 @@ namespace framewatch {
 /// blocks, nearly independent although the residuals inside a block are not, carried through the
 /// factored normal equations), and pull: how far prior and noise can drag the solution toward a
 /// design that is wrong by its usual tolerance. docs/equations.md, batch means.
+///
+/// A pass is begun when a block closes and done in steps(), spread over the instants of the next
+/// block by their count, so that none is late. What is read is always of the last completed pass.
 class BatchMeans {
  public:
-  /// tolerance: how far the design may be off, relative, per unknown.
-  BatchMeans(const FloorLayout& layout, int blocks, const std::vector<double>& tolerance);
+  /// most_blocks: that a window may have. tolerance: how far the design may be off, relative, per
+  /// unknown.
+  BatchMeans(const FloorLayout& layout, int most_blocks, const std::vector<double>& tolerance);
 
-  /// Valid right after maintain() closed the block whose window `solver` factored.
-  /// noise_level: variance of the noise over the configured one.
-  void compute(const WindowSums& sums, const StorySolver& solver, const std::vector<double>& prior,
-               const NoiseShare& noise, double noise_level);
+  /// Right after maintain() closed the block that ends the window `solver` solved: the newest
+  /// `blocks` of `sums`, which must stay as they are until the pass is done. Takes the solver's
+  /// factor; its solution stays. noise_level: variance of the noise over the configured one.
+  void begin(const WindowSums& sums, StorySolver& solver, int blocks,
+             const std::vector<double>& prior, const NoiseShare& noise, double noise_level);
+  /// Of a whole pass.
+  int steps() const { return 2 * layout_.floors(); }
+  bool running() const { return next_step_ < steps(); }
+  /// Goes on by at most `count` steps; true when that completed the pass.
+  bool advance(int count);
+  /// Gives up the pass, if any; results stay.
+  void cancel() { next_step_ = steps(); }
+
   /// The unknown is from now on relative to another design: times `factor`.
   void rescale(int unknown, double factor) {
     std_error_[static_cast<std::size_t>(unknown)] *= factor;
   }
   /// Internal order, relative to the design.
   const std::vector<double>& std_error() const { return std_error_; }
+  /// Share of the prior in the solution, 0..1 and rounding.
+  const std::vector<double>& prior_share() const { return prior_share_; }
 
  private:
-  FloorLayout layout_;
-  int blocks_;
-  void add_block_scores(const WindowSums& sums, const std::vector<double>& solution);
-  void add_pulls(const std::vector<double>& prior, const NoiseShare& noise, double noise_level);
+  void assemble(int floor);
+  void add_block_scores(int floor);
+  void add_pulls(int floor);
+  void finish(int floor);
+  double* columns(int unknown) {
+    return &columns_values_[static_cast<std::size_t>(unknown * columns_)];
+  }
 
-  int columns_;
+  FloorLayout layout_;
+  int most_blocks_, columns_;
+  StoryFactor factor_;
+  InverseDiagonal inverse_;
+  NoiseShare noise_;
+  double noise_level_ = 0;
+  int blocks_ = 0, next_step_;
+  const SumsShape* shape_ = nullptr;
+  std::vector<const double*> block_;
   std::vector<double> columns_values_;  ///< unknowns x (blocks, then pulls)
-  std::vector<double> tolerance_, wrong_, pulled_;
-  std::vector<double> std_error_;
+  std::vector<double> wrong_;           ///< unknowns x wrong designs
+  std::vector<double> solution_, prior_, x_, score_, pulled_, inverse_diagonal_;
+  std::vector<double> new_error_, new_share_, std_error_, prior_share_;
 };
 
 }  // namespace framewatch

@@ -10,9 +10,6 @@ namespace framewatch {
 namespace {
 
 constexpr int kBlocks = 20;       // per window
-constexpr int kCatchUp = 8;       // instants a new tuning takes in per instant of input
-constexpr int kMostPasses = 6;    // of tuning before the first estimate
-constexpr double kDetuned = 0.1;  // change of a filter's corner that asks for re-tuning
 constexpr double kInflation = 4;  // information is overstated by correlated residuals
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -67,17 +64,15 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
       hop_rows_(rows_of(options_.hop_s, options_.rate_hz)),
       settle_rows_(rows_of(options_.settle_s, options_.rate_hz)),
       filter_(triples_of(options_, axes_), high_pass_),
-      ring_(deformations_, (longest_settle(options_) + kBlocks * block_rows_ + triple_.length()) *
-                                   (kCatchUp + 1) / kCatchUp +
-                               2 * kCatchUp),
+      ring_(deformations_, SelfTuning::ring_rows(longest_settle(options_) + kBlocks * block_rows_ +
+                                                 triple_.length())),
       noise_(layout_),
       solver_(layout_),
       tolerance_(tolerances(layout_, table_)),
-      batch_means_(layout_, kBlocks, tolerance_),
-      boxplots_(static_cast<std::size_t>(table_.size()), BoxplotWindow(options_.boxplot_windows)) {
+      batch_means_(layout_, kBlocks, tolerance_) {
   const auto unknowns = static_cast<std::size_t>(layout_.unknowns());
   prior_.assign(unknowns, 0.0);
-  prior_share_.assign(unknowns, 0.0);
+  steps_per_instant_ = (batch_means_.steps() + block_rows_ - 2) / (block_rows_ - 1);
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const int parameter = layout_.parameter(u / layout_.own(), u % layout_.own());
     const ParameterKind kind = table_[parameter].kind;
@@ -90,6 +85,8 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
   noise_configured_ = std::all_of(axes_.begin(), axes_.end(),
                                   [](const SensorAxis& a) { return a.noise_density > 0; });
   const auto parameters = static_cast<std::size_t>(table_.size());
+  boxplots_.reserve(parameters);  // copies would not keep what they reserve
+  for (std::size_t p = 0; p < parameters; ++p) boxplots_.emplace_back(options_.boxplot_windows);
   for (std::vector<double>* v :
        {&estimate_.value, &estimate_.std_error, &estimate_.snr, &estimate_.prior_share})
     v->assign(parameters, kNaN);
@@ -98,7 +95,10 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
   estimate_.solution.assign(parameters, kNaN);
   active_ =
       make_machine(config.design.size() > 0 ? config.design : guessed_design(structure_, table_));
-  tuned_ = !options_.self_tune || options_.variant == Variant::paper;
+  shown_.assign(unknowns, 0);
+  if (options_.self_tune && options_.variant == Variant::matched)
+    self_tuning_ = std::make_unique<SelfTuning>(
+        layout_, table_, make_machine(active_->tuning().design()), kBlocks, triple_.length());
 }
 
 std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& design) const {
@@ -110,7 +110,8 @@ void WindowEstimator::restart() {
   filter_.reset();
   ring_.reset();
   active_->start(0);
-  candidate_.reset();
+  if (self_tuning_) self_tuning_->restart();
+  batch_means_.cancel();
   errors_known_ = false;
   noise_scale_ = residual_energy_ = 0;
   since_hop_ = 0;
@@ -128,25 +129,30 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
   active_->advance(ring_);
   ++since_hop_;
   const bool due = since_hop_ >= hop_rows_;
-  if (active_->full()) solve();
+  if (active_->full() && (due || active_->closes_block())) solve();
   if (active_->finish(ring_) && active_->full()) {
-    batch_means_.compute(active_->sums(), solver_, prior_, noise_, noise_scale_);
-    solver_.inverse_diagonal(inverse_diagonal_);
-    for (std::size_t u = 0; u < prior_.size(); ++u)
-      prior_share_[u] = prior_[u] * inverse_diagonal_[u];
+    batch_means_.begin(active_->sums(), solver_, kBlocks, prior_, noise_, noise_scale_);
+  } else if (batch_means_.advance(steps_per_instant_)) {
     errors_known_ = true;
-    consider_retuning();
+    look_at_tuning();
   }
   // The first sets only fill the filters: a window cannot end before the first sample.
   const bool given = due && ring_.end() > triple_.length();
   if (due) since_hop_ = 0;
   if (given) fill_estimate(set.time);
-  catch_up();
+  if (self_tuning_ && self_tuning_->step(active_, ring_)) {
+    batch_means_.cancel();
+    for (int u = 0; u < layout_.unknowns(); ++u) {
+      const int parameter = unknowns_[static_cast<std::size_t>(u)].parameter;
+      batch_means_.rescale(u, self_tuning_->before().tuning().design()[parameter] /
+                                  active_->tuning().design()[parameter]);
+    }
+  }
   return given ? &estimate_ : nullptr;
 }
 
 void WindowEstimator::solve() {
-  const bool regularise = options_.variant == Variant::matched && tuned_;
+  const bool regularise = options_.variant == Variant::matched && tuned();
   const double taken_off = regularise && noise_configured_ ? std::min(noise_scale_, 1.0) : 0.0;
   noise_.update(active_->rows(), active_->sums(), taken_off);
   for (std::size_t u = 0; u < prior_.size(); ++u)
@@ -158,46 +164,13 @@ void WindowEstimator::solve() {
   noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
 }
 
-void WindowEstimator::consider_retuning() {
-  if (!options_.self_tune || options_.variant == Variant::paper || candidate_ != nullptr) return;
-  if (tuned_ && ++blocks_since_check_ < kBlocks) return;
-  blocks_since_check_ = 0;
-  std::vector<bool> shown;
+void WindowEstimator::look_at_tuning() {
+  if (!self_tuning_ || !self_tuning_->due()) return;
   for (std::size_t u = 0; u < prior_.size(); ++u)
-    shown.push_back(solver_.usable(static_cast<int>(u)) &&
-                    solver_.information()[u] >
-                        options_.min_snr * noise_.energy()[u] * noise_scale_ &&
-                    solver_.solution()[u] > 0);
-  if (std::none_of(shown.begin(), shown.end(), [](bool s) { return s; })) return;
-  const Eigen::VectorXd design =
-      retuned_design(layout_, table_, active_->tuning().design(), solver_.solution(),
-                     batch_means_.std_error(), shown);
-  if (active_->tuning().detuning(design) <= kDetuned || tuning_passes_ >= kMostPasses) {
-    tuned_ = true;
-    tuning_passes_ = 0;
-    return;
-  }
-  if (!tuned_) ++tuning_passes_;
-  candidate_ = make_machine(design);
-  const std::int64_t back = candidate_->warm_up() + triple_.length();
-  candidate_->start(std::max(ring_.begin(), ring_.end() - back));
-}
-
-void WindowEstimator::catch_up() {
-  for (int i = 0; candidate_ != nullptr && i < kCatchUp; ++i) {
-    if (candidate_->next() < ring_.end()) {
-      candidate_->advance(ring_);
-      candidate_->finish(ring_);
-    }
-    if (candidate_->next() < ring_.end() || (active_->full() && !candidate_->full())) continue;
-    for (int u = 0; u < layout_.unknowns(); ++u) {
-      const int parameter = unknowns_[static_cast<std::size_t>(u)].parameter;
-      batch_means_.rescale(
-          u, active_->tuning().design()[parameter] / candidate_->tuning().design()[parameter]);
-    }
-    active_ = std::move(candidate_);
-    ++retunes_;
-  }
+    shown_[u] = solver_.usable(static_cast<int>(u)) &&
+                solver_.information()[u] > options_.min_snr * noise_.energy()[u] * noise_scale_ &&
+                solver_.solution()[u] > 0;
+  self_tuning_->look(*active_, solver_.solution(), batch_means_.std_error(), shown_);
 }
 
 bool WindowEstimator::element_known(int unknown, const std::vector<std::uint8_t>& known) const {
@@ -250,7 +223,7 @@ void WindowEstimator::fill_estimate(Time time) {
     const auto p = static_cast<std::size_t>(unknown.parameter);
     const double design = active_->tuning().design()[unknown.parameter];
     if (u % layout_.own() == 0)
-      floor_warm = solved && errors_known_ && tuned_ &&
+      floor_warm = solved && errors_known_ && tuned() &&
                    2 * active_->sums().floor_instants(u / layout_.own()) >= window_rows();
     estimate_.reason[p] = judge(u, filling || all_known || element_known(u, known), floor_warm);
     const bool observable = estimate_.reason[p] == Observability::observable;
@@ -261,7 +234,8 @@ void WindowEstimator::fill_estimate(Time time) {
     estimate_.std_error[p] = observable ? design * batch_means_.std_error()[i] : kNaN;
     const double noise = noise_.energy()[i] * noise_scale_;
     estimate_.snr[p] = solved && noise > 0 ? solver_.information()[i] / noise : 0;
-    estimate_.prior_share[p] = solved && errors_known_ ? std::min(prior_share_[i], 1.0) : 0;
+    estimate_.prior_share[p] =
+        solved && errors_known_ ? std::min(batch_means_.prior_share()[i], 1.0) : 0;
   }
   for (std::size_t p = 0; p < estimate_.reason.size(); ++p) {
     if (estimate_.reason[p] == Observability::ill_determined && !any_frame)

@@ -38,8 +38,6 @@ void WindowSums::reset() {
   std::fill(current_.begin(), current_.end(), 0.0);
   std::fill(middle_.begin(), middle_.end(), 0.0);
   std::fill(next_middle_.begin(), next_middle_.end(), 0.0);
-  std::fill(blocks_ring_.begin(), blocks_ring_.end(), 0.0);
-  std::fill(suffixes_.begin(), suffixes_.end(), 0.0);
   std::fill(stored_counts_.begin(), stored_counts_.end(), 0);
   std::fill(counts_.begin(), counts_.end(), 0);
   forward_ = true;
@@ -69,12 +67,15 @@ void WindowSums::push(const RowChain& entering) {
   for (int f = 0; f < floors_; ++f) {
     const SumsShape::Floor& shape = shape_.floor[static_cast<std::size_t>(f)];
     double* to = &current_[shape.offset];
-    kernels::add_rows(to, to, entering.rows(f), entering.count(f), shape.front, shape.stride);
+    kernels::in_use->add_rows(to, to, entering.rows(f), entering.count(f), shape.front,
+                              shape.stride);
     if (entering.count(f) > 0) ++count[f];
   }
   // slot(j) holds what this block needs at row j and then receives what the next block needs at
   // row block_rows - j, so one set of slots serves, run through in alternating directions.
-  oldest_ = j < block_rows_ ? suffix(forward_ ? j : block_rows_ - j) : zero_.data();
+  // The first block after a reset has nothing to give up, and its slots are stale.
+  oldest_ = j < block_rows_ && pushed_ >= block_rows_ ? suffix(forward_ ? j : block_rows_ - j)
+                                                      : zero_.data();
   ++pushed_;
 }
 
@@ -98,9 +99,9 @@ void WindowSums::build_suffix(int j) {
   const int* count = &stored_counts_[stored * static_cast<std::size_t>(floors_)];
   for (int f = 0; f < floors_; ++f) {
     const SumsShape::Floor& shape = shape_.floor[static_cast<std::size_t>(f)];
-    kernels::add_rows(from + shape.offset, to + shape.offset,
-                      rows + row_offset_[static_cast<std::size_t>(f)], count[f], shape.front,
-                      shape.stride);
+    kernels::in_use->add_rows(from + shape.offset, to + shape.offset,
+                              rows + row_offset_[static_cast<std::size_t>(f)], count[f],
+                              shape.front, shape.stride);
   }
 }
 
@@ -125,15 +126,15 @@ void WindowSums::add_slice(int j) {
     const std::size_t length = std::min(shape_.size - within, end - at);
     const auto ring =
         static_cast<std::size_t>((oldest + static_cast<std::int64_t>(at / shape_.size)) % blocks_);
-    kernels::add(&next_middle_[within], &blocks_ring_[ring * shape_.size + within],
-                 static_cast<long>(length));
+    kernels::in_use->add(&next_middle_[within], &blocks_ring_[ring * shape_.size + within],
+                         static_cast<long>(length));
     at += length;
   }
 }
 
 void WindowSums::close_block() {
   const auto ring = static_cast<std::size_t>((pushed_ / block_rows_ - 1) % blocks_);
-  kernels::add(next_middle_.data(), current_.data(), static_cast<long>(shape_.size));
+  kernels::in_use->add(next_middle_.data(), current_.data(), static_cast<long>(shape_.size));
   std::copy(current_.begin(), current_.end(),
             blocks_ring_.begin() + static_cast<std::ptrdiff_t>(ring * shape_.size));
   middle_.swap(next_middle_);

@@ -42,6 +42,8 @@ class WindowSums {
   bool maintain(const RowChain* delayed);
 
   bool full() const { return pushed_ >= static_cast<std::int64_t>(blocks_) * block_rows_; }
+  /// After push(): maintain() will close a block.
+  bool block_full() const { return pushed_ % block_rows_ == 0; }
   int window_rows() const { return blocks_ * block_rows_; }
   /// Instants in the window so far.
   int rows() const;

@@ -1,0 +1,369 @@
+// The kernels, included by one source per instruction set, which compiles them for it. Nothing here
+// may leave a symbol another source could share: no function of the standard library.
+// FRAMEWATCH_VECTOR_BYTES: width of its registers.
+
+#include <type_traits>
+
+#include "estimator/identify/kernels.h"
+
+#define FRAMEWATCH_INLINE __attribute__((always_inline))
+
+namespace framewatch::kernels {
+namespace {
+
+/// A vector of doubles as g++ and clang offer it on every architecture, at any address.
+template <int kBytes>
+struct VectorOf {
+  typedef double Type __attribute__((vector_size(kBytes)));
+  typedef double Anywhere __attribute__((vector_size(kBytes), aligned(8), may_alias));
+  static constexpr int kLength = kBytes / 8;
+};
+/// As wide as the registers: wider ones the compiler would take apart through memory.
+using Wide = VectorOf<FRAMEWATCH_VECTOR_BYTES>;
+using Lane = VectorOf < FRAMEWATCH_VECTOR_BYTES<8 * kLane ? FRAMEWATCH_VECTOR_BYTES : 8 * kLane>;
+
+template <typename Vector>
+inline FRAMEWATCH_INLINE void load(typename Vector::Type& v, const double* from) {
+  v = *reinterpret_cast<const typename Vector::Anywhere*>(from);
+}
+template <typename Vector>
+inline FRAMEWATCH_INLINE void store(double* to, const typename Vector::Type& v) {
+  *reinterpret_cast<typename Vector::Anywhere*>(to) = v;
+}
+
+/// body(vector, j) for j = begin, ... in steps of a vector; begin and end multiples of a lane.
+template <typename Body>
+inline FRAMEWATCH_INLINE void for_lanes(int begin, int end, Body body) {
+  int j = begin;
+  for (; j + Wide::kLength <= end; j += Wide::kLength) body(Wide{}, j);
+  if (j < end) body(Lane{}, j);
+}
+
+void filter_rows(const double* x, const double* response, int at, const double* gain,
+                 const double* a1, const double* a2, double* s1, double* s2, const double* beta,
+                 double* h, int rows, int stride) {
+  for (int r = 0; r < rows; ++r) {
+    const double old1 = s1[at], old2 = s2[at];
+    for_lanes(0, stride, [&](auto of, int j) FRAMEWATCH_INLINE {
+      using Vector = decltype(of);
+      typename Vector::Type s, before, older, weight;
+      load<Vector>(s, x + j);
+      load<Vector>(before, s1 + j);
+      load<Vector>(older, s2 + j);
+      s = gain[r] * s - a1[r] * before - a2[r] * older;
+      store<Vector>(s2 + j, before);
+      store<Vector>(s1 + j, s);
+      load<Vector>(weight, beta + j);
+      store<Vector>(h + j, weight * s);
+    });
+    const double s = gain[r] * response[r] - a1[r] * old1 - a2[r] * old2;
+    s1[at] = s;
+    s2[at] = old1;
+    h[at] = beta[at] * s;
+    s1 += stride;
+    s2 += stride;
+    beta += stride;
+    h += stride;
+  }
+}
+
+/// kRows consecutive packed rows of the same length: to = from + sum_r h_r[i..] h_r[first..].
+template <int kRows>
+inline FRAMEWATCH_INLINE void add_to_rows(const double* from, double* to, const double* h, int rows,
+                                          int stride, int i, int first) {
+  const int length = stride - first;
+  for_lanes(0, length, [&](auto of, int j) FRAMEWATCH_INLINE {
+    using Vector = decltype(of);
+    typename Vector::Type sum[kRows];
+    for (int k = 0; k < kRows; ++k) load<Vector>(sum[k], from + k * length + j);
+    for (int r = 0; r < rows; ++r) {
+      const double* row = h + r * stride;
+      typename Vector::Type v;
+      load<Vector>(v, row + first + j);
+      for (int k = 0; k < kRows; ++k) sum[k] += row[i + k] * v;
+    }
+    for (int k = 0; k < kRows; ++k) store<Vector>(to + k * length + j, sum[k]);
+  });
+}
+
+void add_rows(const double* source, double* destination, const double* h, int rows, int front,
+              int stride) {
+  static_assert(kLane == 4);  // so many rows start at the same column
+  int i = 0;
+  for (; i + kLane <= front; i += kLane) {
+    add_to_rows<kLane>(source, destination, h, rows, stride, i, i);
+    source += kLane * (stride - i);
+    destination += kLane * (stride - i);
+  }
+  if (front - i == 3) add_to_rows<3>(source, destination, h, rows, stride, i, i);
+  if (front - i == 2) add_to_rows<2>(source, destination, h, rows, stride, i, i);
+  if (front - i == 1) add_to_rows<1>(source, destination, h, rows, stride, i, i);
+}
+
+void add(double* __restrict destination, const double* __restrict source, long length) {
+  for (long i = 0; i < length; ++i) destination[i] += source[i];
+}
+
+void sum_into_front(const double* __restrict a, const double* __restrict b,
+                    const double* __restrict c, double scale, const double* __restrict noise,
+                    double* __restrict front_rows, int front, int stride) {
+  for (int i = 0; i < front; ++i) {
+    const int first = packed_row_begin(i);
+    const int length = stride - first;
+    double* __restrict to = front_rows + i * stride + first;
+    for_lanes(0, length, [&](auto of, int j) FRAMEWATCH_INLINE {
+      using Vector = decltype(of);
+      typename Vector::Type sum, part;
+      load<Vector>(sum, a + j);
+      load<Vector>(part, b + j);
+      sum += part;
+      load<Vector>(part, c + j);
+      sum += part;
+      load<Vector>(part, noise + j);
+      sum -= scale * part;
+      store<Vector>(to + j, sum);
+    });
+    a += length;
+    b += length;
+    c += length;
+    noise += length;
+  }
+}
+
+/// kCount pivots from `p` on: their rows become the factor's.
+template <int kCount>
+inline FRAMEWATCH_INLINE void take_pivots(double* rows, int p, int front, int stride,
+                                          const double* floor, unsigned char* usable) {
+  double* row[kCount];
+  double inverse[kCount];
+  double factor[kCount][kCount];
+  for (int k = 0; k < kCount; ++k) row[k] = rows + (p + k) * stride;
+  for (int k = 0; k < kCount; ++k) {
+    double diagonal = row[k][p + k];
+    for (int l = 0; l < k; ++l) diagonal -= factor[l][k] * factor[l][k];
+    usable[p + k] = diagonal > floor[p + k] ? 1 : 0;
+    inverse[k] = usable[p + k] != 0 ? 1 / __builtin_sqrt(diagonal) : 0.0;
+    for (int m = k + 1; m < kCount; ++m) {
+      double sum = row[k][p + m];
+      for (int l = 0; l < k; ++l) sum -= factor[l][k] * factor[l][m];
+      factor[k][m] = sum * inverse[k];
+    }
+  }
+  for_lanes(packed_row_begin(p), stride, [&](auto of, int j) FRAMEWATCH_INLINE {
+    using Vector = decltype(of);
+    typename Vector::Type done[kCount];
+    for (int k = 0; k < kCount; ++k) {
+      load<Vector>(done[k], row[k] + j);
+      for (int l = 0; l < k; ++l) done[k] -= factor[l][k] * done[l];
+      done[k] *= inverse[k];
+      store<Vector>(row[k] + j, done[k]);
+    }
+  });
+  for (int k = 0; k < kCount; ++k)
+    if (usable[p + k] == 0)
+      for (int j = p; j < front; ++j) row[k][j] = 0;
+}
+
+/// kRows rows from `q` on, all starting in the same lane, see kCount pivots from `p` on.
+template <int kCount, int kRows>
+inline FRAMEWATCH_INLINE void eliminate(double* rows, int p, int q, int stride) {
+  const double* pivot = rows + p * stride;
+  double* to = rows + q * stride;
+  for_lanes(packed_row_begin(q), stride, [&](auto of, int j) FRAMEWATCH_INLINE {
+    using Vector = decltype(of);
+    typename Vector::Type sum[kRows];
+    for (int k = 0; k < kRows; ++k) load<Vector>(sum[k], to + k * stride + j);
+    for (int l = 0; l < kCount; ++l) {
+      typename Vector::Type v;
+      load<Vector>(v, pivot + l * stride + j);
+      for (int k = 0; k < kRows; ++k) sum[k] -= pivot[l * stride + q + k] * v;
+    }
+    for (int k = 0; k < kRows; ++k) store<Vector>(to + k * stride + j, sum[k]);
+  });
+}
+
+template <int kCount>
+inline FRAMEWATCH_INLINE void sweep(double* rows, int p, int front, int stride, const double* floor,
+                                    unsigned char* usable) {
+  take_pivots<kCount>(rows, p, front, stride, floor, usable);
+  int q = p + kCount;
+  for (; q % kLane != 0 && q < front; ++q) eliminate<kCount, 1>(rows, p, q, stride);
+  for (; q + kLane <= front; q += kLane) eliminate<kCount, kLane>(rows, p, q, stride);
+  if (front - q == 3) eliminate<kCount, 3>(rows, p, q, stride);
+  if (front - q == 2) eliminate<kCount, 2>(rows, p, q, stride);
+  if (front - q == 1) eliminate<kCount, 1>(rows, p, q, stride);
+}
+
+void partial_cholesky(double* front_rows, int pivots, int front, int stride, const double* floor,
+                      unsigned char* usable) {
+  int p = 0;
+  for (; p + 4 <= pivots; p += 4) sweep<4>(front_rows, p, front, stride, floor, usable);
+  if (pivots - p == 3) sweep<3>(front_rows, p, front, stride, floor, usable);
+  if (pivots - p == 2) sweep<2>(front_rows, p, front, stride, floor, usable);
+  if (pivots - p == 1) sweep<1>(front_rows, p, front, stride, floor, usable);
+}
+
+void substitute_back(const double* factor, int stride, int own, int next, double* x) {
+  for (int p = 0; p < own; ++p) {
+    const double* row = factor + p * stride + own;
+    double sum[4] = {};
+    int j = 0;
+    for (; j + 4 <= next; j += 4)
+      for (int l = 0; l < 4; ++l) sum[l] += row[j + l] * x[own + j + l];
+    for (; j < next; ++j) sum[0] += row[j] * x[own + j];
+    x[p] = row[next] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
+  }
+  for (int p = own - 1; p >= 0; --p) {
+    const double pivot = factor[p * stride + p];
+    x[p] = pivot > 0 ? x[p] * (1 / pivot) : 1.0;
+    for (int q = 0; q < p; ++q) x[q] -= factor[q * stride + p] * x[p];
+  }
+}
+
+/// So many vectors of columns stay in registers at a time.
+constexpr int kAtOnce = 5;
+
+template <typename Vector, int kCount>
+inline FRAMEWATCH_INLINE void load_some(typename Vector::Type* v, const double* from) {
+  for (int c = 0; c < kCount; ++c) load<Vector>(v[c], from + c * Vector::kLength);
+}
+template <typename Vector, int kCount>
+inline FRAMEWATCH_INLINE void store_some(double* to, const typename Vector::Type* v) {
+  for (int c = 0; c < kCount; ++c) store<Vector>(to + c * Vector::kLength, v[c]);
+}
+
+template <typename Vector, int kCount>
+inline FRAMEWATCH_INLINE void forward_some(const double* factor, int stride, int own, int next,
+                                           double* x, int columns) {
+  typename Vector::Type sum[kCount], known[kCount];
+  for (int p = 0; p < own + next; ++p) {
+    load_some<Vector, kCount>(sum, x + p * columns);
+    const int done = p < own ? p : own;
+    for (int j = 0; j < done; ++j) {
+      load_some<Vector, kCount>(known, x + j * columns);
+      for (int c = 0; c < kCount; ++c) sum[c] -= factor[j * stride + p] * known[c];
+    }
+    if (p < own) {
+      const double pivot = factor[p * stride + p];
+      const double inverse = pivot > 0 ? 1 / pivot : 0.0;
+      for (int c = 0; c < kCount; ++c) sum[c] *= inverse;
+    }
+    store_some<Vector, kCount>(x + p * columns, sum);
+  }
+}
+
+template <typename Vector, int kCount>
+inline FRAMEWATCH_INLINE void backward_some(const double* factor, int stride, int own, int next,
+                                            double* x, int columns) {
+  typename Vector::Type sum[kCount], known[kCount];
+  for (int p = own - 1; p >= 0; --p) {
+    const double* row = factor + p * stride;
+    load_some<Vector, kCount>(sum, x + p * columns);
+    for (int j = p + 1; j < own + next; ++j) {
+      load_some<Vector, kCount>(known, x + j * columns);
+      for (int c = 0; c < kCount; ++c) sum[c] -= row[j] * known[c];
+    }
+    const double inverse = row[p] > 0 ? 1 / row[p] : 0.0;
+    for (int c = 0; c < kCount; ++c) sum[c] *= inverse;
+    store_some<Vector, kCount>(x + p * columns, sum);
+  }
+}
+
+template <typename Vector, int kCount>
+inline FRAMEWATCH_INLINE void multiply_some(const double* a, int a_stride, int rows, int inner,
+                                            const double* b, double* out, int columns) {
+  typename Vector::Type sum[kCount], part[kCount];
+  for (int r = 0; r < rows; ++r) {
+    load_some<Vector, kCount>(sum, out + r * columns);
+    for (int j = 0; j < inner; ++j) {
+      const double f = a[r * a_stride + j];
+      load_some<Vector, kCount>(part, b + j * columns);
+      for (int c = 0; c < kCount; ++c) sum[c] += f * part[c];
+    }
+    store_some<Vector, kCount>(out + r * columns, sum);
+  }
+}
+
+/// body(vector, count, column) for as many vectors of columns as stay in registers at a time.
+template <typename Body>
+inline FRAMEWATCH_INLINE void for_columns(int columns, Body body) {
+  constexpr int kWide = kAtOnce * Wide::kLength;
+  constexpr int kNarrow = kAtOnce * Lane::kLength;
+  int c = 0;
+  for (; c + kWide <= columns; c += kWide) body(Wide{}, std::integral_constant<int, kAtOnce>{}, c);
+  for (; c + kNarrow <= columns; c += kNarrow)
+    body(Lane{}, std::integral_constant<int, kAtOnce>{}, c);
+  for (; c < columns; c += Lane::kLength) body(Lane{}, std::integral_constant<int, 1>{}, c);
+}
+
+void forward_columns(const double* factor, int stride, int own, int next, double* x, int columns) {
+  for_columns(columns, [&](auto of, auto count, int c) FRAMEWATCH_INLINE {
+    forward_some<decltype(of), count()>(factor, stride, own, next, x + c, columns);
+  });
+}
+
+void backward_columns(const double* factor, int stride, int own, int next, double* x, int columns) {
+  for_columns(columns, [&](auto of, auto count, int c) FRAMEWATCH_INLINE {
+    backward_some<decltype(of), count()>(factor, stride, own, next, x + c, columns);
+  });
+}
+
+void multiply_add(const double* a, int a_stride, int rows, int inner, const double* b, double* out,
+                  int columns) {
+  for_columns(columns, [&](auto of, auto count, int c) FRAMEWATCH_INLINE {
+    multiply_some<decltype(of), count()>(a, a_stride, rows, inner, b + c, out + c, columns);
+  });
+}
+
+void subtract_product(const double* packed, const double* __restrict x, double* __restrict score,
+                      int front, int stride) {
+  constexpr int kParts = kLane / Lane::kLength;
+  for (int i = 0; i < front; i += kLane) {
+    // Four rows that begin in the same lane: as rows (sum += a x) and, to the right of that lane,
+    // transposed (score -= a x_k).
+    const double* a[kLane];
+    double xk[kLane];
+    for (int k = 0; k < kLane; ++k) {
+      const bool there = i + k < front;
+      a[k] = packed + (there ? k : 0) * (stride - i) - i;
+      xk[k] = there ? x[i + k] : 0.0;
+    }
+    typename Lane::Type sum[kLane][kParts], xs, values, left;
+    for (int part = 0; part < kParts; ++part) {
+      const int at = i + part * Lane::kLength;
+      load<Lane>(xs, x + at);
+      for (int k = 0; k < kLane; ++k) {
+        load<Lane>(values, a[k] + at);
+        sum[k][part] = values * xs;
+      }
+    }
+    for (int j = i + kLane; j < stride; j += kLane) {
+      for (int part = 0; part < kParts; ++part) {
+        const int at = j + part * Lane::kLength;
+        load<Lane>(left, score + at);
+        load<Lane>(xs, x + at);
+        for (int k = 0; k < kLane; ++k) {
+          load<Lane>(values, a[k] + at);
+          sum[k][part] += values * xs;
+          left -= values * xk[k];
+        }
+        store<Lane>(score + at, left);
+      }
+    }
+    for (int k = 0; k < kLane && i + k < front; ++k) {
+      double lanes[kLane];
+      for (int part = 0; part < kParts; ++part)
+        store<Lane>(lanes + part * Lane::kLength, sum[k][part]);
+      score[i + k] -= (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+    }
+    packed += kLane * (stride - i);
+  }
+}
+
+constexpr Table kTable = {filter_rows,     add_rows,         add,
+                          sum_into_front,  partial_cholesky, substitute_back,
+                          forward_columns, backward_columns, multiply_add,
+                          subtract_product};
+
+}  // namespace
+}  // namespace framewatch::kernels

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <ctime>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace framewatch::bench {
+
+/// CPU time of this thread, us: what other processes take does not count.
+inline double cpu_us() {
+  timespec t{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+/// Time that passes, us; read without a system call.
+inline double wall_us() {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
+/// Median of the time between two readings of the clock with nothing in between, us.
+inline double cpu_clock_cost_us() {
+  std::vector<double> cost;
+  for (int i = 0; i < 1001; ++i) {
+    const double before = cpu_us();
+    cost.push_back(cpu_us() - before);
+  }
+  std::nth_element(cost.begin(), cost.begin() + 500, cost.end());
+  return cost[500];
+}
+
+/// Value below which `share` of them lie.
+inline double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+}  // namespace framewatch::bench
