@@ -42,6 +42,7 @@ std::string to_json(const std::string& path, const std::optional<CheckReport>& r
     out["window_samples"] = report->window_rows;
     out["hop_samples"] = report->hop_rows;
     out["design_natural_frequencies_hz"] = report->design_hz;
+    out["memory_bytes"] = report->memory_bytes;
     out["panel_shear_ratio"] = Json::object();
     for (const PanelOutlook& panel : report->panels)
       out["panel_shear_ratio"][panel.parameter] = panel.shear_ratio;

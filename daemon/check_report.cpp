@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <fmt/core.h>
 
@@ -21,6 +26,16 @@ constexpr double kWeakShear = 0.01;
 constexpr double kUsableShareOfRate = 0.2;
 /// Larger buildings would keep a person waiting for dense matrices.
 constexpr int kMaxDegreesOfFreedom = 400;
+
+/// Bytes allocated by this process and not freed.
+std::size_t allocated_bytes() {
+#ifdef __GLIBC__
+  const struct mallinfo2 info = ::mallinfo2();
+  return info.uordblks + info.hblkhd;
+#else
+  return 0;
+#endif
+}
 
 void warn_about_panels(CheckReport& report) {
   std::string none, weak;
@@ -70,7 +85,9 @@ CheckReport make_check_report(const Config& config) {
   CheckReport report;
   report.config = config;
   const PipelineConfig& c = config.pipeline;
+  const std::size_t before = allocated_bytes();
   const Pipeline pipeline(c, [](const WindowEstimate&) {});
+  report.memory_bytes = allocated_bytes() - before;
   report.window_rows = pipeline.window_rows();
   report.hop_rows = pipeline.hop_rows();
   const ParameterTable table(c.structure);

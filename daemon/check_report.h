@@ -22,6 +22,8 @@ struct CheckReport {
   int hop_rows = 0;
   std::vector<double> design_hz;  ///< natural frequencies, ascending; empty without a design
   std::vector<PanelOutlook> panels;
+  /// What the estimator takes when it starts, and never more; 0 where the C library does not say.
+  std::size_t memory_bytes = 0;
   std::vector<std::string> warnings;
 };
 

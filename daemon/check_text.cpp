@@ -83,6 +83,10 @@ std::string to_text(const CheckReport& r) {
       "estimator   {}, {:g} Hz, window {} samples ({:g} s), hop {} samples ({:.4g} s)\n",
       o.variant == Variant::paper ? "paper" : "matched", o.rate_hz, r.window_rows,
       r.window_rows / o.rate_hz, r.hop_rows, r.hop_rows / o.rate_hz);
+  if (r.memory_bytes > 0)
+    out +=
+        fmt::format("memory      {:.1f} MB of the estimator's, taken at the start and never more\n",
+                    1e-6 * static_cast<double>(r.memory_bytes));
   out += fmt::format("lcm         {}, publishes on {}*\n", r.config.lcm.url, r.config.lcm.prefix);
   out += fmt::format("channels    {}\n", r.config.pipeline.axes.size());
   for (std::size_t i = 0; i < r.config.sources.size(); ++i)

@@ -64,18 +64,23 @@ void ReplaySummary::add(const WindowEstimate& estimate) {
 ReplaySummary::Quartiles ReplaySummary::quartiles(std::size_t parameter) const {
   const std::vector<double>& values = values_[parameter];
   if (values.empty()) return {NAN, NAN, NAN, 0};
-  std::vector<double> sorted = values;
-  std::sort(sorted.begin(), sorted.end());
+  // Only what the quartiles need is put in order.
+  std::vector<double> ordered = values;
+  auto from = ordered.begin();
   const auto at = [&](double probability) {
-    const double position = std::clamp(probability * static_cast<double>(sorted.size()) - 0.5, 0.0,
-                                       static_cast<double>(sorted.size() - 1));
-    const auto below = static_cast<std::size_t>(position);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return sorted[below] +
-           (position - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+    const double position = std::clamp(probability * static_cast<double>(ordered.size()) - 0.5, 0.0,
+                                       static_cast<double>(ordered.size() - 1));
+    const auto below = ordered.begin() + static_cast<std::ptrdiff_t>(position);
+    std::nth_element(from, below, ordered.end());
+    const auto above =
+        below + 1 == ordered.end() ? below : std::min_element(below + 1, ordered.end());
+    const double part = position - std::floor(position);
+    const double value = *below + part * (*above - *below);
+    from = below;
+    return value;
   };
-  return {at(0.25), at(0.5), at(0.75),
-          static_cast<double>(values.size()) / static_cast<double>(windows_)};
+  const double q1 = at(0.25), q2 = at(0.5), q3 = at(0.75);
+  return {q1, q2, q3, static_cast<double>(values.size()) / static_cast<double>(windows_)};
 }
 
 std::string ReplaySummary::text(const Estimation& estimation, const ReplaySurvey& survey,

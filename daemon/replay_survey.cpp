@@ -128,23 +128,27 @@ void ReplaySurvey::add_log(const std::string& path) {
 
 void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
   ++seen.events;
-  ++seen.channels[event.channel];
+  if (seen.newest == nullptr || seen.newest->first != event.channel)
+    seen.newest = &*seen.channels.try_emplace(event.channel, 0).first;
+  ++seen.newest->second;
   const std::int64_t backwards = intake_.backwards();
   const auto result = intake_.message(event.channel, event.data.data(), event.data.size());
   if (result == drivers::IntakeResult::malformed && seen.first_malformed_offset < 0)
     seen.first_malformed_offset = event.offset;
   if (result != drivers::IntakeResult::samples) return;
-  const auto sample = drivers::decode_accel(event.data.data(), event.data.size());
-  const std::int64_t time_us = to_microseconds(sample->time);
+  const drivers::NodeSample& sample = intake_.last_sample();
+  const std::int64_t time_us = to_microseconds(sample.time);
   if (intake_.backwards() > backwards && seen.backwards_offset < 0)
     seen.backwards_offset = event.offset;
-  for (const double value : sample->accel_abs_mps2)
+  for (const double value : sample.accel_abs_mps2)
     if (std::isinf(value) && seen.infinite_offset < 0) seen.infinite_offset = event.offset;
   log_first_us_ = seen.samples == 0 ? time_us : std::min(log_first_us_, time_us);
   log_last_us_ = seen.samples == 0 ? time_us : std::max(log_last_us_, time_us);
   ++seen.samples;
-  auto& stamps = stamps_[{event.channel, sample->node}];
-  if (stamps.size() < kStampsPerNode) stamps.push_back({sample->sequence, time_us});
+  if (intake_.last_node() >= stamps_.size()) stamps_.resize(intake_.last_node() + 1);
+  NodeStamps& node = stamps_[intake_.last_node()];
+  if (node.stamps.empty()) node.place = {event.channel, sample.node};
+  if (node.stamps.size() < kStampsPerNode) node.stamps.push_back({sample.sequence, time_us});
 }
 
 void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed) {
@@ -166,7 +170,10 @@ void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::
         "{}: byte {}: time runs backwards: a node's sample is not newer than the one before", path,
         seen.backwards_offset));
   if (seen.samples > 0 && seen.backwards_offset < 0) extend(path, log_first_us_, log_last_us_);
+  std::sort(stamps_.begin(), stamps_.end(),
+            [](const NodeStamps& a, const NodeStamps& b) { return a.place < b.place; });
   for (const auto& [node, stamps] : stamps_) {
+    if (stamps.empty()) continue;
     const std::size_t lag = std::min(kRateLag, stamps.size() - 1);
     std::vector<double> steps;
     for (std::size_t i = lag; lag > 0 && i < stamps.size(); ++i) {

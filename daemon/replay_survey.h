@@ -48,7 +48,8 @@ class ReplaySurvey {
     std::int64_t sequence, time_us;
   };
   struct LogSeen {
-    std::map<std::string, std::int64_t> channels;  ///< events by channel
+    std::map<std::string, std::int64_t> channels;                  ///< events by channel
+    std::pair<const std::string, std::int64_t>* newest = nullptr;  ///< of the last event
     std::int64_t events = 0, samples = 0, first_malformed_offset = -1, backwards_offset = -1;
     std::int64_t infinite_offset = -1;
   };
@@ -67,7 +68,11 @@ class ReplaySurvey {
   drivers::AccelIntake intake_;
   std::vector<ReplayInput> inputs_;
   std::vector<std::string> problems_, notes_;
-  std::map<std::pair<std::string, std::int32_t>, std::vector<Stamp>> stamps_;
+  struct NodeStamps {
+    std::pair<std::string, std::int32_t> place;  ///< channel and node
+    std::vector<Stamp> stamps;
+  };
+  std::vector<NodeStamps> stamps_;  ///< of one log, by AccelIntake::last_node()
   std::int64_t bytes_ = 0, damaged_bytes_ = 0;
   std::int64_t first_us_ = 0, last_us_ = 0;  ///< of all samples
   std::int64_t log_first_us_ = 0, log_last_us_ = 0;

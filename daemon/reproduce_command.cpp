@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
@@ -20,6 +21,35 @@ namespace {
 constexpr int kBroken = 1;
 constexpr int kBadInput = 2;
 
+/// Percent, rate and time left of what is being done, on stderr, when that is a terminal and the
+/// whole takes over 2 s.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet) : on_(!quiet && ::isatty(2) == 1) {}
+  ~ProgressLine() {
+    if (shown_) fmt::print(stderr, "\r\033[K");
+  }
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  void show(const std::string& what, int done, int count) {
+    const Clock::time_point now = Clock::now();
+    if (what != what_) part_ = now;
+    what_ = what;
+    if (!on_ || done < 2 || now - start_ < std::chrono::seconds(2)) return;
+    shown_ = true;
+    const double elapsed_s = std::chrono::duration<double>(now - part_).count();
+    fmt::print(stderr, "\r\033[Kreproduce: {}: {} %, {:.1f} runs/s, {:.0f} s left", what,
+               100 * done / count, (done - 1) / elapsed_s, elapsed_s * (count - done) / (done - 1));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  bool on_, shown_ = false;
+  std::string what_;
+  Clock::time_point start_ = Clock::now(), part_ = start_;
+};
+
 int refuse(const std::string& message) {
   fmt::print(stderr, "framewatch reproduce: {}\n", message);
   return kBadInput;
@@ -32,7 +62,7 @@ std::string data_folder() {
 
 /// What is missing of the data, for the person; empty when nothing is.
 void tell_what_is_missing(const Reproduction& all) {
-  if (all.hachinohe.starts_with("a seeded") || all.el_centro.starts_with("a seeded"))
+  if (all.motions_missing)
     fmt::print(stderr,
                "reproduce: the paper's ground motions are not in FRAMEWATCH_DATA{}; seeded "
                "Kanai-Tajimi motions stand in\n",
@@ -48,6 +78,14 @@ bool write(const std::string& path, const std::string& text) {
   return false;
 }
 
+Reproduction measured(const ReproduceArguments& a) {
+  ProgressLine progress(a.quiet);
+  const Workers workers(
+      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
+      [&](const std::string& what, int done, int count) { progress.show(what, done, count); });
+  return reproduce_paper(a.only, a.seeds, data_folder(), workers);
+}
+
 }  // namespace
 
 int reproduce(const ReproduceArguments& a) {
@@ -58,15 +96,7 @@ int reproduce(const ReproduceArguments& a) {
   std::error_code error;
   std::filesystem::create_directories(a.out, error);
   if (error) return refuse(fmt::format("{}: {}", a.out, error.message()));
-  const bool shows_progress = !a.quiet && ::isatty(2) == 1;
-  const Workers workers(
-      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
-      [&](const std::string& what, int done, int count) {
-        if (shows_progress)
-          fmt::print(stderr, "\r\033[Kreproduce: {}, {} of {}{}", what, done, count,
-                     done == count ? "\n" : "");
-      });
-  const Reproduction all = reproduce_paper(a.only, a.seeds, data_folder(), workers);
+  const Reproduction all = measured(a);
   if (!a.quiet) tell_what_is_missing(all);
   if (!write(a.out + "/report.html", reproduction_html(all, a.only))) return kBadInput;
   if (a.only.empty() && !write(a.out + "/accuracy.md", accuracy_markdown(all))) return kBadInput;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPaper_s = 10;
 constexpr double kHop_s = 0.25;
-constexpr int kExcitationSeeds = 4;
+constexpr int kExcitationSeeds = 8;
 constexpr int kExactMotions = 4;
 constexpr double kSilence_h = 1;
 constexpr const char* kStandIn =
@@ -90,6 +90,7 @@ Reproduction reproduce_paper(const std::string& only, int seeds, const std::stri
   out.seeds = seeds;
   out.hachinohe = hachinohe ? "Hachinohe 1968 NS" : kStandIn;
   out.el_centro = el_centro ? "El Centro 1940 NS" : kStandIn;
+  out.motions_missing = !hachinohe || !el_centro;
   const GroundMotion first = hachinohe ? *hachinohe : stand_in();
   const GroundMotion second = el_centro ? *el_centro : stand_in();
   for (const AccuracyCase& c : accuracy_cases()) {

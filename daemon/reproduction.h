@@ -42,7 +42,8 @@ struct Reproduction {
   std::optional<NoiseSweep> noise, denoise;
   std::optional<Robustness> robustness;
   std::vector<TableTest> tables;
-  bool measured_table_missing = false;
+  bool motions_missing = false;         ///< seeded ones stand in for at least one
+  bool measured_table_missing = false;  ///< asked for and not there
 };
 
 /// Names of --case, in the order of the report.

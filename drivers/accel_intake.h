@@ -38,17 +38,40 @@ class AccelIntake {
   const IntakeCounters& counters() const { return counters_; }
   /// By sensor axis: the counters of the node that carries it, null before its first message.
   const SequenceCounter* sequence_of(std::size_t axis) const { return sequence_of_axis_[axis]; }
-  std::int64_t lost() const;       ///< messages, summed over the nodes
-  std::int64_t backwards() const;  ///< likewise
+  std::int64_t lost() const { return lost_; }            ///< messages, summed over the nodes
+  std::int64_t backwards() const { return backwards_; }  ///< likewise
+
+  /// What the last message that was `samples` held, and the number of its node among those seen.
+  const NodeSample& last_sample() const { return last_sample_; }
+  std::size_t last_node() const { return last_node_; }
 
  private:
+  /// A node on a stream of ours, as it was found: looked up once.
+  struct Node {
+    std::int32_t number;
+    ChannelBinding::NodeAxes axes;
+    SequenceCounter* sequence;
+    std::size_t order;
+  };
   IntakeResult table(const std::string& stream, const void* data, std::size_t size);
   IntakeResult accel(const std::string& channel, const void* data, std::size_t size);
+  bool carried(const std::string& channel);
+  const Node* find_node(const std::string& channel, std::int32_t number);
 
   ChannelBinding binding_;
   Sink sink_;
   IntakeCounters counters_;
-  std::map<std::pair<std::string, std::int32_t>, SequenceCounter> sequences_;
+  struct Sequence {
+    SequenceCounter counter;
+    std::size_t order = 0;
+  };
+  std::map<std::pair<std::string, std::int32_t>, Sequence> sequences_;
+  std::int64_t lost_ = 0, backwards_ = 0;
+  std::string stream_;       ///< of the last message of ours; empty when there was none
+  std::vector<Node> nodes_;  ///< of stream_, in the order they came
+  std::size_t next_node_ = 0;
+  NodeSample last_sample_{};
+  std::size_t last_node_ = 0;
   std::vector<const SequenceCounter*> sequence_of_axis_;
 };
 

@@ -30,38 +30,42 @@ Eigen::VectorXd guessed_design(const Structure& s, const ParameterTable& table) 
   return theta;
 }
 
-Eigen::VectorXd retuned_design(const FloorLayout& layout, const ParameterTable& table,
-                               const Eigen::VectorXd& design, const std::vector<double>& ratio,
-                               const std::vector<double>& std_error,
-                               const std::vector<bool>& shown) {
-  constexpr int kKinds = 4;
-  std::vector<double> seen[kKinds];
-  Eigen::VectorXd factor = Eigen::VectorXd::Zero(table.size());
+RetuningWork::RetuningWork(int parameters) : factor(static_cast<std::size_t>(parameters)) {
+  seen.reserve(factor.size());
+}
+
+void retuned_design(const FloorLayout& layout, const ParameterTable& table,
+                    const Eigen::VectorXd& design, const std::vector<double>& ratio,
+                    const std::vector<double>& std_error, const std::vector<std::uint8_t>& shown,
+                    RetuningWork& work, Eigen::VectorXd& out) {
+  std::fill(work.factor.begin(), work.factor.end(), 0.0);
   for (int u = 0; u < layout.unknowns(); ++u) {
     const auto i = static_cast<std::size_t>(u);
-    if (!shown[i] || !(ratio[i] > 0)) continue;
+    if (shown[i] == 0 || !(ratio[i] > 0)) continue;
     const double doubt = std_error[i] / ratio[i] / kTrustedError;
     const double moved = std::exp(std::log(ratio[i]) / (1 + doubt * doubt));
     const int parameter = layout.parameter(u / layout.own(), u % layout.own());
-    factor[parameter] = std::clamp(moved, 1 / kLargestStep, kLargestStep);
-    seen[static_cast<int>(table[parameter].kind)].push_back(factor[parameter]);
+    work.factor[static_cast<std::size_t>(parameter)] =
+        std::clamp(moved, 1 / kLargestStep, kLargestStep);
   }
   const auto median = [&](ParameterKind kind, double otherwise) {
-    std::vector<double>& values = seen[static_cast<int>(kind)];
-    if (values.empty()) return otherwise;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
+    work.seen.clear();
+    for (int p = 0; p < table.size(); ++p)
+      if (table[p].kind == kind && work.factor[static_cast<std::size_t>(p)] > 0)
+        work.seen.push_back(work.factor[static_cast<std::size_t>(p)]);
+    if (work.seen.empty()) return otherwise;
+    const auto middle = work.seen.begin() + static_cast<std::ptrdiff_t>(work.seen.size() / 2);
+    std::nth_element(work.seen.begin(), middle, work.seen.end());
     return *middle;
   };
   const double frame_stiffness = median(ParameterKind::frame_stiffness, 1);
   const double frame_damping = median(ParameterKind::frame_damping, 1);
-  const double unseen[kKinds] = {
-      frame_stiffness, median(ParameterKind::panel_stiffness, frame_stiffness), frame_damping,
-      median(ParameterKind::panel_damping, frame_damping)};
-  Eigen::VectorXd out = design;
-  for (int p = 0; p < table.size(); ++p)
-    out[p] *= factor[p] > 0 ? factor[p] : unseen[static_cast<int>(table[p].kind)];
-  return out;
+  const double unseen[] = {frame_stiffness, median(ParameterKind::panel_stiffness, frame_stiffness),
+                           frame_damping, median(ParameterKind::panel_damping, frame_damping)};
+  for (int p = 0; p < table.size(); ++p) {
+    const double factor = work.factor[static_cast<std::size_t>(p)];
+    out[p] = design[p] * (factor > 0 ? factor : unseen[static_cast<int>(table[p].kind)]);
+  }
 }
 
 }  // namespace framewatch

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,13 +15,20 @@ namespace framewatch {
 /// 0.1 s per story, panels as stiff as the mean frame, 2 % damping. theta order, SI.
 Eigen::VectorXd guessed_design(const Structure& structure, const ParameterTable& table);
 
+/// What retuned_design() works with, so that it need not allocate.
+struct RetuningWork {
+  explicit RetuningWork(int parameters);
+  std::vector<double> factor, seen;
+};
+
 /// The design the filters should be tuned to after a window: `design` times the identified ratios,
 /// each trusted as far as its standard error allows, at most a factor of 5 away; parameters the
 /// window does not show follow the median of their kind.
 /// ratio, std_error: internal order, relative to `design`; shown: whether the window shows it.
-Eigen::VectorXd retuned_design(const FloorLayout& layout, const ParameterTable& table,
-                               const Eigen::VectorXd& design, const std::vector<double>& ratio,
-                               const std::vector<double>& std_error,
-                               const std::vector<bool>& shown);
+/// out: as long as `design`.
+void retuned_design(const FloorLayout& layout, const ParameterTable& table,
+                    const Eigen::VectorXd& design, const std::vector<double>& ratio,
+                    const std::vector<double>& std_error, const std::vector<std::uint8_t>& shown,
+                    RetuningWork& work, Eigen::VectorXd& out);
 
 }  // namespace framewatch

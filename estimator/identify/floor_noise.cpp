@@ -44,11 +44,23 @@ FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformatio
                                                         : local - 2 * frames >= panels);
   }
   out.variance.resize(axes);
-  for (Eigen::Index a = 0; a < axes; ++a)
-    out.variance[a] = noise_variance(
-        noise_density[static_cast<std::size_t>(out.axes[static_cast<std::size_t>(a)])], rate_hz);
-  out.covariance = out.deformation * out.variance.asDiagonal() * out.deformation.transpose();
+  out.covariance.resize(unknowns, unknowns);
+  set_noise_density(out, noise_density, rate_hz);
   return out;
+}
+
+void set_noise_density(FloorNoise& noise, const std::vector<double>& density, double rate_hz) {
+  for (Eigen::Index a = 0; a < noise.variance.size(); ++a)
+    noise.variance[a] = noise_variance(
+        density[static_cast<std::size_t>(noise.axes[static_cast<std::size_t>(a)])], rate_hz);
+  for (Eigen::Index p = 0; p < noise.covariance.rows(); ++p) {
+    for (Eigen::Index q = p; q < noise.covariance.cols(); ++q) {
+      double sum = 0;
+      for (Eigen::Index a = 0; a < noise.variance.size(); ++a)
+        sum += noise.deformation(p, a) * noise.variance[a] * noise.deformation(q, a);
+      noise.covariance(p, q) = noise.covariance(q, p) = sum;
+    }
+  }
 }
 
 }  // namespace framewatch

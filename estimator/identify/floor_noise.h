@@ -23,4 +23,7 @@ struct FloorNoise {
 FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformations,
                        const std::vector<double>& noise_density, double rate_hz, int floor);
 
+/// Other densities for the same axes: variance and covariance anew, without allocating.
+void set_noise_density(FloorNoise& noise, const std::vector<double>& density, double rate_hz);
+
 }  // namespace framewatch

@@ -23,13 +23,16 @@ constexpr int packed_row_begin(int i) {
 namespace framewatch::kernels {
 
 struct Table {
-  /// s = gain x - a1 s1 - a2 s2; s2 = s1; s1 = s; h = beta s. All `length` long.
-  void (*filter_row)(const double* x, double gain, double a1, double a2, double* s1, double* s2,
-                     const double* beta, double* h, int length);
+  /// One step of a floor's row filters: per row, s = gain x - a1 s1 - a2 s2; s2 = s1; s1 = s;
+  /// h = beta s. x is common to all rows but for entry `at`, which is the row's response. x:
+  /// stride; response, gain, a1, a2: rows; the others rows x stride.
+  void (*filter_rows)(const double* x, const double* response, int at, const double* gain,
+                      const double* a1, const double* a2, double* s1, double* s2,
+                      const double* beta, double* h, int rows, int stride);
 
   /// destination = source + sum_r h_r h_r^T on the packed upper rows of a front
-  /// (docs/equations.md): row i holds columns from i rounded down to a lane up to `stride`. h: rows
-  /// x stride.
+  /// (docs/equations.md): row i holds columns from i rounded down to a lane up to `stride`, those
+  /// left of the diagonal a repetition. h: rows x stride.
   void (*add_rows)(const double* source, double* destination, const double* h, int rows, int front,
                    int stride);
 
@@ -64,9 +67,10 @@ struct Table {
   void (*multiply_add)(const double* a, int a_stride, int rows, int inner, const double* b,
                        double* out, int columns);
 
-  /// score -= A x for the packed upper rows of a front's unknowns (front - 1 of them), score and x
-  /// `stride` long; the front's last column is then added: what x leaves of the right-hand side.
-  void (*add_residual)(const double* packed, const double* x, double* score, int front, int stride);
+  /// score -= A x for a symmetric front A in packed rows; x and score `stride` long, x zero beyond
+  /// the front.
+  void (*subtract_product)(const double* packed, const double* x, double* score, int front,
+                           int stride);
 };
 
 /// Null where the machine or the compiler does not have the instruction set.

@@ -39,14 +39,31 @@ inline FRAMEWATCH_INLINE void for_lanes(int begin, int end, Body body) {
   if (j < end) body(Lane{}, j);
 }
 
-void filter_row(const double* __restrict x, double gain, double a1, double a2,
-                double* __restrict s1, double* __restrict s2, const double* __restrict beta,
-                double* __restrict h, int length) {
-  for (int i = 0; i < length; ++i) {
-    const double s = gain * x[i] - a1 * s1[i] - a2 * s2[i];
-    s2[i] = s1[i];
-    s1[i] = s;
-    h[i] = beta[i] * s;
+void filter_rows(const double* x, const double* response, int at, const double* gain,
+                 const double* a1, const double* a2, double* s1, double* s2, const double* beta,
+                 double* h, int rows, int stride) {
+  for (int r = 0; r < rows; ++r) {
+    const double old1 = s1[at], old2 = s2[at];
+    for_lanes(0, stride, [&](auto of, int j) FRAMEWATCH_INLINE {
+      using Vector = decltype(of);
+      typename Vector::Type s, before, older, weight;
+      load<Vector>(s, x + j);
+      load<Vector>(before, s1 + j);
+      load<Vector>(older, s2 + j);
+      s = gain[r] * s - a1[r] * before - a2[r] * older;
+      store<Vector>(s2 + j, before);
+      store<Vector>(s1 + j, s);
+      load<Vector>(weight, beta + j);
+      store<Vector>(h + j, weight * s);
+    });
+    const double s = gain[r] * response[r] - a1[r] * old1 - a2[r] * old2;
+    s1[at] = s;
+    s2[at] = old1;
+    h[at] = beta[at] * s;
+    s1 += stride;
+    s2 += stride;
+    beta += stride;
+    h += stride;
   }
 }
 
@@ -298,42 +315,55 @@ void multiply_add(const double* a, int a_stride, int rows, int inner, const doub
   });
 }
 
-void add_residual(const double* packed, const double* __restrict x, double* __restrict score,
-                  int front, int stride) {
-  constexpr int kSums = 2 * kLane;
-  const int last = front - 1;
-  for (int i = 0; i < last; ++i) {
-    const int first = packed_row_begin(i);
-    const double* __restrict a = packed - first;
-    const double xi = x[i];
-    // Row i to the right of the diagonal belongs to score i and, transposed, to the others.
-    double sum[kSums] = {};
-    int j = i + 1;
-    for (; j % kLane != 0 && j < last; ++j) {
-      sum[0] += a[j] * x[j];
-      score[j] -= a[j] * xi;
+void subtract_product(const double* packed, const double* __restrict x, double* __restrict score,
+                      int front, int stride) {
+  constexpr int kParts = kLane / Lane::kLength;
+  for (int i = 0; i < front; i += kLane) {
+    // Four rows that begin in the same lane: as rows (sum += a x) and, to the right of that lane,
+    // transposed (score -= a x_k).
+    const double* a[kLane];
+    double xk[kLane];
+    for (int k = 0; k < kLane; ++k) {
+      const bool there = i + k < front;
+      a[k] = packed + (there ? k : 0) * (stride - i) - i;
+      xk[k] = there ? x[i + k] : 0.0;
     }
-    for (; j + kSums <= last; j += kSums) {
-      for (int l = 0; l < kSums; ++l) {
-        sum[l] += a[j + l] * x[j + l];
-        score[j + l] -= a[j + l] * xi;
+    typename Lane::Type sum[kLane][kParts], xs, values, left;
+    for (int part = 0; part < kParts; ++part) {
+      const int at = i + part * Lane::kLength;
+      load<Lane>(xs, x + at);
+      for (int k = 0; k < kLane; ++k) {
+        load<Lane>(values, a[k] + at);
+        sum[k][part] = values * xs;
       }
     }
-    for (; j < last; ++j) {
-      sum[0] += a[j] * x[j];
-      score[j] -= a[j] * xi;
+    for (int j = i + kLane; j < stride; j += kLane) {
+      for (int part = 0; part < kParts; ++part) {
+        const int at = j + part * Lane::kLength;
+        load<Lane>(left, score + at);
+        load<Lane>(xs, x + at);
+        for (int k = 0; k < kLane; ++k) {
+          load<Lane>(values, a[k] + at);
+          sum[k][part] += values * xs;
+          left -= values * xk[k];
+        }
+        store<Lane>(score + at, left);
+      }
     }
-    const double right =
-        ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-    score[i] += a[last] - a[i] * xi - right;
-    packed += stride - first;
+    for (int k = 0; k < kLane && i + k < front; ++k) {
+      double lanes[kLane];
+      for (int part = 0; part < kParts; ++part)
+        store<Lane>(lanes + part * Lane::kLength, sum[k][part]);
+      score[i + k] -= (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+    }
+    packed += kLane * (stride - i);
   }
 }
 
-constexpr Table kTable = {filter_row,      add_rows,         add,
+constexpr Table kTable = {filter_rows,     add_rows,         add,
                           sum_into_front,  partial_cholesky, substitute_back,
                           forward_columns, backward_columns, multiply_add,
-                          add_residual};
+                          subtract_product};
 
 }  // namespace
 }  // namespace framewatch::kernels

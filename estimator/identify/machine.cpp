@@ -11,16 +11,17 @@ Machine::Machine(const RowTuning& tuning, const FloorLayout& layout, int blocks,
                  const std::vector<int>& spans, int least_settle)
     : tuning_(tuning),
       layout_(layout),
-      settle_(tuning_.settle_rows(least_settle)),
-      entering_(tuning_, layout_, settle_),
-      delayed_(tuning_, layout_, settle_),
+      least_settle_(least_settle),
+      entering_(tuning_, layout_, tuning_.settle_rows(least_settle)),
+      delayed_(tuning_, layout_, tuning_.settle_rows(least_settle)),
       sums_(layout_, blocks, block_rows, spans) {}
 
 void Machine::start(std::int64_t instant) {
   next_ = delayed_next_ = instant;
   counting_ = false;
-  entering_.reset();
-  delayed_.reset();
+  const int settle = tuning_.settle_rows(least_settle_);
+  entering_.reset(settle);
+  delayed_.reset(settle);
   sums_.reset();
 }
 

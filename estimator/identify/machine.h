@@ -33,18 +33,25 @@ class MotionRing {
 
 /// One tuning at work: both row chains, the window's sums and the solver. Advances instant by
 /// instant through a motion ring, at its own pace: a new tuning catches up while the old one
-/// serves.
+/// serves. Allocates when constructed, never after.
 class Machine {
  public:
   /// blocks, block_rows, spans: see WindowSums. least_settle: see RowTuning::settle_rows.
   Machine(const RowTuning& tuning, const FloorLayout& layout, int blocks, int block_rows,
           const std::vector<int>& spans, int least_settle);
 
-  /// Starts anew at an instant of the ring.
+  /// Gives the machine another design. Every floor of it must be tuned, and start() called, before
+  /// it is used again.
+  void set_design(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density) {
+    tuning_.set_design(theta0, noise_density);
+  }
+  void tune(int floor) { tuning_.tune(floor); }
+
+  /// Starts anew at an instant of the ring, on the tuning as it is now.
   void start(std::int64_t instant);
   std::int64_t next() const { return next_; }
   /// Instants from the start to the first full window of every length.
-  int warm_up() const { return settle_ + sums_.longest_rows(); }
+  int warm_up() const { return tuning_.settle_rows(least_settle_) + sums_.longest_rows(); }
 
   /// Takes instant next() in; the window's sum is ready for factor() until finish().
   void advance(const MotionRing& ring);
@@ -55,13 +62,14 @@ class Machine {
 
   bool full() const { return counting_ && sums_.full(); }
   const RowTuning& tuning() const { return tuning_; }
+  RowTuning& tuning() { return tuning_; }
   WindowSums& sums() { return sums_; }
   const RowChain& rows() const { return entering_; }
 
  private:
   RowTuning tuning_;
   FloorLayout layout_;
-  int settle_;
+  int least_settle_;
   RowChain entering_, delayed_;
   WindowSums sums_;
   std::int64_t next_ = 0, delayed_next_ = 0, counted_from_ = 0;

@@ -6,31 +6,50 @@
 
 namespace framewatch {
 
-RowChain::RowChain(const RowTuning& tuning, const FloorLayout& layout, int settle)
+RowChain::RowChain(RowTuning& tuning, const FloorLayout& layout, int settle)
     : tuning_(&tuning), layout_(&layout), settle_(settle) {
   floor_.resize(static_cast<std::size_t>(layout.floors()));
   std::size_t at = 0;
   for (int floor = 0; floor < layout.floors(); ++floor) {
     offset_.push_back(at);
-    at += static_cast<std::size_t>(layout.frames() * padded(layout.front(floor)));
+    const auto size = static_cast<std::size_t>(layout.frames() * padded(layout.front(floor)));
+    at += size;
+    Floor& f = floor_[static_cast<std::size_t>(floor)];
+    f.some_known = tuning.rows(floor);
+    f.s1.resize(size);
+    f.s2.resize(size);
   }
   rows_.assign(at, 0.0);
   signal_.assign(static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1)), 0.0);
-  reset();
+  response_.assign(static_cast<std::size_t>(layout.frames()), 0.0);
+  changed_.reserve(static_cast<std::size_t>(layout.floors()));
+  known_.resize(static_cast<std::size_t>((layout.floors() + 1) * layout.frames()));
+  reset(settle);
 }
 
-void RowChain::reset() {
-  known_.assign(static_cast<std::size_t>((layout_->floors() + 1) * layout_->frames()), 1);
+void RowChain::reset(int settle) {
+  settle_ = settle;
+  std::fill(known_.begin(), known_.end(), std::uint8_t{1});
   for (int floor = 0; floor < layout_->floors(); ++floor) rebuild(floor);
 }
 
 void RowChain::rebuild(int floor) {
   Floor& f = floor_[static_cast<std::size_t>(floor)];
-  f.rows = tuning_->rows(floor, known_);
-  const std::size_t states = static_cast<std::size_t>(f.rows.rows * padded(layout_->front(floor)));
-  f.s1.assign(states, 0.0);
-  f.s2.assign(states, 0.0);
+  if (all_known_around(floor)) {
+    f.rows = &tuning_->rows(floor);
+  } else {
+    tuning_->rows(floor, known_, f.some_known);
+    f.rows = &f.some_known;
+  }
+  std::fill(f.s1.begin(), f.s1.end(), 0.0);
+  std::fill(f.s2.begin(), f.s2.end(), 0.0);
   f.settling = settle_ + 1;
+}
+
+bool RowChain::all_known_around(int floor) const {
+  const auto first = known_.begin() + floor * layout_->frames();
+  const int levels = layout_->next(floor) > 0 ? 3 : 2;
+  return std::all_of(first, first + levels * layout_->frames(), [](auto k) { return k != 0; });
 }
 
 bool RowChain::same_surroundings(int floor, const std::vector<std::uint8_t>& known) const {
@@ -42,11 +61,11 @@ bool RowChain::same_surroundings(int floor, const std::vector<std::uint8_t>& kno
 
 void RowChain::push(const DeformationSet& set) {
   if (set.known != known_) {
-    std::vector<int> changed;
+    changed_.clear();
     for (int floor = 0; floor < layout_->floors(); ++floor)
-      if (!same_surroundings(floor, set.known)) changed.push_back(floor);
+      if (!same_surroundings(floor, set.known)) changed_.push_back(floor);
     known_ = set.known;
-    for (const int floor : changed) rebuild(floor);
+    for (const int floor : changed_) rebuild(floor);
   }
   const int own = layout_->own();
   const int frames = layout_->frames();
@@ -60,20 +79,16 @@ void RowChain::push(const DeformationSet& set) {
     std::copy(here, here + own, signal_.begin());
     if (next > 0)
       std::copy(here + motion_stride, here + motion_stride + next, signal_.begin() + own);
-    double* out = &rows_[offset(floor)];
-    for (int r = 0; r < f.rows.rows; ++r) {
-      const auto row = static_cast<std::size_t>(r);
+    std::fill(signal_.begin() + own + next, signal_.begin() + stride, 0.0);
+    for (int r = 0; r < f.rows->rows; ++r) {
+      const double* weight = &f.rows->response[static_cast<std::size_t>(r * frames)];
       double response = 0;
-      for (int g = 0; g < frames; ++g)
-        response +=
-            f.rows.response[row * static_cast<std::size_t>(frames) + static_cast<std::size_t>(g)] *
-            here[own + g];
-      signal_[static_cast<std::size_t>(own + next)] = response;
-      for (int j = own + next + 1; j < stride; ++j) signal_[static_cast<std::size_t>(j)] = 0;
-      const std::size_t at = row * static_cast<std::size_t>(stride);
-      kernels::in_use->filter_row(signal_.data(), f.rows.gain[row], f.rows.a1[row], f.rows.a2[row],
-                                  &f.s1[at], &f.s2[at], &f.rows.beta[at], out + at, stride);
+      for (int g = 0; g < frames; ++g) response += weight[g] * here[own + g];
+      response_[static_cast<std::size_t>(r)] = response;
     }
+    kernels::in_use->filter_rows(signal_.data(), response_.data(), own + next, f.rows->gain.data(),
+                                 f.rows->a1.data(), f.rows->a2.data(), f.s1.data(), f.s2.data(),
+                                 f.rows->beta.data(), &rows_[offset(floor)], f.rows->rows, stride);
   }
 }
 

@@ -13,21 +13,21 @@ namespace framewatch {
 class RowChain {
  public:
   /// settle: instants a floor's filters run before its rows count, after a start or a change of
-  /// what is known.
-  RowChain(const RowTuning& tuning, const FloorLayout& layout, int settle);
+  /// what is known. The tuning must outlive the chain. Allocates when constructed, never after.
+  RowChain(RowTuning& tuning, const FloorLayout& layout, int settle);
 
-  /// Back to the state of a new chain.
-  void reset();
+  /// Back to the state of a new chain, on the tuning as it is now.
+  void reset(int settle);
   void push(const DeformationSet& set);
 
   /// rows x padded(front) of a floor at the last push; count() is 0 while it settles.
   const double* rows(int floor) const { return &rows_[offset_[static_cast<std::size_t>(floor)]]; }
   int count(int floor) const {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
-    return f.settling > 0 ? 0 : f.rows.rows;
+    return f.settling > 0 ? 0 : f.rows->rows;
   }
   const FloorRows& floor_rows(int floor) const {
-    return floor_[static_cast<std::size_t>(floor)].rows;
+    return *floor_[static_cast<std::size_t>(floor)].rows;
   }
   /// Doubles of all floors' rows, and where a floor's begin.
   std::size_t size() const { return rows_.size(); }
@@ -36,21 +36,24 @@ class RowChain {
 
  private:
   struct Floor {
-    FloorRows rows;
+    const FloorRows* rows = nullptr;  ///< the tuning's, or those below
+    FloorRows some_known;
     std::vector<double> s1, s2;
     int settling = 0;
   };
   void rebuild(int floor);
+  bool all_known_around(int floor) const;
   bool same_surroundings(int floor, const std::vector<std::uint8_t>& known) const;
 
-  const RowTuning* tuning_;
+  RowTuning* tuning_;
   const FloorLayout* layout_;
   int settle_;
   std::vector<std::uint8_t> known_;
+  std::vector<int> changed_;
   std::vector<Floor> floor_;
   std::vector<std::size_t> offset_;
   std::vector<double> rows_;
-  std::vector<double> signal_;
+  std::vector<double> signal_, response_;
 };
 
 }  // namespace framewatch

@@ -10,6 +10,7 @@
 #include "estimator/identify/floor_noise.h"
 #include "estimator/identify/kernels.h"
 #include "estimator/identify/noise_moments.h"
+#include "estimator/identify/symmetric_eigen.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/motion_filter.h"
 #include "estimator/options.h"
@@ -42,6 +43,7 @@ struct FloorRows {
 };
 
 /// How the rows of every floor are formed for one design theta0. docs/equations.md, matched rows.
+/// Allocates when constructed, never after.
 class RowTuning {
  public:
   /// Structure to high_pass must outlive the object. theta0 > 0, theta order. noise_density: of
@@ -51,42 +53,57 @@ class RowTuning {
             const HighPass& high_pass, const Eigen::VectorXd& theta0,
             std::vector<double> noise_density = {});
 
+  /// Another design, of the same sizes. Every floor must then be tuned before anything else is
+  /// asked.
+  void set_design(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density);
+  void tune(int floor);
+
+  /// Rows of a floor when every motion is known.
+  const FloorRows& rows(int floor) const { return rows_[static_cast<std::size_t>(floor)]; }
   /// known: (floors + 1) x frames flags of DeformationSet. Equations that need an unknown motion
-  /// are left out and the rest projected on their own eigenvectors.
-  FloorRows rows(int floor, const std::vector<std::uint8_t>& known) const;
+  /// are left out and the rest projected on their own eigenvectors. out: once a copy of
+  /// rows(floor).
+  void rows(int floor, const std::vector<std::uint8_t>& known, FloorRows& out);
 
   const Eigen::VectorXd& design() const { return theta0_; }
   const std::vector<double>& noise_density() const { return noise_density_; }
   /// Instants the slowest row filter needs to forget its start: 3 / (zeta w), and at least `least`.
   int settle_rows(int least) const;
-  /// Largest relative change of a row filter's corner between this design and `theta`.
-  double detuning(const Eigen::VectorXd& theta) const;
+  /// Largest relative change of a floor's filters' corners between this design and `theta`.
+  double detuning(int floor, const Eigen::VectorXd& theta);
 
  private:
+  void form(int floor, FloorRows& out);
+  void weigh(int floor, int r, FloorRows& out);
   void pack_noise(int floor, FloorRows& out) const;
   double damping() const;
-  std::vector<int> all_frames() const;
-  std::vector<int> usable_equations(int floor, const std::vector<std::uint8_t>& known) const;
+  void take_all_equations();
+  void take_usable_equations(int floor, const std::vector<std::uint8_t>& known);
+  int floor_modes(int floor, const Eigen::VectorXd& theta);
+  void floor_stiffness(int floor, const Eigen::VectorXd& theta);
   double design_at(int floor, int position) const {
     return theta0_[layout_->parameter(floor, position)];
   }
-  void weigh(int floor, int r, const Eigen::VectorXd& phi, const FloorNoise& floor_noise,
-             FloorRows& out) const;
-  Eigen::MatrixXd floor_modes(int floor, const std::vector<int>& equations,
-                              const Eigen::VectorXd& theta, Eigen::VectorXd& frequency_hz) const;
-  Eigen::MatrixXd floor_stiffness(int floor, const Eigen::VectorXd& theta) const;
   double mass(int floor, int f) const {
     return mass_[static_cast<std::size_t>(floor * layout_->frames() + f)];
   }
 
   const FloorLayout* layout_;
-  const Deformations* deformations_;
   const EstimatorOptions* options_;
   NoiseFilter noise_filter_;
   Eigen::VectorXd theta0_;
   std::vector<double> noise_density_;
   std::vector<double> mass_;    ///< floors x frames
   Eigen::MatrixXd constraint_;  ///< of rigid floors; empty when flexible
+  std::vector<FloorNoise> noise_;
+  std::vector<FloorRows> rows_;
+
+  // Of one call, kept so that it need not allocate.
+  std::vector<int> equations_;
+  Eigen::MatrixXd basis_, modes_, stiffness_;  ///< frames x rows, frames x rows, frames x frames
+  std::vector<double> projected_;
+  Eigen::VectorXd frequency_hz_, force_, inertia_, common_;
+  SymmetricEigen eigen_;
 };
 
 }  // namespace framewatch

@@ -44,6 +44,7 @@ BatchMeans::BatchMeans(const FloorLayout& layout, const std::vector<double>& tol
     v->assign(unknowns, 0.0);
   const auto front = static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1));
   score_.assign(front, 0.0);
+  x_.assign(front, 0.0);
   pulled_.assign(front * kWrongDesigns, 0.0);
   for (std::size_t u = 0; u < unknowns; ++u)
     for (int c = 0; c < kWrongDesigns; ++c)
@@ -102,11 +103,14 @@ void BatchMeans::add_block_scores(int floor) {
   const SumsShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
   const int first = floor * layout_.own();
   const int unknowns = shape.front - 1;
+  // The response is the front's last column: x = [solution, -1] leaves its residual.
+  std::fill(x_.begin(), x_.end(), 0.0);
+  std::copy_n(solution_.begin() + first, unknowns, x_.begin());
+  x_[static_cast<std::size_t>(unknowns)] = -1;
   for (int b = 0; b < kBlocks; ++b) {
     std::fill(score_.begin(), score_.end(), 0.0);
-    kernels::in_use->add_residual(block_[static_cast<std::size_t>(b)] + shape.offset,
-                                  &solution_[static_cast<std::size_t>(first)], score_.data(),
-                                  shape.front, shape.stride);
+    kernels::in_use->subtract_product(block_[static_cast<std::size_t>(b)] + shape.offset, x_.data(),
+                                      score_.data(), shape.front, shape.stride);
     for (int i = 0; i < unknowns; ++i) columns(first + i)[b] += score_[static_cast<std::size_t>(i)];
   }
   // The floor's own scores are now whole: what the story above adds went to that story's.

@@ -76,7 +76,7 @@ class BatchMeans {
   std::vector<const double*> block_;
   std::vector<double> columns_values_;  ///< unknowns x (blocks, then pulls)
   std::vector<double> wrong_;           ///< unknowns x wrong designs
-  std::vector<double> solution_, score_scale_, prior_, score_, pulled_, inverse_diagonal_;
+  std::vector<double> solution_, score_scale_, prior_, x_, score_, pulled_, inverse_diagonal_;
   std::vector<double> new_error_, new_share_, new_noise_share_;
   std::vector<double> std_error_, prior_share_, noise_share_;
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "estimator/identify/design.h"
 
@@ -11,11 +10,6 @@ namespace {
 
 constexpr int kBlocks = BatchMeans::kBlocks;  // per window
 constexpr int kFewestBlocks = 4;              // of another window
-constexpr int kCatchUp = 8;                   // instants a new tuning takes in per instant of input
-constexpr int kMostPasses = 6;                // of tuning before the first estimate
-constexpr double kDetuned = 0.1;              // change of a filter's corner that asks for re-tuning
-constexpr double kNoiseChanged = 2;   // change of an axis' noise against the others' that does too
-constexpr double kLeastNoise = 1e-3;  // of the noisiest axis: nothing is noise-free
 
 DerivativeTriple triple_of(const EstimatorOptions& o, double advance) {
   return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz)
@@ -80,27 +74,28 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
       settle_rows_(rows_of(options_.settle_s, options_.rate_hz)),
       other_blocks_(blocks_of(options_.other_windows_s, options_.rate_hz, block_rows_)),
       filter_(triples_of(options_, axes_), high_pass_),
-      meter_(static_cast<int>(axes_.size()), options_.rate_hz),
-      ring_(deformations_, (longest_settle(options_) + longest_window(block_rows_, other_blocks_) +
-                            triple_.length()) *
-                                   (kCatchUp + 1) / kCatchUp +
-                               2 * kCatchUp),
+      noise_(axes_, options_.rate_hz),
+      ring_(deformations_,
+            SelfTuning::ring_rows(longest_settle(options_) +
+                                  longest_window(block_rows_, other_blocks_) + triple_.length())),
       main_(structure_, layout_, table_, options_),
       others_(structure_, layout_, table_, options_, other_blocks_, block_rows_),
-      noise_known_(std::all_of(axes_.begin(), axes_.end(),
-                               [](const SensorAxis& a) { return a.noise_density > 0; })),
-      tuned_(!options_.self_tune || !matched_),
-      boxplots_(static_cast<std::size_t>(table_.size()), BoxplotWindow(options_.boxplot_windows)),
       estimate_(static_cast<std::size_t>(table_.size())) {
   steps_per_instant_ = (main_.error_steps() + block_rows_ - 2) / (block_rows_ - 1);
-  active_ = make_machine(
-      config.design.size() > 0 ? config.design : guessed_design(structure_, table_), {});
+  boxplots_.reserve(estimate_.value.size());  // copies would not keep what they reserve
+  for (std::size_t p = 0; p < estimate_.value.size(); ++p)
+    boxplots_.emplace_back(options_.boxplot_windows);
+  shown_.assign(static_cast<std::size_t>(layout_.unknowns()), 0);
+  active_ =
+      make_machine(config.design.size() > 0 ? config.design : guessed_design(structure_, table_));
+  if (options_.self_tune && matched_)
+    self_tuning_ =
+        std::make_unique<SelfTuning>(layout_, table_, make_machine(active_->tuning().design()),
+                                     kBlocks, triple_.length(), noise_.configured());
 }
 
-std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& design,
-                                                       const std::vector<double>& noise) const {
-  const RowTuning tuning(structure_, layout_, deformations_, options_, triple_, high_pass_, design,
-                         noise);
+std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& design) const {
+  const RowTuning tuning(structure_, layout_, deformations_, options_, triple_, high_pass_, design);
   return std::make_unique<Machine>(tuning, layout_, blocks_, block_rows_, other_blocks_,
                                    settle_rows_);
 }
@@ -115,7 +110,7 @@ void WindowEstimator::restart() {
   filter_.reset();
   ring_.reset();
   active_->start(0);
-  candidate_.reset();
+  if (self_tuning_) self_tuning_->restart();
   main_.restart();
   others_.restart();
   since_hop_ = 0;
@@ -130,7 +125,7 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
   expected_index_ = set.index + 1;
 
   filter_.push(set.accel);
-  meter_.push(set.accel);
+  noise_.push(set.accel);
   deformations_.compute(filter_, ring_.push());
   active_->advance(ring_);
   ++since_hop_;
@@ -143,7 +138,7 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
   const bool given = due && ring_.end() > triple_.length();
   if (due) since_hop_ = 0;
   if (given) fill_estimate(window_end);
-  catch_up();
+  if (self_tuning_ && self_tuning_->step(active_, ring_)) exchanged_machines();
   return given ? &estimate_ : nullptr;
 }
 
@@ -153,81 +148,24 @@ void WindowEstimator::advance_errors(Time window_end) {
     others_.block_closed(active_->sums(), window_end);
     return;
   }
-  if (main_.advance_errors(steps_per_instant_)) consider_retuning();
+  if (main_.advance_errors(steps_per_instant_)) look_at_tuning();
   other_ =
-      others_.advance({active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned_});
+      others_.advance({active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned()});
 }
 
-std::vector<double> WindowEstimator::measured_noise() const {
-  std::vector<double> densities;
-  double largest = 0;
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    const double configured = axes_[a].noise_density;
-    densities.push_back(configured > 0 ? configured : meter_.density(static_cast<int>(a)));
-    if (!(densities.back() > 0)) return {};
-    largest = std::max(largest, densities.back());
-  }
-  for (double& density : densities) density = std::max(density, kLeastNoise * largest);
-  return densities;
+void WindowEstimator::look_at_tuning() {
+  if (!self_tuning_ || !self_tuning_->due()) return;
+  for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = main_.shown(static_cast<int>(u));
+  self_tuning_->look(*active_, main_.solver().solution(), main_.std_error(), shown_, noise_);
 }
 
-bool WindowEstimator::noise_differs(const std::vector<double>& measured) const {
-  if (measured.empty()) return false;
-  if (!noise_known_) return true;
-  double lowest = std::numeric_limits<double>::infinity(), highest = 0;
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (axes_[a].noise_density > 0) continue;
-    const double ratio = measured[a] / noise_density()[a];
-    lowest = std::min(lowest, ratio);
-    highest = std::max(highest, ratio);
-  }
-  return highest > kNoiseChanged * lowest;
-}
-
-void WindowEstimator::consider_retuning() {
-  if (!options_.self_tune || !matched_ || candidate_ != nullptr) return;
-  if (tuned_ && ++blocks_since_check_ < kBlocks) return;
-  blocks_since_check_ = 0;
-  std::vector<bool> shown;
-  for (int u = 0; u < layout_.unknowns(); ++u) shown.push_back(main_.shown(u));
-  if (std::none_of(shown.begin(), shown.end(), [](bool s) { return s; })) return;
-  const Eigen::VectorXd retuned = retuned_design(
-      layout_, table_, design(), main_.solver().solution(), main_.std_error(), shown);
-  const std::vector<double> noise = measured_noise();
-  const bool right = active_->tuning().detuning(retuned) <= kDetuned && !noise_differs(noise);
-  if (right || tuning_passes_ >= kMostPasses) {
-    tuned_ = true;
-    tuning_passes_ = 0;
-    return;
-  }
-  if (!tuned_) ++tuning_passes_;
-  candidate_ = make_machine(retuned, noise);
-  candidate_noise_known_ = !noise.empty();
-  const std::int64_t back = candidate_->warm_up() + triple_.length();
-  candidate_->start(std::max(ring_.begin(), ring_.end() - back));
-}
-
-void WindowEstimator::catch_up() {
-  for (int i = 0; candidate_ != nullptr && i < kCatchUp; ++i) {
-    if (candidate_->next() < ring_.end()) {
-      candidate_->advance(ring_);
-      candidate_->finish(ring_);
-    }
-    if (candidate_->next() == ring_.end() && (!active_->full() || candidate_->full()))
-      swap_machines();
-  }
-}
-
-void WindowEstimator::swap_machines() {
+void WindowEstimator::exchanged_machines() {
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const int p = layout_.parameter(u / layout_.own(), u % layout_.own());
-    main_.rescale(u, design()[p] / candidate_->tuning().design()[p]);
+    main_.rescale(u, self_tuning_->before().tuning().design()[p] / design()[p]);
   }
   main_.retuned();
   others_.retuned();
-  active_ = std::move(candidate_);
-  noise_known_ = candidate_noise_known_;
-  ++retunes_;
 }
 
 void WindowEstimator::fill_estimate(Time end) {
@@ -235,7 +173,7 @@ void WindowEstimator::fill_estimate(Time end) {
   estimate_.rows = active_->full() ? window_rows() : 0;
   estimate_.start = end - duration_of(std::max(estimate_.rows - 1, 0), options_.rate_hz);
   ++estimate_.sequence;
-  main_.fill({&design(), &ring_.at(ring_.end() - 1).known, tuned_}, estimate_);
+  main_.fill({&design(), &ring_.at(ring_.end() - 1).known, tuned()}, estimate_);
   for (std::size_t p = 0; p < boxplots_.size(); ++p) {
     boxplots_[p].push(estimate_.value[p]);
     estimate_.boxplot[p] = boxplots_[p].statistics();

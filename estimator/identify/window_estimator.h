@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "estimator/identify/boxplot.h"
+#include "estimator/identify/channel_noise.h"
 #include "estimator/identify/estimate.h"
 #include "estimator/identify/machine.h"
 #include "estimator/identify/other_windows.h"
+#include "estimator/identify/self_tuning.h"
 #include "estimator/identify/window_solution.h"
-#include "estimator/motion/noise_meter.h"
 #include "estimator/pipeline.h"
 
 namespace framewatch {
@@ -27,24 +28,24 @@ class WindowEstimator {
   /// The noise densities the rows are weighted by, per axis, m/s^2/sqrt(Hz); known: configured or
   /// measured, of every axis.
   const std::vector<double>& noise_density() const { return active_->tuning().noise_density(); }
-  bool noise_known() const { return noise_known_; }
+  bool noise_known() const {
+    return self_tuning_ ? self_tuning_->noise_known() : noise_.configured();
+  }
   int window_rows() const { return blocks_ * block_rows_; }
   std::vector<int> other_window_rows() const;
   int hop_rows() const { return hop_rows_; }
   std::int64_t gaps() const { return gaps_; }
-  std::int64_t retunes() const { return retunes_; }
+  std::int64_t retunes() const { return self_tuning_ ? self_tuning_->retunes() : 0; }
 
  private:
   void restart();
   void advance_errors(Time window_end);
-  void catch_up();
-  void swap_machines();
-  void consider_retuning();
-  std::vector<double> measured_noise() const;
-  bool noise_differs(const std::vector<double>& measured) const;
-  std::unique_ptr<Machine> make_machine(const Eigen::VectorXd& design,
-                                        const std::vector<double>& noise) const;
-  WindowSolution::Trust trust() const { return {matched_ && tuned_, noise_known_}; }
+  void look_at_tuning();
+  void exchanged_machines();
+  /// The filters are right, as far as is known.
+  bool tuned() const { return self_tuning_ == nullptr || self_tuning_->tuned(); }
+  std::unique_ptr<Machine> make_machine(const Eigen::VectorXd& design) const;
+  WindowSolution::Trust trust() const { return {matched_ && tuned(), noise_known()}; }
   void fill_estimate(Time end);
 
   Structure structure_;
@@ -59,20 +60,18 @@ class WindowEstimator {
   int blocks_, block_rows_, hop_rows_, settle_rows_;
   std::vector<int> other_blocks_;
   MotionFilter filter_;
-  NoiseMeter meter_;
+  ChannelNoise noise_;
   MotionRing ring_;
-  std::unique_ptr<Machine> active_, candidate_;
+  std::unique_ptr<Machine> active_;
+  std::unique_ptr<SelfTuning> self_tuning_;  ///< null when switched off
   WindowSolution main_;
   OtherWindows others_;
-  int steps_per_instant_ = 1;  ///< of a pass of errors: done before the next block closes
-  bool noise_known_, candidate_noise_known_ = false;
-  bool tuned_;  ///< a check has found the filters right
-  int tuning_passes_ = 0;
-  int blocks_since_check_ = 0;
+  int steps_per_instant_ = 1;        ///< of a pass of errors: done before the next block closes
+  std::vector<std::uint8_t> shown_;  ///< of look_at_tuning()
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
   const WindowEstimate* other_ = nullptr;
-  std::int64_t expected_index_ = -1, since_hop_ = 0, gaps_ = 0, retunes_ = 0;
+  std::int64_t expected_index_ = -1, since_hop_ = 0, gaps_ = 0;
 };
 
 }  // namespace framewatch

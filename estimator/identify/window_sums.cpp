@@ -50,8 +50,6 @@ void WindowSums::reset() {
   std::fill(middle_.begin(), middle_.end(), 0.0);
   std::fill(next_middle_.begin(), next_middle_.end(), 0.0);
   for (Span& span : spans_) std::fill(span.next.begin(), span.next.end(), 0.0);
-  std::fill(blocks_ring_.begin(), blocks_ring_.end(), 0.0);
-  std::fill(suffixes_.begin(), suffixes_.end(), 0.0);
   std::fill(stored_counts_.begin(), stored_counts_.end(), 0);
   std::fill(counts_.begin(), counts_.end(), 0);
   forward_ = true;
@@ -108,7 +106,9 @@ void WindowSums::push(const RowChain& entering) {
   }
   // slot(j) holds what this block needs at row j and then receives what the next block needs at
   // row block_rows - j, so one set of slots serves, run through in alternating directions.
-  oldest_ = j < block_rows_ ? suffix(forward_ ? j : block_rows_ - j) : zero_.data();
+  // The first block after a reset has nothing to give up, and its slots are stale.
+  oldest_ = j < block_rows_ && pushed_ >= block_rows_ ? suffix(forward_ ? j : block_rows_ - j)
+                                                      : zero_.data();
   ++pushed_;
 }
 

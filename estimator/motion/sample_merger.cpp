@@ -85,7 +85,7 @@ bool SampleMerger::push(const AccelSample& sample) {
   ++counter.received;
   if (index < first_open_) {
     ++counter.late;
-    silent_[axis] = 0;
+    set_silent(axis, false);
     return true;
   }
   Instant& slot = instant(index);
@@ -101,12 +101,20 @@ bool SampleMerger::push(const AccelSample& sample) {
     ++counter.rejected;
   if (slot.has[axis] == 0) ++slot.delivered;
   slot.has[axis] = 1;
-  silent_[axis] = 0;
+  set_silent(axis, false);
   phase_us_ += kPhaseGain * off / static_cast<double>(silent_.size());
   return true;
 }
 
+void SampleMerger::set_silent(std::size_t axis, bool silent) {
+  if ((silent_[axis] != 0) == silent) return;
+  silent_[axis] = silent ? 1 : 0;
+  silent ? ++silent_count_ : --silent_count_;
+}
+
 bool SampleMerger::complete(const Instant& instant) const {
+  // Asked at every sample: mostly the count alone says no.
+  if (static_cast<std::size_t>(instant.delivered) + silent_count_ < silent_.size()) return false;
   for (std::size_t a = 0; a < silent_.size(); ++a)
     if (instant.has[a] == 0 && silent_[a] == 0) return false;
   return instant.delivered > 0;
@@ -120,7 +128,7 @@ const SampleSet* SampleMerger::next() {
   for (std::size_t a = 0; a < silent_.size(); ++a) {
     if (oldest.has[a] != 0) continue;
     ++counters_[a].missing;
-    if (overdue) silent_[a] = 1;
+    if (overdue) set_silent(a, true);
   }
   set_.index = first_open_;
   set_.time = from_microseconds(

@@ -51,6 +51,7 @@ class SampleMerger {
   void anchor(double time_us);
   void stray(const AccelSample& sample);
   bool complete(const Instant& instant) const;
+  void set_silent(std::size_t axis, bool silent);
   void clear(Instant& instant);
 
   double step_us_;
@@ -58,6 +59,7 @@ class SampleMerger {
   int stray_limit_;
   std::vector<Instant> open_;
   std::vector<std::uint8_t> silent_;
+  std::size_t silent_count_ = 0;
   std::vector<AxisCounters> counters_;
   bool anchored_ = false, finishing_ = false;
   double phase_us_ = 0;  ///< time of instant origin_

@@ -59,7 +59,7 @@ double design_tolerance(ParameterKind kind) {
 
 Eigen::VectorXd with_proportional_damping(const Structure& structure, const ParameterTable& table,
                                           Eigen::VectorXd theta, double damping_ratio) {
-  const double w1 = 2 * M_PI * natural_frequencies_hz(structure, table, theta).front();
+  const double w1 = 2 * M_PI * lowest_frequency_hz(structure, table, theta);
   theta.tail(table.elements()) = 2 * damping_ratio / w1 * theta.head(table.elements());
   return theta;
 }

@@ -10,7 +10,8 @@ namespace framewatch::bench {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-constexpr int kRowsAtOnce = 4096;  // of the design matrix: what is measured at large sizes fits memory
+constexpr int kRowsAtOnce =
+    4096;  // of the design matrix: what is measured at large sizes fits memory
 
 /// Dense rows and right-hand sides of instants.
 class Rows {
@@ -33,7 +34,14 @@ class Rows {
         right_[t * pattern_.equations + i] = motion[2 * pattern_.elements + i];
     }
   }
-  void add_to(Eigen::MatrixXd& gram, Eigen::VectorXd& right, int instants, double sign) const {
+  /// As one writes it down: gram += rows' rows.
+  void multiply(Eigen::MatrixXd& gram, Eigen::VectorXd& right, int instants) const {
+    const auto rows = rows_.topRows(instants * pattern_.equations);
+    gram.noalias() += rows.transpose() * rows;
+    right.noalias() += rows.transpose() * right_.head(rows.rows());
+  }
+  /// Its lower half only, the rows added or subtracted.
+  void update(Eigen::MatrixXd& gram, Eigen::VectorXd& right, int instants, double sign) const {
     const auto rows = rows_.topRows(instants * pattern_.equations);
     gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose(), sign);
     right.noalias() += sign * (rows.transpose() * right_.head(rows.rows()));
@@ -59,8 +67,9 @@ class Naive : public Alternative {
     for (int t = instants - counted; t < instants; t += at_once_) {
       const int count = std::min(at_once_, instants - t);
       rows_.fill(motion + t * static_cast<long>(rows_.stride()), count);
-      rows_.add_to(gram_, right_, count, 1);
+      rows_.multiply(gram_, right_, count);
     }
+    if (counted == 0) gram_.setIdentity();
     llt_.compute(gram_);
     solution_ = llt_.solve(right_);
   }
@@ -87,15 +96,15 @@ class Recursive : public Alternative {
     if (!started_) {
       for (int t = instants - counted; t < instants; ++t) {
         rows_.fill(motion + t * static_cast<long>(rows_.stride()), 1);
-        rows_.add_to(gram_, right_, 1, 1);
+        rows_.update(gram_, right_, 1, 1);
       }
       started_ = true;
       return;
     }
     rows_.fill(newest, 1);
-    rows_.add_to(gram_, right_, 1, 1);
+    rows_.update(gram_, right_, 1, 1);
     rows_.fill(motion - rows_.stride(), 1);
-    rows_.add_to(gram_, right_, 1, -1);
+    rows_.update(gram_, right_, 1, -1);
     factor_.compute(gram_);
     solution_ = factor_.solve(right_);
   }
@@ -113,6 +122,7 @@ class Recursive : public Alternative {
 
 __attribute__((visibility("default"))) std::unique_ptr<Alternative> MAKE_ALTERNATIVE(
     Method method, const Pattern& pattern) {
+  if (!__builtin_cpu_supports(INSTRUCTION_SET)) return nullptr;
   switch (method) {
     case Method::naive:
       return std::make_unique<Naive>(pattern);

@@ -15,6 +15,13 @@ inline double cpu_us() {
   return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
 }
 
+/// Time that passes, us; read without a system call.
+inline double wall_us() {
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  return 1e6 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_nsec);
+}
+
 /// Median of the time between two readings of the clock with nothing in between, us.
 inline double cpu_clock_cost_us() {
   std::vector<double> cost;

@@ -124,7 +124,7 @@ DenseInput::DenseInput(const PipelineConfig& config, int instants)
 }
 
 Pattern DenseInput::pattern() const {
-  return {equations,      elements,       static_cast<int>(equation.size()),
+  return {equations,       elements,       static_cast<int>(equation.size()),
           equation.data(), element.data(), coefficient.data()};
 }
 

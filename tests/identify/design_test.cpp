@@ -17,7 +17,7 @@ struct Bench {
   FloorLayout layout{structure, table};
   Eigen::VectorXd design = test::table1_theta();
   std::vector<double> ratio = std::vector<double>(50, 1.0), error = std::vector<double>(50, 0.0);
-  std::vector<bool> shown = std::vector<bool>(50, true);
+  std::vector<std::uint8_t> shown = std::vector<std::uint8_t>(50, 1);
   /// Internal position of a parameter.
   std::size_t unknown(const char* name) const {
     for (int u = 0; u < layout.unknowns(); ++u)
@@ -27,7 +27,10 @@ struct Bench {
   }
   double factor(const char* name) const {
     const int p = *table.find(name);
-    return retuned_design(layout, table, design, ratio, error, shown)[p] / design[p];
+    RetuningWork work(table.size());
+    Eigen::VectorXd out(table.size());
+    retuned_design(layout, table, design, ratio, error, shown, work, out);
+    return out[p] / design[p];
   }
 };
 
@@ -81,7 +84,7 @@ TEST(Design, WhatIsNotShownFollowsItsKind) {
 TEST(Design, NothingShownChangesNothing) {
   Bench b;
   b.ratio.assign(50, 3.0);
-  b.shown.assign(50, false);
+  b.shown.assign(50, 0);
   EXPECT_EQ(b.factor("kx_1_y1"), 1);
   EXPECT_EQ(b.factor("Gc_5_x1y1"), 1);
 }

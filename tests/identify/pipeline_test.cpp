@@ -125,7 +125,8 @@ TEST(Pipeline, HopOfSeveralRowsGivesTheSameWindowsLessOften) {
     ASSERT_EQ(a.reason, b.reason);
     for (std::size_t p = 0; p < a.value.size(); ++p)
       if (!std::isnan(a.value[p])) {
-        ASSERT_NEAR(a.value[p] / b.value[p], 1, 1e-9);
+        // The level of the noise is taken from solution to solution, and there are fewer of them.
+        ASSERT_NEAR(a.value[p] / b.value[p], 1, 1e-8);
       }
   }
 }

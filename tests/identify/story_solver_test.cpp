@@ -93,10 +93,8 @@ void expect_dense(const Structure& s, const Eigen::VectorXd& theta, double prior
   const Eigen::VectorXd x = dense.solve(right);
   const Eigen::MatrixXd inverse = dense.solve(Eigen::MatrixXd::Identity(a.rows(), a.cols()));
 
-  std::vector<double> diagonal;
-  b.solver.inverse_diagonal(diagonal);
   Random random(9);
-  const int columns = 5;
+  const int columns = 8;
   std::vector<double> many(static_cast<std::size_t>(n * columns));
   for (double& v : many) v = random.normal();
   Eigen::MatrixXd wanted(a.rows(), columns);
@@ -105,7 +103,15 @@ void expect_dense(const Structure& s, const Eigen::VectorXd& theta, double prior
       wanted(static_cast<Eigen::Index>(k), c) =
           many[static_cast<std::size_t>(kept[k] * columns + c)];
   wanted = dense.solve(wanted).eval();
-  b.solver.solve(many, columns);
+  StoryFactor factor(b.layout);
+  b.solver.swap_factor(factor);
+  InverseDiagonal inverse_diagonal(b.layout);
+  std::vector<double> diagonal(static_cast<std::size_t>(n));
+  for (int f = 0; f < b.layout.floors(); ++f) factor.forward(f, many.data(), columns);
+  for (int f = b.layout.floors() - 1; f >= 0; --f) {
+    factor.backward(f, many.data(), columns);
+    inverse_diagonal.step(factor, f, diagonal.data());
+  }
   for (std::size_t k = 0; k < kept.size(); ++k) {
     const auto u = static_cast<std::size_t>(kept[k]);
     const auto i = static_cast<Eigen::Index>(k);

@@ -1,6 +1,7 @@
 #include "estimator/identify/window_sums.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 
@@ -61,7 +62,7 @@ struct Bench {
     sums.maintain(at >= 0 ? &delayed : nullptr);
   }
   void reset() {
-    entering.reset(), delayed.reset(), sums.reset();
+    entering.reset(kSettle), delayed.reset(kSettle), sums.reset();
     history.clear(), rows.clear(), counts.clear();
   }
   /// Largest |sum - fresh rebuild| over the rebuild's diagonal geometric mean, all floors.
@@ -160,6 +161,82 @@ TEST(WindowSums, AreNewAfterAReset) {
                 fresh.sums.middle()[k] + fresh.sums.oldest()[k]);
     used.finish(), fresh.finish();
   }
+}
+
+/// One floor of few unknowns, so that many shifts are cheap to check.
+Structure smallest() {
+  Structure s;
+  s.name = "one story";
+  s.stories = 1;
+  s.frames_x = {"y1"};
+  s.story_height = {3};
+  s.node_mass = {1000};
+  return s;
+}
+
+/// FRAMEWATCH_SHIFTS: how many; 1e7 of them are for a schedule (docs/performance.md).
+long shifts_to_run() {
+  if (const char* asked = std::getenv("FRAMEWATCH_SHIFTS")) return std::atol(asked);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return 50'000;
+#else
+  return 1'000'000;
+#endif
+}
+
+TEST(WindowSums, StayExactLongAfterAStrongQuake) {
+  constexpr long kQuakeEvery = 100'000;
+  const Structure s = smallest();
+  const ParameterTable table(s);
+  const FloorLayout layout(s, table);
+  const auto axes = test::full_sensor_axes(s);
+  const Deformations deformations(s, layout, axes);
+  const EstimatorOptions options;
+  const DerivativeTriple triple = matched_triple(100);
+  const HighPass high_pass(0.3, 100);
+  RowTuning tuning(s, layout, deformations, options, triple, high_pass, Eigen::Vector2d(1e6, 1e3));
+  RowChain entering(tuning, layout, kSettle), delayed(tuning, layout, kSettle);
+  WindowSums sums(layout, kBlocks, kBlockRows);
+  ASSERT_EQ(layout.front(0), 3);
+  constexpr std::size_t kRow = 4, kEntries = 6;
+  std::vector<DeformationSet> motion(kWindow, deformations.make_set());
+  std::vector<double> rows(kRow * kWindow, 0.0);  // the window's, a ring
+  Random random(23);
+  double worst = 0;
+  const long shifts = shifts_to_run();
+  for (long t = 0; t < shifts; ++t) {
+    const auto slot = static_cast<std::size_t>(t % kWindow);
+    const double strength = t % kQuakeEvery >= 500 && t % kQuakeEvery < 530 ? 1e6 : 1.0;
+    DeformationSet& set = motion[slot];
+    std::fill(set.known.begin(), set.known.end(), std::uint8_t{1});
+    for (double& v : set.values) v = strength * random.normal();
+    entering.push(set);
+    for (std::size_t k = 0; k < kRow; ++k)
+      rows[slot * kRow + k] = entering.count(0) > 0 ? entering.rows(0)[k] : 0.0;
+    sums.push(entering);
+    long double fresh[kEntries] = {};
+    for (std::size_t r = 0; r < kWindow; ++r) {
+      const double* h = &rows[r * kRow];
+      for (std::size_t i = 0, k = 0; i < 3; ++i)
+        for (std::size_t j = i; j < 3; ++j) fresh[k++] += static_cast<long double>(h[i]) * h[j];
+    }
+    const long double diagonal[] = {fresh[0], fresh[3], fresh[5]};
+    for (std::size_t i = 0, k = 0; i < 3; ++i) {
+      for (std::size_t j = i; j < 3; ++j, ++k) {
+        const std::size_t at = i * kRow + j;
+        const double sum = sums.newest()[at] + sums.middle()[at] + sums.oldest()[at];
+        const auto scale = static_cast<double>(std::sqrt(diagonal[i] * diagonal[j]));
+        const double off = std::abs(sum - static_cast<double>(fresh[k]));
+        worst = std::max(worst, scale > 0 ? off / scale : off);
+      }
+    }
+    const long then = t - sums.lag();
+    if (then >= 0) delayed.push(motion[static_cast<std::size_t>(then % kWindow)]);
+    sums.maintain(then >= 0 ? &delayed : nullptr);
+  }
+  RecordProperty("shifts", std::to_string(shifts));
+  RecordProperty("worst_relative_difference", std::to_string(worst * 1e15) + "e-15");
+  EXPECT_LT(worst, kLimit);
 }
 
 }  // namespace

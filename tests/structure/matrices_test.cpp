@@ -91,5 +91,23 @@ TEST(Matrices, VeryStiffPanelsHaveTheFrequenciesOfRigidFloors) {
   for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(stiff[i], exact[i], 1e-5 * exact[i]);
 }
 
+TEST(Matrices, LowestFrequencyOfALargeBuildingIsThatOfAll) {
+  for (const FloorModel floor : {FloorModel::flexible, FloorModel::rigid}) {
+    Structure s = test::table2();
+    s.floor = floor;
+    s.stories = 40;
+    s.story_height.assign(40, 3.0);
+    const std::vector<double> masses = s.node_mass;
+    while (static_cast<int>(s.node_mass.size()) < s.nodes())
+      s.node_mass.insert(s.node_mass.end(), masses.begin(), masses.end());
+    s.node_mass.resize(static_cast<std::size_t>(s.nodes()));
+    const ParameterTable table(s);
+    Eigen::VectorXd theta = Eigen::VectorXd::Constant(table.size(), 2500);
+    for (Eigen::Index i = 0; i < theta.size(); i += 3) theta[i] *= 1.3;
+    const double all = natural_frequencies_hz(s, table, theta).front();
+    EXPECT_NEAR(lowest_frequency_hz(s, table, theta) / all, 1, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace framewatch

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/diagnose/whitened.h"
+
+namespace framewatch {
+
+/// How far things may be off that nobody measures exactly, one standard deviation.
+struct Tolerances {
+  double mass = 0.01;        ///< relative, of the mass at every degree of freedom
+  double gain = 0.005;       ///< relative, of every axis
+  double clock_s = 0.25e-3;  ///< of every axis
+};
+
+/// Which member of a model one unknown of a fit is.
+struct Unknown {
+  enum class Kind { theta, mass, gain, clock, knob, record_knob } kind;
+  int index = 0;  ///< of theta, coordinate, axis; of the effect for knobs
+  int knob = 0;
+  int record = 0;
+  double scale = 1;  ///< one unit of the unknown in the member
+  double sigma = 0;  ///< of the prior, in units of the unknown; 0: none
+  double centre = 0;
+};
+
+std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
+                                 const Tolerances& tolerances);
+double value_of(const Model& model, const Unknown& unknown);
+void set_value(Model& model, const Unknown& unknown, double value);
+
+/// The whitened equations of all stretches around one model, and their normal equations.
+struct Linearised {
+  std::vector<Unknown> unknowns;
+  std::vector<Whitened> systems;         ///< of each stretch
+  std::vector<Eigen::MatrixXd> columns;  ///< of each stretch: d(rows)/d(unknowns)
+  std::vector<Eigen::MatrixXd> cross;    ///< of each stretch: unknowns x end terms
+  Eigen::MatrixXd normal;                ///< end terms eliminated, prior not included
+  Eigen::VectorXd gradient;              ///< columns' * rest
+  /// Misfit over what noise explains, at least 1: a model that does not fit must not bend what is
+  /// only tolerated, so the prior weighs as much more.
+  double level = 1;
+  Eigen::VectorXd prior, pull;  ///< level / (2 sigma^2); the same times (centre - value)
+};
+
+struct FitOptions {
+  Forcing forcing = Forcing::measured;
+  int max_steps = 12;
+  double tolerance = 0.3;     ///< converged when the cost falls by less than this
+  bool linear_fixed = false;  ///< only what effects have moves
+};
+
+struct FitResult {
+  bool good = false;
+  Model model;
+  double cost = 0;                       ///< misfit and prior
+  std::vector<double> misfit;            ///< of each stretch
+  std::vector<Eigen::MatrixXcd> motion;  ///< of each stretch
+  int steps = 0;
+};
+
+/// Fits models of one plant to several stretches by Gauss-Newton (Levenberg-Marquardt) on the
+/// whitened equations.
+class Fitter {
+ public:
+  Fitter(const Plant& plant, const std::vector<Stretch>& stretches, const Tolerances& tolerances);
+
+  FitResult fit(const Model& start, const std::vector<Eigen::MatrixXcd>& motion,
+                const FitOptions& options) const;
+  Linearised linearise(const Model& model, const std::vector<Eigen::MatrixXcd>& motion,
+                       Forcing forcing) const;
+  /// Misfit of every stretch and the prior's cost at the end; empty when the model cannot be
+  /// computed. motion is updated.
+  /// weights: of a linearisation, else the model's own.
+  std::vector<double> misfit(const Model& model, std::vector<Eigen::MatrixXcd>& motion,
+                             Forcing forcing, const Linearised* weights = nullptr) const;
+  /// Degrees of freedom of a stretch: what the misfit is when nothing but noise is left.
+  double expected(std::size_t record) const;
+  const Plant& plant() const { return plant_; }
+  const std::vector<Stretch>& stretches() const { return stretches_; }
+  const Tolerances& tolerances() const { return tolerances_; }
+  int ratio(std::size_t record) const { return ratio_[record]; }
+
+ private:
+  const Plant& plant_;
+  const std::vector<Stretch>& stretches_;
+  Tolerances tolerances_;
+  std::vector<int> ratio_;
+};
+
+/// One unknown's effect on a whitened stretch.
+Eigen::VectorXd column_of(const Plant& plant, const Model& model, const Stretch& stretch,
+                          std::size_t record, const Whitened& system, const Unknown& unknown,
+                          int ratio);
+
+}  // namespace framewatch

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/refine/measured_building.h"
+#include "estimator/structure/matrices.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/sensors.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch {
+
+/// The building under diagnosis: its equations as the sensors see them, and what is believed of
+/// its parameters. One equation per coordinate (degree of freedom; of rigid floors: see
+/// floor_constraint).
+struct Plant {
+  Plant(const Structure& s, const std::vector<SensorAxis>& sensors, Eigen::VectorXd believed,
+        MeasuredBuilding equations);
+
+  Structure structure;
+  ParameterTable table;
+  std::vector<SensorAxis> axes;
+  Eigen::VectorXd design;  ///< theta order, > 0
+  MeasuredBuilding building;
+  std::vector<Element> elements;
+  Eigen::MatrixXd constraint;  ///< degrees of freedom x coordinates
+  Eigen::VectorXd mass;        ///< of the coordinates, kg
+  Eigen::MatrixXd motion;      ///< coordinates x axes: their absolute motion
+  Eigen::MatrixXd ground;      ///< degrees of freedom x axes: the ground's motion there
+
+  Eigen::Index equations() const { return building.equations(); }
+  Eigen::Index element_count() const { return building.elements(); }
+  Eigen::Index axis_count() const { return building.axes(); }
+};
+
+/// Empty when the equations need a motion that no axis measures.
+std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
+                                const Eigen::VectorXd& design, double rate_hz);
+
+}  // namespace framewatch

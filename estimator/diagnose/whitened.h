@@ -1,0 +1,54 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "estimator/diagnose/free_run.h"
+#include "estimator/diagnose/model.h"
+#include "estimator/diagnose/stretch.h"
+
+namespace framewatch {
+
+/// Whose motion drives the laws of a model: what was measured (equation by equation), or what the
+/// model itself does under the measured motion of the base.
+enum class Forcing { measured, simulated };
+
+/// The equations of one stretch under one model, D A + forces, whitened by the noise that the
+/// sensors put into them: docs/equations.md (33). Rows: real parts, then imaginary parts of every
+/// equation, bin by bin.
+struct Whitened {
+  bool good = false;
+  std::vector<Eigen::MatrixXcd> operation;  ///< D of every bin, equations x axes
+  std::vector<Eigen::MatrixXcd> factor;     ///< L of every bin, L L^H = N D S D^H
+  Eigen::MatrixXcd calibrated;              ///< axes x bins: spectra without the model's errors
+  Eigen::MatrixXcd motion;                  ///< the same with less noise where the model fits
+  std::vector<LawTrack> tracks;             ///< of the element laws
+  std::vector<Eigen::VectorXcd> force;      ///< of the element laws: spectrum, N
+  Eigen::VectorXd residual;                 ///< before end terms
+  Eigen::MatrixXd ends;                     ///< columns of the end terms
+  Eigen::MatrixXd ends_normal;
+  Eigen::LDLT<Eigen::MatrixXd> ends_factor;
+  Eigen::VectorXd rest;  ///< residual without what end terms explain
+  double misfit = 0;     ///< sum of squares of `rest`
+
+  Eigen::Index bins() const { return calibrated.cols(); }
+};
+
+/// motion: axes x bins that drives the laws when forcing is `measured`; empty: the measured one.
+/// weights: whose factor and end terms are taken; null: the model's own.
+Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
+                Forcing forcing, const Eigen::MatrixXcd& motion, int ratio,
+                const Whitened* weights = nullptr);
+
+/// equations x bins of forces -> whitened rows.
+Eigen::VectorXd whiten_rows(const Whitened& system, const Eigen::MatrixXcd& forces);
+/// direction (equations) times signal (bins) -> whitened rows.
+Eigen::VectorXd whiten_rows(const Whitened& system, const Eigen::VectorXd& direction,
+                            const Eigen::VectorXcd& signal);
+/// Column of one axis' signal error: D's column times the signal.
+Eigen::VectorXd whiten_axis(const Whitened& system, Eigen::Index axis,
+                            const Eigen::VectorXcd& signal);
+
+}  // namespace framewatch

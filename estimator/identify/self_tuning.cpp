@@ -1,0 +1,110 @@
+#include "estimator/identify/self_tuning.h"
+
+#include <algorithm>
+
+namespace framewatch {
+namespace {
+
+constexpr int kMostPasses = 6;    // of tuning before the first estimate
+constexpr double kDetuned = 0.1;  // change of a filter's corner that asks for re-tuning
+constexpr int kLeastFloors = 4;   // looked at or tuned per instant
+/// Instants a newly tuned machine takes in per instant of input: many for a small building, so that
+/// it starts soon, and few for a large one, so that no shift is late.
+constexpr int kMostCatchUp = 8, kLeastCatchUp = 2;
+constexpr double kCatchUpWork = 6e5;  // entries of the floors' fronts, per instant
+
+}  // namespace
+
+SelfTuning::SelfTuning(const FloorLayout& layout, const ParameterTable& table,
+                       std::unique_ptr<Machine> spare, int blocks, int fill, bool noise_known)
+    : layout_(layout),
+      table_(table),
+      spare_(std::move(spare)),
+      blocks_(blocks),
+      fill_(fill),
+      floors_per_instant_(std::max(kLeastFloors, (layout.floors() + blocks - 1) / blocks)),
+      noise_known_(noise_known),
+      noise_(spare_->tuning().noise_density()),
+      work_(table.size()),
+      design_(table.size()) {
+  const double front = layout.own() + 2.0 * layout.frames() + 1;
+  catch_up_per_instant_ = static_cast<int>(std::clamp<double>(
+      kCatchUpWork / (layout.floors() * front * front), kLeastCatchUp, kMostCatchUp));
+}
+
+bool SelfTuning::due() {
+  if (phase_ != Phase::idle) return false;
+  if (tuned_ && ++since_look_ < blocks_) return false;
+  since_look_ = 0;
+  return true;
+}
+
+void SelfTuning::look(const Machine& active, const std::vector<double>& ratio,
+                      const std::vector<double>& std_error, const std::vector<std::uint8_t>& shown,
+                      const ChannelNoise& noise) {
+  if (std::none_of(shown.begin(), shown.end(), [](auto s) { return s != 0; })) return;
+  retuned_design(layout_, table_, active.tuning().design(), ratio, std_error, shown, work_,
+                 design_);
+  noise_measured_ = noise.densities(noise_);
+  noise_differs_ =
+      noise_measured_ && (!noise_known_ || noise.differs(noise_, active.tuning().noise_density()));
+  phase_ = Phase::looking;
+  next_floor_ = 0;
+  detuning_ = 0;
+}
+
+bool SelfTuning::step(std::unique_ptr<Machine>& active, const MotionRing& ring) {
+  switch (phase_) {
+    case Phase::idle:
+      break;
+    case Phase::looking:
+      look_at_floors(*active);
+      break;
+    case Phase::tuning:
+      tune_floors(ring);
+      break;
+    case Phase::catching_up:
+      if (!catch_up(*active, ring)) break;
+      active.swap(spare_);
+      noise_known_ = noise_measured_;
+      phase_ = Phase::idle;
+      ++retunes_;
+      return true;
+  }
+  return false;
+}
+
+void SelfTuning::look_at_floors(Machine& active) {
+  for (int i = 0; i < floors_per_instant_ && next_floor_ < layout_.floors(); ++i)
+    detuning_ = std::max(detuning_, active.tuning().detuning(next_floor_++, design_));
+  if (next_floor_ < layout_.floors()) return;
+  phase_ = Phase::idle;
+  if ((detuning_ <= kDetuned && !noise_differs_) || passes_ >= kMostPasses) {
+    tuned_ = true;
+    passes_ = 0;
+    return;
+  }
+  if (!tuned_) ++passes_;
+  phase_ = Phase::tuning;
+  next_floor_ = 0;
+  spare_->set_design(design_, noise_measured_ ? noise_ : active.tuning().noise_density());
+}
+
+void SelfTuning::tune_floors(const MotionRing& ring) {
+  for (int i = 0; i < floors_per_instant_ && next_floor_ < layout_.floors(); ++i)
+    spare_->tune(next_floor_++);
+  if (next_floor_ < layout_.floors()) return;
+  const std::int64_t back = spare_->warm_up() + fill_;
+  spare_->start(std::max(ring.begin(), ring.end() - back));
+  phase_ = Phase::catching_up;
+}
+
+bool SelfTuning::catch_up(const Machine& active, const MotionRing& ring) {
+  for (int i = 0; i < catch_up_per_instant_ && spare_->next() < ring.end(); ++i) {
+    spare_->advance(ring);
+    spare_->finish(ring);
+  }
+  return spare_->next() == ring.end() && (spare_->full() || !active.full());
+}
+
+}  // namespace framewatch
