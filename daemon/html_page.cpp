@@ -21,14 +21,15 @@ constexpr const char* kStyle =
     "pre{background:var(--stripe);padding:.6em .8em;overflow-x:auto}"
     ".wide{overflow-x:auto}"
     "table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums;margin:1em 0}"
-    "th,td{padding:.25em .7em;text-align:right;border-bottom:1px solid var(--rule)}"
+    "th,td{padding:.25em .55em;text-align:right;border-bottom:1px solid var(--rule)}"
     "th{border-bottom:2px solid var(--rule);vertical-align:bottom}"
     "th:first-child,td:first-child{text-align:left}td{white-space:nowrap}tr:nth-child(even) "
     "td{background:var(--stripe)}"
     "figure{margin:1.2em 0;break-inside:avoid}figure>div{display:flex;flex-wrap:wrap;gap:.4em}"
     "figcaption{color:var(--soft);font-size:13px;max-width:60em}"
     "details summary{cursor:pointer;color:var(--soft)}"
-    "@media print{body{font-size:10pt;margin:0;max-width:none}h2{break-after:avoid}"
+    "@media print{body{font-size:10pt;margin:0;max-width:none}h2,h3{break-after:avoid}"
+    ".wide{overflow:visible}table{font-size:7.5pt}th,td{padding:.2em .4em}"
     "tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit}}";
 
 }  // namespace

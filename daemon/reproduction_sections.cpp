@@ -82,7 +82,7 @@ std::string robustness_section(const Robustness& r, int seeds) {
   }
   out += html_figure(plots,
                      "The sensors' noise stays, the motion fades from left to right; design off "
-                     "by up to 20 % in k and 40 % in the rest. Red dots: parameters, of all, that "
+                     "by up to 20 % in k and 40 % in the rest. Dots: k, of all k, that "
                      "are published and wrong by more than 5 %.");
   out += html_table({"sweep", "k published", "of these off by > 5 %", "G published",
                      "off by > 25 %", "c published", "off by > 25 %"},
