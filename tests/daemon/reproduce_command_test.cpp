@@ -6,6 +6,7 @@
 
 #include "daemon/random_building.h"
 #include "daemon/reproduction.h"
+#include "daemon/reproduction_report.h"
 #include "estimator/structure/sensors.h"
 #include "tests/support/paper_buildings.h"
 #include "tests/support/temporary.h"
@@ -77,8 +78,8 @@ TEST_F(Reproduce, AFileInTheWayIsRefused) {
   EXPECT_EQ(test::read_file(directory_.path("out")), "mine");
 }
 
-TEST(Promises, JudgeWhatTheyAreGiven) {
-  // GIVEN a row whose k is twice its limit and whose intervals hold in 50 %
+/// A row whose k is twice its limit and whose intervals hold in 50 %; the rest is well.
+Reproduction with_broken_k() {
   AccuracyRow row{"Table 1, 1 %", {}, {}, {}};
   for (std::size_t kind = 0; kind < 4; ++kind) {
     ErrorStatistics& s = row.errors[static_cast<std::size_t>(Method::matched)][kind];
@@ -91,6 +92,11 @@ TEST(Promises, JudgeWhatTheyAreGiven) {
   all.seeds = kSeedsToJudge;
   all.buildings.push_back(
       {"table1", "t", ParameterTable(test::table1()), test::table1_theta(), {}, {}, {}, {row}});
+  return all;
+}
+
+TEST(Promises, JudgeWhatTheyAreGiven) {
+  Reproduction all = with_broken_k();
   int broken = 0;
   for (const Promise& promise : promises(all)) {
     if (promise.kept) continue;
@@ -101,6 +107,20 @@ TEST(Promises, JudgeWhatTheyAreGiven) {
   EXPECT_EQ(broken, 3);
   all.seeds = kSeedsToJudge - 1;
   EXPECT_TRUE(promises(all).empty());
+}
+
+TEST(AccuracyDocument, HasTheNumbersAndWhatIsNotKept) {
+  Reproduction all = with_broken_k();
+  all.robustness.emplace();
+  all.robustness->sweeps.push_back({"fading", {{0.003, {100, 0, 0, 0}, {50, 0, 0, 0}, {}}}});
+  all.robustness->silences.push_back({"quiet", 1, true, 359'187, 3});
+  const std::string text = accuracy_markdown(all);
+  for (const char* part :
+       {"--seeds 20", "| Table 1, 1 % | k | 0.067 % | **0.18 %** | 0.09 % | 2.67 |", "| 50.0 % |",
+        "| fading | 50 % |", "| quiet | 1 | 359187 | 3 |",
+        "- not kept: Table 1, 1 %: median error of k at most 0.09 %: 0.18 %",
+        "- not kept: quiet: nothing published in 1 h of sensor noise: 3 of 359187 windows"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\nnot in\n" << text;
 }
 
 TEST(RandomBuilding, IsABuildingWithEverySensor) {
