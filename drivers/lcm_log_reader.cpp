@@ -85,8 +85,12 @@ const std::uint8_t* LcmLogReader::at(std::int64_t offset, std::int64_t bytes) {
 /// Whether a sync word, or as much of one as fits into the file, is at `offset`.
 bool LcmLogReader::sync_at(std::int64_t offset) {
   const std::int64_t bytes = std::min(kSyncBytes, size_ - offset);
-  if (offset >= buffer_offset_ && offset + bytes <= buffer_offset_ + buffer_bytes_)
-    return std::memcmp(at(offset, bytes), kSync.data(), static_cast<std::size_t>(bytes)) == 0;
+  if (offset >= buffer_offset_ && offset + bytes <= buffer_offset_ + buffer_bytes_) {
+    const std::uint8_t* word = at(offset, bytes);
+    return bytes == kSyncBytes
+               ? std::memcmp(word, kSync.data(), kSyncBytes) == 0
+               : std::memcmp(word, kSync.data(), static_cast<std::size_t>(bytes)) == 0;
+  }
   std::array<std::uint8_t, kSyncBytes> word{};
   if (::pread(file_, word.data(), static_cast<std::size_t>(bytes), offset) != bytes) return false;
   return std::memcmp(word.data(), kSync.data(), static_cast<std::size_t>(bytes)) == 0;

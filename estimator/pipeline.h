@@ -36,8 +36,8 @@ struct PipelineConfig {
 
 std::vector<std::string> problems(const PipelineConfig& config);
 
-/// Samples in, window estimates out. Never asks the time, never throws after construction. Steady
-/// input is not allocated for, except by the tuning check once per window (options.self_tune).
+/// Samples in, window estimates out. Never asks the time, never throws and never allocates after
+/// construction. Work that takes long is spread over instants by their count (docs/performance.md).
 class Pipeline {
  public:
   using Sink = std::function<void(const WindowEstimate&)>;

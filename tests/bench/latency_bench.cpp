@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -40,7 +41,7 @@ daemon::Config live_config(int stories, int bays) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::string error;
   const auto lcm = drivers::open_lcm(kUrl, 0, error);
-  if (!lcm) std::exit(2);
+  if (!lcm) ::_exit(2);
   auto due = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
   for (Eigen::Index t = 0; t < accel.rows(); ++t) {
     std::this_thread::sleep_until(due);
@@ -52,7 +53,7 @@ daemon::Config live_config(int stories, int bays) {
       lcm->publish("ACCEL", bytes.data(), static_cast<unsigned>(bytes.size()));
     }
   }
-  std::exit(0);
+  ::_exit(0);
 }
 
 int run(int stories, int bays, int seconds) {
@@ -65,6 +66,7 @@ int run(int stories, int bays, int seconds) {
     return 2;
   }
   daemon::LiveEstimation live(config, *lcm);
+  std::fflush(stdout);  // or the child would print it again
   const pid_t child = ::fork();
   if (child == 0) be_the_building(accel);
   std::vector<double> latency_us;

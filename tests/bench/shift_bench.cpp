@@ -289,7 +289,7 @@ Row run(const Size& size, int instants, double clock_us) {
 }  // namespace
 }  // namespace framewatch::bench
 
-/// shift_bench [largest number of stories] | shift_bench BAYS STORIES INSTANTS: ours only
+/// shift_bench [MOST_STORIES [BAYS]] | shift_bench BAYS STORIES INSTANTS: ours only
 int main(int argc, char** argv) {
   using namespace framewatch::bench;
   const double clock_us = cpu_clock_cost_us();
@@ -298,10 +298,11 @@ int main(int argc, char** argv) {
     print(run({std::atoi(argv[1]), std::atoi(argv[2])}, std::atoi(argv[3]), clock_us));
     return 0;
   }
-  const int most = argc == 2 ? std::atoi(argv[1]) : 300;
+  const int most = argc > 1 ? std::atoi(argv[1]) : 300;
+  const int only = argc > 2 ? std::atoi(argv[2]) : 0;
   std::vector<Row> rows;
   for (const Size& size : kSizes) {
-    if (size.stories > most) continue;
+    if (size.stories > most || (only > 0 && size.bays != only)) continue;
     const int instants = size.stories > 100 ? 2500 : 4000;
     Row row = run(size, instants, clock_us);
     const bool same = !rows.empty() && rows.back().size.bays == size.bays;
