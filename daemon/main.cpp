@@ -8,6 +8,7 @@
 #include "daemon/check_command.h"
 #include "daemon/convert_command.h"
 #include "daemon/demo_command.h"
+#include "daemon/diagnose_command.h"
 #include "daemon/refine_command.h"
 #include "daemon/replay_command.h"
 #include "daemon/reproduce_command.h"
@@ -190,12 +191,33 @@ void add_reproduce(CLI::App& app, Action& action, ReproduceArguments& arguments)
       [&action, &arguments] { action = [&arguments] { return reproduce(arguments); }; });
 }
 
+void add_diagnose(CLI::App& app, Action& action, DiagnoseArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "diagnose",
+      "where simulation and measurement disagree, the missing effect's name, the augmented model");
+  command->footer(
+      "Writes diagnosis.json, report.html and model.toml. Exit status: 0 adequate or explained, 1 "
+      "a\n"
+      "gap remains, 2 bad usage, configuration or input.\n"
+      "Example: framewatch diagnose building.toml --train monday.csv --holdout tuesday.csv --out "
+      "d");
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  command->add_option("--train", arguments.train, "record files and LCM event logs")->required();
+  command->add_option("--holdout", arguments.holdout, "records of other motions, to judge by")
+      ->required();
+  command->add_option("--out", arguments.out, "directory to write to")->required();
+  command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
+  command->callback(
+      [&action, &arguments] { action = [&arguments] { return diagnose_command(arguments); }; });
+}
+
 /// What every command can be told, as far as the command line tells it.
 struct Arguments {
   DemoArguments demo;
   RunArguments run;
   ReplayArguments replay;
   RefineArguments refine;
+  DiagnoseArguments diagnose;
   CheckArguments check;
   ConvertArguments convert;
   SimulateArguments simulate;
@@ -218,6 +240,7 @@ int main(int argc, char** argv) {
   add_run(app, action, arguments.run);
   add_replay(app, action, arguments.replay);
   add_refine(app, action, arguments.refine);
+  add_diagnose(app, action, arguments.diagnose);
   add_check(app, action, arguments.check);
   add_convert(app, action, arguments.convert);
   add_simulate(app, action, arguments.simulate);

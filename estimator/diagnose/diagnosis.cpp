@@ -18,12 +18,21 @@ constexpr double kAtFloor = 1.15;
 constexpr double kSame = 8;  ///< difference of misfits that decides nothing
 constexpr double kLeastGain = 50;
 constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
+constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
+constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
+constexpr std::size_t kPairLeaders = 6, kPairs = 3;
 constexpr std::size_t kPlaces = 5, kContenders = 3, kLawsFitted = 5, kLawsRun = 3;
 
 double sum(const std::vector<double>& values) {
   double out = 0;
   for (const double v : values) out += v;
   return out;
+}
+
+/// Whether an effect is an axis' freed gain or clock rather than a member of the model's effects.
+bool is_channel_axis(EffectKind kind) {
+  return kind == EffectKind::gain_error || kind == EffectKind::polarity ||
+         kind == EffectKind::time_shift || kind == EffectKind::clipping;
 }
 
 class Search {
@@ -116,6 +125,112 @@ class Search {
     return out;
   }
 
+  /// Two places at once: the best single ones with every other, and every two axes.
+  std::vector<Localisation> locate_pairs(const FitResult& now) {
+    const Linearised at = fitter_.linearise(now.model, now.motion, Forcing::measured);
+    if (at.systems.size() != stretches_.size() || !at.systems.back().good) return {};
+    std::vector<Suspect> all;
+    for (const Localisation& l : once_)
+      if (l.suspects.front().size() == 1) all.push_back(l.suspects.front());
+    std::vector<std::vector<Suspect>> lists;
+    for (std::size_t i = 0; i < std::min(kPairLeaders, all.size()); ++i)
+      for (std::size_t j = i + 1; j < all.size(); ++j) lists.push_back({all[i], all[j]});
+    for (std::size_t i = kPairLeaders; i < all.size(); ++i)
+      for (std::size_t j = i + 1; j < all.size(); ++j)
+        if (all[i].kind == Suspect::Kind::axis && all[j].kind == Suspect::Kind::axis)
+          lists.push_back({all[i], all[j]});
+    std::vector<Localisation> once = localise_once(fitter_, at, now.model, lists);
+    const auto order = [](const Localisation& a, const Localisation& b) {
+      return a.ratio < b.ratio;
+    };
+    std::stable_sort(once.begin(), once.end(), order);
+    std::vector<Localisation> out;
+    for (std::size_t i = 0; i < std::min(kPairs, once.size()); ++i) {
+      out.push_back(localise(fitter_, once[i].model.theta.size() > 0 ? once[i].model : now.model,
+                             {}, once[i].suspects, 6));
+      if (out.back().model.theta.size() == 0) out.pop_back();
+    }
+    std::stable_sort(out.begin(), out.end(), order);
+    return out;
+  }
+
+  void finish(const FitResult& now, const FitResult& measured, bool law, Trial t,
+              std::vector<Trial>& trials) {
+    FitOptions options;
+    options.max_steps = law || !now.model.effects.empty() ? 8 : 15;
+    options.forcing = law || !now.model.effects.empty() ? Forcing::simulated : Forcing::measured;
+    const FitResult run = fitter_.fit(measured.model, measured.motion, options);
+    if (!run.good) return;
+    t.cost = run.cost;
+    t.misfit = run.misfit;
+    t.model = run.model;
+    trials.push_back(std::move(t));
+  }
+
+  void try_pair(const FitResult& now, const Localisation& pair, std::vector<Trial>& trials) {
+    const Suspect &a = pair.suspects[0], &b = pair.suspects[1];
+    if (a.kind == Suspect::Kind::axis && b.kind == Suspect::Kind::axis) {
+      ModelEffect swap;
+      swap.form = LawForm::swapped;
+      swap.place.kind = PlaceKind::channel_pair;
+      swap.place.channel = std::min(a.axis, b.axis);
+      swap.place.with_channel = std::max(a.axis, b.axis);
+      Model model = pair.model;
+      model.effects.push_back(swap);
+      Trial t;
+      t.kind = EffectKind::swapped;
+      t.place = swap.place;
+      const FitResult fit = fitter_.fit(model, {}, {});
+      if (fit.good) finish(now, fit, false, t, trials);
+    }
+    std::vector<Proposal> first = propose(fitter_, pair, 0), second = propose(fitter_, pair, 1);
+    const auto cut = [](std::vector<Proposal>& list, const Suspect& s) {
+      std::erase_if(list, [](const Proposal& p) {
+        return p.ignores_axis || p.kind == EffectKind::misalignment;
+      });
+      const std::size_t most = s.kind == Suspect::Kind::axis ? 2 : 2;
+      if (list.size() > most) list.resize(most);
+    };
+    cut(first, a);
+    cut(second, b);
+    for (const Proposal& p : first)
+      for (const Proposal& q : second) {
+        Model model = p.model;
+        const std::size_t common = pair.model.effects.size();
+        model.effects.insert(model.effects.end(),
+                             q.model.effects.begin() + static_cast<long>(common),
+                             q.model.effects.end());
+        model.theta += q.model.theta - pair.model.theta;
+        model.gain += q.model.gain - pair.model.gain;
+        model.clock_s += q.model.clock_s - pair.model.clock_s;
+        for (const int axis : q.model.free_gain)
+          if (std::find(model.free_gain.begin(), model.free_gain.end(), axis) ==
+              model.free_gain.end())
+            model.free_gain.push_back(axis);
+        for (const int axis : q.model.free_clock)
+          if (std::find(model.free_clock.begin(), model.free_clock.end(), axis) ==
+              model.free_clock.end())
+            model.free_clock.push_back(axis);
+        FitOptions options;
+        options.max_steps = 6;
+        const FitResult fit = fitter_.fit(model, pair.motion, options);
+        if (!fit.good) continue;
+        bool law = false;
+        for (const ModelEffect& e : model.effects) law = law || e.element_law();
+        Trial t;
+        std::size_t index = common;
+        t.kind = p.model.effects.size() > common
+                     ? name_of_fit(fit.model.effects[index++], stretches_.front())
+                     : p.kind;
+        t.place = p.place;
+        t.second = {q.model.effects.size() > common
+                        ? name_of_fit(fit.model.effects[index], stretches_.front())
+                        : q.kind,
+                    q.place};
+        finish(now, fit, law, t, trials);
+      }
+  }
+
   bool one_round(FitResult& now, double& cost, int round) {
     const double begin = 0.1 + 0.3 * round;
     tell("where", begin);
@@ -128,6 +243,21 @@ class Search {
     if (excess < needed) return false;
 
     std::vector<Trial> trials;
+    double located = places.front().misfit;
+    double unseen = 1;  ///< directions that the bound does not look at
+    if (places.front().ratio > kOnePlace) {
+      tell("two places", begin + 0.02);
+      const std::vector<Localisation> pairs = locate_pairs(now);
+      if (!pairs.empty() && pairs.front().ratio - 1 < kPairShare * (places.front().ratio - 1)) {
+        located = pairs.front().misfit;
+        unseen = 2;
+        std::size_t tried = 0;
+        for (const Localisation& pair : pairs) {
+          if (tried++ >= 2 || pair.ratio > 2 * pairs.front().ratio) break;
+          try_pair(now, pair, trials);
+        }
+      }
+    }
     std::size_t contenders = 0;
     for (const Localisation& place : places) {
       if (contenders++ >= kContenders) break;
@@ -146,7 +276,7 @@ class Search {
     for (std::size_t r = 0; r < stretches_.size(); ++r)
       if (best.misfit[r] > 1.02 * now.misfit[r] + needed) holds = false;
     if (!holds) {
-      rejected_ = trials;
+      out_.rejected = trials;
       return false;
     }
     FoundEffect found;
@@ -161,6 +291,7 @@ class Search {
       if (trials[i].cost < best.cost + kSame && trials[i].kind != best.kind)
         found.like.push_back(trials[i].kind);
     }
+    const std::size_t old_effects = now.model.effects.size();
     const double margin = trials.size() > 1 ? trials[1].cost - best.cost : 1e3;
     found.confidence = found.like.empty() ? std::min(0.999, 1 - 0.5 * std::exp(-margin / 20)) : 0.5;
     FitResult next;
@@ -172,7 +303,20 @@ class Search {
     std::vector<MatrixXcd> motion(stretches_.size());
     fitter_.misfit(next.model, motion, Forcing::simulated);
     next.motion = motion;
+    const std::optional<std::pair<EffectKind, EffectPlace>> second = best.second;
+    if (second && found.index >= 0) found.index = static_cast<int>(old_effects);
+    FoundEffect other = found;
+    const std::size_t added = next.model.effects.size() - old_effects;
+    if (second) {
+      const bool first_in_model = !is_channel_axis(best.kind);
+      if (!first_in_model) found.index = -1;
+      other.chosen.kind = second->first;
+      other.chosen.place = second->second;
+      other.index =
+          is_channel_axis(second->first) ? -1 : static_cast<int>(old_effects + (added > 1 ? 1 : 0));
+    }
     out_.effects.push_back(std::move(found));
+    if (second) out_.effects.push_back(std::move(other));
     now = std::move(next);
     cost = now.cost;
     return sum(now.misfit) > kAdequate * expected_;
@@ -206,6 +350,12 @@ class Search {
       const bool law = !f.fit.model.effects.empty() && f.fit.model.effects.back().element_law() &&
                        f.fit.model.effects.size() > now.model.effects.size();
       FitResult run = f.fit;
+      if (!law && now.model.effects.empty()) {
+        FitOptions options;
+        options.max_steps = 15;
+        run = fitter_.fit(f.fit.model, f.fit.motion, options);
+        if (!run.good) continue;
+      }
       if (law || now.model.effects.size() > 0) {
         FitOptions options;
         options.forcing = Forcing::simulated;
@@ -276,7 +426,6 @@ class Search {
   double expected_ = 0;
   Model single_;
   std::vector<Localisation> rest_, once_;
-  std::vector<Trial> rejected_;
   Diagnosis out_;
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,6 +24,8 @@ struct Trial {
   double fraction = 0;  ///< of the misfit beyond noise that it takes away
   std::vector<double> misfit;
   Model model;
+  /// A second effect that was found together with it.
+  std::optional<std::pair<EffectKind, EffectPlace>> second;
 };
 
 /// One effect that was added.
@@ -30,8 +34,9 @@ struct FoundEffect {
   std::vector<Trial> alternatives;  ///< best first
   std::vector<EffectKind> like;     ///< names that the data do not tell from it
   double confidence = 0;
-  double before = 0, after = 0;  ///< held-out free-run NRMSE
-  int index = -1;                ///< in the model's effects; -1: of an axis
+  double before = 0, after = 0;   ///< held-out free-run NRMSE
+  int index = -1;                 ///< in the model's effects; -1: of an axis
+  std::vector<double> std_error;  ///< of the catalogue's parameters; 0: not known
 };
 
 struct WhereEntry {
@@ -47,6 +52,7 @@ struct Diagnosis {
   std::vector<Gap> before, after;  ///< of each stretch
   std::vector<FoundEffect> effects;
   std::vector<WhereEntry> where;
+  std::vector<Trial> rejected;               ///< best of what did not earn its place
   double ratio_before = 0, ratio_after = 0;  ///< misfit over what noise explains
 };
 

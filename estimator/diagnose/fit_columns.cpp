@@ -101,7 +101,8 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
     const bool loose = freed(model.free_clock, a);
     if (loose || tolerances.clock_s > 0)
       out.push_back(
-          {Kind::clock, a, 0, 0, loose ? 1e-3 : tolerances.clock_s, loose ? 0.0 : 1.0, 0.0});
+          {Kind::clock, a, 0, 0, loose ? 1e-3 : tolerances.clock_s, loose ? 0.0 : 1.0,
+           plant.axes[static_cast<std::size_t>(a)].delay / (loose ? 1e-3 : tolerances.clock_s)});
   }
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const ModelEffect& effect = model.effects[e];
@@ -154,7 +155,8 @@ void set_value(Model& model, const Unknown& u, double value) {
   double to = value * u.scale;
   const bool tolerated = u.kind == Unknown::Kind::mass || u.kind == Unknown::Kind::gain ||
                          u.kind == Unknown::Kind::clock;
-  if (tolerated && u.sigma > 0) to = std::clamp(to, -kMostSigmas * u.scale, kMostSigmas * u.scale);
+  if (tolerated && u.sigma > 0)
+    to = std::clamp(to, (u.centre - kMostSigmas) * u.scale, (u.centre + kMostSigmas) * u.scale);
   if (u.kind == Unknown::Kind::knob || u.kind == Unknown::Kind::record_knob) {
     const ModelEffect& e = model.effects[static_cast<std::size_t>(u.index)];
     const Knob& knob =

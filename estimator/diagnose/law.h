@@ -32,6 +32,7 @@ enum class LawForm {
   gain,
   shift,
   misaligned,
+  swapped,  ///< two axes exchanged
 };
 
 /// Whether the law is a force at one element.

@@ -66,6 +66,8 @@ Model initial_model(const Plant& plant) {
   out.mass_change = VectorXd::Zero(plant.equations());
   out.gain = VectorXd::Zero(plant.axis_count());
   out.clock_s = VectorXd::Zero(plant.axis_count());
+  for (Index a = 0; a < plant.axis_count(); ++a)
+    out.clock_s[a] = plant.axes[static_cast<std::size_t>(a)].delay;
   return out;
 }
 

@@ -342,7 +342,7 @@ void add_node_proposals(const Fitter& fitter, const Localisation& place,
     const Stretch& s = fitter.stretches()[r];
     ScalarFit lowest;
     double onset = 0;
-    for (double from = 0; from < 0.6 * s.seconds(); from += 0.01 * s.seconds()) {
+    const auto try_onset = [&](double from) {
       VectorXd c(s.intervals()), q(s.intervals());
       for (Index i = 0; i < c.size(); ++i) {
         const double t = static_cast<double>(i) / s.rate_hz;
@@ -360,7 +360,10 @@ void add_node_proposals(const Fitter& fitter, const Localisation& place,
         lowest = fit;
         onset = from;
       }
-    }
+    };
+    for (double from = 0; from < 0.6 * s.seconds(); from += 0.01 * s.seconds()) try_onset(from);
+    const double coarse = onset;
+    for (int i = -20; i <= 20; ++i) try_onset(std::max(0.0, coarse + 5e-4 * i * s.seconds()));
     const double size = std::hypot(lowest.coefficients[0], lowest.coefficients[1]);
     e.record_knobs.push_back(
         {linear(lowest.coefficients[0], 0.01 * size), linear(lowest.coefficients[1], 0.01 * size)});
@@ -406,7 +409,12 @@ void add_axis_proposals(const Fitter& fitter, const Localisation& place,
       VectorXcd rest(n);
       rest.real() = system.rest.segment(2 * n * b, n);
       rest.imag() = system.rest.segment(2 * n * b + n, n);
-      const double weight = u.squaredNorm();
+      if (place.suspects.size() > 1) {
+        const MatrixXcd basis =
+            suspect_basis(system, b, {place.suspects.begin() + 1, place.suspects.end()});
+        u -= (basis * (basis.adjoint() * u)).eval();
+      }
+      const double weight = std::max(u.squaredNorm(), 1e-300);
       const Complex read = truth[r](0, b);
       const Complex should = read - u.dot(rest) / weight;
       truth[r](0, b) = should;
@@ -600,9 +608,11 @@ EffectKind name_of_fit(const ModelEffect& effect, const Stretch& stretch) {
     case LawForm::shift:
       return EffectKind::time_shift;
     case LawForm::misaligned:
+      return EffectKind::misalignment;
+    case LawForm::swapped:
       break;
   }
-  return EffectKind::misalignment;
+  return EffectKind::swapped;
 }
 
 }  // namespace framewatch

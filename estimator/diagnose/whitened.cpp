@@ -26,6 +26,8 @@ void put(VectorXd& rows, Index bin, const VectorXcd& values) {
 /// Spectra of the axes without the errors that the model gives them.
 MatrixXcd calibrated(const Model& model, const Stretch& stretch) {
   MatrixXcd out = stretch.spectrum;
+  for (const ModelEffect& e : model.effects)
+    if (e.form == LawForm::swapped) out.row(e.place.channel).swap(out.row(e.place.with_channel));
   for (Index a = 0; a < out.rows(); ++a)
     for (Index b = 0; b < out.cols(); ++b)
       out(a, b) *= std::polar(1 / (1 + model.gain[a]), stretch.w[b] * model.clock_s[a]);

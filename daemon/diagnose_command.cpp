@@ -1,0 +1,125 @@
+#include "daemon/diagnose_command.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/core.h>
+
+#include "daemon/diagnose_output.h"
+#include "daemon/diagnose_records.h"
+#include "drivers/text_output.h"
+#include "estimator/identify/design.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kGapRemains = 1;
+constexpr int kBadInput = 2;
+constexpr double kBandLow = 0.4, kBandHigh = 1.6;  ///< of the lowest and highest natural frequency
+constexpr double kHighest = 0.4;                   ///< of the sampling rate
+constexpr Eigen::Index kLeastBins = 30;
+constexpr double kLeastSignal = 5;  ///< rms of a floor's motion in the band over its noise
+
+bool write_file(const std::string& path, const std::string& text) {
+  drivers::TextOutput out;
+  if (out.open(path) && out.write(text) && out.close()) return true;
+  fmt::print(stderr, "{}: {}\n", path, out.error());
+  return false;
+}
+
+/// Motion in the band against noise, the median over the axes above the base.
+double signal_ratio(const Plant& plant, const Stretch& s) {
+  std::vector<double> ratios;
+  for (Eigen::Index a = 0; a < plant.axis_count(); ++a)
+    if (plant.axes[static_cast<std::size_t>(a)].story > 0)
+      ratios.push_back(std::sqrt(s.spectrum.row(a).squaredNorm() /
+                                 (static_cast<double>(s.bins() * s.intervals()) * s.variance[a])));
+  std::nth_element(ratios.begin(), ratios.begin() + static_cast<long>(ratios.size() / 2),
+                   ratios.end());
+  return ratios[ratios.size() / 2];
+}
+
+}  // namespace
+
+int diagnose_command(const DiagnoseArguments& a) {
+  std::vector<ConfigProblem> config_problems;
+  const std::optional<Config> config = load_config(a.config, config_problems);
+  for (const ConfigProblem& p : config_problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  if (!config) return kBadInput;
+
+  std::vector<std::string> problems;
+  std::vector<DiagnoseRecord> records;
+  for (const auto* list : {&a.train, &a.holdout})
+    for (const std::string& path : *list)
+      if (auto record = read_diagnose_record(*config, path, problems))
+        records.push_back(std::move(*record));
+  for (std::size_t i = 0; i < records.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (records[i].sha256 == records[j].sha256)
+        problems.push_back(records[i].path + ": is the same file as " + records[j].path);
+  for (const std::string& p : problems) fmt::print(stderr, "{}\n", p);
+  if (!problems.empty()) return kBadInput;
+
+  const PipelineConfig& pc = config->pipeline;
+  const ParameterTable table(pc.structure);
+  const Eigen::VectorXd design =
+      pc.design.size() > 0 ? pc.design : guessed_design(pc.structure, table);
+  const auto plant = make_plant(pc.structure, pc.axes, design, records.front().rate_hz);
+  if (!plant) {
+    fmt::print(stderr, "{}: the channels do not measure every motion that diagnose needs\n",
+               a.config);
+    return kBadInput;
+  }
+  const std::vector<double> hz = natural_frequencies_hz(pc.structure, table, design);
+  std::vector<Stretch> stretches;
+  for (const DiagnoseRecord& record : records) {
+    Eigen::VectorXd noise(plant->axis_count());
+    for (Eigen::Index i = 0; i < noise.size(); ++i)
+      noise[i] = pc.axes[static_cast<std::size_t>(i)].noise_density * std::sqrt(record.rate_hz / 2);
+    const Band band{kBandLow * hz.front(),
+                    std::min(kHighest * record.rate_hz, kBandHigh * hz.back())};
+    stretches.push_back(make_stretch(record.accel, record.rate_hz, noise, band));
+    if (stretches.back().bins() < kLeastBins)
+      problems.push_back(fmt::format(
+          "{}: too short: {} frequencies lie between {:.2f} and {:.2f} Hz, at least {} are needed",
+          record.path, stretches.back().bins(), band.low_hz, band.high_hz, kLeastBins));
+    else if (!(signal_ratio(*plant, stretches.back()) > kLeastSignal))
+      problems.push_back(record.path +
+                         ": no excitation: the floors' motion does not stand out of "
+                         "the sensors' noise");
+  }
+  for (const std::string& p : problems) fmt::print(stderr, "{}\n", p);
+  if (!problems.empty()) return kBadInput;
+
+  DiagnosisOptions options;
+  options.holdout_from = a.train.size();
+  const bool terminal = !a.quiet && isatty(STDERR_FILENO);
+  if (terminal)
+    options.progress = [](const std::string& what, double share) {
+      fmt::print(stderr, "\r\033[K{:3.0f} %  {}", 100 * share, what);
+      std::fflush(stderr);
+    };
+  const Diagnosis diagnosis = diagnose(*plant, stretches, options);
+  if (terminal) fmt::print(stderr, "\r\033[K");
+
+  const DiagnoseOutput output{*config, *plant, records, stretches, a.train.size(), diagnosis};
+  std::error_code failure;
+  std::filesystem::create_directories(a.out, failure);
+  if (failure) {
+    fmt::print(stderr, "{}: {}\n", a.out, failure.message());
+    return kBadInput;
+  }
+  const bool written = write_file(a.out + "/diagnosis.json", diagnosis_json(output)) &&
+                       write_file(a.out + "/model.toml", diagnosis_model_toml(output)) &&
+                       write_file(a.out + "/report.html", diagnosis_report(output));
+  if (!written) return kBadInput;
+  if (!a.quiet) fmt::print("{}{}/report.html\n", diagnosis_text(output), a.out);
+  const bool holds =
+      diagnosis.verdict == Verdict::adequate || diagnosis.verdict == Verdict::explained;
+  return holds ? 0 : kGapRemains;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace framewatch::daemon {
+
+struct DiagnoseArguments {
+  std::string config;
+  std::vector<std::string> train, holdout;  ///< record files and LCM event logs
+  std::string out;  ///< directory of diagnosis.json, report.html, model.toml
+  bool quiet = false;
+};
+
+/// framewatch diagnose. Exit code: 0 adequate or explained, 1 a gap remains, 2 bad usage or input.
+int diagnose_command(const DiagnoseArguments& arguments);
+
+}  // namespace framewatch::daemon

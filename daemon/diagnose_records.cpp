@@ -1,0 +1,135 @@
+#include "daemon/diagnose_records.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include <fmt/core.h>
+
+#include "daemon/estimation.h"
+#include "daemon/file_digest.h"
+#include "daemon/stretch_collector.h"
+#include "drivers/accel_intake.h"
+#include "drivers/lcm_log.h"
+#include "drivers/record_file.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr Eigen::Index kLeastInstants = 400;
+constexpr int kLongestGap = 3;  ///< samples that are bridged
+constexpr double kEverything_s = 1e9;
+
+bool is_log(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  char head[4] = {};
+  in.read(head, sizeof head);
+  return std::string_view(head, 4) == std::string_view("\xED\xA1\xDA\x01", 4);
+}
+
+std::string digest(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return sha256({std::istreambuf_iterator<char>(in), {}});
+}
+
+bool from_record(const Config& config, DiagnoseRecord& out, std::vector<std::string>& problems) {
+  std::vector<drivers::Problem> found;
+  const auto record = drivers::read_record(out.path, {}, found);
+  for (const drivers::Problem& p : found)
+    problems.push_back(fmt::format("{}: {}", p.where, p.message));
+  if (!record) return false;
+  const auto& axes = config.pipeline.axes;
+  out.rate_hz = record->rate_hz;
+  out.accel.resize(static_cast<Eigen::Index>(record->time_s.size()),
+                   static_cast<Eigen::Index>(axes.size()));
+  bool complete = true;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const SensorAxis& axis = axes[a];
+    std::size_t column = 0;
+    while (column < record->names.size() && record->names[column] != axis.name) ++column;
+    if (column == record->names.size()) {
+      problems.push_back(fmt::format("{}: no channel '{}'", out.path, axis.name));
+      complete = false;
+      continue;
+    }
+    for (Eigen::Index i = 0; i < out.accel.rows(); ++i)
+      out.accel(i, static_cast<Eigen::Index>(a)) =
+          axis.polarity *
+          (axis.scale * record->accel_mps2[column][static_cast<std::size_t>(i)] - axis.offset);
+  }
+  return complete;
+}
+
+bool from_log(const Config& config, DiagnoseRecord& out, std::vector<std::string>& problems) {
+  StretchCollector collector(config.pipeline, 0, kEverything_s);
+  drivers::AccelIntake intake(wanted_axes(config),
+                              [&](const AccelSample& sample) { collector.push(sample); });
+  drivers::LcmLogReader reader;
+  drivers::LogEvent event;
+  auto read = reader.open(out.path) ? reader.next(event) : drivers::LogRead::error;
+  for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
+       read = reader.next(event))
+    if (read == drivers::LogRead::event)
+      intake.message(event.channel, event.data.data(), event.data.size());
+  if (read == drivers::LogRead::error) {
+    problems.push_back(fmt::format("{}: {}", out.path, reader.error()));
+    return false;
+  }
+  collector.finish();
+  out.rate_hz = config.pipeline.options.rate_hz;
+  out.accel = collector.accel();
+  if (collector.started()) return true;
+  problems.push_back(fmt::format("{}: holds no sample of the configuration's channels", out.path));
+  return false;
+}
+
+/// Bridges short gaps by straight lines; longer ones are a problem.
+void bridge(const Config& config, DiagnoseRecord& record, std::vector<std::string>& problems) {
+  for (Eigen::Index a = 0; a < record.accel.cols(); ++a) {
+    Eigen::Index last = -1;
+    for (Eigen::Index i = 0; i <= record.accel.rows(); ++i) {
+      const bool end = i == record.accel.rows();
+      if (!end && !std::isfinite(record.accel(i, a))) continue;
+      const Eigen::Index missing = i - last - 1;
+      if (missing > kLongestGap) {
+        problems.push_back(fmt::format("{}: channel '{}': {} samples missing after {:.3f} s",
+                                       record.path,
+                                       config.pipeline.axes[static_cast<std::size_t>(a)].name,
+                                       missing, static_cast<double>(last + 1) / record.rate_hz));
+        break;
+      }
+      for (Eigen::Index k = last + 1; k < i; ++k) {
+        const double from = last >= 0 ? record.accel(last, a) : (end ? 0 : record.accel(i, a));
+        const double to = end ? from : record.accel(i, a);
+        record.accel(k, a) =
+            from + (to - from) * static_cast<double>(k - last) / static_cast<double>(missing + 1);
+      }
+      last = i;
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<DiagnoseRecord> read_diagnose_record(const Config& config, const std::string& path,
+                                                   std::vector<std::string>& problems) {
+  DiagnoseRecord out;
+  out.path = path;
+  const std::size_t before = problems.size();
+  if (!std::ifstream(path)) {
+    problems.push_back(path + ": cannot be opened");
+    return std::nullopt;
+  }
+  const bool read =
+      is_log(path) ? from_log(config, out, problems) : from_record(config, out, problems);
+  if (!read) return std::nullopt;
+  if (out.accel.rows() < kLeastInstants)
+    problems.push_back(fmt::format("{}: {} instants are too short, at least {} are needed", path,
+                                   out.accel.rows(), kLeastInstants));
+  bridge(config, out, problems);
+  out.sha256 = digest(path);
+  if (problems.size() > before) return std::nullopt;
+  return out;
+}
+
+}  // namespace framewatch::daemon
