@@ -51,7 +51,7 @@ std::vector<WindowEstimate> run_windows(const PipelineConfig& config, const Eige
   std::int64_t next_us = std::llround(1e6 * from_s);
   Pipeline pipeline(config, [&](const WindowEstimate& estimate) {
     const std::int64_t end_us = to_microseconds(estimate.end);
-    if (estimate.rows == 0 || end_us < next_us) return;
+    if (estimate.status == WindowStatus::warming_up || end_us < next_us) return;
     kept.push_back(estimate);
     next_us = end_us + std::llround(1e6 * every_s);
   });
