@@ -267,9 +267,8 @@ class Search {
     if (trials.empty()) return false;
     std::stable_sort(trials.begin(), trials.end(),
                      [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
-    const double share_left =
-        static_cast<double>(plant_.equations()) / static_cast<double>(plant_.equations() - 1);
-    const double bound = std::min(places.front().misfit * share_left, cost);
+    const auto equations = static_cast<double>(plant_.equations());
+    const double bound = std::min(located * equations / std::max(equations - unseen, 1.0), cost);
     for (Trial& t : trials) t.fraction = (cost - t.cost) / std::max(cost - bound, 1e-9);
     const Trial& best = trials.front();
     bool holds = best.fraction >= kTakesAway && cost - best.cost > needed;
