@@ -265,8 +265,10 @@ class Search {
       try_place(now, place, trials, begin + 0.05 * static_cast<double>(contenders));
     }
     if (trials.empty()) return false;
+    // Two effects must beat one by more than chance.
+    const auto price = [&](const Trial& t) { return t.cost + (t.second ? needed : 0.0); };
     std::stable_sort(trials.begin(), trials.end(),
-                     [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
+                     [&](const Trial& a, const Trial& b) { return price(a) < price(b); });
     const auto equations = static_cast<double>(plant_.equations());
     const double bound = std::min(located * equations / std::max(equations - unseen, 1.0), cost);
     for (Trial& t : trials) t.fraction = (cost - t.cost) / std::max(cost - bound, 1e-9);
