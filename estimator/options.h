@@ -15,7 +15,7 @@ struct EstimatorOptions {
   double window_s = 5;   ///< rounded to 20 blocks of whole samples
   /// Further windows, once per block of the main one; rounded to whole blocks, at least four.
   std::vector<double> other_windows_s = {1, 2.5, 10};
-  double hop_s = 0.01;   ///< between published windows; rounded to whole samples, >= 1
+  double hop_s = 0.01;  ///< between published windows; rounded to whole samples, >= 1
   int boxplot_windows = 500;
   double high_pass_hz = 0.3;       ///< drift control, second order; the paper's variant: 0.1
   double filter_damping = 0.35;    ///< of the matched low-pass filters

@@ -49,7 +49,7 @@ const WindowEstimate* OtherWindows::advance(const Context& c) {
   if (!solved_) {
     const WindowParts sums = c.machine->sums().span(current_);
     rows_ = sums.rows;
-    window.solution.solve(sums, c.machine->rows(), c.trust);
+    window.solution.solve(sums, c.machine->rows(), c.trust, true);
     window.solution.begin_errors(c.machine->sums(), *c.main);
     solved_ = true;
     return nullptr;

@@ -131,7 +131,7 @@ const WindowEstimate* WindowEstimator::push(const SampleSet& set) {
   ++since_hop_;
   const bool due = since_hop_ >= hop_rows_;
   if (active_->full() && (due || active_->closes_block()))
-    main_.solve(active_->sums().window(), active_->rows(), trust());
+    main_.solve(active_->sums().window(), active_->rows(), trust(), active_->closes_block());
   const Time window_end = set.time - duration_of(triple_.delay, options_.rate_hz);
   advance_errors(window_end);
   // The first sets only fill the filters: a window cannot end before the first sample.

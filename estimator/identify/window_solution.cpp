@@ -11,7 +11,7 @@ constexpr double kInflation = 4;  // information is overstated by correlated res
 /// Frames of a direction whose frequencies differ by less than this cannot be told from a plan that
 /// does not shear its floors.
 constexpr double kSymmetric = 0.02;
-constexpr int kFirstPasses = 2;
+constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> tolerances(const FloorLayout& layout, const ParameterTable& table) {
@@ -49,30 +49,31 @@ void WindowSolution::restart() {
   errors_.cancel();
   errors_known_ = solved_ = false;
   fresh_ = true;
-  noise_scale_ = residual_energy_ = 0;
+  noise_scale_ = noise_level_ = residual_energy_ = 0;
 }
 
-void WindowSolution::solve(const WindowParts& sums, const RowChain& rows, const Trust& trust) {
+void WindowSolution::solve(const WindowParts& sums, const RowChain& rows, const Trust& trust,
+                           bool closes_block) {
   if (fresh_) {
-    // The level of the noise is that of the solution before, which belonged to other rows.
     fresh_ = false;
-    noise_scale_ = 0;
-    for (int i = 0; i < kFirstPasses; ++i) solve(sums, rows, trust);
+    noise_level_ = 0;
+    for (int i = 0; i < kFirstPasses; ++i) solve(sums, rows, trust, true);
   }
   solved_ = true;
   const double taken_off =
-      trust.regularise && trust.noise_known ? std::min(noise_scale_, 1.0) : 0.0;
+      trust.regularise && trust.noise_known ? std::min(noise_level_, 1.0) : 0.0;
   noise_.update(rows, sums, taken_off);
   for (std::size_t f = 0; f < warm_.size(); ++f) warm_[f] = 2 * (*sums.instants)[f] >= sums.rows;
   for (std::size_t u = 0; u < prior_.size(); ++u) {
     const double tolerance = unknowns_[u].tolerance;
     prior_[u] = trust.regularise && options_.prior
-                    ? kInflation / (tolerance * tolerance) * noise_scale_
+                    ? kInflation / (tolerance * tolerance) * noise_level_
                     : 0.0;
   }
   solver_.factor(sums, prior_, noise_);
   residual_energy_ = std::max(solver_.residual_energy() + taken_off * noise_.residual(), 0.0);
   noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
+  if (closes_block) noise_level_ = noise_scale_;
 }
 
 void WindowSolution::begin_errors(const WindowSums& all, const WindowSolution& fit) {

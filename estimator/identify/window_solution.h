@@ -30,7 +30,9 @@ class WindowSolution {
   struct Trust {
     bool regularise, noise_known;
   };
-  void solve(const WindowParts& sums, const RowChain& rows, const Trust& trust);
+  /// The level of the noise is that of the last solution that closed a block: a window's numbers do
+  /// not depend on how often windows are asked for.
+  void solve(const WindowParts& sums, const RowChain& rows, const Trust& trust, bool closes_block);
 
   /// A pass of standard errors, spread over instants (BatchMeans). fit: the solution that fits
   /// BatchMeans::kBlocks blocks, this one or another.
@@ -85,6 +87,7 @@ class WindowSolution {
   bool fresh_ = true;  ///< the noise level is that of other rows or of none
   double residual_energy_ = 0;
   double noise_scale_ = 0;  ///< residual energy over what sensor noise explains
+  double noise_level_ = 0;  ///< the same of the last closed block
 };
 
 }  // namespace framewatch

@@ -63,15 +63,19 @@ void ChannelGuard::watch_step(State& s, double value) const {
 void ChannelGuard::judge(std::size_t a, double value) {
   State& s = state_[a];
   watch_step(s, value);
-  const double magnitude = std::abs(value);
-  if (s.learned > 0 && magnitude > s.learned) s.learned = 0;
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  if (value > s.clips_at) s.clips_at = kNever;
+  if (value < s.clips_below) s.clips_below = -kNever;
   const bool moving_fast = s.smallest > 0 && s.step > kMovingFast * s.smallest;
 
-  const bool at_range = s.axis.range > 0 && magnitude >= kFullScale * s.axis.range;
-  const bool flat_peak = s.run == kClippedRun && moving_fast && magnitude >= s.peak;
-  if (flat_peak) s.learned = magnitude;
-  s.peak = std::max(s.peak, magnitude);
-  if (at_range || (s.learned > 0 && magnitude >= s.learned)) {
+  const bool at_range = s.axis.range > 0 && std::abs(value) >= kFullScale * s.axis.range;
+  const bool flat = s.run == kClippedRun && moving_fast;
+  const bool flat_peak = flat && (value >= s.highest || value <= s.lowest);
+  if (flat && value >= s.highest) s.clips_at = value;
+  if (flat && value <= s.lowest) s.clips_below = value;
+  s.highest = std::max(s.highest, value);
+  s.lowest = std::min(s.lowest, value);
+  if (at_range || value >= s.clips_at || value <= s.clips_below) {
     for (int age = flat_peak ? kClippedRun : 1; age >= 0; --age) remove(a, age, clipped_);
     s.after_clip = true;
     return;

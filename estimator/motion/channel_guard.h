@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "estimator/motion/sample.h"
@@ -13,9 +14,9 @@ namespace framewatch {
 /// Stuck: five equal samples of an axis that was moving by 50 of its smallest steps per sample, or
 /// half a second of equal samples while the other axes of its direction move by ten such steps. An
 /// axis that is quiet because the building is, is not stuck. Clipped: at the configured range, or
-/// three equal samples at the largest magnitude so far of a moving axis; that level then counts as
-/// the range until a sample exceeds it. A clipped peak's neighbours go with it, so that nobody
-/// interpolates across it.
+/// three equal samples at the largest or smallest value so far of a moving axis; that value then
+/// counts as the end of the range until a sample goes beyond it. A clipped peak's neighbours go
+/// with it, so that nobody interpolates across it.
 class ChannelGuard {
  public:
   struct Axis {
@@ -40,11 +41,13 @@ class ChannelGuard {
     Axis axis;
     double last = 0;
     bool seen = false;
-    int run = 0;              ///< equal samples so far
-    double step = 0;          ///< mean change per sample while it moved
-    double smallest = 0;      ///< smallest change ever seen; 0 = it never changed
-    double peak = 0;          ///< largest magnitude
-    double learned = 0;       ///< magnitude at which it was seen to clip; 0 = never
+    int run = 0;                     ///< equal samples so far
+    double step = 0;                 ///< mean change per sample while it moved
+    double smallest = 0;             ///< smallest change ever seen; 0 = it never changed
+    double lowest = 0, highest = 0;  ///< values so far
+    /// Values at which it was seen to clip; infinite: never.
+    double clips_at = std::numeric_limits<double>::infinity();
+    double clips_below = -std::numeric_limits<double>::infinity();
     bool still = false;       ///< judged stuck, until it moves
     bool after_clip = false;  ///< the sample after a clipped one goes too
   };

@@ -6,12 +6,17 @@
 namespace framewatch {
 namespace {
 
-constexpr int kTaps = 41;
+constexpr int kTaps = 61;
 constexpr int kEvery = 4;  // samples per filter output: the band's noise does not need more
 constexpr double kLow = 0.28,
                  kHigh = 0.45;  // of the sampling rate; half the window's transition in
 constexpr double kMemory_s = 5;
 constexpr double kLeast_s = 1;
+
+double blackman(int tap) {
+  const double phase = 2 * M_PI * tap / (kTaps - 1);
+  return 0.42 - 0.5 * std::cos(phase) + 0.08 * std::cos(2 * phase);
+}
 
 }  // namespace
 
@@ -21,14 +26,22 @@ NoiseMeter::NoiseMeter(int axes, double rate_hz)
       memory_(std::max(least_, std::lround(kMemory_s * rate_hz / kEvery))),
       axis_(static_cast<std::size_t>(axes)),
       ring_(static_cast<std::size_t>(axes) * 2 * kTaps, 0.0) {
+  std::vector<double> window;
+  double at_rest = 0, area = 0;
   for (int i = 0; i < kTaps; ++i) {
     const double k = i - (kTaps - 1) / 2;
     const double ideal =
         k == 0 ? 2 * (kHigh - kLow)
                : (std::sin(2 * M_PI * kHigh * k) - std::sin(2 * M_PI * kLow * k)) / (M_PI * k);
-    const double hamming = 0.54 - 0.46 * std::cos(2 * M_PI * i / (kTaps - 1));
-    taps_.push_back(ideal * hamming);
-    gain_ += taps_.back() * taps_.back();
+    window.push_back(blackman(i));
+    taps_.push_back(ideal * window.back());
+    at_rest += taps_.back();
+    area += window.back();
+  }
+  // A sensor's bias is many times its noise: nothing at all passes at rest.
+  for (std::size_t i = 0; i < kTaps; ++i) {
+    taps_[i] -= at_rest / area * window[i];
+    gain_ += taps_[i] * taps_[i];
   }
 }
 

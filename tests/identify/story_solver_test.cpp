@@ -78,8 +78,8 @@ void expect_dense(const Structure& s, const Eigen::VectorXd& theta, double prior
   Bench b(s, theta, fixed);
   const int n = b.layout.unknowns();
   NoiseShare noise(b.layout);
-  noise.update(b.chain, b.sums, 0);  // nothing taken off
-  b.solver.factor(b.sums, std::vector<double>(static_cast<std::size_t>(n), prior), noise);
+  noise.update(b.chain, b.sums.window(), 0);  // nothing taken off
+  b.solver.factor(b.sums.window(), std::vector<double>(static_cast<std::size_t>(n), prior), noise);
   std::vector<int> kept;
   for (int u = 0; u < n; ++u) {
     EXPECT_EQ(b.solver.usable(u), u != fixed) << u;

@@ -66,8 +66,9 @@ struct Bench {
     history.clear(), rows.clear(), counts.clear();
   }
   /// Largest |sum - fresh rebuild| over the rebuild's diagonal geometric mean, all floors.
-  double error() const {
+  double error() {
     const SumsShape& shape = sums.shape();
+    const WindowParts window = sums.window();
     std::vector<long double> fresh(shape.size, 0.0L);
     const std::size_t first = rows.size() > kWindow ? rows.size() - kWindow : 0;
     double worst = 0;
@@ -89,7 +90,7 @@ struct Bench {
         const std::size_t lane = i / kLane * kLane;
         for (std::size_t j = i; j < front; ++j) {
           const std::size_t k = at + j - lane;
-          const double sum = sums.newest()[k] + sums.middle()[k] + sums.oldest()[k];
+          const double sum = window.newest[k] + window.middle[k] + window.oldest[k];
           const auto wanted = static_cast<double>(dense[i * front + j]);
           const double scale =
               std::sqrt(static_cast<double>(dense[i * front + i] * dense[j * front + j]));
@@ -148,6 +149,32 @@ TEST(WindowSums, FloorsWithoutRowsComeAndGo) {
   EXPECT_LT(worst, kLimit);
 }
 
+TEST(WindowSums, SpansAreTheSameWindowsAtTheirBlocks) {
+  // GIVEN sums of 20 blocks whose spans are 4 and 20 of them
+  Bench b;
+  WindowSums spanned(b.layout, kBlocks, kBlockRows, {4, kBlocks});
+  for (int t = 0; t < 3 * kWindow; ++t) {
+    b.advance(1);
+    spanned.push(b.entering);
+    const WindowParts main = b.sums.window();
+    const bool closes = spanned.block_full();
+    std::vector<double> whole(b.sums.shape().size);
+    for (std::size_t k = 0; k < whole.size(); ++k)
+      whole[k] = main.newest[k] + main.middle[k] + main.oldest[k];
+    b.finish();
+    spanned.maintain(nullptr);
+    if (!closes || !spanned.span_full(1)) continue;
+    // THEN the long one is the main window, and both count their instants
+    const WindowParts span = spanned.span(1);
+    EXPECT_EQ(span.rows, kWindow);
+    for (std::size_t k = 0; k < whole.size(); k += 7)
+      EXPECT_NEAR(span.newest[k], whole[k], 1e-12 * std::max(1.0, std::abs(whole[k])));
+    const WindowParts brief = spanned.span(0);
+    EXPECT_EQ(brief.rows, 4 * kBlockRows);
+    EXPECT_EQ((*brief.instants)[0], 4 * kBlockRows);
+  }
+}
+
 TEST(WindowSums, AreNewAfterAReset) {
   Bench used, fresh;
   for (int t = 0; t < 3 * kWindow + 17; ++t) used.advance(1e6), used.finish();
@@ -156,9 +183,9 @@ TEST(WindowSums, AreNewAfterAReset) {
   for (int t = 0; t < 3 * kWindow; ++t) {
     used.advance(1), fresh.advance(1);
     EXPECT_LT(used.error(), kLimit);
+    const WindowParts a = used.sums.window(), b = fresh.sums.window();
     for (std::size_t k = 0; k < used.sums.shape().size; k += 13)
-      EXPECT_EQ(used.sums.middle()[k] + used.sums.oldest()[k],
-                fresh.sums.middle()[k] + fresh.sums.oldest()[k]);
+      EXPECT_EQ(a.middle[k] + a.oldest[k], b.middle[k] + b.oldest[k]);
     used.finish(), fresh.finish();
   }
 }
@@ -214,6 +241,7 @@ TEST(WindowSums, StayExactLongAfterAStrongQuake) {
     for (std::size_t k = 0; k < kRow; ++k)
       rows[slot * kRow + k] = entering.count(0) > 0 ? entering.rows(0)[k] : 0.0;
     sums.push(entering);
+    const WindowParts window = sums.window();
     long double fresh[kEntries] = {};
     for (std::size_t r = 0; r < kWindow; ++r) {
       const double* h = &rows[r * kRow];
@@ -224,7 +252,7 @@ TEST(WindowSums, StayExactLongAfterAStrongQuake) {
     for (std::size_t i = 0, k = 0; i < 3; ++i) {
       for (std::size_t j = i; j < 3; ++j, ++k) {
         const std::size_t at = i * kRow + j;
-        const double sum = sums.newest()[at] + sums.middle()[at] + sums.oldest()[at];
+        const double sum = window.newest[at] + window.middle[at] + window.oldest[at];
         const auto scale = static_cast<double>(std::sqrt(diagonal[i] * diagonal[j]));
         const double off = std::abs(sum - static_cast<double>(fresh[k]));
         worst = std::max(worst, scale > 0 ? off / scale : off);
