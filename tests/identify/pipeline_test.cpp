@@ -128,7 +128,9 @@ TEST(Pipeline, HopOfSeveralRowsGivesTheSameWindowsLessOften) {
     ASSERT_EQ(a.end, b.end);
     ASSERT_EQ(a.reason, b.reason);
     for (std::size_t p = 0; p < a.value.size(); ++p)
-      if (!std::isnan(a.value[p])) ASSERT_NEAR(a.value[p] / b.value[p], 1, 1e-9);
+      if (!std::isnan(a.value[p])) {
+        ASSERT_NEAR(a.value[p] / b.value[p], 1, 1e-9);
+      }
   }
 }
 
