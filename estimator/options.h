@@ -13,7 +13,7 @@ struct EstimatorOptions {
   Variant variant = Variant::matched;
   double rate_hz = 100;  ///< sampling rate of the common grid
   double window_s = 5;   ///< rounded to 20 blocks of whole samples
-  /// Further windows, once per block of the main one; rounded to whole blocks, at least four.
+  /// Further windows, five per length; rounded to whole blocks of the main one, at least four.
   std::vector<double> other_windows_s = {1, 2.5, 10};
   double hop_s = 0.01;  ///< between published windows; rounded to whole samples, >= 1
   int boxplot_windows = 500;

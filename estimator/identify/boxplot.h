@@ -8,8 +8,8 @@ namespace framewatch {
 
 /// Exact boxplot of one parameter over the last `windows` windows, as MATLAB draws it: sorted value
 /// i at probability (i - 0.5)/n, linear between; outliers strictly beyond 1.5 interquartile ranges;
-/// whiskers at the most extreme values that are none. NaN values take a place but do not count.
-/// No windows: no statistics.
+/// whiskers at the most extreme values that are none. Values that are not finite take a place but
+/// do not count. No windows: no statistics.
 class BoxplotWindow {
  public:
   explicit BoxplotWindow(int windows);
@@ -19,11 +19,12 @@ class BoxplotWindow {
   BoxplotStatistics statistics() const;
 
  private:
-  double quantile(double probability) const;
+  double quartile(std::size_t q) const;
 
-  std::vector<double> ring_;    ///< in order of arrival, NaN among them
-  std::vector<double> sorted_;  ///< the values that count, ascending
-  std::size_t next_ = 0;
+  std::vector<double> ring_;    ///< in order of arrival; infinite: does not count
+  std::vector<double> sorted_;  ///< ascending, infinite beyond the values that count
+  std::vector<double> guide_;   ///< every kGuideStep-th of them: see kernels.h
+  std::size_t next_ = 0, count_ = 0;
 };
 
 }  // namespace framewatch

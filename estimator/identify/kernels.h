@@ -22,6 +22,11 @@ constexpr int packed_row_begin(int i) {
 
 namespace framewatch::kernels {
 
+/// A sorted array's guide holds its values kGuideStep - 1, 2 kGuideStep - 1, ...
+inline constexpr int kGuideStep = 16;
+/// Its own length is a multiple of this.
+inline constexpr int kGuidePadding = 8;
+
 struct Table {
   /// One step of a floor's row filters: per row, s = gain x - a1 s1 - a2 s2; s2 = s1; s1 = s;
   /// h = beta s. x is common to all rows but for entry `at`, which is the row's response. x:
@@ -71,6 +76,12 @@ struct Table {
   /// the front.
   void (*subtract_product)(const double* packed, const double* x, double* score, int front,
                            int stride);
+
+  /// Takes `leaving`, which is there, out of an ascending array and puts `entering` in. size: a
+  /// multiple of kGuideStep; guide_size: size / kGuideStep, padded with infinities.
+  /// Infinity fills what is unused.
+  void (*replace_sorted)(double* sorted, int size, double* guide, int guide_size, double leaving,
+                         double entering);
 };
 
 /// Null where the machine or the compiler does not have the instruction set.

@@ -17,10 +17,9 @@ void NoiseShare::update(const RowChain& rows, const WindowParts& sums, double le
     floor.rows = &rows.floor_rows(f);
     floor.instants = (*sums.instants)[static_cast<std::size_t>(f)];
     residual_ += floor.instants * floor.rows->noise_residual;
-    const int unknowns = layout_.front(f) - 1;
-    for (int p = 0; p < unknowns; ++p)
-      energy_[static_cast<std::size_t>(f * layout_.own() + p)] +=
-          floor.instants * floor.rows->noise_energy[static_cast<std::size_t>(p * unknowns + p)];
+    const std::vector<double>& diagonal = floor.rows->noise_diagonal;
+    double* energy = &energy_[static_cast<std::size_t>(f * layout_.own())];
+    for (std::size_t p = 0; p < diagonal.size(); ++p) energy[p] += floor.instants * diagonal[p];
   }
 }
 

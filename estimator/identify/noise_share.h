@@ -27,11 +27,12 @@ class NoiseShare {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
     return {f.rows->noise_taken_off.data(), level_ * f.instants};
   }
-  /// What is left of W in a floor's equations: front unknowns x front unknowns.
-  Part left(int floor) const {
+  /// Pull of what is left of W in a floor's equations toward the wrong designs: front unknowns x
+  /// WrongDesigns::kCount.
+  Part pull(int floor) const {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
     if (f.rows == nullptr) return {nullptr, 0};
-    return {f.rows->noise_energy.data(), f.instants * left_share()};
+    return {f.rows->noise_pull.data(), f.instants * left_share()};
   }
 
   /// W's diagonal, internal order: energy each regressor has from noise.

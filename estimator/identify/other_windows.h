@@ -8,8 +8,8 @@
 
 namespace framewatch {
 
-/// Windows of other lengths than the main one, of whole blocks, from the same block sums. Each is
-/// solved once per block; the work is spread over the next block's instants, one window after the
+/// Windows of other lengths than the main one, of whole blocks, from the same block sums
+/// (WindowSums' spans). The work is spread over the next block's instants, one window after the
 /// other, so an estimate comes up to a block after its window's end.
 class OtherWindows {
  public:

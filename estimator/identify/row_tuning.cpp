@@ -26,6 +26,7 @@ RowTuning::RowTuning(const Structure& structure, const FloorLayout& layout,
       theta0_(theta0),
       noise_density_(noise_density.empty() ? deformations.noise_density()
                                            : std::move(noise_density)),
+      wrong_(layout),
       eigen_(layout.frames()) {
   const int frames = layout.frames();
   for (int story = 1; story <= structure.stories; ++story)
@@ -237,6 +238,11 @@ void RowTuning::pack_noise(int floor, FloorRows& out) const {
     for (int q = 0; q < p; ++q) energy(p, q) = energy(q, p);
     for (int q = p; q < unknowns; ++q) whole += (q == p ? 1 : 2) * energy(p, q);
   }
+  out.noise_diagonal.clear();
+  for (int p = 0; p < unknowns; ++p) out.noise_diagonal.push_back(energy(p, p));
+  out.noise_pull.assign(static_cast<std::size_t>(unknowns * WrongDesigns::kCount), 0.0);
+  kernels::in_use->multiply_add(out.noise_energy.data(), unknowns, unknowns, unknowns,
+                                wrong_.floor(floor), out.noise_pull.data(), WrongDesigns::kCount);
   const auto entry = [&](int i, int j) {  // i <= j
     if (j > unknowns) return 0.0;
     if (j < unknowns) return kTakenOff * energy(i, j);

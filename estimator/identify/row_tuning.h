@@ -11,6 +11,7 @@
 #include "estimator/identify/kernels.h"
 #include "estimator/identify/noise_moments.h"
 #include "estimator/identify/symmetric_eigen.h"
+#include "estimator/identify/wrong_designs.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/motion_filter.h"
 #include "estimator/options.h"
@@ -35,6 +36,8 @@ struct FloorRows {
   /// What sensor noise adds per instant, for the design: to the normal matrix (unknowns x
   /// unknowns), to the right-hand side, and to the energy of the response.
   std::vector<double> noise_energy;
+  std::vector<double> noise_diagonal;  ///< of noise_energy
+  std::vector<double> noise_pull;      ///< noise_energy times the wrong designs' errors
   std::vector<double> noise_right;
   double noise_response = 0;
   /// The part of these that the solver takes off per instant, packed like the sums.
@@ -95,6 +98,7 @@ class RowTuning {
   std::vector<double> noise_density_;
   std::vector<double> mass_;    ///< floors x frames
   Eigen::MatrixXd constraint_;  ///< of rigid floors; empty when flexible
+  WrongDesigns wrong_;
   std::vector<FloorNoise> noise_;
   std::vector<FloorRows> rows_;
 

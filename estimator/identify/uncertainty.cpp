@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 
 #include "estimator/identify/kernels.h"
 
@@ -11,31 +10,18 @@ namespace {
 
 /// Measured: batch means of 20 blocks understate the spread by a seventh (docs/accuracy.md).
 constexpr double kCorrection = 1.155;
-/// Designs, wrong by their tolerance in random directions, whose pull is averaged.
-constexpr int kWrongDesigns = 20;
-/// Standard deviation of a design that is off by anything up to its tolerance, over the tolerance.
-constexpr double kUniform = 0.58;
-
-/// A fixed random sign: the same on every run and machine (splitmix64).
-double sign(int row, int column) {
-  std::uint64_t z = (static_cast<std::uint64_t>(row) << 20) + static_cast<std::uint64_t>(column);
-  z += 0x9e3779b97f4a7c15U;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebU;
-  return ((z ^ (z >> 31)) & 1) != 0 ? 1.0 : -1.0;
-}
-
 }  // namespace
 
-BatchMeans::BatchMeans(const FloorLayout& layout, const std::vector<double>& tolerance)
+BatchMeans::BatchMeans(const FloorLayout& layout)
     : layout_(layout),
-      columns_(kBlocks + kWrongDesigns),
+      columns_(kBlocks + WrongDesigns::kCount),
       factor_(layout),
       inverse_(layout),
       noise_(layout),
       next_step_(steps()),
-      block_(kBlocks, nullptr) {
-  static_assert(kBlocks % kLane == 0 && kWrongDesigns % kLane == 0);
+      block_(kBlocks, nullptr),
+      wrong_(layout) {
+  static_assert(kBlocks % kLane == 0 && WrongDesigns::kCount % kLane == 0);
   const auto unknowns = static_cast<std::size_t>(layout.unknowns());
   columns_values_.assign(unknowns * static_cast<std::size_t>(columns_), 0.0);
   for (std::vector<double>* v :
@@ -45,10 +31,6 @@ BatchMeans::BatchMeans(const FloorLayout& layout, const std::vector<double>& tol
   const auto front = static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1));
   score_.assign(front, 0.0);
   x_.assign(front, 0.0);
-  pulled_.assign(front * kWrongDesigns, 0.0);
-  for (std::size_t u = 0; u < unknowns; ++u)
-    for (int c = 0; c < kWrongDesigns; ++c)
-      wrong_.push_back(kUniform * tolerance[u] * sign(static_cast<int>(u), c));
 }
 
 void BatchMeans::begin(const WindowSums& sums, StorySolver& solver, const Fit& fit,
@@ -125,24 +107,20 @@ void BatchMeans::add_block_scores(int floor) {
 }
 
 void BatchMeans::add_pulls(int floor) {
+  constexpr int kCount = WrongDesigns::kCount;
   const int first = floor * layout_.own();
-  const int unknowns = layout_.front(floor) - 1;
-  const double* wrong = &wrong_[static_cast<std::size_t>(first * kWrongDesigns)];
-  const NoiseShare::Part left = noise_.left(floor);
-  if (left.values != nullptr) {
-    std::fill(pulled_.begin(), pulled_.end(), 0.0);
-    kernels::in_use->multiply_add(left.values, unknowns, unknowns, unknowns, wrong, pulled_.data(),
-                                  kWrongDesigns);
-    const double scale = noise_level_ * left.scale;
-    for (int i = 0; i < unknowns; ++i)
-      for (int c = 0; c < kWrongDesigns; ++c)
-        columns(first + i)[kBlocks + c] +=
-            scale * pulled_[static_cast<std::size_t>(i * kWrongDesigns + c)];
+  const NoiseShare::Part pull = noise_.pull(floor);
+  if (pull.values != nullptr) {
+    const double scale = noise_level_ * pull.scale;
+    for (int i = 0; i < layout_.front(floor) - 1; ++i)
+      for (int c = 0; c < kCount; ++c)
+        columns(first + i)[kBlocks + c] += scale * pull.values[i * kCount + c];
   }
+  const double* wrong = wrong_.floor(floor);
   for (int i = 0; i < layout_.own(); ++i)
-    for (int c = 0; c < kWrongDesigns; ++c)
+    for (int c = 0; c < kCount; ++c)
       columns(first + i)[kBlocks + c] +=
-          prior_[static_cast<std::size_t>(first + i)] * wrong[i * kWrongDesigns + c];
+          prior_[static_cast<std::size_t>(first + i)] * wrong[i * kCount + c];
 }
 
 void BatchMeans::finish(int floor) {
@@ -154,7 +132,7 @@ void BatchMeans::finish(int floor) {
     double spread = 0, pull = 0;
     for (int c = 0; c < kBlocks; ++c) spread += row[c] * row[c];
     for (int c = kBlocks; c < columns_; ++c) pull += row[c] * row[c];
-    new_error_[i] = std::sqrt(spread_scale * spread + pull / kWrongDesigns);
+    new_error_[i] = std::sqrt(spread_scale * spread + pull / WrongDesigns::kCount);
     new_share_[i] = prior_[i] * inverse_diagonal_[i];
     new_noise_share_[i] =
         noise_level_ * noise_.left_share() * noise_.energy()[i] * inverse_diagonal_[i];

@@ -7,6 +7,7 @@
 #include "estimator/identify/story_factor.h"
 #include "estimator/identify/story_solver.h"
 #include "estimator/identify/window_sums.h"
+#include "estimator/identify/wrong_designs.h"
 
 namespace framewatch {
 
@@ -24,8 +25,7 @@ class BatchMeans {
  public:
   static constexpr int kBlocks = 20;
 
-  /// tolerance: how far the design may be off, relative, per unknown.
-  BatchMeans(const FloorLayout& layout, const std::vector<double>& tolerance);
+  explicit BatchMeans(const FloorLayout& layout);
 
   /// The window of kBlocks blocks and the solution that fits it.
   struct Fit {
@@ -75,8 +75,8 @@ class BatchMeans {
   const SumsShape* shape_ = nullptr;
   std::vector<const double*> block_;
   std::vector<double> columns_values_;  ///< unknowns x (blocks, then pulls)
-  std::vector<double> wrong_;           ///< unknowns x wrong designs
-  std::vector<double> solution_, score_scale_, prior_, x_, score_, pulled_, inverse_diagonal_;
+  WrongDesigns wrong_;
+  std::vector<double> solution_, score_scale_, prior_, x_, score_, inverse_diagonal_;
   std::vector<double> new_error_, new_share_, new_noise_share_;
   std::vector<double> std_error_, prior_share_, noise_share_;
 };

@@ -14,14 +14,6 @@ constexpr double kSymmetric = 0.02;
 constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-std::vector<double> tolerances(const FloorLayout& layout, const ParameterTable& table) {
-  std::vector<double> out;
-  for (int u = 0; u < layout.unknowns(); ++u)
-    out.push_back(
-        design_tolerance(table[layout.parameter(u / layout.own(), u % layout.own())].kind));
-  return out;
-}
-
 }  // namespace
 
 WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& layout,
@@ -32,16 +24,19 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       options_(options),
       noise_(layout),
       solver_(layout),
-      errors_(layout, tolerances(layout, table)),
+      errors_(layout),
       prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
-      warm_(static_cast<std::size_t>(layout.floors()), 0) {
+      warm_(static_cast<std::size_t>(layout.floors()), 0),
+      known_(static_cast<std::size_t>((layout.floors() + 1) * layout.frames()), 0),
+      place_known_(static_cast<std::size_t>(layout.unknowns()), 0) {
   for (int u = 0; u < layout.unknowns(); ++u) {
     const int parameter = layout.parameter(u / layout.own(), u % layout.own());
     const ParameterKind kind = table[parameter].kind;
     const double limit = kind == ParameterKind::frame_stiffness   ? options.max_error_k
                          : kind == ParameterKind::panel_stiffness ? options.max_error_g
                                                                   : options.max_error_c;
-    unknowns_.push_back({parameter, kind, design_tolerance(kind), limit});
+    const double tolerance = design_tolerance(kind);
+    unknowns_.push_back({parameter, kind, kInflation / (tolerance * tolerance), limit});
   }
 }
 
@@ -64,12 +59,8 @@ void WindowSolution::solve(const WindowParts& sums, const RowChain& rows, const 
       trust.regularise && trust.noise_known ? std::min(noise_level_, 1.0) : 0.0;
   noise_.update(rows, sums, taken_off);
   for (std::size_t f = 0; f < warm_.size(); ++f) warm_[f] = 2 * (*sums.instants)[f] >= sums.rows;
-  for (std::size_t u = 0; u < prior_.size(); ++u) {
-    const double tolerance = unknowns_[u].tolerance;
-    prior_[u] = trust.regularise && options_.prior
-                    ? kInflation / (tolerance * tolerance) * noise_level_
-                    : 0.0;
-  }
+  const double pull = trust.regularise && options_.prior ? noise_level_ : 0.0;
+  for (std::size_t u = 0; u < prior_.size(); ++u) prior_[u] = pull * unknowns_[u].prior;
   solver_.factor(sums, prior_, noise_);
   residual_energy_ = std::max(solver_.residual_energy() + taken_off * noise_.residual(), 0.0);
   noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
@@ -99,18 +90,25 @@ bool WindowSolution::published(int unknown) const {
          errors_.std_error()[u] < unknowns_[u].error_limit * solver_.solution()[u];
 }
 
-bool WindowSolution::place_known(int unknown, const std::vector<std::uint8_t>& known) const {
+bool WindowSolution::place_known(int unknown) const {
   const int frames = layout_.frames();
   const int floor = unknown / layout_.own();
   const int position = unknown % layout_.own();
   const auto is_known = [&](int level, int f) {
-    return known[static_cast<std::size_t>(level * frames + f)] != 0;
+    return known_[static_cast<std::size_t>(level * frames + f)] != 0;
   };
   if (position < 2 * frames)
     return is_known(floor, position % frames) && is_known(floor + 1, position % frames);
   for (int f = 0; f < frames; ++f)
     if (layout_.coefficient(position, f) != 0 && !is_known(floor + 1, f)) return false;
   return true;
+}
+
+void WindowSolution::see(const std::vector<std::uint8_t>& known) {
+  if (known == known_) return;
+  known_ = known;
+  for (std::size_t u = 0; u < place_known_.size(); ++u)
+    place_known_[u] = place_known(static_cast<int>(u)) ? 1 : 0;
 }
 
 /// Whether, in every direction that moves, the frames of each story are alike in stiffness over
@@ -134,7 +132,8 @@ bool WindowSolution::looks_symmetric(const WindowEstimate& estimate) const {
   return true;
 }
 
-void WindowSolution::fill(const Situation& situation, WindowEstimate& e) const {
+void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
+  see(*situation.known);
   bool any = false, any_frame = false, warming = true;
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const auto i = static_cast<std::size_t>(u);
@@ -142,10 +141,10 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) const {
     const double design = (*situation.design)[unknowns_[i].parameter];
     const bool warm = solved_ && errors_known_ && situation.tuned &&
                       warm_[static_cast<std::size_t>(u / layout_.own())] != 0;
-    e.reason[p] = !place_known(u, *situation.known) ? Observability::channel_lost
-                  : !warm                           ? Observability::warming_up
-                  : published(u)                    ? Observability::observable
-                                                    : Observability::quiet;
+    e.reason[p] = place_known_[i] == 0 ? Observability::channel_lost
+                  : !warm              ? Observability::warming_up
+                  : published(u)       ? Observability::observable
+                                       : Observability::quiet;
     const bool observable = e.reason[p] == Observability::observable;
     any = any || observable;
     any_frame = any_frame || (observable && unknowns_[i].kind == ParameterKind::frame_stiffness);

@@ -59,16 +59,17 @@ class WindowSolution {
     bool tuned;                              ///< the filters have been found right
   };
   /// Everything of the estimate that one window says; not its times, boxplots and last values.
-  void fill(const Situation& situation, WindowEstimate& estimate) const;
+  void fill(const Situation& situation, WindowEstimate& estimate);
 
  private:
   struct Unknown {
     int parameter;
     ParameterKind kind;
-    double tolerance;    ///< of the design, relative
+    double prior;        ///< its weight over the level of the noise
     double error_limit;  ///< relative standard error above which it is not published
   };
-  bool place_known(int unknown, const std::vector<std::uint8_t>& known) const;
+  bool place_known(int unknown) const;
+  void see(const std::vector<std::uint8_t>& known);
   bool published(int unknown) const;
   bool looks_symmetric(const WindowEstimate& estimate) const;
 
@@ -81,7 +82,9 @@ class WindowSolution {
   StorySolver solver_;
   BatchMeans errors_;
   std::vector<double> prior_;
-  std::vector<std::uint8_t> warm_;  ///< floors whose rows fill most of the window
+  std::vector<std::uint8_t> warm_;         ///< floors whose rows fill most of the window
+  std::vector<std::uint8_t> known_;        ///< Situation::known when last seen
+  std::vector<std::uint8_t> place_known_;  ///< of every unknown: all motion it needs
   bool errors_known_ = false;
   bool solved_ = false;
   bool fresh_ = true;  ///< the noise level is that of other rows or of none

@@ -5,6 +5,11 @@
 #include "estimator/identify/kernels.h"
 
 namespace framewatch {
+namespace {
+
+constexpr int kSpansPerLength = 5;
+
+}  // namespace
 
 SumsShape::SumsShape(const FloorLayout& layout) {
   for (int f = 0; f < layout.floors(); ++f) {
@@ -24,8 +29,9 @@ WindowSums::WindowSums(const FloorLayout& layout, int blocks, int block_rows,
       held_blocks_(blocks) {
   for (const int span : spans) {
     held_blocks_ = std::max(held_blocks_, span);
-    spans_.push_back(
-        {span, std::vector<double>(shape_.size, 0.0), std::vector<double>(shape_.size, 0.0)});
+    spans_.push_back({span, std::max(1, span / kSpansPerLength),
+                      std::vector<double>(shape_.size, 0.0),
+                      std::vector<double>(shape_.size, 0.0)});
   }
   for (std::vector<double>* state : {&current_, &middle_, &next_middle_, &zero_})
     state->assign(shape_.size, 0.0);
@@ -41,6 +47,7 @@ WindowSums::WindowSums(const FloorLayout& layout, int blocks, int block_rows,
   stored_counts_.assign(floors * rows, 0);
   counts_.assign(floors * static_cast<std::size_t>(held_blocks_ + 1), 0);
   instants_.assign(floors, 0);
+  middle_instants_.assign(floors, 0);
   reset();
 }
 
@@ -52,6 +59,7 @@ void WindowSums::reset() {
   for (Span& span : spans_) std::fill(span.next.begin(), span.next.end(), 0.0);
   std::fill(stored_counts_.begin(), stored_counts_.end(), 0);
   std::fill(counts_.begin(), counts_.end(), 0);
+  std::fill(middle_instants_.begin(), middle_instants_.end(), 0);
   forward_ = true;
   oldest_ = zero_.data();
 }
@@ -66,29 +74,28 @@ const double* WindowSums::block(int age) const {
   return &blocks_ring_[static_cast<std::size_t>((newest - age) % held_blocks_) * shape_.size];
 }
 
-/// Of the blocks first..last, into instants_.
-void WindowSums::count_instants(std::int64_t first, std::int64_t last) {
-  std::fill(instants_.begin(), instants_.end(), 0);
+void WindowSums::count_instants(std::int64_t first, std::int64_t last, std::vector<int>& instants) {
+  std::fill(instants.begin(), instants.end(), 0);
   for (std::int64_t b = std::max<std::int64_t>(first, 0); b <= last; ++b)
-    for (int f = 0; f < floors_; ++f) instants_[static_cast<std::size_t>(f)] += counts(b)[f];
+    for (std::size_t f = 0; f < instants.size(); ++f) instants[f] += counts(b)[f];
 }
 
 WindowParts WindowSums::window() {
   const std::int64_t block = (pushed_ - 1) / block_rows_;
-  count_instants(block - blocks_ + 1, block);
   const auto into_block = static_cast<int>((pushed_ - 1) % block_rows_) + 1;
   // Of the oldest block, which leaves row by row, the count is to a row's share.
-  if (block >= blocks_)
-    for (int f = 0; f < floors_; ++f)
-      instants_[static_cast<std::size_t>(f)] +=
-          counts(block - blocks_)[f] * (block_rows_ - into_block) / block_rows_;
+  const int* newest = counts(block);
+  const int* oldest = block >= blocks_ ? counts(block - blocks_) : nullptr;
+  for (std::size_t f = 0; f < instants_.size(); ++f)
+    instants_[f] = middle_instants_[f] + newest[f] +
+                   (oldest != nullptr ? oldest[f] * (block_rows_ - into_block) / block_rows_ : 0);
   return {&shape_, current_.data(), middle_.data(), oldest_, window_rows(), &instants_};
 }
 
 WindowParts WindowSums::span(int i) {
   const Span& span = spans_[static_cast<std::size_t>(i)];
   const std::int64_t newest = pushed_ / block_rows_ - 1;
-  count_instants(newest - span.blocks + 1, newest);
+  count_instants(newest - span.blocks + 1, newest, instants_);
   return {&shape_,      span.sum.data(),           zero_.data(),
           zero_.data(), span.blocks * block_rows_, &instants_};
 }
@@ -116,8 +123,7 @@ bool WindowSums::maintain(const RowChain* delayed) {
   const int j = static_cast<int>((pushed_ - 1) % block_rows_) + 1;
   if (j < block_rows_) build_suffix(j);
   if (delayed != nullptr) store_delayed(*delayed, j);
-  add_slice(j, blocks_ - 2, next_middle_);
-  for (Span& span : spans_) add_slice(j, span.blocks - 1, span.next);
+  add_slices(j);
   if (j < block_rows_) return false;
   close_block();
   return true;
@@ -148,13 +154,24 @@ void WindowSums::store_delayed(const RowChain& delayed, int j) {
         delayed.count(f);
 }
 
-void WindowSums::add_slice(int j, int completed, std::vector<double>& sum) {
+void WindowSums::add_slices(int j) {
   const std::int64_t block = (pushed_ - 1) / block_rows_;
-  const std::int64_t oldest = std::max<std::int64_t>(block - completed, 0);
-  const auto total = static_cast<std::size_t>(block - oldest) * shape_.size;
-  const auto rows = static_cast<std::size_t>(block_rows_);
-  std::size_t at = total * static_cast<std::size_t>(j - 1) / rows;
-  const std::size_t end = total * static_cast<std::size_t>(j) / rows;
+  add_slice(block - (blocks_ - 2), block, j, block_rows_, next_middle_);
+  for (Span& span : spans_) {
+    // Blocks that close meanwhile are added as they do.
+    const auto since = static_cast<int>(block % span.every);
+    const std::int64_t start = block - since;
+    add_slice(start - (span.blocks - span.every), start, since * block_rows_ + j,
+              span.every * block_rows_, span.next);
+  }
+}
+
+void WindowSums::add_slice(std::int64_t first, std::int64_t last, int part, int parts,
+                           std::vector<double>& sum) {
+  const std::int64_t oldest = std::max<std::int64_t>(first, 0);
+  const auto total = static_cast<std::size_t>(last - oldest) * shape_.size;
+  std::size_t at = total * static_cast<std::size_t>(part - 1) / static_cast<std::size_t>(parts);
+  const std::size_t end = total * static_cast<std::size_t>(part) / static_cast<std::size_t>(parts);
   while (at < end) {
     const std::size_t within = at % shape_.size;
     const std::size_t length = std::min(shape_.size - within, end - at);
@@ -173,9 +190,12 @@ void WindowSums::close_block() {
             blocks_ring_.begin() + static_cast<std::ptrdiff_t>(ring * shape_.size));
   for (Span& span : spans_) {
     kernels::in_use->add(span.next.data(), current_.data(), static_cast<long>(shape_.size));
+    if (pushed_ / block_rows_ % span.every != 0) continue;
     span.sum.swap(span.next);
     std::fill(span.next.begin(), span.next.end(), 0.0);
   }
+  const std::int64_t closed = pushed_ / block_rows_ - 1;
+  count_instants(closed - (blocks_ - 2), closed, middle_instants_);
   middle_.swap(next_middle_);
   std::fill(next_middle_.begin(), next_middle_.end(), 0.0);
   std::fill(current_.begin(), current_.end(), 0.0);

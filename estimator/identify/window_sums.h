@@ -38,7 +38,8 @@ struct WindowParts {
 /// rows 1..j of block b. The suffixes are built backwards, one row per instant, during block b-1,
 /// from rows a second chain produced during block b-2.
 ///
-/// Spans are further windows of whole blocks, summed from the same blocks whenever one closes.
+/// Spans are further windows of whole blocks, summed from the same blocks a fifth of their length
+/// apart, at most once per block.
 class WindowSums {
  public:
   /// spans: their lengths in blocks.
@@ -65,13 +66,16 @@ class WindowSums {
   const SumsShape& shape() const { return shape_; }
   /// Valid from push() to maintain().
   WindowParts window();
-  /// Ending with the newest completed block; valid from the maintain() that closed it to the next.
+  /// The block that maintain() closed is the last of a whole span.
+  bool span_full(int i) const {
+    const Span& span = spans_[static_cast<std::size_t>(i)];
+    const std::int64_t closed = pushed_ / block_rows_;
+    return closed >= span.blocks && closed % span.every == 0;
+  }
+  /// Valid from the maintain() that closed its last block to the one that closes the next.
   WindowParts span(int i);
   /// Instants of the longest window.
   int longest_rows() const { return held_blocks_ * block_rows_; }
-  bool span_full(int i) const {
-    return pushed_ / block_rows_ >= spans_[static_cast<std::size_t>(i)].blocks;
-  }
   int spans() const { return static_cast<int>(spans_.size()); }
   int blocks() const { return blocks_; }
   int block_rows() const { return block_rows_; }
@@ -82,8 +86,11 @@ class WindowSums {
   double* suffix(int slot) { return &suffixes_[static_cast<std::size_t>(slot - 1) * shape_.size]; }
   void build_suffix(int j);
   void store_delayed(const RowChain& delayed, int j);
-  void count_instants(std::int64_t first, std::int64_t last);
-  void add_slice(int j, int completed, std::vector<double>& sum);
+  void count_instants(std::int64_t first, std::int64_t last, std::vector<int>& instants);
+  /// Adds the part-th of `parts` slices of the completed blocks first..last - 1 to a sum.
+  void add_slice(std::int64_t first, std::int64_t last, int part, int parts,
+                 std::vector<double>& sum);
+  void add_slices(int j);
   void close_block();
   int* counts(std::int64_t block) {
     return &counts_[static_cast<std::size_t>(block % (held_blocks_ + 1) * floors_)];
@@ -96,7 +103,7 @@ class WindowSums {
   std::int64_t pushed_ = 0;
   std::vector<double> current_, middle_, next_middle_, zero_;
   struct Span {
-    int blocks;
+    int blocks, every;
     std::vector<double> next, sum;
   };
   std::vector<Span> spans_;
@@ -109,6 +116,7 @@ class WindowSums {
   bool forward_ = true;  ///< direction in which this block uses the slots
   const double* oldest_ = nullptr;
   std::vector<int> instants_;
+  std::vector<int> middle_instants_;  ///< of the main window's completed blocks
   std::vector<int> counts_;  ///< (held blocks + 1) x floors, the current block's among them
 };
 

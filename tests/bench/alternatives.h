@@ -17,8 +17,8 @@ struct Pattern {
 
 /// Another way to the same window's least-squares solution, by Eigen's dense algebra. Its input is
 /// filtered motion, for free: per instant the elements' deformations, their rates and the
-/// equations' right-hand sides. Compiled for the instruction set ours uses, in a shared library of
-/// its own: only raw pointers cross, because Eigen's types differ between instruction sets.
+/// equations' right-hand sides. Compiled for one instruction set, in a shared library of its own:
+/// only raw pointers cross, because Eigen's types differ between instruction sets.
 class Alternative {
  public:
   virtual ~Alternative() = default;
@@ -33,7 +33,9 @@ enum class Method {
   recursive_ldlt  ///< the same with Eigen's pivoting LDLT
 };
 
-/// Null when the machine has not the instruction set: AVX2, AVX-512.
+/// Null when the machine has not the instruction set: what every x86-64 has, as the program itself
+/// is built; AVX2; AVX-512.
+std::unique_ptr<Alternative> make_alternative_v1(Method method, const Pattern& pattern);
 std::unique_ptr<Alternative> make_alternative_v3(Method method, const Pattern& pattern);
 std::unique_ptr<Alternative> make_alternative_v4(Method method, const Pattern& pattern);
 
