@@ -281,9 +281,10 @@ const Option kOptions[] = {
      .min = 0,
      .max = 3600,
      .above_min = true,
-     .meaning = "Lengths of further windows, summed from the main one's blocks (twentieths of it) and "
-                "published five times per length, at most once per block, on ESTIMATE_1S and so on; "
-                "rounded to whole blocks, at least four."},
+     .meaning =
+         "Lengths of further windows, summed from the main one's blocks (twentieths of it) and "
+         "published five times per length, at most once per block, on ESTIMATE_1S and so on; "
+         "rounded to whole blocks, at least four."},
     {.section = "estimator",
      .key = "hop_s",
      .type = number,
