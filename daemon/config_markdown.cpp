@@ -41,6 +41,13 @@ constexpr SectionText kSections[] = {
      "What the linear building leaves out, in a scenario or a configuration, once for each: kind, "
      "place and numbers; [effects](effects.md) has the equations, and which keys belong to which "
      "kind."},
+    {"expect", "Expectation files: at the top",
+     "`framewatch replay --expect` holds a replay to such a file, `--write-expect` makes a first "
+     "one "
+     "([replay in CI](replay-in-ci.md))."},
+    {"expect.counts", "[counts]", "What became of the input."},
+    {"expect.parameter", "[[parameter]]", "What the windows of a parameter, or of a group, say."},
+    {"expect.event", "[[event]]", "Alarms, by the time since when they hold."},
 };
 
 /// | would end the cell.

@@ -434,6 +434,8 @@ std::span<const Option> options() {
     all.insert(all.end(), scenario.begin(), scenario.end());
     const std::span<const Option> effect = effect_options();
     all.insert(all.end(), effect.begin(), effect.end());
+    const std::span<const Option> expectation = expectation_options();
+    all.insert(all.end(), expectation.begin(), expectation.end());
     return all;
   }();
   return kAll;

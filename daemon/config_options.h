@@ -29,10 +29,12 @@ struct Option {
   std::string_view meaning = "";
 };
 
-/// Of the configuration file, then of the scenario file, then of [[effect]], which both may have.
+/// Of the configuration file, then of the scenario file, then of [[effect]], which both may have,
+/// then of the expectation file.
 std::span<const Option> options();
 std::span<const Option> effect_options();
 std::span<const Option> scenario_options();
+std::span<const Option> expectation_options();
 
 /// Null when the section has no such key.
 const Option* find_option(std::string_view section, std::string_view key);

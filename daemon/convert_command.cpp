@@ -1,10 +1,8 @@
 #include "daemon/convert_command.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include <fmt/core.h>
@@ -14,6 +12,7 @@
 #include "daemon/log.h"
 #include "daemon/simulation_output.h"
 #include "drivers/accel_log.h"
+#include "drivers/lcm_log.h"
 #include "drivers/record_csv_writer.h"
 #include "drivers/record_file.h"
 #include "drivers/record_merge.h"
@@ -34,11 +33,7 @@ bool is_csv(const std::string& path) {
 }
 
 bool is_log(const std::string& path) {
-  if (path.ends_with(".lcmlog")) return true;
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 4> head{};
-  file.read(head.data(), head.size());
-  return file && std::string(head.data(), head.size()) == "\xED\xA1\xDA\x01";
+  return path.ends_with(".lcmlog") || drivers::is_event_log(path);
 }
 
 /// What no file needs to be opened for.

@@ -20,13 +20,6 @@ constexpr Eigen::Index kLeastInstants = 400;
 constexpr int kLongestGap = 3;  ///< samples that are bridged
 constexpr double kEverything_s = 1e9;
 
-bool is_log(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  char head[4] = {};
-  in.read(head, sizeof head);
-  return std::string_view(head, 4) == std::string_view("\xED\xA1\xDA\x01", 4);
-}
-
 std::string digest(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return sha256({std::istreambuf_iterator<char>(in), {}});
@@ -120,8 +113,8 @@ std::optional<DiagnoseRecord> read_diagnose_record(const Config& config, const s
     problems.push_back(path + ": cannot be opened");
     return std::nullopt;
   }
-  const bool read =
-      is_log(path) ? from_log(config, out, problems) : from_record(config, out, problems);
+  const bool read = drivers::is_event_log(path) ? from_log(config, out, problems)
+                                                : from_record(config, out, problems);
   if (!read) return std::nullopt;
   if (out.accel.rows() < kLeastInstants)
     problems.push_back(fmt::format("{}: {} instants are too short, at least {} are needed", path,

@@ -8,8 +8,8 @@
 
 #include "drivers/log_events.h"
 #include "drivers/message_check.h"
+#include "drivers/message_types.h"
 #include "drivers/number_text.h"
-#include "drivers/text_output.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -33,7 +33,8 @@ std::optional<std::vector<std::string>> parameter_names(const std::string& log,
         if (drivers::fingerprint(event.data) != parameter_table_t::getHash()) return true;
         const auto table = drivers::decode_parameter_table(event.data);
         if (!table)
-          problems.push_back({place_of(log, event), "the message is no parameter_table_t"});
+          problems.push_back(
+              {place_of(log, event), drivers::why_not("parameter_table_t", event.data)});
         else if (names && *names != table->name)
           problems.push_back({place_of(log, event), "the parameter table changes inside the log"});
         else
@@ -77,8 +78,9 @@ std::string row(const window_estimate_t& estimate, bool boxplot) {
   return line + "\n";
 }
 
-/// Empty when the estimate can stand in the file.
-std::string fault(const window_estimate_t& estimate, std::size_t parameters) {
+}  // namespace
+
+std::string fault_of(const window_estimate_t& estimate, std::size_t parameters) {
   if (estimate.value.size() != parameters)
     return fmt::format("{} parameters where the table has {}", estimate.value.size(), parameters);
   if (estimate.boxplots != 0 && estimate.boxplots != estimate.parameters)
@@ -91,14 +93,28 @@ std::string fault(const window_estimate_t& estimate, std::size_t parameters) {
   return "";
 }
 
-}  // namespace
+bool EstimatesCsvWriter::open(const std::string& path, const std::vector<std::string>& names,
+                              const std::vector<std::string>&, bool boxplot) {
+  parameters_ = names.size();
+  boxplot_ = boxplot;
+  return file_.open(path) && file_.write(header(names, boxplot));
+}
+
+bool EstimatesCsvWriter::write(const window_estimate_t& estimate) {
+  fault_ = fault_of(estimate, parameters_);
+  return fault_.empty() && file_.write(row(estimate, boxplot_));
+}
+
+bool EstimatesCsvWriter::close() {
+  return file_.close();
+}
 
 bool write_estimates_csv(const std::string& log, const std::string& channel, bool boxplot,
                          const std::string& out, std::vector<Problem>& problems) {
   const auto names = parameter_names(log, problems);
   if (!names) return false;
-  drivers::TextOutput file;
-  if (!file.open(out) || !file.write(header(*names, boxplot))) {
+  EstimatesCsvWriter file;
+  if (!file.open(out, *names, {}, boxplot)) {
     problems.push_back({out, file.error()});
     return false;
   }
@@ -107,12 +123,11 @@ bool write_estimates_csv(const std::string& log, const std::string& channel, boo
       [&](const LogEvent& event) {
         if (event.channel != channel) return true;
         const auto estimate = drivers::decode_window_estimate(event.data);
-        const std::string wrong =
-            estimate ? fault(*estimate, names->size()) : "the message is no window_estimate_t";
-        if (!wrong.empty())
-          problems.push_back({place_of(log, event), wrong});
-        else if (!file.write(row(*estimate, boxplot)))
-          problems.push_back({out, file.error()});
+        if (!estimate)
+          problems.push_back(
+              {place_of(log, event), drivers::why_not("window_estimate_t", event.data)});
+        else if (!file.write(*estimate))
+          problems.push_back({file.at_fault() ? place_of(log, event) : out, file.error()});
         return problems.empty();
       },
       problems);

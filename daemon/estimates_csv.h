@@ -3,9 +3,34 @@
 #include <string>
 #include <vector>
 
+#include <framewatch/window_estimate_t.hpp>
+
 #include "drivers/record.h"
+#include "drivers/text_output.h"
 
 namespace framewatch::daemon {
+
+/// Writes estimates as CSV, one row per window (docs/formats.md), .gz when the name says so. False
+/// when the file cannot be written or the message breaks its type's rules; error() says why.
+class EstimatesCsvWriter {
+ public:
+  [[nodiscard]] bool open(const std::string& path, const std::vector<std::string>& names,
+                          const std::vector<std::string>& units, bool boxplot);
+  [[nodiscard]] bool write(const framewatch::window_estimate_t& estimate);
+  [[nodiscard]] bool close();
+  const std::string& error() const { return fault_.empty() ? file_.error() : fault_; }
+  /// It was the message.
+  bool at_fault() const { return !fault_.empty(); }
+
+ private:
+  drivers::TextOutput file_;
+  std::string fault_;
+  std::size_t parameters_ = 0;
+  bool boxplot_ = false;
+};
+
+/// What is wrong with an estimate of so many parameters; empty when nothing is.
+std::string fault_of(const framewatch::window_estimate_t& estimate, std::size_t parameters);
 
 /// Writes the window_estimate_t on `channel` of a log as estimates CSV (docs/formats.md), .gz when
 /// the name says so, with the parameter_table_t of the same log. False, with every problem and no

@@ -9,7 +9,9 @@
 #include "daemon/convert_command.h"
 #include "daemon/demo_command.h"
 #include "daemon/diagnose_command.h"
+#include "daemon/diff_command.h"
 #include "daemon/refine_command.h"
+#include "daemon/repair_command.h"
 #include "daemon/replay_command.h"
 #include "daemon/reproduce_command.h"
 #include "daemon/run_command.h"
@@ -49,20 +51,78 @@ void add_replay(CLI::App& app, Action& action, ReplayArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "replay", "the estimates of recorded motion, as fast as possible, the same bytes every time");
   command->footer(
+      "Exit status: 0 done, and as expected; 1 not as --expect says; 2 bad usage, configuration,\n"
+      "expectations or input.\n"
       "Examples:\n"
-      "  framewatch replay building.toml monday.lcmlog tuesday.lcmlog --out estimates.lcmlog\n"
-      "  framewatch replay building.toml record.csv --json");
+      "  framewatch replay building.toml monday.lcmlog tuesday.lcmlog.zst --out estimates.lcmlog\n"
+      "  framewatch replay building.toml record.csv --json\n"
+      "  framewatch replay building.toml golden.lcmlog --write-expect expected.toml\n"
+      "  framewatch replay building.toml golden.lcmlog --expect expected.toml --junit result.xml");
   command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
   command
       ->add_option("LOG", arguments.inputs,
-                   "LCM event logs and record files (CSV), in order of time")
+                   "LCM event logs, plain or .zst, and record files (CSV), in order of time")
       ->required();
-  command->add_option("--out", arguments.out, "LCM event log to write the estimates to");
+  command->add_option("--out", arguments.out,
+                      "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5)");
+  command->add_flag("--boxplot", arguments.boxplot, "boxplot statistics in .csv and .mat too");
+  command
+      ->add_option("--from", arguments.span.from_s,
+                   "leave out what is earlier: seconds after the "
+                   "first sample")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--to", arguments.span.to_s, "leave out what is later, likewise")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--speed", arguments.speed,
+                   "times real time, by the events' times (default: as fast as possible)")
+      ->check(CLI::Range(1e-3, 1e6));
+  CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
+                                         "publish too, on this URL or the configuration's");
+  lcm->expected(0, 1)->type_name("[URL]");
+  command->add_option("--expect", arguments.expect, "file that says what must come out (TOML)");
+  command->add_option("--write-expect", arguments.write_expect,
+                      "make a first such file from what comes out");
+  command->add_option("--junit", arguments.junit, "file for the result of --expect, as JUnit XML");
   command->add_flag("--salvage", arguments.salvage,
                     "replay what is intact of a damaged log instead of refusing it");
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
-  command->add_flag("--json", arguments.json, "the summary as JSON");
-  command->callback([&action, &arguments] { action = [&arguments] { return replay(arguments); }; });
+  command->add_flag("--json", arguments.json, "the summary, and what is not as expected, as JSON");
+  command->callback([&action, &arguments, lcm] {
+    arguments.lcm = lcm->count() > 0;
+    action = [&arguments] { return replay(arguments); };
+  });
+}
+
+void add_diff(CLI::App& app, Action& action, DiffArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "diff", "two logs of estimates, field by field: the first and the worst difference of each");
+  command->footer(
+      "Exit status: 0 the estimates are the same, byte by byte; 1 they are not; 2 bad usage or "
+      "input.\n"
+      "Example: framewatch diff yesterday.lcmlog today.lcmlog");
+  command->add_option("A", arguments.a, "LCM event log, plain or .zst")->required();
+  command->add_option("B", arguments.b, "likewise")->required();
+  command->add_flag("--json", arguments.json, "print what a program would read");
+  command->add_flag("--quiet", arguments.quiet, "only the exit status");
+  command->callback([&action, &arguments] { action = [&arguments] { return diff(arguments); }; });
+}
+
+void add_repair(CLI::App& app, Action& action, RepairArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("repair", "every intact event of a damaged log, and what was lost where");
+  command->footer(
+      "Exit status: 0 nothing was damaged, or a whole log was written; 1 damaged, with --check; 2 "
+      "bad\nusage or input. An intact log is left alone and no file is written.\n"
+      "Examples:\n"
+      "  framewatch repair night.lcmlog --out night.repaired.lcmlog\n"
+      "  framewatch repair night.lcmlog --check --json");
+  command->add_option("LOG", arguments.log, "LCM event log, plain or .zst")->required();
+  command->add_option("--out", arguments.out,
+                      "log to write (default: LOG with .repaired before its ending)");
+  command->add_flag("--check", arguments.check, "write nothing, only say what is damaged");
+  command->add_flag("--json", arguments.json, "print what a program would read");
+  command->callback([&action, &arguments] { action = [&arguments] { return repair(arguments); }; });
 }
 
 void add_refine(CLI::App& app, Action& action, RefineArguments& arguments) {
@@ -216,6 +276,8 @@ struct Arguments {
   DemoArguments demo;
   RunArguments run;
   ReplayArguments replay;
+  DiffArguments diff;
+  RepairArguments repair;
   RefineArguments refine;
   DiagnoseArguments diagnose;
   CheckArguments check;
@@ -239,6 +301,8 @@ int main(int argc, char** argv) {
   add_demo(app, action, arguments.demo);
   add_run(app, action, arguments.run);
   add_replay(app, action, arguments.replay);
+  add_diff(app, action, arguments.diff);
+  add_repair(app, action, arguments.repair);
   add_refine(app, action, arguments.refine);
   add_diagnose(app, action, arguments.diagnose);
   add_check(app, action, arguments.check);

@@ -1,151 +1,262 @@
 #include "daemon/replay_command.h"
 
-#include <unistd.h>
-
+#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
-#include <optional>
+#include <thread>
 
 #include <fmt/core.h>
 
-#include "daemon/estimation.h"
+#include "daemon/estimate_output.h"
+#include "daemon/expectation_check.h"
+#include "daemon/progress.h"
 #include "daemon/replay_summary.h"
-#include "daemon/replay_survey.h"
+#include "drivers/message_check.h"
+#include "drivers/text_output.h"
 
 namespace framewatch::daemon {
 namespace {
 
+constexpr int kNotAsExpected = 1;
 constexpr int kBadInput = 2;
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 int refuse(const std::string& message) {
   fmt::print(stderr, "framewatch replay: {}\n", message);
   return kBadInput;
 }
 
-/// Percent on stderr, when that is a terminal and the work takes over 2 s.
-class Progress {
- public:
-  Progress(std::int64_t total, bool quiet) : total_(total), on_(!quiet && ::isatty(2) == 1) {}
-  ~Progress() {
-    if (next_s_ > 2) fmt::print(stderr, "\n");
-  }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void operator()(std::int64_t done) {
-    if (!on_ || ++calls_ % 256 != 0 || done <= 0) return;
-    const double elapsed_s = seconds_since(start_);
-    if (elapsed_s < next_s_) return;
-    next_s_ = elapsed_s + 0.5;
-    const double share = static_cast<double>(done) / static_cast<double>(total_);
-    fmt::print(stderr, "\rreplay: {:3.0f} %, {:.1f} MB/s, {:.0f} s left ", 100 * share,
-               1e-6 * static_cast<double>(done) / elapsed_s, elapsed_s * (1 / share - 1));
-  }
-
- private:
-  std::int64_t total_, calls_ = 0;
-  bool on_;
-  double next_s_ = 2;
-  Clock::time_point start_ = Clock::now();
-};
-
-bool replay_log(const std::string& path, Estimation& estimation, Progress& progress,
-                std::int64_t done, std::string& error) {
-  drivers::LcmLogReader reader;
-  drivers::LogEvent event;
-  auto read = reader.open(path) ? reader.next(event) : drivers::LogRead::error;
-  for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
-       read = reader.next(event)) {
-    if (read == drivers::LogRead::event)
-      estimation.message(event.channel, event.data.data(), event.data.size());
-    progress(done + reader.position());
-  }
-  error = reader.error();
-  return read == drivers::LogRead::end;
+void print(const std::vector<ConfigProblem>& problems) {
+  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
 }
 
-void replay_record(const ReplayInput& input, Estimation& estimation) {
-  const drivers::Record& record = input.record;
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    const Time time = from_microseconds(std::llround(record.time_s[i] * 1e6));
-    for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
-      if (input.axis_of_column[c] >= 0)
-        estimation.sample({time, input.axis_of_column[c], record.accel_mps2[c][i]});
-  }
-}
-
-/// What is wrong with the name of the output; empty when nothing is.
-std::string output_problem(const ReplayArguments& a) {
-  if (a.out.empty()) return {};
-  if (!a.out.ends_with(".lcmlog"))
-    return a.out + ": the output's name must end in .lcmlog; framewatch convert makes a CSV of it";
+/// What can be said before any file is read.
+std::vector<std::string> argument_problems(const ReplayArguments& a) {
+  std::vector<std::string> found;
+  if (!a.out.empty())
+    if (const std::string problem = problem_of_output_name(a.out); !problem.empty())
+      found.push_back(problem);
   std::vector<std::string> inputs = a.inputs;
   inputs.push_back(a.config);
-  for (const std::string& input : inputs) {
-    std::error_code error;
-    if (input == a.out || std::filesystem::equivalent(input, a.out, error))
-      return input + ": is input and output";
-  }
-  return {};
+  if (!a.expect.empty()) inputs.push_back(a.expect);
+  for (const std::string& out : {a.out, a.write_expect, a.junit})
+    for (const std::string& input : inputs) {
+      std::error_code error;
+      if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
+        found.push_back(input + ": is input and output");
+    }
+  if (!a.junit.empty() && a.expect.empty())
+    found.push_back("--junit: needs --expect, its test cases are the expectations");
+  if (!a.expect.empty() && !a.write_expect.empty())
+    found.push_back("--write-expect: leave --expect out, it is about the old file");
+  if (!(a.span.to_s > a.span.from_s)) found.push_back("--to: must be later than --from");
+  if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog")))
+    found.push_back("--boxplot: is for --out with .csv or .mat; a log always has them");
+  return found;
 }
 
-}  // namespace
-
-int replay(const ReplayArguments& a) {
-  if (const std::string problem = output_problem(a); !problem.empty()) return refuse(problem);
-  std::vector<ConfigProblem> config_problems;
-  const std::optional<Config> config = load_config(a.config, config_problems);
-  for (const ConfigProblem& p : config_problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
-  if (!config) return kBadInput;
-
-  const Clock::time_point start = Clock::now();
-  ReplaySurvey survey(*config, a.salvage);
-  for (const std::string& path : a.inputs) survey.add(path);
-  survey.finish();
+/// Says all that is wrong. False when replay must not go on.
+bool judge(const ReplaySurvey& survey) {
   for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", note);
   for (const std::string& problem : survey.problems()) fmt::print(stderr, "{}\n", problem);
   if (survey.salvageable())
     fmt::print(stderr, "framewatch replay: --salvage uses what is intact\n");
-  if (!survey.problems().empty()) return kBadInput;
+  return survey.problems().empty();
+}
 
-  drivers::LcmLogWriter writer;
-  if (!a.out.empty() && !writer.open(a.out))
-    return refuse(fmt::format("{}: {}", a.out, writer.error()));
-  const ParameterTable table(config->pipeline.structure);
-  ReplaySummary summary(table);
-  const auto write = [&](std::int64_t time_us, const std::string& channel,
-                         const std::vector<std::uint8_t>& bytes) {
-    if (!a.out.empty()) (void)writer.write(time_us, channel, bytes.data(), bytes.size());
-  };
-  Estimation estimation(*config, write, [&](const WindowEstimate& e) { summary.add(e); });
-  {
-    Progress progress(survey.bytes(), a.quiet);
-    std::int64_t done = 0;
-    std::string error;
-    for (const ReplayInput& input : survey.inputs()) {
-      if (input.is_record)
-        replay_record(input, estimation);
-      else if (!replay_log(input.path, estimation, progress, done, error))
-        return refuse(fmt::format("{}: {}", input.path, error));
-      drivers::LcmLogReader size;
-      if (size.open(input.path)) done += size.size();
-    }
+/// Waits until an event's time has come, at `speed` times real time from the first one on.
+class Pace {
+ public:
+  explicit Pace(double speed) : speed_(speed) {}
+  void wait_for(std::int64_t time_us) {
+    if (speed_ <= 0) return;
+    if (!started_) first_us_ = time_us;
+    started_ = true;
+    const double elapsed_s = static_cast<double>(time_us - first_us_) * 1e-6 / speed_;
+    if (elapsed_s > 0 && elapsed_s < 1e9)
+      std::this_thread::sleep_until(begin_ + std::chrono::duration_cast<Clock::duration>(
+                                                 std::chrono::duration<double>(elapsed_s)));
   }
-  estimation.finish();
-  if (!a.out.empty() && !writer.close())
-    return refuse(fmt::format("{}: {}", a.out, writer.error()));
-  const double work_s = seconds_since(start);
-  if (a.json)
-    fmt::print("{}", summary.json(estimation, survey, work_s));
-  else if (!a.quiet)
-    fmt::print("{}", summary.text(estimation, survey, work_s));
-  return 0;
+
+ private:
+  double speed_;
+  bool started_ = false;
+  std::int64_t first_us_ = 0;
+  Clock::time_point begin_ = Clock::now();
+};
+
+std::int64_t bytes_of(const std::vector<std::string>& paths) {
+  std::int64_t sum = 0;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    if (!error) sum += static_cast<std::int64_t>(size);
+  }
+  return sum;
+}
+
+/// Empty when the text is in the file.
+std::string write_text(const std::string& path, const std::string& text) {
+  drivers::TextOutput file;
+  if (file.open(path) && file.write(text) && file.close()) return {};
+  return fmt::format("{}: {}", path, file.error());
+}
+
+/// One replay, from the first byte to the summary.
+class ReplayRun {
+ public:
+  ReplayRun(const ReplayArguments& a, const Config& config,
+            std::optional<Expectations> expectations)
+      : a_(a),
+        config_(config),
+        expectations_(std::move(expectations)),
+        event_channel_(config.lcm.prefix + "EVENT"),
+        survey_(config, a.salvage, a.span),
+        series_(ParameterTable(config.pipeline.structure), expectations_.has_value()),
+        estimation_(
+            config,
+            [this](std::int64_t time_us, const std::string& channel,
+                   const std::vector<std::uint8_t>& bytes) { put(time_us, channel, bytes); },
+            [this](const WindowEstimate& e) { series_.add(e); }) {}
+
+  int run() {
+    if (!open_outputs()) return kBadInput;
+    // At a pace the person should not learn after an hour that the end of the log is damaged.
+    if (a_.speed > 0 && !sound_beforehand()) return kBadInput;
+    read_everything();
+    if (a_.speed > 0 ? !survey_.problems().empty() : !judge(survey_)) return kBadInput;
+    for (const auto& output : outputs_)
+      if (failed_.empty() && !output->close()) fail(*output);
+    if (!failed_.empty()) return refuse(failed_);
+    return conclude();
+  }
+
+ private:
+  bool open_outputs() {
+    std::string error;
+    const auto add = [&](std::unique_ptr<EstimateOutput> output, const std::string& name) {
+      if (output)
+        outputs_.push_back(std::move(output));
+      else
+        refuse(name.empty() ? error : fmt::format("{}: {}", name, error));
+      return error.empty();
+    };
+    return (a_.out.empty() || add(estimate_output(config_, a_.out, a_.boxplot, error), a_.out)) &&
+           (!a_.lcm || add(lcm_estimate_output(config_, a_.lcm_url, error), ""));
+  }
+
+  bool sound_beforehand() const {
+    ReplaySurvey survey(config_, a_.salvage, a_.span);
+    for (const std::string& path : a_.inputs) survey.add(path);
+    survey.finish();
+    return judge(survey);
+  }
+
+  void read_everything() {
+    Progress progress("replay", bytes_of(a_.inputs), "MB", 1e6, a_.quiet);
+    Pace pace(a_.speed);
+    survey_.feed(estimation_);
+    survey_.at_each([&](std::int64_t bytes, std::int64_t time_us) {
+      progress(bytes);
+      pace.wait_for(time_us);
+    });
+    for (const std::string& path : a_.inputs) survey_.add(path);
+    survey_.finish();
+    estimation_.finish();
+  }
+
+  void put(std::int64_t time_us, const std::string& channel,
+           const std::vector<std::uint8_t>& bytes) {
+    for (const auto& output : outputs_)
+      if (failed_.empty() && !output->put(time_us, channel, bytes)) fail(*output);
+    if (channel != event_channel_) return;
+    const auto event = drivers::decode_event(bytes);
+    if (event && event->state == 1) events_.push_back({event->kind, event->place, event->since_us});
+  }
+
+  void fail(const EstimateOutput& output) {
+    failed_ = a_.out.empty() ? output.error() : fmt::format("{}: {}", a_.out, output.error());
+  }
+
+  int conclude() {
+    const ReplayCounts counts = replay_counts(estimation_);
+    const ReplayOutcome outcome{series_, counts, events_, survey_.first_us()};
+    std::vector<Check> checks;
+    if (expectations_) checks = check_expectations(*expectations_, outcome);
+    std::string problem;
+    if (!a_.junit.empty()) problem = write_text(a_.junit, junit_xml(checks, a_.expect));
+    if (!a_.write_expect.empty())
+      problem = write_text(a_.write_expect, written_expectations(outcome, command()));
+    if (!problem.empty()) return refuse(problem);
+
+    const std::chrono::duration<double> work = Clock::now() - start_;
+    const ReplaySummary summary{series_, counts, survey_, work.count()};
+    const bool holds =
+        std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
+    if (a_.json) {
+      std::string json = summary.json();
+      if (expectations_)
+        json += fmt::format(",\n \"expectations\": {},\n \"differences\": {}", checks.size(),
+                            differences_json(checks));
+      fmt::print("{}}}\n", json);
+    } else if (!a_.quiet) {
+      fmt::print("{}", summary.text());
+      if (holds && expectations_) fmt::print("\nas expected: {} of {}\n", checks.size(), a_.expect);
+    }
+    if (holds) return 0;
+    tell_differences(checks);
+    return kNotAsExpected;
+  }
+
+  void tell_differences(const std::vector<Check>& checks) const {
+    int differences = 0;
+    for (const Check& c : checks) {
+      if (c.holds) continue;
+      ++differences;
+      fmt::print(stderr, "{}\n", c.text());
+    }
+    fmt::print(stderr, "framewatch replay: {} of {} expectations of {} do not hold\n", differences,
+               checks.size(), a_.expect);
+  }
+
+  std::string command() const {
+    std::string text = "framewatch replay " + a_.config;
+    for (const std::string& input : a_.inputs) text += " " + input;
+    return text;
+  }
+
+  const ReplayArguments& a_;
+  const Config& config_;
+  Clock::time_point start_ = Clock::now();
+  std::optional<Expectations> expectations_;
+  std::string event_channel_;
+  ReplaySurvey survey_;
+  EstimateSeries series_;
+  std::vector<RaisedEvent> events_;
+  std::vector<std::unique_ptr<EstimateOutput>> outputs_;
+  std::string failed_;
+  Estimation estimation_;
+};
+
+}  // namespace
+
+int replay(const ReplayArguments& a) {
+  const std::vector<std::string> wrong = argument_problems(a);
+  for (const std::string& problem : wrong) refuse(problem);
+  if (!wrong.empty()) return kBadInput;
+  std::vector<ConfigProblem> problems;
+  const std::optional<Config> config = load_config(a.config, problems);
+  print(problems);
+  if (!config) return kBadInput;
+  std::optional<Expectations> expectations;
+  if (!a.expect.empty()) {
+    problems.clear();
+    expectations =
+        load_expectations(a.expect, ParameterTable(config->pipeline.structure), problems);
+    print(problems);
+    if (!expectations) return kBadInput;
+  }
+  return ReplayRun(a, *config, std::move(expectations)).run();
 }
 
 }  // namespace framewatch::daemon

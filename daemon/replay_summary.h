@@ -1,32 +1,34 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
-#include <vector>
+#include <utility>
 
+#include "daemon/estimate_series.h"
 #include "daemon/estimation.h"
 #include "daemon/replay_survey.h"
 
 namespace framewatch::daemon {
 
+/// What became of a replay's input, by the names that summary and expectations use.
+using ReplayCounts = std::array<std::pair<const char*, std::int64_t>, 10>;
+ReplayCounts replay_counts(const Estimation& estimation);
+
 /// What replay prints at the end: counts, and each parameter over all its observable windows.
-class ReplaySummary {
- public:
-  explicit ReplaySummary(const ParameterTable& table);
+struct ReplaySummary {
+  const EstimateSeries& series;
+  const ReplayCounts& counts;
+  const ReplaySurvey& survey;
+  double work_s;  ///< wall time the replay took
 
-  void add(const WindowEstimate& estimate);
-  /// `work_s`: wall time the replay took.
-  std::string text(const Estimation& estimation, const ReplaySurvey& survey, double work_s) const;
-  std::string json(const Estimation& estimation, const ReplaySurvey& survey, double work_s) const;
-
- private:
-  struct Quartiles {
-    double q1, median, q3, observable_ratio;
-  };
-  Quartiles quartiles(std::size_t parameter) const;
-
-  std::vector<std::string> names_, units_;
-  std::vector<std::vector<double>> values_;  ///< [parameter]: observable ones
-  std::int64_t windows_ = 0;
+  std::string text() const;
+  /// Without the closing brace: more members may follow.
+  std::string json() const;
 };
+
+/// JSON text of a number, null when it is none, and of a string.
+std::string json_number(double value);
+std::string json_text(const std::string& text);
 
 }  // namespace framewatch::daemon

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 
 #include <fmt/core.h>
 
-#include "daemon/estimation.h"
+#include "drivers/message_types.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -18,10 +17,7 @@ constexpr std::size_t kRateLag = 100;  ///< samples; times may be rounded to who
 constexpr int kDamageLines = 20;
 
 bool looks_like_record(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  char head[4] = {};
-  in.read(head, sizeof head);
-  if (std::string_view(head, 4) == std::string_view("\xED\xA1\xDA\x01", 4)) return false;
+  if (drivers::is_event_log(path)) return false;
   const std::string name = std::filesystem::path(path).filename();
   return name.find(".csv") != std::string::npos || name.ends_with(".txt") ||
          name.ends_with(".AT2") || name.ends_with(".at2");
@@ -39,8 +35,12 @@ std::string list(const std::map<std::string, std::int64_t>& channels) {
 
 }  // namespace
 
-ReplaySurvey::ReplaySurvey(const Config& config, bool salvage)
-    : config_(config), salvage_(salvage), intake_(wanted_axes(config), [](const AccelSample&) {}) {}
+ReplaySurvey::ReplaySurvey(const Config& config, bool salvage, ReplaySpan span)
+    : config_(config),
+      salvage_(salvage),
+      span_(span),
+      spanned_(!span.whole()),
+      intake_(wanted_axes(config), [](const AccelSample&) {}) {}
 
 void ReplaySurvey::fault(std::string message) {
   if (!salvage_) ++faults_;
@@ -55,8 +55,8 @@ void ReplaySurvey::add(const std::string& path) {
   } else if (size == 0) {
     problems_.push_back(fmt::format("{}: is empty", path));
   } else if (!looks_like_record(path)) {
-    bytes_ += static_cast<std::int64_t>(size);
     add_log(path);
+    bytes_ += static_cast<std::int64_t>(size);
   } else {
     bytes_ += static_cast<std::int64_t>(size);
     std::vector<drivers::Problem> found;
@@ -86,10 +86,40 @@ void ReplaySurvey::add_record(ReplayInput input) {
   else if (!others.empty())
     notes_.push_back(fmt::format("{}: columns without a channel ignored: {}", input.path, others));
   check_rate(input.path, record.rate_hz);
-  if (!record.time_s.empty())
-    extend(input.path, std::llround(record.time_s.front() * 1e6),
-           std::llround(record.time_s.back() * 1e6));
+  std::vector<std::int64_t> used_us;
+  for (const double time_s : record.time_s)
+    if (const std::int64_t time_us = std::llround(time_s * 1e6); !outside(time_us))
+      used_us.push_back(time_us);
+  const bool in_order = used_us.empty() || extend(input.path, used_us.front(), used_us.back());
+  if (in_order && estimation_ != nullptr) give_record(input);
   inputs_.push_back(std::move(input));
+}
+
+void ReplaySurvey::give_record(const ReplayInput& input) {
+  const drivers::Record& record = input.record;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const std::int64_t time_us = std::llround(record.time_s[i] * 1e6);
+    if (outside(time_us)) continue;
+    if (step_) step_(bytes_, time_us);
+    for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
+      if (input.axis_of_column[c] >= 0)
+        estimation_->sample(
+            {from_microseconds(time_us), input.axis_of_column[c], record.accel_mps2[c][i]});
+  }
+}
+
+/// The first time it is asked about is the zero of the span.
+bool ReplaySurvey::outside(std::int64_t time_us) {
+  if (!spanned_) return false;
+  if (span_zero_us_ == std::numeric_limits<std::int64_t>::min()) span_zero_us_ = time_us;
+  const double time_s = static_cast<double>(time_us - span_zero_us_) * 1e-6;
+  return time_s < span_.from_s || time_s >= span_.to_s;
+}
+
+bool ReplaySurvey::left_out(const drivers::LogEvent& event) {
+  if (!spanned_ || !intake().binding().carries(event.channel)) return false;
+  const auto time_us = drivers::accel_time_us(event.data.data(), event.data.size());
+  return time_us && outside(*time_us);
 }
 
 void ReplaySurvey::add_log(const std::string& path) {
@@ -98,10 +128,12 @@ void ReplaySurvey::add_log(const std::string& path) {
     problems_.push_back(fmt::format("{}: {}", path, reader.error()));
     return;
   }
+  std::error_code ignored;
+  const auto packed_bytes = static_cast<std::int64_t>(std::filesystem::file_size(path, ignored));
   LogSeen seen;
   stamps_.clear();
   int damages = 0;
-  const std::int64_t malformed = intake_.counters().malformed;
+  const std::int64_t malformed = intake().counters().malformed;
   const std::int64_t damaged_before = damaged_bytes_;
   drivers::LogEvent event;
   for (auto read = reader.next(event); read != drivers::LogRead::end; read = reader.next(event)) {
@@ -110,6 +142,8 @@ void ReplaySurvey::add_log(const std::string& path) {
       return;
     }
     if (read == drivers::LogRead::event) {
+      if (step_)
+        step_(bytes_ + reader.position() * packed_bytes / reader.size(), event.timestamp_us);
       look_at(event, seen);
       continue;
     }
@@ -122,7 +156,7 @@ void ReplaySurvey::add_log(const std::string& path) {
   if (damages > kDamageLines)
     fault(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
                       damaged_bytes_ - damaged_before));
-  judge_log(path, seen, intake_.counters().malformed - malformed);
+  judge_log(path, seen, intake().counters().malformed - malformed);
   inputs_.push_back({path, false, {}, {}});
 }
 
@@ -131,45 +165,55 @@ void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
   if (seen.newest == nullptr || seen.newest->first != event.channel)
     seen.newest = &*seen.channels.try_emplace(event.channel, 0).first;
   ++seen.newest->second;
-  const std::int64_t backwards = intake_.backwards();
-  const auto result = intake_.message(event.channel, event.data.data(), event.data.size());
-  if (result == drivers::IntakeResult::malformed && seen.first_malformed_offset < 0)
+  if (left_out(event)) {
+    seen.left_out = true;
+    return;
+  }
+  const std::int64_t backwards = intake().backwards();
+  const auto result =
+      estimation_ != nullptr
+          ? estimation_->message(event.channel, event.data.data(), event.data.size())
+          : intake_.message(event.channel, event.data.data(), event.data.size());
+  if (result == drivers::IntakeResult::malformed && seen.first_malformed_offset < 0) {
     seen.first_malformed_offset = event.offset;
+    const char* type = drivers::type_of_channel(event.channel);
+    seen.malformed =
+        event.channel + ": " + drivers::why_not(type == nullptr ? "accel_t" : type, event.data);
+  }
   if (result != drivers::IntakeResult::samples) return;
-  const drivers::NodeSample& sample = intake_.last_sample();
+  const drivers::NodeSample& sample = intake().last_sample();
   const std::int64_t time_us = to_microseconds(sample.time);
-  if (intake_.backwards() > backwards && seen.backwards_offset < 0)
+  if (intake().backwards() > backwards && seen.backwards_offset < 0)
     seen.backwards_offset = event.offset;
   for (const double value : sample.accel_abs_mps2)
     if (std::isinf(value) && seen.infinite_offset < 0) seen.infinite_offset = event.offset;
   log_first_us_ = seen.samples == 0 ? time_us : std::min(log_first_us_, time_us);
   log_last_us_ = seen.samples == 0 ? time_us : std::max(log_last_us_, time_us);
   ++seen.samples;
-  if (intake_.last_node() >= stamps_.size()) stamps_.resize(intake_.last_node() + 1);
-  NodeStamps& node = stamps_[intake_.last_node()];
+  if (intake().last_node() >= stamps_.size()) stamps_.resize(intake().last_node() + 1);
+  NodeStamps& node = stamps_[intake().last_node()];
   if (node.stamps.empty()) node.place = {event.channel, sample.node};
   if (node.stamps.size() < kStampsPerNode) node.stamps.push_back({sample.sequence, time_us});
 }
 
 void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed) {
   const std::string malformed_text = fmt::format(
-      "{}: byte {}: {} messages on our channels are no accel_t (size or fingerprint), "
-      "this is the first",
-      path, seen.first_malformed_offset, malformed);
+      "{}: byte {}: {} messages on our channels are no accel_t or channel_table_t, the first: {}",
+      path, seen.first_malformed_offset, malformed, seen.malformed);
   if (malformed > 0 && seen.samples > 0) fault(malformed_text);
   if (malformed > 0 && seen.samples == 0) problems_.push_back(malformed_text);
   if (seen.infinite_offset >= 0)
     fault(fmt::format("{}: byte {}: infinite acceleration", path, seen.infinite_offset));
   if (seen.events == 0)
     problems_.push_back(fmt::format("{}: holds no intact LCM event", path));
-  else if (seen.samples == 0 && malformed == 0)
+  else if (seen.samples == 0 && malformed == 0 && !seen.left_out)
     problems_.push_back(fmt::format("{}: no message for the channels of {}; it has {}", path,
                                     config_.path, list(seen.channels)));
-  if (seen.backwards_offset >= 0)
+  const bool in_order = seen.samples == 0 || extend(path, log_first_us_, log_last_us_);
+  if (in_order && seen.backwards_offset >= 0)
     problems_.push_back(fmt::format(
         "{}: byte {}: time runs backwards: a node's sample is not newer than the one before", path,
         seen.backwards_offset));
-  if (seen.samples > 0 && seen.backwards_offset < 0) extend(path, log_first_us_, log_last_us_);
   std::sort(stamps_.begin(), stamps_.end(),
             [](const NodeStamps& a, const NodeStamps& b) { return a.place < b.place; });
   for (const auto& [node, stamps] : stamps_) {
@@ -196,22 +240,32 @@ void ReplaySurvey::check_rate(const std::string& place, double rate_hz) {
                                     rate_hz, config_.path, configured));
 }
 
-void ReplaySurvey::extend(const std::string& path, std::int64_t first_us, std::int64_t last_us) {
-  if (any_ && first_us <= last_us_)
-    problems_.push_back(fmt::format(
-        "{}: time runs backwards: starts at {:.6f} s, before the file before it ends ({:.6f} s)",
-        path, static_cast<double>(first_us) * 1e-6, static_cast<double>(last_us_) * 1e-6));
+// Where one log is cut and the next one begins the nodes need not have come equally far.
+bool ReplaySurvey::extend(const std::string& path, std::int64_t first_us, std::int64_t last_us) {
+  const auto allowed_us = static_cast<std::int64_t>(config_.pipeline.options.lateness_s * 1e6);
+  const bool in_order = !any_ || first_us > last_us_ - allowed_us;
+  if (!in_order)
+    problems_.push_back(
+        fmt::format("{}: its time, {:.6f} s to {:.6f} s, is not after {}, which ends at {:.6f} s: "
+                    "give the files "
+                    "in order of time, without overlap",
+                    path, static_cast<double>(first_us) * 1e-6, static_cast<double>(last_us) * 1e-6,
+                    last_path_, static_cast<double>(last_us_) * 1e-6));
   first_us_ = any_ ? std::min(first_us_, first_us) : first_us;
   last_us_ = any_ ? std::max(last_us_, last_us) : last_us;
   any_ = true;
+  last_path_ = path;
+  return in_order;
 }
 
 void ReplaySurvey::finish() {
+  if (problems_.empty() && spanned_ && !any_)
+    problems_.push_back("--from, --to: no sample of the input lies there");
   const bool only_logs = std::none_of(inputs_.begin(), inputs_.end(),
                                       [](const ReplayInput& input) { return input.is_record; });
   if (!only_logs || !problems_.empty()) return;
   std::string names;
-  for (const std::string& name : intake_.binding().unbound())
+  for (const std::string& name : intake().binding().unbound())
     names += (names.empty() ? "" : ", ") + name;
   if (!names.empty())
     notes_.push_back(

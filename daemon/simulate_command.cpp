@@ -1,14 +1,12 @@
 #include "daemon/simulate_command.h"
 
-#include <unistd.h>
-
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "daemon/progress.h"
 #include "daemon/scenario.h"
 #include "daemon/simulation.h"
 #include "daemon/simulation_output.h"
@@ -20,37 +18,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kBadInput = 2;
-
-/// Percent on stderr, when that is a terminal and the work takes over 2 s.
-class Progress {
- public:
-  Progress(std::int64_t total, bool quiet) : total_(total), on_(!quiet && ::isatty(2) == 1) {}
-  ~Progress() {
-    if (shown_) fmt::print(stderr, "\n");
-  }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void operator()(std::int64_t done) {
-    if (!on_ || done % 100 != 0) return;
-    const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
-    if (elapsed_s < next_s_) return;
-    next_s_ = elapsed_s + 0.5;
-    shown_ = true;
-    const double left_s =
-        elapsed_s * static_cast<double>(total_ - done) / static_cast<double>(done);
-    fmt::print(stderr, "\rsimulate: {:3d} %, {:.0f} instants/s, {:.0f} s left ",
-               100 * done / total_, static_cast<double>(done) / elapsed_s, left_s);
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::int64_t total_;
-  bool on_;
-  bool shown_ = false;
-  Clock::time_point start_ = Clock::now();
-  double next_s_ = 2;
-};
 
 int refuse(const std::string& message) {
   fmt::print(stderr, "framewatch simulate: {}\n", message);
@@ -84,7 +51,7 @@ int simulate(const SimulateArguments& a) {
 
   const std::int64_t count = instants(*scenario);
   {
-    Progress progress(count, a.quiet);
+    Progress progress("simulate", count, "instants", 1, a.quiet);
     for (std::int64_t i = 0; i < count; ++i) {
       const std::vector<double>& raw = simulation.next();
       if (simulation.collapsed())

@@ -25,6 +25,8 @@ inline constexpr std::int64_t kLatestTime_us = std::int64_t{1} << 53;
 
 /// Empty unless `size` and fingerprint are exactly those of accel_t and the stamp is one.
 std::optional<NodeSample> decode_accel(const void* data, std::size_t size);
+/// The stamp alone, microseconds; empty when the fingerprint or the size is not accel_t's.
+std::optional<std::int64_t> accel_time_us(const void* data, std::size_t size);
 std::vector<std::uint8_t> encode_accel(const NodeSample& sample);
 
 }  // namespace framewatch::drivers

@@ -27,11 +27,16 @@ enum class LogRead {
 /// A stretch of the file that is no intact event.
 struct LogDamage {
   std::int64_t offset = 0;
-  std::int64_t bytes = 0;
+  std::int64_t bytes = 0;  ///< 0: a compressed log ends before its time
   std::string reason;
 };
 
+/// Whether a file begins like an event log, plain or zstd-compressed.
+bool is_event_log(const std::string& path);
+
 /// Reads LCM event logs: bounded memory, resynchronising, never trusts a length it has not checked.
+/// A zstd file is unpacked into a temporary file first; offsets and sizes are those of the log in
+/// it.
 ///
 /// An event counts as intact when its lengths are in bounds (channel 1..kMaxChannel printable
 /// bytes, payload at most kMaxPayload) and a sync word or the end of the file follows. One that is
@@ -58,6 +63,8 @@ class LcmLogReader {
   std::int64_t position() const { return position_; }  ///< bytes consumed
 
  private:
+  bool unpack();
+
   struct Header {
     std::int64_t number, timestamp_us;
     std::int64_t channel_length, payload_length;
@@ -85,6 +92,7 @@ class LcmLogReader {
   std::int64_t clear_to_ = 0;
   std::int64_t certain_ = -1;  ///< where the last certain event was found
   LogDamage damage_;
+  std::string pack_damage_;  ///< of the zstd file; told at the end
   std::string error_;
 };
 
@@ -102,6 +110,8 @@ class LcmLogWriter {
   /// False, once and for all, when the channel or payload is out of bounds or the disk is full.
   [[nodiscard]] bool write(std::int64_t timestamp_us, const std::string& channel, const void* data,
                            std::size_t size);
+  /// The same with the event's own number, as it was logged.
+  [[nodiscard]] bool copy(const LogEvent& event);
   /// Flushes to the disk and renames. False when anything was not written; then nothing stays.
   [[nodiscard]] bool close();
   const std::string& error() const { return error_; }

@@ -6,8 +6,10 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 
 #include "drivers/lcm_log.h"
+#include "drivers/zstd_file.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -35,6 +37,14 @@ bool printable(std::uint8_t byte) {
 
 }  // namespace
 
+bool is_event_log(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::array<char, kSyncBytes> head{};
+  in.read(head.data(), head.size());
+  return in && (std::memcmp(head.data(), kSync.data(), kSync.size()) == 0 ||
+                std::memcmp(head.data(), kZstdMagic.data(), kZstdMagic.size()) == 0);
+}
+
 LcmLogReader::~LcmLogReader() {
   if (file_ >= 0) ::close(file_);
 }
@@ -44,6 +54,7 @@ bool LcmLogReader::open(const std::string& path) {
   position_ = size_ = buffer_offset_ = buffer_bytes_ = clear_from_ = clear_to_ = 0;
   certain_ = -1;
   damage_ = {};
+  pack_damage_.clear();
   error_.clear();
   file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};
@@ -56,7 +67,22 @@ bool LcmLogReader::open(const std::string& path) {
     return false;
   }
   size_ = status.st_size;
-  return true;
+  return unpack();
+}
+
+/// Goes on with the log inside when the file is a zstd one.
+bool LcmLogReader::unpack() {
+  std::array<std::uint8_t, kZstdMagic.size()> head{};
+  if (::pread(file_, head.data(), head.size(), 0) != std::ssize(head) ||
+      std::memcmp(head.data(), kZstdMagic.data(), head.size()) != 0)
+    return true;
+  UnpackedFile unpacked = unpack_zstd(file_);
+  ::close(file_);
+  file_ = unpacked.file;
+  size_ = unpacked.bytes;
+  pack_damage_ = std::move(unpacked.damage);
+  error_ = std::move(unpacked.error);
+  return file_ >= 0;
 }
 
 /// Pointer to `bytes` bytes at `offset`, or null (error_ set) when they cannot be read.
@@ -213,7 +239,12 @@ LogRead LcmLogReader::skip_damage(const Header& header, bool plausible, const ch
 
 LogRead LcmLogReader::next(LogEvent& event) {
   if (!error_.empty()) return LogRead::error;
-  if (position_ >= size_) return LogRead::end;
+  if (position_ >= size_) {
+    if (pack_damage_.empty()) return LogRead::end;
+    damage_ = {size_, 0, std::move(pack_damage_)};
+    pack_damage_.clear();
+    return LogRead::truncated;
+  }
   Header header{};
   const char* why = "";
   const bool plausible = read_header(position_, header, &why);

@@ -38,6 +38,11 @@ bool LcmLogWriter::open(const std::string& path) {
   return true;
 }
 
+bool LcmLogWriter::copy(const LogEvent& event) {
+  number_ = event.number;
+  return write(event.timestamp_us, event.channel, event.data.data(), event.data.size());
+}
+
 bool LcmLogWriter::write(std::int64_t timestamp_us, const std::string& channel, const void* data,
                          std::size_t size) {
   if (file_ == nullptr || !error_.empty()) return false;

@@ -1,7 +1,14 @@
 #include "drivers/lcm_source.h"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <utility>
 
 #include <fmt/core.h>
@@ -25,6 +32,32 @@ std::string literally(const std::string& channel) {
   return pattern;
 }
 
+/// What keeps udpm:// from starting, as far as a socket of our own can tell.
+std::string why_no_multicast(const std::string& url) {
+  std::string group = url.substr(7, url.find_first_of(":?", 7) - 7);
+  if (group.empty()) group = "239.255.76.67";
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(7667);
+  if (::inet_pton(AF_INET, group.c_str(), &address.sin_addr) != 1 ||
+      !IN_MULTICAST(ntohl(address.sin_addr.s_addr)))
+    return fmt::format("{} is no multicast address (224.0.0.0 to 239.255.255.255)", group);
+  const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool routed = probe >= 0 && ::connect(probe, reinterpret_cast<const sockaddr*>(&address),
+                                              sizeof address) == 0;
+  const int failure = errno;
+  if (probe >= 0) ::close(probe);
+  if (routed)
+    return "there is a route to it, so something else is wrong: a port or option LCM does not "
+           "know, "
+           "or a port that another program holds alone";
+  if (failure != ENETUNREACH) return std::strerror(failure);
+  return fmt::format(
+      "this machine has no multicast route to {0}.\n"
+      "Give it one on the loopback:  sudo ip link set lo up && sudo ip route add {0}/32 dev lo",
+      group);
+}
+
 }  // namespace
 
 std::unique_ptr<lcm::LCM> open_lcm(const std::string& url, int receive_buffer_bytes,
@@ -35,11 +68,7 @@ std::unique_ptr<lcm::LCM> open_lcm(const std::string& url, int receive_buffer_by
     error = fmt::format("LCM cannot start on \"{}\": unknown provider or nothing there", url);
     return nullptr;
   }
-  const std::string group = url.substr(7, url.find_first_of(":?", 7) - 7);
-  error = fmt::format(
-      "LCM cannot start on \"{0}\": this machine has no multicast route to {1}.\n"
-      "Give it one on the loopback:  sudo ip link set lo up && sudo ip route add {1}/32 dev lo",
-      url, group.empty() ? "239.255.76.67" : group);
+  error = fmt::format("LCM cannot start on \"{}\": {}", url, why_no_multicast(url));
   return nullptr;
 }
 

@@ -77,6 +77,7 @@ bool LineReader::next(std::string_view& line) {
   }
   if (end == std::string::npos && begin_ == buffer_.size()) return false;
   ++number_;
+  line_ended_ = end != std::string::npos;
   line = std::string_view(buffer_).substr(begin_, end - begin_);
   begin_ = end == std::string::npos ? buffer_.size() : end + 1;
   if (number_ == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);

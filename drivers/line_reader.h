@@ -26,6 +26,8 @@ class LineReader {
   [[nodiscard]] bool next(std::string_view& line);
   /// Of the line last read, from 1.
   std::int64_t number() const { return number_; }
+  /// The line last read has its line end: nothing of it was cut off.
+  bool line_ended() const { return line_ended_; }
 
  private:
   bool fill();
@@ -37,6 +39,7 @@ class LineReader {
   std::size_t begin_ = 0;
   std::int64_t number_ = 0;
   bool ended_ = false;
+  bool line_ended_ = true;
 };
 
 }  // namespace framewatch::drivers

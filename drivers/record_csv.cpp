@@ -38,6 +38,11 @@ std::optional<Record> read_csv(FileProblems& problems) {
   std::vector<double> row(names->size());
   for (std::string_view line; lines.next(line) && !problems.full() && !builder.full();) {
     if (trimmed(line).empty()) continue;
+    if (!lines.line_ended()) {
+      builder.note(fmt::format("line {}: the last row has no line end and may be cut off: left out",
+                               lines.number()));
+      continue;
+    }
     split_commas(line, fields);
     if (fields.size() != row.size() + 1) {
       problems.add(lines.number(),

@@ -1,7 +1,10 @@
 #include "daemon/replay_command.h"
 
+#include <matio.h>
+
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -10,6 +13,7 @@
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
+#include "daemon/convert_command.h"
 #include "drivers/accel_codec.h"
 #include "drivers/lcm_log.h"
 #include "tests/support/data.h"
@@ -257,7 +261,10 @@ TEST_F(Replay, RefusesTimeRunningBackwards) {
   expect_refused(path("back"), "time runs backwards");
   const Outcome twice = replay_of({log(), log()}, path("est.lcmlog"));
   EXPECT_EQ(twice.exit_code, 2);
-  EXPECT_NE(twice.err.find("time runs backwards"), std::string::npos);
+  EXPECT_NE(twice.err.find("is not after " + log() + ", which ends at 12.000000 s"),
+            std::string::npos)
+      << twice.err;
+  EXPECT_EQ(twice.err.find("time runs backwards"), std::string::npos) << twice.err;
 }
 
 TEST_F(Replay, RefusesARecordWithoutOurChannels) {
@@ -288,11 +295,118 @@ TEST_F(Replay, NeverWritesOverItsInputs) {
   EXPECT_NE(config.err.find("is input and output"), std::string::npos) << config.err;
 }
 
-TEST_F(Replay, RefusesAnOutputThatIsNoLog) {
-  const Outcome o = replay_of({log()}, path("est.csv"));
+TEST_F(Replay, RefusesAnOutputOfNoKnownFormat) {
+  const Outcome o = replay_of({log()}, path("est.xlsx"));
   EXPECT_EQ(o.exit_code, 2);
-  EXPECT_NE(o.err.find("must end in .lcmlog"), std::string::npos) << o.err;
-  EXPECT_FALSE(std::filesystem::exists(path("est.csv")));
+  EXPECT_NE(o.err.find("must end in .lcmlog, .csv, .csv.gz or .mat"), std::string::npos) << o.err;
+  EXPECT_TRUE(own_.names().empty());
+}
+
+TEST_F(Replay, CsvIsWhatConvertMakesOfTheLog) {
+  ASSERT_EQ(replay_of({log()}, path("est.lcmlog")).exit_code, 0);
+  ASSERT_EQ(replay_of({log()}, path("est.csv")).exit_code, 0);
+  ConvertArguments to_csv;
+  to_csv.inputs = {path("est.lcmlog")};
+  to_csv.out = path("converted.csv");
+  to_csv.channel = "FRAMEWATCH_ESTIMATE";
+  ASSERT_EQ(convert(to_csv), 0);
+  EXPECT_GT(read_file(path("est.csv")).size(), 100000u);
+  EXPECT_EQ(read_file(path("est.csv")), read_file(path("converted.csv")));
+}
+
+TEST_F(Replay, MatHoldsTheValuesOfTheLog) {
+  ASSERT_EQ(replay_of({log()}, path("est.lcmlog")).exit_code, 0);
+  ASSERT_EQ(replay_of({log()}, path("est.mat")).exit_code, 0);
+  ASSERT_EQ(replay_of({log()}, path("again.mat")).exit_code, 0);
+  EXPECT_EQ(read_file(path("est.mat")), read_file(path("again.mat")));
+  const auto messages = payloads(path("est.lcmlog"), "FRAMEWATCH_ESTIMATE");
+  mat_t* file = Mat_Open(path("est.mat").c_str(), MAT_ACC_RDONLY);
+  ASSERT_NE(file, nullptr);
+  matvar_t* values = Mat_VarRead(file, "value");
+  ASSERT_NE(values, nullptr);
+  const std::size_t windows = values->dims[0], parameters = values->dims[1];
+  ASSERT_EQ(windows, messages.size());
+  const auto* data = static_cast<const double*>(values->data);
+  int compared = 0;
+  for (std::size_t w = 0; w < windows; w += 50) {
+    framewatch::window_estimate_t e{};
+    ASSERT_GT(e.decode(messages[w].data(), 0, static_cast<int>(messages[w].size())), 0);
+    ASSERT_EQ(parameters, e.value.size());
+    for (std::size_t p = 0; p < parameters; ++p) {
+      const double found = data[p * windows + w];
+      EXPECT_TRUE(found == e.value[p] || (std::isnan(found) && std::isnan(e.value[p])));
+      compared += !std::isnan(found);
+    }
+  }
+  EXPECT_GT(compared, 50);
+  Mat_VarFree(values);
+  Mat_Close(file);
+}
+
+TEST_F(Replay, CompressedLogGivesTheSameAndACutOneIsRefused) {
+  ASSERT_EQ(std::system(("zstd -q " + log() + " -o " + path("rec.lcmlog.zst")).c_str()), 0);
+  ASSERT_EQ(replay_of({log()}, path("plain.lcmlog")).exit_code, 0);
+  ASSERT_EQ(replay_of({path("rec.lcmlog.zst")}, path("packed.lcmlog")).exit_code, 0);
+  EXPECT_EQ(read_file(path("plain.lcmlog")), read_file(path("packed.lcmlog")));
+  const std::string bytes = read_file(path("rec.lcmlog.zst"));
+  write_file(path("cut.zst"), bytes.substr(0, bytes.size() / 2));
+  expect_refused(path("cut.zst"), "the zstd file is cut off at its byte ");
+  const Outcome o = salvage_of(path("cut.zst"), path("salvaged.lcmlog"));
+  EXPECT_EQ(o.exit_code, 0) << o.err;
+}
+
+TEST_F(Replay, SpanIsAsIfTheLogWereCutThere) {
+  const std::vector<LogEvent> events = events_of(log());
+  LcmLogWriter writer;
+  ASSERT_TRUE(writer.open(path("part")));
+  for (const LogEvent& e : events) {
+    const auto sample = drivers::decode_accel(e.data.data(), e.data.size());
+    if (sample &&
+        (to_microseconds(sample->time) < 2'000'000 || to_microseconds(sample->time) >= 10'000'000))
+      continue;
+    ASSERT_TRUE(writer.write(e.timestamp_us, e.channel, e.data.data(), e.data.size()));
+  }
+  ASSERT_TRUE(writer.close());
+  ASSERT_EQ(replay_of({path("part")}, path("of_part.lcmlog")).exit_code, 0);
+  ReplayArguments a{test::table_config(), {log()}, path("of_span.lcmlog"), false, true, false};
+  a.span = {2, 10};
+  ASSERT_EQ(replay(a), 0);
+  EXPECT_EQ(read_file(path("of_part.lcmlog")), read_file(path("of_span.lcmlog")));
+  a.span = {100, 200};
+  testing::internal::CaptureStderr();
+  EXPECT_EQ(replay(a), 2);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("no sample of the input lies there"),
+            std::string::npos);
+}
+
+TEST_F(Replay, PaceDoesNotChangeAByte) {
+  ASSERT_EQ(replay_of({log()}, path("fast.lcmlog")).exit_code, 0);
+  ReplayArguments a{test::table_config(), {log()}, path("paced.lcmlog"), false, true, false};
+  a.speed = 40;
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(replay(a), 0);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  EXPECT_GE(took.count(), 11.9 / 40);
+  EXPECT_EQ(read_file(path("fast.lcmlog")), read_file(path("paced.lcmlog")));
+}
+
+TEST_F(Replay, RotatedLogsMayBeCutInsideAnInstant) {
+  const std::string bytes = read_file(log());
+  const auto cut = static_cast<std::size_t>(events_of(log())[5004].offset);
+  write_file(path("1"), bytes.substr(0, cut));
+  write_file(path("2"), bytes.substr(cut));
+  ASSERT_EQ(replay_of({log()}, path("whole.lcmlog")).exit_code, 0);
+  const Outcome parts = replay_of({path("1"), path("2")}, path("parts.lcmlog"));
+  ASSERT_EQ(parts.exit_code, 0) << parts.err;
+  EXPECT_EQ(read_file(path("whole.lcmlog")), read_file(path("parts.lcmlog")));
+}
+
+TEST_F(Replay, SaysThatANewerTypeIsOne) {
+  rewrite(log(), path("newer"), [](LogEvent& event) {
+    if (event.channel == "ACCEL") event.data[0] ^= 0x55;
+    return true;
+  });
+  expect_refused(path("newer"), "a newer framewatch wrote them with a newer accel_t");
 }
 
 TEST_F(Replay, RefusesABadConfigurationOrOutput) {

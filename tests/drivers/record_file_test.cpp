@@ -59,7 +59,8 @@ double peak(const std::vector<double>& values) {
 
 TEST_F(RecordFile, ReadsCsv) {
   const auto record = read(
-      "\xEF\xBB\xBF# a note, \xC2\xA9\r\ntime_s, a ,b-2\r\n0,1,-2.5e-1\r\n\r\n0.5,+3,4\r\n1,,nan");
+      "\xEF\xBB\xBF# a note, \xC2\xA9\r\ntime_s, a "
+      ",b-2\r\n0,1,-2.5e-1\r\n\r\n0.5,+3,4\r\n1,,nan\r\n");
   ASSERT_TRUE(record);
   EXPECT_EQ(record->names, (std::vector<std::string>{"a", "b-2"}));
   EXPECT_EQ(record->time_s, (std::vector<double>{0, 0.5, 1}));
@@ -69,6 +70,14 @@ TEST_F(RecordFile, ReadsCsv) {
   EXPECT_TRUE(std::isnan(record->accel_mps2[1][2]));
   EXPECT_DOUBLE_EQ(record->rate_hz, 2);
   EXPECT_EQ(record->notes.size(), 2U);
+}
+
+TEST_F(RecordFile, LeavesOutALastRowThatMayBeCutOff) {
+  const auto record = read("time_s,a\n0,1\n0.5,2\n1,-12.5");
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record->time_s, (std::vector<double>{0, 0.5}));
+  ASSERT_EQ(record->notes.size(), 1U);
+  EXPECT_NE(record->notes[0].find("line 4: the last row has no line end"), std::string::npos);
 }
 
 TEST_F(RecordFile, FillsGapsOfWholeStepsWithNan) {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+
+namespace framewatch::daemon {
+
+/// Where the messages of a replay go.
+class EstimateOutput {
+ public:
+  virtual ~EstimateOutput() = default;
+  /// False when it cannot be stored or sent; error() says why, here and below.
+  [[nodiscard]] virtual bool put(std::int64_t time_us, const std::string& channel,
+                                 const std::vector<std::uint8_t>& bytes) = 0;
+  /// A file appears under its name only now; without it nothing of it stays.
+  [[nodiscard]] virtual bool close() = 0;
+  virtual std::string error() const = 0;
+};
+
+/// Rule that the name of an output breaks; empty when it is good.
+std::string problem_of_output_name(const std::string& path);
+
+/// By the name's end: .lcmlog holds every message, .csv, .csv.gz and .mat the main window's
+/// estimates, with boxplot statistics when asked for. Null, and the reason, when it cannot be made.
+std::unique_ptr<EstimateOutput> estimate_output(const Config& config, const std::string& path,
+                                                bool boxplot, std::string& error);
+
+/// Publishes on LCM. Null, and the reason, when LCM cannot start there.
+std::unique_ptr<EstimateOutput> lcm_estimate_output(const Config& config, const std::string& url,
+                                                    std::string& error);
+
+}  // namespace framewatch::daemon

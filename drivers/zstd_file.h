@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace framewatch::drivers {
+
+inline constexpr std::array<std::uint8_t, 4> kZstdMagic{0x28, 0xB5, 0x2F, 0xFD};
+
+/// What a zstd file held, in a temporary file that has no name and goes with its descriptor.
+struct UnpackedFile {
+  int file = -1;  ///< to be closed by whoever asked; -1: see error
+  std::int64_t bytes = 0;
+  std::string damage;  ///< why not all of it is there; what came before the damage is
+  std::string error;   ///< the operating system refused something
+};
+
+/// Unpacks `file` from its start, in bounded memory, into the folder for temporary files (TMPDIR).
+UnpackedFile unpack_zstd(int file);
+
+}  // namespace framewatch::drivers

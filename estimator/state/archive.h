@@ -1,0 +1,167 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <deque>
+#include <type_traits>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace framewatch {
+
+/// Values that are written as they lie in memory.
+template <typename T>
+concept PlainState = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+/// A class that says what its state is: archive() names every member that outlives a call, once,
+/// for both directions. What the constructor makes of the configuration, and what is formed anew
+/// before it is read, is no state.
+template <typename T, typename Archive>
+concept Archived = requires(T& value, Archive& archive) {
+  value.archive(archive);
+};
+
+/// What writer and reader have in common: how a value falls into plain ones. Derived has
+/// plain(T&), block(std::vector<T>&) and count(std::size_t), which gives back the size to take.
+template <typename Derived>
+class StateArchive {
+ public:
+  template <typename... T>
+  void operator()(T&... values) {
+    (item(values), ...);
+  }
+
+ private:
+  Derived& self() { return static_cast<Derived&>(*this); }
+
+  template <typename T>
+  void item(T& value) {
+    if constexpr (PlainState<T>)
+      self().plain(value);
+    else
+      value.archive(self());
+  }
+  template <typename T>
+  void item(std::vector<T>& values) {
+    if constexpr (PlainState<T>) {
+      self().block(values);
+    } else {
+      resize(values);
+      for (T& value : values) item(value);
+    }
+  }
+  template <typename T>
+  void item(std::deque<T>& values) {  // of a size that the configuration gives
+    if (self().count(values.size()) != values.size()) return self().refuse();
+    for (T& value : values) item(value);
+  }
+  template <typename T, std::size_t size>
+  void item(std::array<T, size>& values) {
+    for (T& value : values) item(value);
+  }
+  template <typename Clock, typename Duration>
+  void item(std::chrono::time_point<Clock, Duration>& time) {
+    std::int64_t ticks = time.time_since_epoch().count();
+    self().plain(ticks);
+    time = std::chrono::time_point<Clock, Duration>(Duration(ticks));
+  }
+  template <int rows, int columns>
+  void item(Eigen::Matrix<double, rows, columns>& matrix) {
+    if (self().count(static_cast<std::size_t>(matrix.rows())) !=
+            static_cast<std::size_t>(matrix.rows()) ||
+        self().count(static_cast<std::size_t>(matrix.cols())) !=
+            static_cast<std::size_t>(matrix.cols()))
+      return self().refuse();
+    for (Eigen::Index i = 0; i < matrix.size(); ++i) self().plain(matrix.data()[i]);
+  }
+  /// Elements that are classes are built by the configuration: their number must fit.
+  template <typename T>
+  void resize(std::vector<T>& values) {
+    if (self().count(values.size()) != values.size()) self().refuse();
+  }
+};
+
+/// Collects a state as bytes.
+class StateWriter : public StateArchive<StateWriter> {
+ public:
+  static constexpr bool kReading = false;
+  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
+
+  template <PlainState T>
+  void plain(const T& value) {
+    put(&value, sizeof value);
+  }
+  template <PlainState T>
+  void block(const std::vector<T>& values) {
+    (void)count(values.size());
+    put(values.data(), values.size() * sizeof(T));
+  }
+  std::size_t count(std::size_t size) {
+    const std::uint64_t stored = size;
+    put(&stored, sizeof stored);
+    return size;
+  }
+  void refuse() {}
+  bool good() const { return true; }
+
+ private:
+  void put(const void* data, std::size_t size) {
+    if (size == 0) return;
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + size);
+    std::memcpy(bytes_.data() + at, data, size);
+  }
+
+  std::vector<std::uint8_t> bytes_;
+};
+
+/// Gives a state back. Never reads beyond its bytes; when they do not fit what is read into, good()
+/// is false from there on and what was read into is to be thrown away.
+class StateReader : public StateArchive<StateReader> {
+ public:
+  static constexpr bool kReading = true;
+  /// The bytes must outlive the reader.
+  explicit StateReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
+
+  bool good() const { return good_; }
+  /// Everything was read, and nothing is left over.
+  bool whole() const { return good_ && at_ == bytes_.size(); }
+
+  template <PlainState T>
+  void plain(T& value) {
+    if (has(sizeof value)) take(&value, sizeof value);
+  }
+  template <PlainState T>
+  void block(std::vector<T>& values) {
+    const std::size_t size = count(values.size());
+    if (size > (bytes_.size() - at_) / sizeof(T)) return refuse();
+    values.resize(size);
+    if (size > 0) take(values.data(), size * sizeof(T));
+  }
+  std::size_t count(std::size_t) {
+    std::uint64_t stored = 0;
+    plain(stored);
+    return static_cast<std::size_t>(stored);
+  }
+  void refuse() { good_ = false; }
+
+ private:
+  bool has(std::size_t size) {
+    good_ = good_ && size <= bytes_.size() - at_;
+    return good_;
+  }
+  void take(void* to, std::size_t size) {
+    std::memcpy(to, bytes_.data() + at_, size);
+    at_ += size;
+  }
+
+  const std::vector<std::uint8_t>& bytes_;
+  std::size_t at_ = 0;
+  bool good_ = true;
+};
+
+}  // namespace framewatch

@@ -1,0 +1,254 @@
+#include "drivers/message_types.h"
+
+#include <gtest/gtest.h>
+
+#include <framewatch/accel_t.hpp>
+#include <framewatch/channel_table_t.hpp>
+#include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+#include "drivers/accel_codec.h"
+#include "drivers/channel_table.h"
+#include "drivers/lcm_log.h"
+#include "drivers/message_check.h"
+#include "tests/support/temporary.h"
+
+namespace framewatch::drivers {
+namespace {
+
+// The types as the first release has them. A log of its time decodes for ever: new fields are a new
+// type. These numbers must never change.
+constexpr std::uint64_t kAccel = 0xecb49719e8cabe05;
+
+const std::string kFirstLog = FRAMEWATCH_SOURCE_DIR "/tests/golden/every_type.lcmlog";
+
+template <typename Type>
+std::vector<std::uint8_t> encoded(const Type& message) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+accel_t accel() {
+  accel_t m{};
+  m.time_us = 1'700'000'000'123'456;
+  m.sequence = 77;
+  m.node = 3;
+  m.accel_abs_mps2[0] = 0.125;
+  m.accel_abs_mps2[1] = -9.75;
+  m.accel_abs_mps2[2] = 1e-9;
+  return m;
+}
+
+channel_table_t channel_table() {
+  channel_table_t m{};
+  m.time_us = 1;
+  m.rate_hz = 100;
+  m.channels = 2;
+  m.name = {"base-x", "F1-Y1"};
+  m.node = {0, 2};
+  m.axis = {0, 1};
+  return m;
+}
+
+parameter_table_t parameter_table() {
+  parameter_table_t m{};
+  m.time_us = 2;
+  m.structure = "table";
+  m.config_sha256 = "00ff";
+  m.version = "0.1.0";
+  m.rate_hz = 100;
+  m.window_rows = 500;
+  m.hop_rows = 1;
+  m.boxplot_windows = 500;
+  m.parameters = 2;
+  m.name = {"kx_1_y1", "cx_1_y1"};
+  m.unit = {"N/m", "N*s/m"};
+  m.kind = {0, 2};
+  m.story = {1, 1};
+  m.design = {34e3, 53};
+  m.other_windows = 1;
+  m.other_channel = {"FRAMEWATCH_ESTIMATE_1S"};
+  m.other_rows = {100};
+  return m;
+}
+
+window_estimate_t window_estimate() {
+  window_estimate_t m{};
+  m.window_start_us = 10;
+  m.window_end_us = 20;
+  m.sequence = 5;
+  m.status = 1;
+  m.rows = 500;
+  m.residual_ratio = 0.25;
+  m.parameters = 2;
+  m.value = {34000.5, 53.25};
+  m.std_error = {12.5, 0.5};
+  m.reason = {0, 2};
+  m.snr = {100, 3};
+  m.prior_share = {0, 0.5F};
+  m.noise_share = {0.125F, 0};
+  m.held = 1;
+  m.held_index = {1};
+  m.held_value = {53};
+  m.held_std_error = {0.75};
+  m.held_end_us = {15};
+  m.boxplot_windows = 500;
+  m.boxplots = 2;
+  m.q1 = {1, 2};
+  m.median = {3, 4};
+  m.q3 = {5, 6};
+  m.whisker_low = {0.5, 1.5};
+  m.whisker_high = {7, 8};
+  m.outliers = {0, 9};
+  m.boxplot_count = {500, 499};
+  return m;
+}
+
+status_t status() {
+  status_t m{};
+  m.time_us = 30;
+  m.config_sha256 = "00ff";
+  m.version = "0.1.0";
+  m.windows = 1;
+  m.sample_sets = 2;
+  m.gaps = 3;
+  m.rejected_messages = 4;
+  m.queue_high_water = 5;
+  m.queue_dropped = 6;
+  m.latency_s = 0.5;
+  m.channels = 1;
+  m.name = {"base-x"};
+  m.received = {7};
+  m.lost = {8};
+  m.late = {9};
+  m.repaired = {10};
+  m.rejected = {11};
+  m.stuck = {12};
+  m.clipped = {13};
+  m.noise_mps2_per_rthz = {1e-4};
+  return m;
+}
+
+event_t event() {
+  event_t m{};
+  m.time_us = 40;
+  m.since_us = 35;
+  m.id = 1;
+  m.state = 1;
+  m.severity = 2;
+  m.kind = "stiffness_change";
+  m.place = "kx_1_y1";
+  m.value = -0.03;
+  m.std_error = 0.01;
+  m.unit = "1";
+  m.message = "kx_1_y1 is 3 % less";
+  m.segment = "";
+  return m;
+}
+
+gap_t gap() {
+  gap_t m{};
+  m.window_start_us = 50;
+  m.window_end_us = 60;
+  m.overall_nrmse = 0.1;
+  m.noise_floor = 0.01;
+  m.channels = 1;
+  m.name = {"base-x"};
+  m.nrmse = {0.2};
+  m.floor = {0.02};
+  return m;
+}
+
+std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
+  return {{"ACCEL", encoded(accel())},
+          {"ACCEL_CHANNELS", encoded(channel_table())},
+          {"FRAMEWATCH_PARAMETERS", encoded(parameter_table())},
+          {"FRAMEWATCH_ESTIMATE", encoded(window_estimate())},
+          {"FRAMEWATCH_STATUS", encoded(status())},
+          {"FRAMEWATCH_EVENT", encoded(event())},
+          {"FRAMEWATCH_GAP", encoded(gap())}};
+}
+
+TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
+  LcmLogReader reader;
+  ASSERT_TRUE(reader.open(kFirstLog)) << reader.error();
+  const auto messages = every_type();
+  std::size_t i = 0;
+  for (LogEvent e; reader.next(e) == LogRead::event; ++i) {
+    ASSERT_LT(i, messages.size());
+    EXPECT_EQ(e.channel, messages[i].first);
+    EXPECT_EQ(e.timestamp_us, static_cast<std::int64_t>(1000 * i));
+    EXPECT_TRUE(e.data == messages[i].second) << e.channel;
+    EXPECT_STREQ(known_type(*fingerprint(e.data)), type_of_channel(e.channel));
+    if (e.channel == "ACCEL") {
+      const auto sample = decode_accel(e.data.data(), e.data.size());
+      ASSERT_TRUE(sample);
+      EXPECT_EQ(to_microseconds(sample->time), accel().time_us);
+      EXPECT_EQ(sample->sequence, 77);
+      EXPECT_EQ(sample->node, 3);
+      EXPECT_EQ(sample->accel_abs_mps2, (std::array{0.125, -9.75, 1e-9}));
+      EXPECT_EQ(accel_time_us(e.data.data(), e.data.size()), accel().time_us);
+    }
+    if (e.channel == "ACCEL_CHANNELS") {
+      const auto table = decode_channel_table(e.data.data(), e.data.size());
+      ASSERT_TRUE(table);
+      EXPECT_EQ(table->entries[1], (ChannelTable::Entry{"F1-Y1", 2, 1}));
+    }
+    if (e.channel == "FRAMEWATCH_PARAMETERS") {
+      const auto table = decode_parameter_table(e.data);
+      ASSERT_TRUE(table);
+      EXPECT_EQ(table->other_channel, parameter_table().other_channel);
+      EXPECT_EQ(table->design, parameter_table().design);
+    }
+    if (e.channel == "FRAMEWATCH_ESTIMATE") {
+      const auto estimate = decode_window_estimate(e.data);
+      ASSERT_TRUE(estimate);
+      EXPECT_EQ(estimate->value, window_estimate().value);
+      EXPECT_EQ(estimate->boxplot_count, window_estimate().boxplot_count);
+    }
+    if (e.channel == "FRAMEWATCH_EVENT") {
+      const auto decoded = decode_event(e.data);
+      ASSERT_TRUE(decoded);
+      EXPECT_EQ(decoded->message, event().message);
+      EXPECT_EQ(decoded->since_us, 35);
+    }
+  }
+  EXPECT_EQ(i, messages.size());
+}
+
+TEST(Schema, FingerprintsAreThoseOfTheFirstRelease) {
+  EXPECT_EQ(static_cast<std::uint64_t>(accel_t::getHash()), kAccel);
+}
+
+TEST(Schema, SaysWhatAPayloadIsInsteadOfWhatItShouldBe) {
+  const auto bytes = encoded(accel());
+  EXPECT_EQ(why_not("window_estimate_t", bytes), "accel_t where window_estimate_t belongs");
+  auto longer = encoded(window_estimate());
+  longer.push_back(0);
+  EXPECT_NE(why_not("window_estimate_t", longer).find("its lengths do not fit"), std::string::npos);
+  EXPECT_EQ(why_not("accel_t", std::vector<std::uint8_t>(3)), "3 bytes are no accel_t");
+}
+
+TEST(Schema, ANewerTypeIsCalledOne) {
+  auto bytes = encoded(window_estimate());
+  bytes[0] ^= 0x40;
+  const std::string why = why_not("window_estimate_t", bytes);
+  EXPECT_NE(why.find("no window_estimate_t as framewatch "), std::string::npos) << why;
+  EXPECT_NE(why.find("a newer framewatch wrote them"), std::string::npos) << why;
+  EXPECT_EQ(known_type(*fingerprint(bytes)), nullptr);
+}
+
+TEST(Schema, ChannelsTellTheirType) {
+  EXPECT_STREQ(type_of_channel("ACCEL_ROOF"), "accel_t");
+  EXPECT_STREQ(type_of_channel("ROOF_CHANNELS"), "channel_table_t");
+  EXPECT_STREQ(type_of_channel("FRAMEWATCH_ESTIMATE_2.5S"), "window_estimate_t");
+  EXPECT_STREQ(type_of_channel("B7_STATUS", "B7_"), "status_t");
+  EXPECT_EQ(type_of_channel("CAMERA"), nullptr);
+}
+
+}  // namespace
+}  // namespace framewatch::drivers
