@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <thread>
 
 #include <fmt/core.h>
 
 #include "daemon/diagnose_output.h"
 #include "daemon/diagnose_records.h"
+#include "daemon/workers.h"
 #include "drivers/text_output.h"
 #include "estimator/identify/design.h"
 
@@ -51,6 +53,13 @@ int diagnose_command(const DiagnoseArguments& a) {
   if (!config) return kBadInput;
 
   std::vector<std::string> problems;
+  std::vector<EffectKind> without;
+  for (const std::string& name : a.without) {
+    if (const auto kind = find_effect(name))
+      without.push_back(*kind);
+    else
+      problems.push_back(fmt::format("--without {}: no effect has this name", name));
+  }
   std::vector<DiagnoseRecord> records;
   for (const auto* list : {&a.train, &a.holdout})
     for (const std::string& path : *list)
@@ -96,6 +105,13 @@ int diagnose_command(const DiagnoseArguments& a) {
 
   DiagnosisOptions options;
   options.holdout_from = a.train.size();
+  options.known = config->effects;
+  options.without = without;
+  const Workers workers(a.threads > 0 ? a.threads
+                                      : static_cast<int>(std::thread::hardware_concurrency()));
+  options.parallel = [&](int count, const std::function<void(int)>& work) {
+    workers.run("", count, work);
+  };
   const bool terminal = !a.quiet && isatty(STDERR_FILENO);
   if (terminal)
     options.progress = [](const std::string& what, double share) {

@@ -8,7 +8,9 @@ namespace framewatch::daemon {
 struct DiagnoseArguments {
   std::string config;
   std::vector<std::string> train, holdout;  ///< record files and LCM event logs
-  std::string out;  ///< directory of diagnosis.json, report.html, model.toml
+  std::string out;                   ///< directory of diagnosis.json, report.html, model.toml
+  std::vector<std::string> without;  ///< names of effects that are not looked for
+  int threads = 0;                   ///< 0: as many as the machine has
   bool quiet = false;
 };
 

@@ -15,6 +15,11 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
+/// From and to; null where it is not known.
+Json span(double from, double to) {
+  return to > from ? Json{number(from), number(to)} : Json(nullptr);
+}
+
 /// Channels' and overall values of some stretches, averaged.
 Json gap_json(const DiagnoseOutput& o, const std::vector<Gap>& gaps, bool holdout, bool floor) {
   Json channels = Json::object();
@@ -38,6 +43,21 @@ Json both(const DiagnoseOutput& o, const std::vector<Gap>& gaps, bool floor) {
   return {{"train", gap_json(o, gaps, false, floor)}, {"holdout", gap_json(o, gaps, true, floor)}};
 }
 
+/// Name, place, parameters.
+Json effect_json(const DiagnoseOutput& o, const FoundEffect& f) {
+  const Effect effect = catalogue_effect(o.plant, o.stretches, f, o.diagnosis.model);
+  Json parameters = parameters_json(effect);
+  std::size_t index = 0;
+  for (auto& [key, value] : parameters.items()) {
+    if (index < f.std_error.size() && f.std_error[index] > 0)
+      value["std_error"] = number(f.std_error[index]);
+    ++index;
+  }
+  return {{"effect", std::string(name_of(effect.kind))},
+          {"location", location_json(effect.place, o.plant.structure, o.plant.axes)},
+          {"parameters", parameters}};
+}
+
 Json trial_json(const DiagnoseOutput& o, const Trial& t) {
   return {{"effect", std::string(name_of(t.kind))},
           {"location", location_json(t.place, o.plant.structure, o.plant.axes)},
@@ -54,45 +74,42 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
   out["gap"] = {{"before", both(o, d.before, false)},
                 {"after", both(o, d.after, false)},
                 {"noise_floor", both(o, d.before, true)},
+                {"after_is_of_a_model_fitted_to", d.after_of_all ? "all records" : "train"},
                 {"misfit_ratio_before", number(d.ratio_before)},
                 {"misfit_ratio_after", number(d.ratio_after)}};
   out["effects"] = Json::array();
   for (const FoundEffect& f : d.effects) {
-    const Effect effect = catalogue_effect(o.plant, o.stretches, f, d.model);
-    Json parameters = parameters_json(effect);
-    std::size_t index = 0;
-    for (auto& [key, value] : parameters.items()) {
-      if (index < f.std_error.size() && f.std_error[index] > 0)
-        value["std_error"] = number(f.std_error[index]);
-      ++index;
-    }
-    Json one{{"effect", std::string(name_of(effect.kind))},
-             {"location", location_json(effect.place, o.plant.structure, o.plant.axes)},
-             {"parameters", parameters},
-             {"holdout_nrmse_before", number(f.before)},
-             {"holdout_nrmse_after", number(f.after)},
-             {"explained_share", number(f.chosen.fraction)},
-             {"confidence", number(f.confidence)},
-             {"alternatives", Json::array()},
-             {"indistinguishable_from", Json::array()}};
+    Json one = effect_json(o, f);
+    one.update(Json{{"holdout_nrmse_before", number(f.before)},
+                    {"holdout_nrmse_after", number(f.after)},
+                    {"explained_share", number(f.chosen.fraction)},
+                    {"confidence", number(f.confidence)},
+                    {"alternatives", Json::array()},
+                    {"indistinguishable_from", Json::array()}});
     for (const Trial& t : f.alternatives) one["alternatives"].push_back(trial_json(o, t));
     for (const EffectKind kind : f.like)
       one["indistinguishable_from"].push_back(std::string(name_of(kind)));
     out["effects"].push_back(one);
   }
+  out["known_effects"] = Json::array();
+  for (const FoundEffect& f : d.known) out["known_effects"].push_back(effect_json(o, f));
   out["candidates_rejected"] = Json::array();
   for (const Trial& t : d.rejected) out["candidates_rejected"].push_back(trial_json(o, t));
   out["where"] = Json::array();
   for (const WhereEntry& w : d.where)
     out["where"].push_back({{"location", location_json(w.place, o.plant.structure, o.plant.axes)},
                             {"misfit_ratio_if_free", number(w.ratio)},
-                            {"time_s", {number(w.from_s), number(w.to_s)}},
-                            {"band_hz", {number(w.low_hz), number(w.high_hz)}}});
+                            {"record", o.records[w.record].path},
+                            {"time_s", span(w.from_s, w.to_s)},
+                            {"band_hz", span(w.low_hz, w.high_hz)},
+                            {"peak", w.peak > 0 ? number(w.peak) : Json(nullptr)},
+                            {"peak_unit", w.place.kind == PlaceKind::channel ? "m/s^2" : "N"}});
   Json parameters = Json::object();
   for (int p = 0; p < o.plant.table.size(); ++p)
-    parameters[o.plant.table[p].name] = {{"value", number(d.model.theta[p])},
-                                         {"unit", o.plant.table[p].unit},
-                                         {"design", number(o.plant.design[p])}};
+    if (!o.plant.stiff_floors || o.plant.table[p].panel < 0)
+      parameters[o.plant.table[p].name] = {{"value", number(d.model.theta[p])},
+                                           {"unit", o.plant.table[p].unit},
+                                           {"design", number(o.plant.design[p])}};
   out["parameters"] = parameters;
   Json files = Json::array();
   for (std::size_t r = 0; r < o.records.size(); ++r)

@@ -81,11 +81,13 @@ std::string diagnosis_model_toml(const DiagnoseOutput& o) {
   out += "\n[structure.design]\n";
   if (s.n() > 0) out += "kx_npm = " + grid(o.plant.table, theta, s.stories, 0, s.n()) + "\n";
   if (s.m() > 0) out += "ky_npm = " + grid(o.plant.table, theta, s.stories, s.n(), s.m()) + "\n";
-  if (s.panels() > 0) out += "gk = " + panels(s, o.plant.table, theta) + "\n";
+  if (s.panels() > 0 && !o.plant.stiff_floors)
+    out += "gk = " + panels(s, o.plant.table, theta) + "\n";
   out += fmt::format("damping_ratio = {:.6g}\n", damping_ratio(o.plant, theta));
   std::vector<Effect> effects;
-  for (const FoundEffect& f : o.diagnosis.effects)
-    effects.push_back(catalogue_effect(o.plant, o.stretches, f, o.diagnosis.model));
+  for (const auto* list : {&o.diagnosis.known, &o.diagnosis.effects})
+    for (const FoundEffect& f : *list)
+      effects.push_back(catalogue_effect(o.plant, o.stretches, f, o.diagnosis.model));
   if (!effects.empty()) out += "\n" + effects_toml(effects, s, o.plant.axes);
   return out;
 }

@@ -102,7 +102,7 @@ std::string loop_section(const DiagnoseOutput& o) {
     for (int i = 0; i < f.index; ++i)
       law += o.diagnosis.model.effects[static_cast<std::size_t>(i)].element_law();
     const std::size_t r = o.stretches.size() - 1;
-    const int ratio = steps_per_sample(o.plant, o.plant.design, o.stretches[r].rate_hz);
+    const int ratio = steps_per_sample(o.plant, o.stretches[r].rate_hz);
     const FreeRun run = free_run(o.plant, o.diagnosis.model, o.stretches[r], r, ratio);
     if (!run.good) continue;
     const LawTrack& track = run.tracks[law];

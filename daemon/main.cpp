@@ -266,6 +266,9 @@ void add_diagnose(CLI::App& app, Action& action, DiagnoseArguments& arguments) {
   command->add_option("--holdout", arguments.holdout, "records of other motions, to judge by")
       ->required();
   command->add_option("--out", arguments.out, "directory to write to")->required();
+  command->add_option("--without", arguments.without, "effects that are not looked for, by name");
+  command->add_option("--threads", arguments.threads, "at most so many; the result is the same")
+      ->check(CLI::Range(1, 256));
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
   command->callback(
       [&action, &arguments] { action = [&arguments] { return diagnose_command(arguments); }; });

@@ -2,39 +2,92 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace framewatch {
 namespace {
 
-void set_axis_values(Effect& out, const std::vector<Stretch>& stretches, const Model& model) {
+constexpr double kOfThePower = 0.05;  ///< of a force's power lies below, and above, its band
+
+void set_axis_values(Effect& out, const Plant& plant, const Model& model) {
   const auto axis = static_cast<Eigen::Index>(out.place.channel);
   switch (out.kind) {
     case EffectKind::gain_error:
       out.set("gain", model.gain[axis]);
       break;
     case EffectKind::time_shift:
-      out.set("shift_s", model.clock_s[axis]);
+      out.set("shift_s",
+              model.clock_s[axis] - plant.axes[static_cast<std::size_t>(out.place.channel)].delay);
       break;
-    case EffectKind::clipping: {
-      double level = 1e300;
-      for (const Stretch& s : stretches)
-        level =
-            std::min(level, 0.5 * (s.accel.col(axis).maxCoeff() - s.accel.col(axis).minCoeff()));
-      out.set("level_mps2", level);
-      break;
-    }
     default:
       break;
   }
 }
 
+double clipping_level(const std::vector<Stretch>& stretches, Eigen::Index axis) {
+  double level = 1e300;
+  for (const Stretch& s : stretches)
+    level = std::min(level, 0.5 * (s.accel.col(axis).maxCoeff() - s.accel.col(axis).minCoeff()));
+  return level;
+}
+
+/// Size and band of the force that nothing else explains, of the first stretch.
+void set_broadband(Effect& out, const Plant& plant, const std::vector<Stretch>& stretches,
+                   const ModelEffect& e, const Model& model) {
+  Model rest = model;
+  std::erase_if(rest.effects, [&](const ModelEffect& other) {
+    return other.form == LawForm::broadband && other.place == e.place;
+  });
+  const Stretch& s = stretches.front();
+  const bool laws = std::any_of(rest.effects.begin(), rest.effects.end(),
+                                [](const ModelEffect& other) { return other.element_law(); });
+  const Whitened system = whiten(plant, rest, s, 0, laws ? Forcing::simulated : Forcing::measured,
+                                 {}, steps_per_sample(plant, s.rate_hz));
+  if (!system.good) return;
+  const Eigen::Index n = plant.equations();
+  const Eigen::VectorXcd direction =
+      node_direction(plant, e.place.story, e.place.frame).cast<std::complex<double>>();
+  Eigen::VectorXd power(s.bins());
+  Eigen::VectorXcd r(n);
+  for (Eigen::Index b = 0; b < s.bins(); ++b) {
+    const Eigen::VectorXcd u = system.whitener[static_cast<std::size_t>(b)] * direction;
+    r.real() = system.rest.segment(2 * n * b, n);
+    r.imag() = system.rest.segment(2 * n * b + n, n);
+    const double weight = u.squaredNorm();
+    power[b] = std::max(0.0, std::norm(u.dot(r) / weight) - 1 / weight);
+  }
+  const double total = power.sum(), intervals = static_cast<double>(s.intervals());
+  double below = 0;
+  double low = s.w[0], high = s.w[s.bins() - 1];
+  for (Eigen::Index b = 0; b < s.bins(); ++b) {
+    if (below < kOfThePower * total) low = s.w[b];
+    below += power[b];
+    if (below < (1 - kOfThePower) * total) high = s.w[b];
+  }
+  out.set("rms_n", std::sqrt(2 * total) / intervals);
+  out.set("low_hz", low / (2 * M_PI));
+  out.set("high_hz", std::max(high, 1.01 * low) / (2 * M_PI));
+}
+
 }  // namespace
 
-Effect catalogue_effect(const Plant&, const std::vector<Stretch>& stretches,
+Eigen::VectorXd catalogue_values(const Plant& plant, const std::vector<Stretch>& stretches,
+                                 const FoundEffect& found, const Model& model) {
+  const Effect effect = catalogue_effect(plant, stretches, found, model);
+  return Eigen::Map<const Eigen::VectorXd>(effect.values.data(),
+                                           static_cast<Eigen::Index>(effect.values.size()));
+}
+
+Effect catalogue_effect(const Plant& plant, const std::vector<Stretch>& stretches,
                         const FoundEffect& found, const Model& model) {
   Effect out = make_effect(found.chosen.kind, found.chosen.place);
+  if (!found.ramp_mps3.empty()) {
+    out.set("ramp_mps3", found.ramp_mps3.front());
+    out.set("from_s", found.ramp_from_s.front());
+    return out;
+  }
   if (found.index < 0) {
-    set_axis_values(out, stretches, model);
+    set_axis_values(out, plant, model);
     return out;
   }
   const ModelEffect& e = model.effects[static_cast<std::size_t>(found.index)];
@@ -103,6 +156,10 @@ Effect catalogue_effect(const Plant&, const std::vector<Stretch>& stretches,
       out.set("c_nspm", p(0));
       break;
     case EffectKind::unmeasured_force: {
+      if (e.form == LawForm::broadband) {
+        set_broadband(out, plant, stretches, e, model);
+        break;
+      }
       const double c = e.record_knobs[0][0].plain(), s = e.record_knobs[0][1].plain();
       out.set("amplitude_n", std::hypot(c, s));
       out.set("frequency_hz", p(0));
@@ -110,6 +167,18 @@ Effect catalogue_effect(const Plant&, const std::vector<Stretch>& stretches,
       out.set("from_s", e.onset_s[0]);
       break;
     }
+    case EffectKind::floor_flexibility:
+      out.set("gk_nprad", p(0));
+      out.set("gc_nsprad", p(1));
+      break;
+    case EffectKind::p_delta:
+      out.set("weight_n",
+              -p(0) / e.deformation *
+                  plant.structure.story_height[static_cast<std::size_t>(e.place.story - 1)]);
+      break;
+    case EffectKind::clipping:
+      out.set("level_mps2", clipping_level(stretches, e.place.channel));
+      break;
     case EffectKind::misalignment:
       out.set("angle_deg", p(0) * 180 / M_PI);
       break;

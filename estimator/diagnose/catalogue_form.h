@@ -9,5 +9,8 @@ namespace framewatch {
 /// largest deformation (velocity) seen.
 Effect catalogue_effect(const Plant& plant, const std::vector<Stretch>& stretches,
                         const FoundEffect& found, const Model& model);
+/// Its values alone.
+Eigen::VectorXd catalogue_values(const Plant& plant, const std::vector<Stretch>& stretches,
+                                 const FoundEffect& found, const Model& model);
 
 }  // namespace framewatch

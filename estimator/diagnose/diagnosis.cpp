@@ -3,25 +3,38 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/bias.h"
+#include "estimator/diagnose/known_effects.h"
+#include "estimator/diagnose/locate.h"
+#include "estimator/diagnose/parameter_errors.h"
+#include "estimator/diagnose/trials.h"
+#include "estimator/diagnose/where.h"
+
 namespace framewatch {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
-using Eigen::VectorXd;
 
-constexpr double kAdequate = 1.25;  ///< misfit over noise
-constexpr double kTakesAway = 0.9;  ///< of the misfit beyond noise, else a law is not named
+constexpr double kAdequate = 1.25;   ///< misfit over noise
+constexpr double kAdequateGap = 2;   ///< NRMSE over its floor
+constexpr double kTakesAway = 0.97;  ///< of the misfit beyond noise, else a law is not named
+constexpr double kTakesMost = 0.9;   ///< the same where the rest is within chance
+constexpr double kSharp = 0.995;     ///< share above which a fit need not be sharpened
+constexpr double kOneLaw =
+    0.99;  ///< share above which a second law at a place is no sign of another
+constexpr std::size_t kSharpened = 3;
 constexpr double kTakesAll = 0.97;
 constexpr double kNearFloor = 2.5;  ///< NRMSE over its floor
 constexpr double kAtFloor = 1.15;
 constexpr double kSame = 8;  ///< difference of misfits that decides nothing
 constexpr double kLeastGain = 50;
-constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
-constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
-constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
-constexpr std::size_t kPairLeaders = 6, kPairs = 3;
-constexpr std::size_t kPlaces = 5, kContenders = 3, kLawsFitted = 5, kLawsRun = 3;
+constexpr double kSignificant = 4;     ///< standard deviations of the misfit under noise
+constexpr double kOnePlace = 1.6;      ///< ratio above which one place does not do
+constexpr double kPairShare = 0.4;     ///< of the excess that two places must leave at most
+constexpr double kOwnPrice = 0.1;      ///< of the excess: what an arbitrary force must be better by
+constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
+constexpr int kPolishSteps = 6, kTrainSteps = 8;
 
 double sum(const std::vector<double>& values) {
   double out = 0;
@@ -30,9 +43,40 @@ double sum(const std::vector<double>& values) {
 }
 
 /// Whether an effect is an axis' freed gain or clock rather than a member of the model's effects.
-bool is_channel_axis(EffectKind kind) {
+bool is_axis_error(EffectKind kind) {
   return kind == EffectKind::gain_error || kind == EffectKind::polarity ||
-         kind == EffectKind::time_shift || kind == EffectKind::clipping;
+         kind == EffectKind::time_shift;
+}
+
+bool has_law(const Model& model) {
+  return std::any_of(model.effects.begin(), model.effects.end(),
+                     [](const ModelEffect& e) { return e.element_law(); });
+}
+
+Forcing forcing_of(const Model& model) {
+  return has_law(model) ? Forcing::simulated : Forcing::measured;
+}
+
+std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
+  std::vector<Gap> out;
+  for (std::size_t r = 0; r < fitter.stretches().size(); ++r) {
+    const Stretch& s = fitter.stretches()[r];
+    const Whitened system =
+        whiten(fitter.plant(), model, s, r, Forcing::simulated, {}, fitter.ratio(r));
+    if (system.good) out.push_back(gap_of(fitter.plant(), model, s, system));
+  }
+  return out;
+}
+
+/// A force on the lowest story of a frame is one at its floor.
+bool same_spot(const EffectPlace& a, const EffectPlace& b) {
+  if (a == b) return true;
+  const auto element_or_node = [](const EffectPlace& p) {
+    return p.kind == PlaceKind::frame || p.kind == PlaceKind::node;
+  };
+  const bool alike = a.kind == b.kind || (a.story == 1 && b.story == 1);
+  return element_or_node(a) && element_or_node(b) && alike && a.story == b.story &&
+         a.frame == b.frame;
 }
 
 class Search {
@@ -41,37 +85,33 @@ class Search {
       : plant_(plant),
         stretches_(stretches),
         options_(options),
-        fitter_(plant, stretches, options.tolerances) {
-    for (std::size_t r = 0; r < stretches.size(); ++r) expected_ += fitter_.expected(r);
-  }
+        fitter_(plant, stretches, options.tolerances) {}
 
-  Diagnosis run() {
+  Diagnosis run(std::vector<FoundEffect> ramps) {
     tell("linear model", 0.02);
-    FitResult now = fitter_.fit(initial_model(plant_), {}, {});
+    Model start = initial_model(plant_);
+    out_.known = add_known(plant_, stretches_, options_.known, start);
+    FitResult now = fit(start, {}, 12);
     if (!now.good) {
-      out_.reason = "the linear model cannot be fitted";
+      out_.reason = "the model cannot be fitted to these records";
       return out_;
     }
-    for (std::size_t r = 0; r < stretches_.size(); ++r) {
-      // A stretch that fits alone starts the whole better than all of them together.
-      const std::vector<Stretch> one{stretches_[r]};
-      const Fitter alone(plant_, one, options_.tolerances);
-      if (sum(now.misfit) < kAdequate * expected_ || stretches_.size() < 2) break;
-      const FitResult fit = alone.fit(initial_model(plant_), {}, {});
-      if (!fit.good || sum(fit.misfit) > 1.5 * alone.expected(0)) continue;
-      single_ = fit.model;
-    }
+    known_ = now.model.effects.size();
     out_.linear = now.model;
-    out_.before = gaps(now.model);
-    out_.ratio_before = sum(now.misfit) / expected_;
+    out_.ratio_before = ratio(now);
     double cost = now.cost;
-    bool stuck = false;
-    for (int round = 0; round < options_.rounds && !stuck; ++round)
-      stuck = !one_round(now, cost, round);
+    bool more = true;
+    for (int round = 0; round < options_.rounds && more; ++round)
+      more = one_round(now, cost, round);
+    tell("what stays", 0.92);
+    if (!out_.effects.empty()) polish(now);
     out_.model = now.model;
-    out_.after = gaps(now.model);
-    for (const MatrixXcd& m : now.motion) (void)m;
-    judge(now);
+    out_.ratio_after = ratio(now);
+    set_errors(fitter_, now.model, now.motion, out_.effects);
+    set_errors(fitter_, now.model, now.motion, out_.known);
+    out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
+    honest_gaps();
+    judge();
     return out_;
   }
 
@@ -80,337 +120,219 @@ class Search {
     if (options_.progress) options_.progress(what, share);
   }
 
-  std::vector<Gap> gaps(const Model& model) const {
-    std::vector<Gap> out;
-    for (std::size_t r = 0; r < stretches_.size(); ++r) {
-      const Whitened system =
-          whiten(plant_, model, stretches_[r], r, Forcing::simulated, {}, fitter_.ratio(r));
-      if (system.good) out.push_back(gap_of(plant_, stretches_[r], system));
-    }
+  FitResult fit(const Model& model, const std::vector<MatrixXcd>& motion, int steps) const {
+    FitOptions options;
+    options.forcing = forcing_of(model);
+    options.max_steps = steps;
+    return fitter_.fit(model, motion, options);
+  }
+
+  double expected(const Model& model) const {
+    double out = 0;
+    for (std::size_t r = 0; r < stretches_.size(); ++r) out += fitter_.expected(r, model);
     return out;
   }
 
+  double ratio(const FitResult& now) const { return sum(now.misfit) / expected(now.model); }
+
+  /// Mean over the held-out stretches.
   double holdout(const std::vector<Gap>& gaps) const {
     double error = 0;
     int count = 0;
-    for (std::size_t r = 0; r < gaps.size(); ++r)
-      if (r >= options_.holdout_from) {
-        error += gaps[r].overall;
-        ++count;
-      }
+    for (std::size_t r = options_.holdout_from; r < gaps.size(); ++r, ++count)
+      error += gaps[r].overall;
     return count > 0 ? error / count : 0;
   }
 
-  /// Sharpens the localisation: the places that one step found, refitted.
-  std::vector<Localisation> locate(const FitResult& now) {
-    const Linearised at = fitter_.linearise(now.model, now.motion, Forcing::measured);
-    if (at.systems.size() != stretches_.size() || !at.systems.back().good) return {};
-    std::vector<std::vector<Suspect>> lists;
-    for (const Suspect& s : suspects_of(plant_, now.model)) lists.push_back({s});
-    std::vector<Localisation> once = localise_once(fitter_, at, now.model, lists);
-    const auto order = [](const Localisation& a, const Localisation& b) {
-      return a.ratio < b.ratio;
+  /// Everything together once more, with the shape of hysteresis free.
+  void polish(FitResult& now) {
+    Model start = now.model;
+    free_shapes(start);
+    const FitResult better = fit(start, now.motion, kPolishSteps);
+    if (better.good && better.cost < now.cost) now = better;
+  }
+
+  std::vector<Trial> trials_of(const FitResult& now, const Located& located, double begin,
+                               double& bound) {
+    const auto progress = [&](const std::string& what, double share) {
+      tell(what, begin + 0.05 + 0.2 * share);
     };
-    std::stable_sort(once.begin(), once.end(), order);
-    std::vector<Localisation> out;
-    for (std::size_t i = 0; i < std::min(kPlaces, once.size()); ++i) {
-      const Model& start = once[i].model.theta.size() > 0 ? once[i].model : now.model;
-      out.push_back(localise(fitter_, start, {}, once[i].suspects, 8));
-      if (out.back().model.theta.size() == 0) out.pop_back();
-    }
-    std::stable_sort(out.begin(), out.end(), order);
-    for (std::size_t i = kPlaces; i < std::min<std::size_t>(12, once.size()); ++i)
-      rest_.push_back(once[i]);
-    once_ = std::move(once);
-    return out;
-  }
-
-  /// Two places at once: the best single ones with every other, and every two axes.
-  std::vector<Localisation> locate_pairs(const FitResult& now) {
-    const Linearised at = fitter_.linearise(now.model, now.motion, Forcing::measured);
-    if (at.systems.size() != stretches_.size() || !at.systems.back().good) return {};
-    std::vector<Suspect> all;
-    for (const Localisation& l : once_)
-      if (l.suspects.front().size() == 1) all.push_back(l.suspects.front());
-    std::vector<std::vector<Suspect>> lists;
-    for (std::size_t i = 0; i < std::min(kPairLeaders, all.size()); ++i)
-      for (std::size_t j = i + 1; j < all.size(); ++j) lists.push_back({all[i], all[j]});
-    for (std::size_t i = kPairLeaders; i < all.size(); ++i)
-      for (std::size_t j = i + 1; j < all.size(); ++j)
-        if (all[i].kind == Suspect::Kind::axis && all[j].kind == Suspect::Kind::axis)
-          lists.push_back({all[i], all[j]});
-    std::vector<Localisation> once = localise_once(fitter_, at, now.model, lists);
-    const auto order = [](const Localisation& a, const Localisation& b) {
-      return a.ratio < b.ratio;
-    };
-    std::stable_sort(once.begin(), once.end(), order);
-    std::vector<Localisation> out;
-    for (std::size_t i = 0; i < std::min(kPairs, once.size()); ++i) {
-      out.push_back(localise(fitter_, once[i].model.theta.size() > 0 ? once[i].model : now.model,
-                             {}, once[i].suspects, 6));
-      if (out.back().model.theta.size() == 0) out.pop_back();
-    }
-    std::stable_sort(out.begin(), out.end(), order);
-    return out;
-  }
-
-  void finish(const FitResult& now, const FitResult& measured, bool law, Trial t,
-              std::vector<Trial>& trials) {
-    FitOptions options;
-    options.max_steps = law || !now.model.effects.empty() ? 8 : 15;
-    options.forcing = law || !now.model.effects.empty() ? Forcing::simulated : Forcing::measured;
-    const FitResult run = fitter_.fit(measured.model, measured.motion, options);
-    if (!run.good) return;
-    t.cost = run.cost;
-    t.misfit = run.misfit;
-    t.model = run.model;
-    trials.push_back(std::move(t));
-  }
-
-  void try_pair(const FitResult& now, const Localisation& pair, std::vector<Trial>& trials) {
-    const Suspect &a = pair.suspects[0], &b = pair.suspects[1];
-    if (a.kind == Suspect::Kind::axis && b.kind == Suspect::Kind::axis) {
-      ModelEffect swap;
-      swap.form = LawForm::swapped;
-      swap.place.kind = PlaceKind::channel_pair;
-      swap.place.channel = std::min(a.axis, b.axis);
-      swap.place.with_channel = std::max(a.axis, b.axis);
-      Model model = pair.model;
-      model.effects.push_back(swap);
-      Trial t;
-      t.kind = EffectKind::swapped;
-      t.place = swap.place;
-      const FitResult fit = fitter_.fit(model, {}, {});
-      if (fit.good) finish(now, fit, false, t, trials);
-    }
-    std::vector<Proposal> first = propose(fitter_, pair, 0), second = propose(fitter_, pair, 1);
-    const auto cut = [](std::vector<Proposal>& list, const Suspect& s) {
-      std::erase_if(list, [](const Proposal& p) {
-        return p.ignores_axis || p.kind == EffectKind::misalignment;
-      });
-      const std::size_t most = s.kind == Suspect::Kind::axis ? 2 : 2;
-      if (list.size() > most) list.resize(most);
-    };
-    cut(first, a);
-    cut(second, b);
-    for (const Proposal& p : first)
-      for (const Proposal& q : second) {
-        Model model = p.model;
-        const std::size_t common = pair.model.effects.size();
-        model.effects.insert(model.effects.end(),
-                             q.model.effects.begin() + static_cast<long>(common),
-                             q.model.effects.end());
-        model.theta += q.model.theta - pair.model.theta;
-        model.gain += q.model.gain - pair.model.gain;
-        model.clock_s += q.model.clock_s - pair.model.clock_s;
-        for (const int axis : q.model.free_gain)
-          if (std::find(model.free_gain.begin(), model.free_gain.end(), axis) ==
-              model.free_gain.end())
-            model.free_gain.push_back(axis);
-        for (const int axis : q.model.free_clock)
-          if (std::find(model.free_clock.begin(), model.free_clock.end(), axis) ==
-              model.free_clock.end())
-            model.free_clock.push_back(axis);
-        FitOptions options;
-        options.max_steps = 6;
-        const FitResult fit = fitter_.fit(model, pair.motion, options);
-        if (!fit.good) continue;
-        bool law = false;
-        for (const ModelEffect& e : model.effects) law = law || e.element_law();
-        Trial t;
-        std::size_t index = common;
-        t.kind = p.model.effects.size() > common
-                     ? name_of_fit(fit.model.effects[index++], stretches_.front())
-                     : p.kind;
-        t.place = p.place;
-        t.second = {q.model.effects.size() > common
-                        ? name_of_fit(fit.model.effects[index], stretches_.front())
-                        : q.kind,
-                    q.place};
-        finish(now, fit, law, t, trials);
-      }
-  }
-
-  bool one_round(FitResult& now, double& cost, int round) {
-    const double begin = 0.1 + 0.3 * round;
-    tell("where", begin);
-    std::vector<Localisation> places = locate(now);
-    if (places.empty()) return false;
-    const double noise = std::min(places.front().ratio, 1.0);
-    const double excess = sum(now.misfit) - std::max(noise, 0.5) * expected_;
-    record_where(places);
-    const double needed = std::max(kLeastGain, kSignificant * std::sqrt(expected_));
-    if (excess < needed) return false;
-
+    const TrialContext context{fitter_, now, options_.without, options_.parallel, progress};
+    const Localisation& best = located.places.front();
+    const double equations = static_cast<double>(plant_.equations());
+    double left = best.misfit, unseen = static_cast<double>(best.suspects.front().size());
     std::vector<Trial> trials;
-    double located = places.front().misfit;
-    double unseen = 1;  ///< directions that the bound does not look at
-    if (places.front().ratio > kOnePlace) {
+    if (best.ratio > kOnePlace) {
       tell("two places", begin + 0.02);
-      const std::vector<Localisation> pairs = locate_pairs(now);
-      if (!pairs.empty() && pairs.front().ratio - 1 < kPairShare * (places.front().ratio - 1)) {
-        located = pairs.front().misfit;
+      const std::vector<Localisation> pairs =
+          locate_pairs(fitter_, now, located.once, options_.parallel);
+      if (!pairs.empty() && pairs.front().ratio - 1 < kPairShare * (best.ratio - 1)) {
+        left = pairs.front().misfit;
         unseen = 2;
-        std::size_t tried = 0;
-        for (const Localisation& pair : pairs) {
-          if (tried++ >= 2 || pair.ratio > 2 * pairs.front().ratio) break;
-          try_pair(now, pair, trials);
+        for (std::size_t i = 0; i < std::min<std::size_t>(2, pairs.size()); ++i) {
+          if (pairs[i].ratio > 2 * pairs.front().ratio) break;
+          const std::vector<Trial> more = try_pair(context, pairs[i]);
+          trials.insert(trials.end(), more.begin(), more.end());
         }
       }
     }
-    std::size_t contenders = 0;
-    for (const Localisation& place : places) {
-      if (contenders++ >= kContenders) break;
-      if (place.ratio - 1 > 2 * std::max(places.front().ratio - 1, 0.05) + 0.1) break;
-      try_place(now, place, trials, begin + 0.05 * static_cast<double>(contenders));
-    }
+    const std::vector<Trial> single = try_places(context, contenders(located.places));
+    trials.insert(trials.end(), single.begin(), single.end());
+    bound = left * equations / std::max(equations - unseen, 1.0);
+    return trials;
+  }
+
+  bool one_round(FitResult& now, double& cost, int round) {
+    const double begin = 0.06 + 0.28 * round;
+    tell("where", begin);
+    const Located located = locate(fitter_, now, options_.parallel);
+    if (located.places.empty()) return false;
+    const double expected_now = expected(now.model);
+    const double noise = std::clamp(located.places.front().ratio, 0.5, 1.0);
+    const double excess = sum(now.misfit) - noise * expected_now;
+    if (out_.where.empty()) out_.where = where_of(fitter_, located.places);
+    const double needed = std::max(kLeastGain, kSignificant * std::sqrt(expected_now));
+    if (excess < needed) return false;
+
+    double bound = 0;
+    std::vector<Trial> trials = trials_of(now, located, begin, bound);
     if (trials.empty()) return false;
-    // Two effects must beat one by more than chance.
-    const auto price = [&](const Trial& t) { return t.cost + (t.second ? needed : 0.0); };
-    std::stable_sort(trials.begin(), trials.end(),
-                     [&](const Trial& a, const Trial& b) { return price(a) < price(b); });
-    const auto equations = static_cast<double>(plant_.equations());
-    const double bound = std::min(located * equations / std::max(equations - unseen, 1.0), cost);
-    for (Trial& t : trials) t.fraction = (cost - t.cost) / std::max(cost - bound, 1e-9);
+    bound = std::min(bound, cost);
+    // Two effects must beat one by more than chance, a law what any force would do.
+    const auto price = [&](const Trial& t) {
+      const bool any = t.model.effects.size() > now.model.effects.size() &&
+                       t.model.effects.back().form == LawForm::broadband;
+      return t.cost + (t.second ? needed : 0.0) +
+             (any ? needed + kOwnPrice * std::max(cost - bound, 0.0) : 0.0);
+    };
+    const auto rank = [&] {
+      std::stable_sort(trials.begin(), trials.end(),
+                       [&](const Trial& a, const Trial& b) { return price(a) < price(b); });
+      for (Trial& t : trials) t.fraction = (cost - t.cost) / std::max(cost - bound, 1e-9);
+    };
+    rank();
+    sharpen(trials, now);
+    rank();
     const Trial& best = trials.front();
-    bool holds = best.fraction >= kTakesAway && cost - best.cost > needed;
+    const bool most =
+        best.fraction >= kTakesAway || (best.fraction >= kTakesMost && best.cost - bound < needed);
+    bool holds = most && cost - best.cost > needed;
     for (std::size_t r = 0; r < stretches_.size(); ++r)
       if (best.misfit[r] > 1.02 * now.misfit[r] + needed) holds = false;
     if (!holds) {
       out_.rejected = trials;
       return false;
     }
+    for (std::size_t i = 0; i < out_.effects.size(); ++i) {
+      const FoundEffect& earlier = out_.effects[i];
+      if (!same_spot(earlier.chosen.place, best.place)) continue;
+      // Two laws at one place are one that the catalogue does not have.
+      if (earlier.chosen.fraction < kOneLaw) withdraw(now, i);
+      return false;
+    }
+    adopt(trials, now);
+    cost = now.cost;
+    return sum(now.misfit) > kAdequate * expected(now.model);
+  }
+
+  void sharpen(std::vector<Trial>& trials, const FitResult& now) const {
+    const auto progress = [&](const std::string&, double) {};
+    const TrialContext context{fitter_, now, options_.without, options_.parallel, progress};
+    const auto count = static_cast<int>(std::min(kSharpened, trials.size()));
+    run_all(options_.parallel, count, [&](int i) {
+      Trial& t = trials[static_cast<std::size_t>(i)];
+      if (t.fraction < kSharp && t.fraction > kPairShare) t = sharpened(context, t);
+    });
+  }
+
+  /// Back to before the effect `first` was added.
+  void withdraw(FitResult& now, std::size_t first) {
+    out_.reason = "no single law of the catalogue is what acts at " +
+                  place_text(out_.effects[first].chosen.place, plant_.structure, plant_.axes);
+    out_.rejected.clear();
+    for (std::size_t i = first; i < out_.effects.size(); ++i)
+      out_.rejected.push_back(out_.effects[i].chosen);
+    out_.effects.resize(first);
+    now = fit(first == 0 ? out_.linear : out_.effects.back().chosen.model, {}, kTrainSteps);
+  }
+
+  void adopt(const std::vector<Trial>& trials, FitResult& now) {
+    const Trial& best = trials.front();
     FoundEffect found;
-    found.before = holdout(gaps(now.model));
     found.chosen = best;
-    found.after = holdout(gaps(best.model));
-    found.index = best.model.effects.size() > now.model.effects.size()
-                      ? static_cast<int>(best.model.effects.size()) - 1
-                      : -1;
+    found.before = holdout(gaps_of(fitter_, now.model));
+    found.after = holdout(gaps_of(fitter_, best.model));
     for (std::size_t i = 1; i < trials.size(); ++i) {
       found.alternatives.push_back(trials[i]);
-      if (trials[i].cost < best.cost + kSame && trials[i].kind != best.kind)
+      if (trials[i].cost < best.cost + kSame && trials[i].kind != best.kind &&
+          std::find(found.like.begin(), found.like.end(), trials[i].kind) == found.like.end())
         found.like.push_back(trials[i].kind);
     }
-    const std::size_t old_effects = now.model.effects.size();
     const double margin = trials.size() > 1 ? trials[1].cost - best.cost : 1e3;
     found.confidence = found.like.empty() ? std::min(0.999, 1 - 0.5 * std::exp(-margin / 20)) : 0.5;
-    FitResult next;
-    next.good = true;
-    next.model = best.model;
-    next.misfit = best.misfit;
-    next.cost = best.cost;
-    next.motion = now.motion;
-    std::vector<MatrixXcd> motion(stretches_.size());
-    fitter_.misfit(next.model, motion, Forcing::simulated);
-    next.motion = motion;
-    const std::optional<std::pair<EffectKind, EffectPlace>> second = best.second;
-    if (second && found.index >= 0) found.index = static_cast<int>(old_effects);
-    FoundEffect other = found;
-    const std::size_t added = next.model.effects.size() - old_effects;
-    if (second) {
-      const bool first_in_model = !is_channel_axis(best.kind);
-      if (!first_in_model) found.index = -1;
-      other.chosen.kind = second->first;
-      other.chosen.place = second->second;
-      other.index =
-          is_channel_axis(second->first) ? -1 : static_cast<int>(old_effects + (added > 1 ? 1 : 0));
-    }
-    out_.effects.push_back(std::move(found));
-    if (second) out_.effects.push_back(std::move(other));
-    now = std::move(next);
-    cost = now.cost;
-    return sum(now.misfit) > kAdequate * expected_;
-  }
-
-  void try_place(const FitResult& now, const Localisation& place, std::vector<Trial>& trials,
-                 double share) {
-    std::vector<Proposal> proposals = propose(fitter_, place, 0);
-    const bool axis = place.suspects.front().kind == Suspect::Kind::axis;
-    if (!axis && proposals.size() > kLawsFitted) proposals.resize(kLawsFitted);
-    struct Fitted {
-      FitResult fit;
-      const Proposal* from;
+    auto next = static_cast<int>(now.model.effects.size());
+    const auto place = [&](FoundEffect& effect) {
+      effect.index = is_axis_error(effect.chosen.kind) ? -1 : next++;
     };
-    std::vector<Fitted> fitted;
-    std::size_t done = 0;
-    for (const Proposal& p : proposals) {
-      tell(std::string(name_of(p.kind)) + " at " +
-               place_text(p.place, plant_.structure, plant_.axes),
-           share + 0.04 * static_cast<double>(done++) / static_cast<double>(proposals.size()));
-      if (p.ignores_axis) continue;
+    FoundEffect other = found;
+    place(found);
+    out_.effects.push_back(std::move(found));
+    if (best.second) {
+      other.chosen.kind = best.second->first;
+      other.chosen.place = best.second->second;
+      place(other);
+      out_.effects.push_back(std::move(other));
+    }
+    FitResult extended;
+    extended.good = true;
+    extended.model = best.model;
+    extended.misfit = best.misfit;
+    extended.motion = now.motion;
+    const std::vector<double> own =
+        fitter_.misfit(extended.model, extended.motion, Forcing::simulated);
+    extended.cost = own.empty() ? best.cost : sum(own);
+    now = std::move(extended);
+  }
+
+  /// Gaps of models that have not seen the held-out stretches.
+  void honest_gaps() {
+    const std::vector<Stretch> seen(
+        stretches_.begin(),
+        stretches_.begin() + static_cast<long>(std::min(options_.holdout_from, stretches_.size())));
+    const Fitter train(plant_, seen, options_.tolerances);
+    const auto of_train = [&](const Model& start) {
       FitOptions options;
-      options.max_steps = 5;
-      fitted.push_back({fitter_.fit(p.model, place.motion, options), &p});
-      if (!fitted.back().fit.good) fitted.pop_back();
+      options.forcing = forcing_of(start);
+      options.max_steps = kTrainSteps;
+      const FitResult fitted = train.fit(start, {}, options);
+      return gaps_of(fitter_, fitted.good ? fitted.model : start);
+    };
+    out_.before = of_train(out_.linear);
+    if (out_.model.effects.size() == known_ && out_.effects.empty()) {
+      out_.after = out_.before;
+      return;
     }
-    std::stable_sort(fitted.begin(), fitted.end(),
-                     [](const Fitted& a, const Fitted& b) { return a.fit.cost < b.fit.cost; });
-    if (fitted.size() > kLawsRun) fitted.resize(kLawsRun);
-    for (const Fitted& f : fitted) {
-      const bool law = !f.fit.model.effects.empty() && f.fit.model.effects.back().element_law() &&
-                       f.fit.model.effects.size() > now.model.effects.size();
-      FitResult run = f.fit;
-      if (!law && now.model.effects.empty()) {
-        FitOptions options;
-        options.max_steps = 15;
-        run = fitter_.fit(f.fit.model, f.fit.motion, options);
-        if (!run.good) continue;
-      }
-      if (law || now.model.effects.size() > 0) {
-        FitOptions options;
-        options.forcing = Forcing::simulated;
-        options.max_steps = 8;
-        run = fitter_.fit(f.fit.model, f.fit.motion, options);
-        if (!run.good) continue;
-      }
-      Trial t;
-      t.place = f.from->place;
-      t.kind = run.model.effects.size() > now.model.effects.size()
-                   ? name_of_fit(run.model.effects.back(), stretches_.front())
-                   : f.from->kind;
-      t.cost = run.cost;
-      t.misfit = run.misfit;
-      t.model = run.model;
-      trials.push_back(std::move(t));
-    }
-    for (const Proposal& p : proposals) {
-      if (!p.ignores_axis) continue;
-      Trial t;
-      t.place = p.place;
-      t.kind = p.kind;
-      const double share_left =
-          static_cast<double>(plant_.equations()) / static_cast<double>(plant_.equations() - 1);
-      t.cost = place.misfit * share_left;
-      for (std::size_t r = 0; r < stretches_.size(); ++r)
-        t.misfit.push_back(place.record_ratio[r] * fitter_.expected(r));
-      t.model = place.model;
-      trials.push_back(std::move(t));
+    out_.after = of_train(out_.model);
+    const std::vector<Gap> all = gaps_of(fitter_, out_.model);
+    if (holdout(out_.after) > kUndetermined * holdout(all)) {
+      out_.after = all;
+      out_.after_of_all = true;
     }
   }
 
-  void record_where(const std::vector<Localisation>& places) {
-    if (!out_.where.empty()) return;
-    for (const Localisation& p : places) {
-      WhereEntry entry;
-      entry.place = p.suspects.front().place;
-      entry.ratio = p.ratio;
-      out_.where.push_back(entry);
-    }
-  }
-
-  void judge(const FitResult& now) {
-    out_.ratio_after = sum(now.misfit) / expected_;
-    const bool none = out_.effects.empty();
-    double worst_ratio = 0, gap = 0, floor = 0;
+  void judge() {
+    double worst = 0, gap = 0, floor = 0, before = 0;
     for (const Gap& g : out_.after) {
-      worst_ratio = std::max(worst_ratio, g.overall / std::max(g.overall_floor, 1e-12));
+      worst = std::max(worst, g.overall / std::max(g.overall_floor, 1e-12));
       gap += g.overall;
       floor += g.overall_floor;
     }
-    const bool fits = out_.ratio_after < kAdequate || worst_ratio < kAtFloor;
-    if (none) {
-      out_.verdict = fits ? Verdict::adequate : Verdict::unexplained;
+    for (const Gap& g : out_.before)
+      before = std::max(before, g.overall / std::max(g.overall_floor, 1e-12));
+    const bool fits = out_.ratio_after < kAdequate || worst < kAtFloor;
+    if (out_.effects.empty()) {
+      const bool adequate = fits && (before < kAdequateGap || out_.rejected.empty());
+      out_.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
       return;
     }
     const double fraction =
@@ -424,11 +346,78 @@ class Search {
   const std::vector<Stretch>& stretches_;
   const DiagnosisOptions& options_;
   Fitter fitter_;
-  double expected_ = 0;
-  Model single_;
-  std::vector<Localisation> rest_, once_;
+  std::size_t known_ = 0;
   Diagnosis out_;
 };
+
+/// Ramps that the configuration knows, and those that are found, taken off the stretches.
+std::vector<FoundEffect> take_ramps(const Plant& plant, const DiagnosisOptions& options,
+                                    std::vector<Stretch>& stretches) {
+  for (const Effect& e : options.known)
+    if (e.kind == EffectKind::bias_drift)
+      for (Stretch& s : stretches)
+        s = without_ramp(s, e.place.channel, {e.value("ramp_mps3"), e.value("from_s"), 0});
+  std::vector<FoundEffect> out;
+  if (std::find(options.without.begin(), options.without.end(), EffectKind::bias_drift) !=
+      options.without.end())
+    return out;
+  const std::vector<Stretch> whole = stretches;
+  for (Index a = 0; a < plant.axis_count(); ++a) {
+    FoundEffect found;
+    found.chosen.kind = EffectKind::bias_drift;
+    found.chosen.place.kind = PlaceKind::channel;
+    found.chosen.place.channel = static_cast<int>(a);
+    found.chosen.fraction = 1;
+    found.confidence = 0.99;
+    bool any = false;
+    for (std::size_t r = 0; r < stretches.size(); ++r) {
+      const auto ramp = find_ramp(plant, whole[r], a);
+      found.ramp_mps3.push_back(ramp ? ramp->slope : 0);
+      found.ramp_from_s.push_back(ramp ? ramp->from_s : 0);
+      if (!ramp) continue;
+      any = true;
+      stretches[r] = without_ramp(stretches[r], a, *ramp);
+    }
+    if (any) out.push_back(std::move(found));
+  }
+  return out;
+}
+
+/// Adds to the gap before what ramps do below the band.
+void count_ramps(const std::vector<Stretch>& stretches, std::size_t holdout_from, Diagnosis& d) {
+  for (FoundEffect& found : d.effects) {
+    if (found.ramp_mps3.empty()) continue;
+    found.before = found.after = 0;
+    std::size_t held = 0;
+    for (std::size_t r = 0; r < d.before.size(); ++r) {
+      const Stretch& s = stretches[r];
+      const Index axis = found.chosen.place.channel;
+      const double length = std::max(s.seconds() - found.ramp_from_s[r], 0.0);
+      const double share = length / s.seconds();
+      // Of slope max(t - from, 0) about its mean.
+      const double square =
+          std::pow(found.ramp_mps3[r] * length, 2) * share * (1.0 / 3 - share / 4);
+      const double intervals = static_cast<double>(s.intervals());
+      const double power = 2 * s.spectrum.row(axis).squaredNorm() / (intervals * intervals);
+      Gap& gap = d.before[r];
+      gap.axis[axis] = std::hypot(gap.axis[axis], std::sqrt(square / std::max(power, 1e-300)));
+      if (gap.axis[axis] > gap.worst) {
+        gap.worst = gap.axis[axis];
+        gap.worst_axis = static_cast<int>(axis);
+      }
+      const double all = 2 * s.spectrum.squaredNorm() / (intervals * intervals);
+      gap.overall = std::hypot(gap.overall, std::sqrt(square / std::max(all, 1e-300)));
+      if (r < holdout_from) continue;
+      ++held;
+      found.before += gap.overall;
+      found.after += d.after[r].overall;
+    }
+    if (held > 0) {
+      found.before /= static_cast<double>(held);
+      found.after /= static_cast<double>(held);
+    }
+  }
+}
 
 }  // namespace
 
@@ -448,7 +437,11 @@ const char* verdict_word(Verdict verdict) {
 
 Diagnosis diagnose(const Plant& plant, const std::vector<Stretch>& stretches,
                    const DiagnosisOptions& options) {
-  return Search(plant, stretches, options).run();
+  std::vector<Stretch> straight = stretches;
+  const std::vector<FoundEffect> ramps = take_ramps(plant, options, straight);
+  Diagnosis out = Search(plant, straight, options).run(ramps);
+  count_ramps(straight, options.holdout_from, out);
+  return out;
 }
 
 }  // namespace framewatch

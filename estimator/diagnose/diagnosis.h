@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/gap.h"
+#include "estimator/diagnose/parallel.h"
 #include "estimator/diagnose/propose.h"
 
 namespace framewatch {
@@ -28,7 +29,7 @@ struct Trial {
   std::optional<std::pair<EffectKind, EffectPlace>> second;
 };
 
-/// One effect that was added.
+/// One effect of the model.
 struct FoundEffect {
   Trial chosen;
   std::vector<Trial> alternatives;  ///< best first
@@ -36,21 +37,29 @@ struct FoundEffect {
   double confidence = 0;
   double before = 0, after = 0;   ///< held-out free-run NRMSE
   int index = -1;                 ///< in the model's effects; -1: of an axis
+  std::vector<double> ramp_mps3;  ///< bias_drift: slope in every stretch
+  std::vector<double> ramp_from_s;
   std::vector<double> std_error;  ///< of the catalogue's parameters; 0: not known
 };
 
 struct WhereEntry {
   EffectPlace place;
   double ratio = 0;  ///< what is left if this place may do anything, 1: noise
-  double from_s = 0, to_s = 0, low_hz = 0, high_hz = 0;  ///< where nine tenths of its force are
+  /// Where nine tenths of the signal that it needs are, of the stretch `record`; 0, 0: not known.
+  std::size_t record = 0;
+  double from_s = 0, to_s = 0, low_hz = 0, high_hz = 0;
+  double peak = 0;  ///< of that signal: N, of an axis m/s^2
 };
 
 struct Diagnosis {
   Verdict verdict = Verdict::unexplained;
   std::string reason;
-  Model linear, model;
-  std::vector<Gap> before, after;  ///< of each stretch
-  std::vector<FoundEffect> effects;
+  Model linear, model;             ///< fitted to all stretches
+  std::vector<Gap> before, after;  ///< of each stretch, models fitted to the training ones alone
+  /// The training stretches alone do not determine the effects: `after` is of `model`.
+  bool after_of_all = false;
+  std::vector<FoundEffect> known;    ///< that the configuration has, fitted again
+  std::vector<FoundEffect> effects;  ///< that were found, in their order
   std::vector<WhereEntry> where;
   std::vector<Trial> rejected;               ///< best of what did not earn its place
   double ratio_before = 0, ratio_after = 0;  ///< misfit over what noise explains
@@ -59,7 +68,10 @@ struct Diagnosis {
 struct DiagnosisOptions {
   Tolerances tolerances;
   int rounds = 3;
-  std::size_t holdout_from = 1;  ///< first stretch that is held out
+  std::size_t holdout_from = 1;     ///< first stretch that is held out
+  std::vector<Effect> known;        ///< effects that the building is known to have
+  std::vector<EffectKind> without;  ///< names that are never given
+  Parallel parallel;                ///< the result does not depend on it
   /// Told what is going on, and a share of the whole between 0 and 1.
   std::function<void(const std::string&, double)> progress;
 };

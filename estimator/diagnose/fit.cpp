@@ -37,12 +37,13 @@ double total(const std::vector<double>& values) {
 Fitter::Fitter(const Plant& plant, const std::vector<Stretch>& stretches,
                const Tolerances& tolerances)
     : plant_(plant), stretches_(stretches), tolerances_(tolerances) {
-  for (const Stretch& s : stretches)
-    ratio_.push_back(steps_per_sample(plant, plant.design, s.rate_hz));
+  for (const Stretch& s : stretches) ratio_.push_back(steps_per_sample(plant, s.rate_hz));
 }
 
-double Fitter::expected(std::size_t record) const {
-  const double n = static_cast<double>(plant_.equations());
+double Fitter::expected(std::size_t record, const Model& model) const {
+  double n = static_cast<double>(plant_.equations());
+  for (const ModelEffect& e : model.effects)
+    n -= e.form == LawForm::clipped || e.form == LawForm::broadband;
   return n * static_cast<double>(stretches_[record].bins()) - 2 * n;
 }
 
@@ -96,7 +97,7 @@ Linearised Fitter::linearise(const Model& model, const std::vector<MatrixXcd>& m
     out.columns.push_back(std::move(columns));
     out.cross.push_back(cross);
     misfit += system.misfit;
-    noise += expected(r);
+    noise += expected(r, model);
   }
   out.level = std::max(1.0, misfit / noise);
   out.prior *= out.level;
@@ -143,8 +144,11 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
         continue;
       }
       double share = 1;
-      for (Index p = 0; p < plant_.element_count(); ++p)
-        share = std::min(share, kLongestStep / std::max(std::abs(step[p]), 1e-300));
+      for (std::size_t u = 0; u < at.unknowns.size(); ++u)
+        if (at.unknowns[u].kind == Unknown::Kind::theta &&
+            at.unknowns[u].index < plant_.element_count())
+          share = std::min(share,
+                           kLongestStep / std::max(std::abs(step[static_cast<Index>(u)]), 1e-300));
       Model trial = out.model;
       for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
         const Unknown& unknown = at.unknowns[u];

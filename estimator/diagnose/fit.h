@@ -78,7 +78,7 @@ class Fitter {
   std::vector<double> misfit(const Model& model, std::vector<Eigen::MatrixXcd>& motion,
                              Forcing forcing, const Linearised* weights = nullptr) const;
   /// Degrees of freedom of a stretch: what the misfit is when nothing but noise is left.
-  double expected(std::size_t record) const;
+  double expected(std::size_t record, const Model& model) const;
   const Plant& plant() const { return plant_; }
   const std::vector<Stretch>& stretches() const { return stretches_; }
   const Tolerances& tolerances() const { return tolerances_; }

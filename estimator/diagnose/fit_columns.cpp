@@ -80,6 +80,7 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
   const auto elements = static_cast<int>(plant.element_count());
   for (int p = 0; p < 2 * elements; ++p) {
     const bool panel = plant.table[p].panel >= 0;
+    if (panel && plant.stiff_floors) continue;
     const double sigma = (p < elements ? (panel ? kTightG : kTightK) : kTightC);
     const double scale = plant.design[p];
     out.push_back({Kind::theta, p, 0, 0, scale, sigma, 1.0});

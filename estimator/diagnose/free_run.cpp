@@ -70,6 +70,15 @@ System assemble_system(const Plant& plant, const Model& model, const std::vector
       if (e.place.to_story > 0) at -= node_direction(plant, e.place.to_story, e.place.frame);
       (e.form == LawForm::spring ? out.stiffness : out.damping).topLeftCorner(n, n) +=
           size * at * at.transpose();
+    } else if (e.form == LawForm::panels) {
+      for (const Element& panel : plant.elements) {
+        if (panel.panel < 0 || panel.story != e.place.story) continue;
+        const Index at = panel.stiffness;
+        out.stiffness.topLeftCorner(n, n) +=
+            (size - model.theta[at]) * act.col(at) * act.col(at).transpose();
+        out.damping.topLeftCorner(n, n) += (e.knobs[1].plain() - model.theta[at + elements]) *
+                                           act.col(at) * act.col(at).transpose();
+      }
     } else if (e.form == LawForm::rocking || e.form == LawForm::bending) {
       const Eigen::MatrixXcd change = linear_operation(plant, model, e, 1.0);
       const MatrixXd back =
@@ -152,9 +161,9 @@ VectorXd upsampled(const VectorXd& signal, int ratio) {
   return out;
 }
 
-int steps_per_sample(const Plant& plant, const VectorXd& theta, double rate_hz) {
-  const double top = natural_frequencies_hz(plant.structure, plant.table, theta).back();
-  return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * top / rate_hz)), 2, 12);
+int steps_per_sample(const Plant& plant, double rate_hz) {
+  return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * plant.highest_hz / rate_hz)), 2,
+                    12);
 }
 
 FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,

@@ -26,7 +26,7 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
                  int ratio);
 
 /// Steps per sample that resolve the model's highest mode.
-int steps_per_sample(const Plant& plant, const Eigen::VectorXd& theta, double rate_hz);
+int steps_per_sample(const Plant& plant, double rate_hz);
 
 /// The signal at ratio times its rate, by a windowed sinc.
 Eigen::VectorXd upsampled(const Eigen::VectorXd& signal, int ratio);

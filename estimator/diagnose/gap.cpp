@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace framewatch {
@@ -15,7 +16,37 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-Gap gap_of(const Plant& plant, const Stretch& stretch, const Whitened& system) {
+namespace {
+
+/// Takes off what forces that may be anything explain best, given the sensors' noise.
+void take_forces(const MatrixXcd& directions, const MatrixXcd& covariance, VectorXcd& e) {
+  const Eigen::LLT<MatrixXcd> llt(covariance);
+  if (llt.info() != Eigen::Success) return;
+  MatrixXcd u = directions;
+  VectorXcd white = e;
+  llt.matrixL().solveInPlace(u);
+  llt.matrixL().solveInPlace(white);
+  const VectorXcd force = (u.adjoint() * u).ldlt().solve(u.adjoint() * white);
+  e -= directions * force;
+}
+
+/// The difference that is left when the simulated motion is cut off like the measured one.
+void clip_difference(const Stretch& stretch, const VectorXcd& measured, Index axis,
+                     MatrixXcd& difference) {
+  const Eigen::VectorXd reading = signal_of(measured, stretch, 1);
+  const Eigen::VectorXd simulated =
+      signal_of(VectorXcd(measured - difference.row(axis).transpose()), stretch, 1);
+  const Eigen::VectorXd raw = stretch.accel.col(axis).head(reading.size());
+  const double level = 0.5 * (raw.maxCoeff() - raw.minCoeff());
+  // Outside the band both are taken to be what was read.
+  const Eigen::VectorXd outside = raw - reading;
+  const Eigen::VectorXd cut = (simulated + outside).cwiseMax(-level).cwiseMin(level) - outside;
+  difference.row(axis) = band_of(reading - cut, stretch, 1).transpose();
+}
+
+}  // namespace
+
+Gap gap_of(const Plant& plant, const Model& model, const Stretch& stretch, const Whitened& system) {
   const Index n = plant.equations(), axes = plant.axis_count(), bins = system.bins();
   const MatrixXd back =
       plant.motion.transpose() * (plant.motion * plant.motion.transpose()).inverse();
@@ -31,24 +62,38 @@ Gap gap_of(const Plant& plant, const Stretch& stretch, const Whitened& system) {
   Gap out;
   out.difference = MatrixXcd::Zero(axes, bins);
   VectorXd noise = VectorXd::Zero(axes), power = VectorXd::Zero(axes), error = noise;
-  const VectorXd variance = static_cast<double>(stretch.intervals()) * stretch.variance;
+  const VectorXd variance = bin_noise(model, stretch);
+  MatrixXcd pushed(n, 0);
+  for (const ModelEffect& effect : model.effects)
+    if (effect.form == LawForm::broadband) {
+      pushed.conservativeResize(n, pushed.cols() + 1);
+      pushed.rightCols(1) =
+          node_direction(plant, effect.place.story, effect.place.frame).cast<Complex>();
+    }
   for (Index b = 0; b < bins; ++b) {
     const auto at = static_cast<std::size_t>(b);
     VectorXcd e(n);
     e.real() = system.rest.segment(2 * n * b, n);
     e.imag() = system.rest.segment(2 * n * b + n, n);
-    e = system.factor[at].triangularView<Eigen::Lower>() * e;
+    system.whitener[at].triangularView<Eigen::Lower>().solveInPlace(e);
+    if (pushed.cols() > 0)
+      take_forces(pushed,
+                  system.operation[at] * variance.asDiagonal() * system.operation[at].adjoint(), e);
     const MatrixXcd own = system.operation[at] * back.cast<Complex>();
     const Eigen::PartialPivLU<MatrixXcd> solver(own);
     const VectorXcd difference = solver.solve(e);
     const MatrixXcd from_base =
         solver.solve(MatrixXcd(system.operation[at] * is_base.cast<Complex>().asDiagonal()));
     out.difference.col(b) = seen.cast<Complex>() * difference;
-    error += out.difference.col(b).cwiseAbs2();
     const MatrixXcd carried = seen.cast<Complex>() * from_base;
     noise += carried.cwiseAbs2() * variance + (1 - is_base.array()).matrix().cwiseProduct(variance);
     power += system.calibrated.col(b).cwiseAbs2().cwiseProduct((1 - is_base.array()).matrix());
   }
+  for (const ModelEffect& effect : model.effects)
+    if (effect.form == LawForm::clipped)
+      clip_difference(stretch, system.calibrated.row(effect.place.channel).transpose(),
+                      effect.place.channel, out.difference);
+  error = out.difference.rowwise().squaredNorm();
   out.axis = (error.array() / power.array().max(1e-300)).sqrt();
   out.floor = (noise.array() / power.array().max(1e-300)).sqrt();
   out.axis = (is_base.array() > 0).select(0.0, out.axis.array());

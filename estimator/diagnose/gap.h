@@ -18,7 +18,8 @@ struct Gap {
   Eigen::MatrixXcd difference;  ///< axes x bins: measured minus simulated
 };
 
-/// system: whitened with Forcing::simulated.
-Gap gap_of(const Plant& plant, const Stretch& stretch, const Whitened& system);
+/// system: of the model, whitened with Forcing::simulated. Forces of any shape are those that the
+/// record needs; a clipped axis is compared with what it would read.
+Gap gap_of(const Plant& plant, const Model& model, const Stretch& stretch, const Whitened& system);
 
 }  // namespace framewatch

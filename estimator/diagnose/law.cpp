@@ -9,13 +9,17 @@ namespace {
 constexpr double kSharp = 20;         ///< exponents above: exactly bilinear
 constexpr double kLongestStep = 0.1;  ///< of z per integration step, in units of dy
 
+double power_of(double x, double p) {
+  return p == 1 ? x : p == 2 ? x * x : p == 3 ? x * x * x : std::pow(x, p);
+}
+
 double signed_power(double x, double p) {
-  return std::copysign(std::pow(std::abs(x), p), x);
+  return std::copysign(power_of(std::abs(x), p), x);
 }
 
 /// dz/dd of the normalised Bouc-Wen law.
 double hysteresis_slope(double z, double direction, double n, double beta) {
-  const double level = std::pow(std::abs(z), n);
+  const double level = power_of(std::abs(z), n);
   return 1 - level * (beta * (z * direction > 0 ? 1.0 : -1.0) + 1 - beta);
 }
 

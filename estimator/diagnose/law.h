@@ -26,13 +26,14 @@ enum class LawForm {
   damper,     ///< between floors
   rocking,    ///< of the base
   bending,    ///< of the frames
+  panels,     ///< of a floor that was believed rigid: G and damping
   // at a node, from outside
-  harmonic,  ///< one frequency, amplitude and phase of each record
+  harmonic,   ///< one frequency, amplitude and phase of each record
+  broadband,  ///< any force at all
   // at an axis
-  gain,
-  shift,
   misaligned,
   swapped,  ///< two axes exchanged
+  clipped,  ///< what the axis reads is not believed
 };
 
 /// Whether the law is a force at one element.

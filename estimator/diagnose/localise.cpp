@@ -20,11 +20,28 @@ struct Square {
   MatrixXd square;
 };
 
-Square square_of(const Linearised& at, std::size_t record) {
+/// Which unknowns may move; masses, gains and clocks only when `tolerances`.
+std::vector<Index> moving(const Linearised& at, bool tolerances) {
+  using Kind = Unknown::Kind;
+  std::vector<Index> out;
+  for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
+    const Unknown& unknown = at.unknowns[u];
+    const bool tolerated =
+        unknown.kind == Kind::mass || unknown.kind == Kind::gain || unknown.kind == Kind::clock;
+    if (tolerances || !tolerated || unknown.sigma <= 0) out.push_back(static_cast<Index>(u));
+  }
+  return out;
+}
+
+Square square_of(const Linearised& at, std::size_t record, const std::vector<Index>& kept) {
   Square out;
   const Whitened& system = at.systems[record];
-  out.columns.resize(system.residual.size(), at.columns[record].cols() + system.ends.cols() + 1);
-  out.columns << at.columns[record], system.ends, system.residual;
+  out.columns.resize(system.residual.size(),
+                     static_cast<Index>(kept.size()) + system.ends.cols() + 1);
+  for (std::size_t u = 0; u < kept.size(); ++u)
+    out.columns.col(static_cast<Index>(u)) = at.columns[record].col(kept[u]);
+  out.columns.middleCols(static_cast<Index>(kept.size()), system.ends.cols()) = system.ends;
+  out.columns.rightCols(1) = system.residual;
   out.square = MatrixXd::Zero(out.columns.cols(), out.columns.cols());
   out.square.selfadjointView<Eigen::Lower>().rankUpdate(out.columns.transpose());
   out.square = MatrixXd(out.square.selfadjointView<Eigen::Lower>());
@@ -61,7 +78,7 @@ struct Reduced {
 
 Reduced reduce(const Fitter& fitter, const Linearised& at, const Model& model,
                const std::vector<Square>& squares, const std::vector<Suspect>& suspects) {
-  const auto count = static_cast<Index>(at.unknowns.size());
+  const Index count = squares.front().columns.cols() - at.systems.front().ends.cols() - 1;
   Reduced out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0, 0, 0, {}};
   Index size = 0;
   for (const Suspect& s : suspects) size += s.size();
@@ -78,7 +95,7 @@ Reduced reduce(const Fitter& fitter, const Linearised& at, const Model& model,
     out.normal += square.topLeftCorner(count, count) - cross * factor.solve(cross.transpose());
     out.gradient += square.block(0, count + ends, count, 1) - cross * solved;
     const double left = square(count + ends, count + ends) - last.dot(solved);
-    const double expected = fitter.expected(r) * (1 - static_cast<double>(size) / n);
+    const double expected = fitter.expected(r, model) * (1 - static_cast<double>(size) / n);
     out.misfit += left;
     out.expected += expected;
     out.record_ratio.push_back(left / expected);
@@ -91,24 +108,17 @@ Reduced reduce(const Fitter& fitter, const Linearised& at, const Model& model,
   return out;
 }
 
-/// tolerances: whether masses, gains and clocks move too.
-VectorXd step_of(const Reduced& reduced, const Linearised& at, double level, bool tolerances) {
+/// Change of the unknowns `kept`.
+VectorXd step_of(const Reduced& reduced, const Linearised& at, double level,
+                 const std::vector<Index>& kept) {
   MatrixXd normal = reduced.normal;
-  normal.diagonal() += level / at.level * at.prior;
-  normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().array();
-  VectorXd right = level / at.level * at.pull - reduced.gradient;
-  for (std::size_t u = 0; u < at.unknowns.size() && !tolerances; ++u) {
-    using Kind = Unknown::Kind;
-    const Unknown& unknown = at.unknowns[u];
-    const bool tolerated =
-        unknown.kind == Kind::mass || unknown.kind == Kind::gain || unknown.kind == Kind::clock;
-    if (!tolerated || unknown.sigma <= 0) continue;
-    const auto c = static_cast<Index>(u);
-    normal.row(c).setZero();
-    normal.col(c).setZero();
-    normal(c, c) = 1;
-    right[c] = 0;
+  VectorXd right = -reduced.gradient;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const auto c = static_cast<Index>(i);
+    normal(c, c) += level / at.level * at.prior[kept[i]];
+    right[c] += level / at.level * at.pull[kept[i]];
   }
+  normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().array();
   return normal.ldlt().solve(right);
 }
 
@@ -116,32 +126,32 @@ VectorXd step_of(const Reduced& reduced, const Linearised& at, double level, boo
 
 std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& at,
                                         const Model& model,
-                                        const std::vector<std::vector<Suspect>>& lists) {
+                                        const std::vector<std::vector<Suspect>>& lists,
+                                        const Parallel& parallel) {
+  const std::vector<Index> kept = moving(at, false);
   std::vector<Square> squares;
-  for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r));
-  std::vector<Localisation> out;
-  for (const std::vector<Suspect>& suspects : lists) {
-    Localisation one;
-    one.suspects = suspects;
-    const Reduced reduced = reduce(fitter, at, model, squares, suspects);
-    const VectorXd step = step_of(reduced, at, 1.0, false);
-    if (step.allFinite()) {
-      const double left =
-          reduced.misfit + step.dot(reduced.normal * step) + 2 * step.dot(reduced.gradient);
-      one.misfit = left + reduced.tolerated;
-      one.ratio = left / reduced.expected;
-      one.record_ratio = reduced.record_ratio;
-      one.model = model;
-      for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
-        const Unknown& unknown = at.unknowns[u];
-        double to = value_of(model, unknown) + step[static_cast<Index>(u)];
-        if (unknown.kind == Unknown::Kind::theta && unknown.index < fitter.plant().element_count())
-          to = std::max(to, 0.05);
-        set_value(one.model, unknown, to);
-      }
+  for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
+  std::vector<Localisation> out(lists.size());
+  run_all(parallel, static_cast<int>(lists.size()), [&](int i) {
+    Localisation& one = out[static_cast<std::size_t>(i)];
+    one.suspects = lists[static_cast<std::size_t>(i)];
+    const Reduced reduced = reduce(fitter, at, model, squares, one.suspects);
+    const VectorXd step = step_of(reduced, at, 1.0, kept);
+    if (!step.allFinite()) return;
+    const double left =
+        reduced.misfit + step.dot(reduced.normal * step) + 2 * step.dot(reduced.gradient);
+    one.misfit = left + reduced.tolerated;
+    one.ratio = left / reduced.expected;
+    one.record_ratio = reduced.record_ratio;
+    one.model = model;
+    for (std::size_t u = 0; u < kept.size(); ++u) {
+      const Unknown& unknown = at.unknowns[static_cast<std::size_t>(kept[u])];
+      double to = value_of(model, unknown) + step[static_cast<Index>(u)];
+      if (unknown.kind == Unknown::Kind::theta && unknown.index < fitter.plant().element_count())
+        to = std::max(to, 0.05);
+      set_value(one.model, unknown, to);
     }
-    out.push_back(std::move(one));
-  }
+  });
   return out;
 }
 
@@ -158,10 +168,14 @@ Localisation localise(const Fitter& fitter, const Model& start,
   for (int step = 0; step <= steps; ++step) {
     const Linearised at = fitter.linearise(model, driving, Forcing::measured);
     if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return out;
+    const std::vector<Index> kept = moving(at, true);
     std::vector<Square> squares;
-    for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r));
-    const Reduced reduced = reduce(fitter, at, model, squares, suspects);
+    for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
+    std::vector<Suspect> current = suspects;
+    follow(plant, model, current);
+    const Reduced reduced = reduce(fitter, at, model, squares, current);
     if (reduced.misfit + reduced.tolerated < out.misfit) {
+      out.suspects = current;
       out.misfit = reduced.misfit + reduced.tolerated;
       out.ratio = reduced.misfit / reduced.expected;
       out.record_ratio = reduced.record_ratio;
@@ -172,11 +186,13 @@ Localisation localise(const Fitter& fitter, const Model& start,
     if (step == steps || std::abs(before - reduced.misfit) < 1e-3 * reduced.misfit) break;
     before = reduced.misfit;
     const VectorXd change =
-        step_of(reduced, at, std::max(1.0, reduced.misfit / reduced.expected), true);
+        step_of(reduced, at, std::max(1.0, reduced.misfit / reduced.expected), kept);
     if (!change.allFinite()) break;
     double share = 1;
-    for (Index p = 0; p < plant.element_count(); ++p)
-      share = std::min(share, 0.5 / std::max(std::abs(change[p]), 1e-300));
+    for (std::size_t u = 0; u < at.unknowns.size(); ++u)
+      if (at.unknowns[u].kind == Unknown::Kind::theta &&
+          at.unknowns[u].index < plant.element_count())
+        share = std::min(share, 0.5 / std::max(std::abs(change[static_cast<Index>(u)]), 1e-300));
     for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
       const Unknown& unknown = at.unknowns[u];
       double to = value_of(model, unknown) + share * change[static_cast<Index>(u)];

@@ -5,22 +5,21 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/fit.h"
+#include "estimator/diagnose/parallel.h"
 
 namespace framewatch {
 
 /// A place whose signal may be anything, at every frequency: the force of an element, forces at
 /// nodes, the reading of an axis.
 struct Suspect {
-  enum class Kind { element, node, link, crossing, rocking, axis, axis_pair } kind = Kind::element;
+  enum class Kind { element, floor, node, link, crossing, rocking, axis } kind = Kind::element;
   EffectPlace place;  ///< as an effect there would give it
   int axis = -1;
   int element = -1;
   /// equations x directions of the forces; empty for axes.
   Eigen::MatrixXd directions;
 
-  Eigen::Index size() const {
-    return kind == Kind::axis ? 1 : kind == Kind::axis_pair ? 2 : directions.cols();
-  }
+  Eigen::Index size() const { return kind == Kind::axis ? 1 : directions.cols(); }
 };
 
 /// What is left when places may do anything.
@@ -36,11 +35,15 @@ struct Localisation {
 /// Every place of a plant. Two places that act alike appear once.
 std::vector<Suspect> suspects_of(const Plant& plant, const Model& model);
 
+/// Brings directions that depend on stiffnesses up to date.
+void follow(const Plant& plant, const Model& model, std::vector<Suspect>& suspects);
+
 /// Estimates what is left if the suspects of each list may do anything, one step of the fit away
 /// from `at`; Model-free: whatever law acts in one place leaves the rest of a building linear.
 std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& at,
                                         const Model& model,
-                                        const std::vector<std::vector<Suspect>>& lists);
+                                        const std::vector<std::vector<Suspect>>& lists,
+                                        const Parallel& parallel = {});
 
 /// The same, iterated.
 Localisation localise(const Fitter& fitter, const Model& start,

@@ -120,6 +120,16 @@ MatrixXcd linear_operation(const Plant& plant, const Model& model, const ModelEf
       out = factor * (at * sense);
       break;
     }
+    case LawForm::panels:
+      for (const Element& e : plant.elements) {
+        if (e.panel < 0 || e.story != place.story) continue;
+        const Index at = e.stiffness;
+        const Complex change =
+            (size - model.theta[at]) / -(w * w) +
+            (effect.knobs[1].plain() - model.theta[at + plant.element_count()]) / (kJ * w);
+        out += change * (plant.building.act.col(at) * plant.building.sense.row(at));
+      }
+      break;
     case LawForm::rocking:
     case LawForm::bending: {
       // d = q - H' phi, (1/size) phi = H k d: size is the flexibility 1/K.

@@ -8,6 +8,31 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+constexpr double kStiff = 2000;         ///< of a panel that stands for rigid, in stiffest frames
+constexpr double kStiffDamping = 1e-9;  ///< of it, over its stiffness, s
+
+VectorXd with_stiff_panels(const Structure& s, const ParameterTable& all,
+                           const ParameterTable& believed, const VectorXd& design) {
+  VectorXd out = VectorXd::Zero(all.size());
+  const double stiff = kStiff * design.head(believed.elements()).maxCoeff();
+  for (int story = 1; story <= s.stories; ++story) {
+    for (int f = 0; f < s.frames(); ++f) {
+      const int to = all.frame_stiffness(story, f), from = believed.frame_stiffness(story, f);
+      out[to] = design[from];
+      out[to + all.elements()] = design[from + believed.elements()];
+    }
+    for (int p = 0; p < s.panels(); ++p) {
+      out[all.panel_stiffness(story, p)] = stiff;
+      out[all.panel_stiffness(story, p) + all.elements()] = kStiffDamping * stiff;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 Plant::Plant(const Structure& s, const std::vector<SensorAxis>& sensors, VectorXd believed,
              MeasuredBuilding equations_of_motion)
     : structure(s),
@@ -33,9 +58,24 @@ Plant::Plant(const Structure& s, const std::vector<SensorAxis>& sensors, VectorX
 std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
                                 const VectorXd& design, double rate_hz) {
   const ParameterTable table(structure);
+  const double highest_hz = natural_frequencies_hz(structure, table, design).back();
+  Structure flexible = structure;
+  flexible.floor = FloorModel::flexible;
+  const ParameterTable all(flexible);
+  if (structure.floor == FloorModel::rigid && flexible.panels() > 0) {
+    if (auto building = measured_building(flexible, all, axes, rate_hz)) {
+      Plant out(flexible, axes, with_stiff_panels(flexible, all, table, design),
+                std::move(*building));
+      out.stiff_floors = true;
+      out.highest_hz = highest_hz;
+      return out;
+    }
+  }
   auto building = measured_building(structure, table, axes, rate_hz);
   if (!building) return std::nullopt;
-  return Plant(structure, axes, design, std::move(*building));
+  Plant out(structure, axes, design, std::move(*building));
+  out.highest_hz = highest_hz;
+  return out;
 }
 
 }  // namespace framewatch

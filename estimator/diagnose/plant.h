@@ -21,6 +21,10 @@ struct Plant {
         MeasuredBuilding equations);
 
   Structure structure;
+  /// The floors are believed rigid, but sensors would show it if they were not: `structure` has
+  /// flexible ones, with panels so stiff that nothing shows.
+  bool stiff_floors = false;
+  double highest_hz = 0;  ///< natural frequency of what is believed
   ParameterTable table;
   std::vector<SensorAxis> axes;
   Eigen::VectorXd design;  ///< theta order, > 0
@@ -36,7 +40,8 @@ struct Plant {
   Eigen::Index axis_count() const { return building.axes(); }
 };
 
-/// Empty when the equations need a motion that no axis measures.
+/// design: in the order of `structure`'s parameters. Empty when the equations need a motion that no
+/// axis measures.
 std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
                                 const Eigen::VectorXd& design, double rate_hz);
 

@@ -12,8 +12,7 @@ struct Proposal {
   Model model;      ///< with the effect as its last, or an axis freed
   EffectKind kind;  ///< first guess of the name; name_of_fit() after the fit
   EffectPlace place;
-  double misfit = 0;          ///< of the scalar fit, to rank proposals of one place
-  bool ignores_axis = false;  ///< clipping: the reading is known to be wrong, not how wrong
+  double misfit = 0;  ///< of the scalar fit, to rank proposals of one place
 };
 
 /// All laws of the catalogue that can act at the `which`-th place of a localisation, best scalar

@@ -26,7 +26,23 @@ void add_forces(std::vector<Suspect>& out, Suspect suspect) {
   out.push_back(std::move(suspect));
 }
 
+/// Forces of a moment at the base, as the frames' stiffnesses pass it on.
+MatrixXd moment_of(const Plant& plant, const Model& model, Direction direction) {
+  const Structure& s = plant.structure;
+  MatrixXd out = MatrixXd::Zero(plant.equations(), 1);
+  for (const Element& e : plant.elements)
+    if (e.frame >= 0 && s.direction(e.frame) == direction)
+      out += model.theta[e.stiffness] * s.story_height[static_cast<std::size_t>(e.story - 1)] *
+             plant.building.act.col(e.stiffness);
+  return out;
+}
+
 }  // namespace
+
+void follow(const Plant& plant, const Model& model, std::vector<Suspect>& suspects) {
+  for (Suspect& s : suspects)
+    if (s.kind == Suspect::Kind::rocking) s.directions = moment_of(plant, model, s.place.direction);
+}
 
 std::vector<Suspect> suspects_of(const Plant& plant, const Model& model) {
   std::vector<Suspect> out;
@@ -39,7 +55,19 @@ std::vector<Suspect> suspects_of(const Plant& plant, const Model& model) {
     axis.place.channel = axis.axis;
     out.push_back(axis);
   }
+  if (plant.stiff_floors)
+    for (int story = 1; story <= s.stories; ++story) {
+      Suspect floor;
+      floor.kind = Suspect::Kind::floor;
+      floor.place.kind = PlaceKind::floor;
+      floor.place.story = story;
+      floor.directions.resize(plant.equations(), s.panels());
+      for (int p = 0; p < s.panels(); ++p)
+        floor.directions.col(p) = plant.building.act.col(plant.table.panel_stiffness(story, p));
+      add_forces(out, floor);
+    }
   for (const Element& e : plant.elements) {
+    if (plant.stiff_floors && e.panel >= 0) continue;
     Suspect element;
     element.kind = Suspect::Kind::element;
     element.element = e.stiffness;
@@ -87,12 +115,7 @@ std::vector<Suspect> suspects_of(const Plant& plant, const Model& model) {
     rocking.kind = Suspect::Kind::rocking;
     rocking.place.kind = PlaceKind::building;
     rocking.place.direction = direction;
-    rocking.directions = MatrixXd::Zero(plant.equations(), 1);
-    for (const Element& e : plant.elements)
-      if (e.frame >= 0 && s.direction(e.frame) == direction)
-        rocking.directions += model.theta[e.stiffness] *
-                              s.story_height[static_cast<std::size_t>(e.story - 1)] *
-                              plant.building.act.col(e.stiffness);
+    rocking.directions = moment_of(plant, model, direction);
     add_forces(out, rocking);
   }
   return out;
@@ -111,11 +134,9 @@ MatrixXcd suspect_basis(const Whitened& system, Index bin, const std::vector<Sus
         out.col(next++) = s.directions.col(c).cast<std::complex<double>>();
     } else {
       out.col(next++) = system.operation[at].col(s.axis);
-      if (s.kind == Suspect::Kind::axis_pair)
-        out.col(next++) = system.operation[at].col(s.place.with_channel);
     }
   }
-  system.factor[at].triangularView<Eigen::Lower>().solveInPlace(out);
+  out = (system.whitener[at] * out).eval();
   for (Index c = 0; c < count; ++c) {
     const double before = out.col(c).norm();
     for (Index b = 0; b < c; ++b) out.col(c) -= out.col(b) * out.col(b).dot(out.col(c));

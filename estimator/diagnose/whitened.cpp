@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 namespace framewatch {
 namespace {
@@ -15,6 +16,7 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 constexpr Complex kJ{0, 1};
 constexpr Index kEndTerms = 4;
+constexpr double kNotBelieved = 1e6;   ///< variance of what may be anything, over that of noise
 constexpr Index kLeastNeighbours = 8;  ///< bins either side over which the misfit is averaged
 
 void put(VectorXd& rows, Index bin, const VectorXcd& values) {
@@ -59,35 +61,32 @@ Equivalent equivalent_of(const LawTrack& track) {
 
 VectorXd whiten_rows(const Whitened& s, const MatrixXcd& forces) {
   VectorXd out(2 * forces.size());
-  VectorXcd column(forces.rows());
-  for (Index b = 0; b < forces.cols(); ++b) {
-    column = forces.col(b);
-    s.factor[static_cast<std::size_t>(b)].triangularView<Eigen::Lower>().solveInPlace(column);
-    put(out, b, column);
-  }
+  for (Index b = 0; b < forces.cols(); ++b)
+    put(out, b, s.whitener[static_cast<std::size_t>(b)] * forces.col(b));
   return out;
 }
 
 VectorXd whiten_rows(const Whitened& s, const VectorXd& direction, const VectorXcd& signal) {
   VectorXd out(2 * direction.size() * signal.size());
-  VectorXcd column(direction.size());
-  for (Index b = 0; b < signal.size(); ++b) {
-    column = direction.cast<Complex>() * signal[b];
-    s.factor[static_cast<std::size_t>(b)].triangularView<Eigen::Lower>().solveInPlace(column);
-    put(out, b, column);
-  }
+  for (Index b = 0; b < signal.size(); ++b)
+    put(out, b, s.whitener[static_cast<std::size_t>(b)] * (direction.cast<Complex>() * signal[b]));
   return out;
 }
 
 VectorXd whiten_axis(const Whitened& s, Index axis, const VectorXcd& signal) {
   const Index n = s.operation.empty() ? 0 : s.operation[0].rows();
   VectorXd out(2 * n * signal.size());
-  VectorXcd column(n);
   for (Index b = 0; b < signal.size(); ++b) {
-    column = s.operation[static_cast<std::size_t>(b)].col(axis) * signal[b];
-    s.factor[static_cast<std::size_t>(b)].triangularView<Eigen::Lower>().solveInPlace(column);
-    put(out, b, column);
+    const auto at = static_cast<std::size_t>(b);
+    put(out, b, s.whitener[at] * (s.operation[at].col(axis) * signal[b]));
   }
+  return out;
+}
+
+VectorXd bin_noise(const Model& model, const Stretch& stretch) {
+  VectorXd out = static_cast<double>(stretch.intervals()) * stretch.variance;
+  for (const ModelEffect& e : model.effects)
+    if (e.form == LawForm::swapped) std::swap(out[e.place.channel], out[e.place.with_channel]);
   return out;
 }
 
@@ -148,24 +147,33 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
               band_of(signal, stretch, 1).transpose();
   }
 
-  const VectorXd noise = static_cast<double>(stretch.intervals()) * stretch.variance;
+  VectorXd noise = bin_noise(model, stretch);
+  MatrixXd pushed = MatrixXd::Zero(n, n);  // covariance of forces that may be anything
+  for (const ModelEffect& effect : model.effects) {
+    if (effect.form == LawForm::clipped) noise[effect.place.channel] *= kNotBelieved;
+    if (effect.form != LawForm::broadband) continue;
+    const VectorXd at = node_direction(plant, effect.place.story, effect.place.frame);
+    pushed += at * at.transpose() / at.squaredNorm();
+  }
   const MatrixXd mass = (1 + model.mass_change.array()).matrix().asDiagonal() * plant.building.mass;
   const MatrixXd& act = plant.building.act;
   const MatrixXd& sense = plant.building.sense;
   out.operation.resize(static_cast<std::size_t>(bins));
   out.residual.resize(2 * n * bins);
+  std::vector<const ModelEffect*> hidden;  // oscillators, whose motion does not end at rest either
+  for (const ModelEffect& effect : model.effects)
+    if (effect.form == LawForm::resonator) hidden.push_back(&effect);
   if (weights) {
-    out.factor = weights->factor;
+    out.whitener = weights->whitener;
     out.ends = weights->ends;
     out.ends_normal = weights->ends_normal;
     out.ends_factor = weights->ends_factor;
   } else {
-    out.factor.resize(static_cast<std::size_t>(bins));
-    out.ends.resize(2 * n * bins, kEndTerms * n);
+    out.whitener.resize(static_cast<std::size_t>(bins));
+    out.ends.resize(2 * n * bins, kEndTerms * n + 2 * static_cast<Index>(hidden.size()));
   }
   const double middle = std::sqrt(stretch.w[0] * stretch.w[bins - 1]);
   VectorXcd e(n);
-  MatrixXcd end(n, n);
   for (Index b = 0; b < bins; ++b) {
     const double w = stretch.w[b];
     MatrixXcd& d = out.operation[static_cast<std::size_t>(b)];
@@ -174,18 +182,19 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
     d.imag() = act * (theta.tail(elements) / -w).asDiagonal() * sense;
     for (const ModelEffect& effect : model.effects)
       if (!effect.element_law()) d += linear_operation(plant, model, effect, w);
-    MatrixXcd& l = out.factor[static_cast<std::size_t>(b)];
+    MatrixXcd& end = out.whitener[static_cast<std::size_t>(b)];
     if (!weights) {
-      const Eigen::LLT<MatrixXcd> llt(d * noise.asDiagonal() * d.adjoint());
+      MatrixXcd covariance = d * noise.asDiagonal() * d.adjoint();
+      const double size = kNotBelieved * covariance.trace().real() / static_cast<double>(n);
+      covariance += (size * pushed).cast<Complex>();
+      const Eigen::LLT<MatrixXcd> llt(covariance);
       if (llt.info() != Eigen::Success) return out;
-      l = llt.matrixL();
+      end = MatrixXcd::Identity(n, n);
+      llt.matrixL().solveInPlace(end);
     }
     e = d * out.calibrated.col(b) + forces.col(b);
-    l.triangularView<Eigen::Lower>().solveInPlace(e);
-    put(out.residual, b, e);
+    put(out.residual, b, end * e);
     if (weights) continue;
-    end.setIdentity();
-    l.triangularView<Eigen::Lower>().solveInPlace(end);
     const double r = w / middle;
     out.ends.block(2 * n * b, 0, n, n) = end.real() / (r * r);
     out.ends.block(2 * n * b + n, 0, n, n) = end.imag() / (r * r);
@@ -195,11 +204,23 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
     out.ends.block(2 * n * b + n, 2 * n, n, n) = end.imag();
     out.ends.block(2 * n * b, 3 * n, n, n) = -end.imag() * r;
     out.ends.block(2 * n * b + n, 3 * n, n, n) = end.real() * r;
+    for (std::size_t i = 0; i < hidden.size(); ++i) {
+      const ModelEffect& h = *hidden[i];
+      const double wr = 2 * M_PI * h.knobs[1].plain();
+      const Complex spring = wr * wr + 2.0 * h.knobs[2].plain() * wr * w * kJ;
+      const VectorXcd at =
+          end * (node_direction(plant, h.place.story, h.place.frame) * (spring / (spring - w * w)));
+      const Index column = kEndTerms * n + 2 * static_cast<Index>(i);
+      out.ends.block(2 * n * b, column, n, 1) = at.real();
+      out.ends.block(2 * n * b + n, column, n, 1) = at.imag();
+      out.ends.block(2 * n * b, column + 1, n, 1) = -at.imag() * r;
+      out.ends.block(2 * n * b + n, column + 1, n, 1) = at.real() * r;
+    }
   }
   if (!weights) {
     for (Index c = 0; c < out.ends.cols(); ++c)
       out.ends.col(c) /= std::max(out.ends.col(c).norm(), 1e-300);
-    out.ends_normal = MatrixXd::Zero(kEndTerms * n, kEndTerms * n);
+    out.ends_normal = MatrixXd::Zero(out.ends.cols(), out.ends.cols());
     out.ends_normal.selfadjointView<Eigen::Lower>().rankUpdate(out.ends.transpose());
     out.ends_normal = out.ends_normal.selfadjointView<Eigen::Lower>();
     out.ends_normal.diagonal().array() += 1e-12;
@@ -223,8 +244,8 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
     r.real() = out.rest.segment(2 * n * b, n);
     r.imag() = out.rest.segment(2 * n * b + n, n);
     const std::size_t at = static_cast<std::size_t>(b);
-    out.factor[at].triangularView<Eigen::Lower>().adjoint().solveInPlace(r);
-    out.motion.col(b) -= share * (noise.asDiagonal() * (out.operation[at].adjoint() * r));
+    out.motion.col(b) -= share * (noise.asDiagonal() *
+                                  (out.operation[at].adjoint() * (out.whitener[at].adjoint() * r)));
   }
   out.good = true;
   return out;

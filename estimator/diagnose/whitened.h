@@ -21,7 +21,7 @@ enum class Forcing { measured, simulated };
 struct Whitened {
   bool good = false;
   std::vector<Eigen::MatrixXcd> operation;  ///< D of every bin, equations x axes
-  std::vector<Eigen::MatrixXcd> factor;     ///< L of every bin, L L^H = N D S D^H
+  std::vector<Eigen::MatrixXcd> whitener;   ///< inverse of L of every bin, L L^H = N D S D^H
   Eigen::MatrixXcd calibrated;              ///< axes x bins: spectra without the model's errors
   Eigen::MatrixXcd motion;                  ///< the same with less noise where the model fits
   std::vector<LawTrack> tracks;             ///< of the element laws
@@ -36,8 +36,11 @@ struct Whitened {
   Eigen::Index bins() const { return calibrated.cols(); }
 };
 
+/// Variance of every axis' noise in one bin, of the motion that the model says it is of.
+Eigen::VectorXd bin_noise(const Model& model, const Stretch& stretch);
+
 /// motion: axes x bins that drives the laws when forcing is `measured`; empty: the measured one.
-/// weights: whose factor and end terms are taken; null: the model's own.
+/// weights: whose whitener and end terms are taken; null: the model's own.
 Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
                 Forcing forcing, const Eigen::MatrixXcd& motion, int ratio,
                 const Whitened* weights = nullptr);

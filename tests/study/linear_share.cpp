@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kChange = 0.01;  ///< of a parameter, for its derivative
 constexpr double kRidge = 1e-9;
+constexpr int kSteps = 6;          ///< of Gauss-Newton
+constexpr double kDamping = 1e-3;  ///< of it
 
 Eigen::VectorXd stacked(const Eigen::MatrixXd& m) {
   return Eigen::Map<const Eigen::VectorXd>(m.data(), m.size());
@@ -56,30 +58,68 @@ Peaks find_peaks(const StudyCase& c) {
 
 }  // namespace
 
-LinearShare::LinearShare(const StudyCase& c) : peaks_(find_peaks(c)) {
+LinearShare::LinearShare(const StudyCase& c) : peaks_(find_peaks(c)), case_(c) {
   for (const SensorAxis& axis : c.building.axes) base_axes_ += axis.story == 0;
   linear_ = clean_record(c, 0);
   const Eigen::Index above = linear_.cols() - base_axes_;
   derivatives_.resize(linear_.rows() * above, c.building.theta.size());
+  norms_ = Eigen::VectorXd::Zero(c.building.theta.size());
   for (Eigen::Index p = 0; p < c.building.theta.size(); ++p) {
     StudyCase changed = c;
     changed.hidden.theta[p] *= 1 + kChange;
     derivatives_.col(p) = stacked((clean_record(changed, 0) - linear_).rightCols(above)) / kChange;
     const double norm = derivatives_.col(p).norm();
+    norms_[p] = norm;
     if (norm > 0) derivatives_.col(p) /= norm;
   }
   gram_ = derivatives_.transpose() * derivatives_;
   gram_.diagonal().array() += kRidge;
+
+  StudyCase shaken = c;
+  Random random(c.options.seed, 77);
+  GroundMotion* along[] = {&shaken.motions[0].x, &shaken.motions[0].y};
+  for (Eigen::Index i = 0; i < base_axes_; ++i) {
+    GroundMotion& motion = *along[i % 2];
+    motion.step_s = 1 / c.options.rate_hz;
+    // Straight lines between samples lose a third of their power.
+    const double rms =
+        std::sqrt(1.5 * linear_.col(i).squaredNorm() / static_cast<double>(linear_.rows()));
+    motion.accel.assign(static_cast<std::size_t>(linear_.rows()) + 2, 0.0);
+    for (double& value : motion.accel) value = rms * random.normal();
+  }
+  amplified_ = clean_record(shaken, 0).rightCols(above).norm() / linear_.rightCols(above).norm();
 }
 
-double LinearShare::unexplained(const Eigen::MatrixXd& accel, bool worst_channel) const {
+double LinearShare::noise_floor(double ratio) const {
+  return ratio * std::hypot(1.0, amplified_);
+}
+
+double LinearShare::unexplained(const Eigen::MatrixXd& accel, bool worst_channel,
+                                double enough) const {
   const Eigen::Index above = linear_.cols() - base_axes_;
-  const Eigen::VectorXd difference = stacked((accel - linear_).rightCols(above));
+  Eigen::VectorXd difference = stacked((accel - linear_).rightCols(above));
   // A wrong base channel is a wrong input: counted as what it would be on the channels above.
   const double base =
       (accel - linear_).leftCols(base_axes_).norm() / linear_.leftCols(base_axes_).norm();
-  const Eigen::VectorXd fit = gram_.ldlt().solve(derivatives_.transpose() * difference);
-  const Eigen::VectorXd rest = difference - derivatives_ * fit;
+  const Eigen::LDLT<Eigen::MatrixXd> solver(gram_);
+  Eigen::VectorXd rest =
+      difference - derivatives_ * solver.solve(derivatives_.transpose() * difference);
+  Eigen::MatrixXd damped = gram_;
+  damped.diagonal().array() += kDamping;
+  const Eigen::LDLT<Eigen::MatrixXd> cautious(damped);
+  StudyCase fitted = case_;
+  for (int i = 0; i < kSteps && rest.norm() > enough * accel.rightCols(above).norm(); ++i) {
+    const Eigen::VectorXd fit = cautious.solve(derivatives_.transpose() * difference);
+    for (Eigen::Index p = 0; p < fit.size(); ++p)
+      if (norms_[p] > 0)
+        fitted.hidden.theta[p] =
+            std::max(0.1 * case_.hidden.theta[p],
+                     fitted.hidden.theta[p] + case_.hidden.theta[p] * fit[p] / norms_[p]);
+    difference = stacked((accel - clean_record(fitted, 0)).rightCols(above));
+    const Eigen::VectorXd now =
+        difference - derivatives_ * solver.solve(derivatives_.transpose() * difference);
+    if (now.norm() < rest.norm()) rest = now;
+  }
   if (!worst_channel) return std::hypot(rest.norm() / accel.rightCols(above).norm(), base);
   double worst = base;
   for (Eigen::Index i = 0; i < above; ++i) {

@@ -55,7 +55,7 @@ double size_for(const Draw& draw, double wanted, const StudyCase& c, const Linea
                 trial.hidden.effects))
       return -1.0;
     const Eigen::MatrixXd accel = clean_record(trial, 0);
-    return accel.allFinite() ? share.unexplained(accel, draw.of_channel) : -1.0;
+    return accel.allFinite() ? share.unexplained(accel, draw.of_channel, 0.5 * wanted) : -1.0;
   };
   if (draw.sizeless) return gap = gap_of(1), gap >= 0 ? 1.0 : 0.0;
   double low = 0, high = draw.largest;
@@ -103,7 +103,7 @@ std::optional<StudyCase> make_case(const std::string& group, const std::string& 
   if (parts.empty()) return c;
 
   const LinearShare share(c);
-  const double floor = std::sqrt(2.0) * options.noise_ratio;  // of a channel, and of the base
+  const double floor = share.noise_floor(options.noise_ratio);
   c.gap_over_floor = 1e9;
   Hidden all = c.hidden;
   for (const std::string& part : parts) {

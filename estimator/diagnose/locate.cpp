@@ -1,0 +1,95 @@
+#include "estimator/diagnose/locate.h"
+
+#include <algorithm>
+#include <map>
+
+namespace framewatch {
+namespace {
+
+constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
+constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
+constexpr std::size_t kContenders = 3, kMostContenders = 5;
+constexpr std::size_t kPairLeaders = 6, kPairs = 3;
+constexpr int kSteps = 8, kPairSteps = 6;
+
+void sort_by_ratio(std::vector<Localisation>& list) {
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Localisation& a, const Localisation& b) { return a.ratio < b.ratio; });
+}
+
+/// Localisations again, from where one step has led.
+std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
+                                   const std::vector<const Localisation*>& starts, int steps,
+                                   const Parallel& parallel) {
+  std::vector<Localisation> out(starts.size());
+  run_all(parallel, static_cast<int>(starts.size()), [&](int i) {
+    const Localisation& from = *starts[static_cast<std::size_t>(i)];
+    out[static_cast<std::size_t>(i)] = localise(
+        fitter, from.model.theta.size() > 0 ? from.model : now.model, {}, from.suspects, steps);
+  });
+  std::erase_if(out, [](const Localisation& l) { return l.model.theta.size() == 0; });
+  sort_by_ratio(out);
+  return out;
+}
+
+bool is_global(const Suspect& s) {
+  return s.kind == Suspect::Kind::rocking || s.kind == Suspect::Kind::floor;
+}
+
+}  // namespace
+
+Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel) {
+  Located out;
+  const Linearised at = fitter.linearise(now.model, now.motion, Forcing::measured);
+  if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return out;
+  std::vector<std::vector<Suspect>> lists;
+  for (const Suspect& s : suspects_of(fitter.plant(), now.model)) lists.push_back({s});
+  out.once = localise_once(fitter, at, now.model, lists, parallel);
+  sort_by_ratio(out.once);
+  std::vector<const Localisation*> starts;
+  std::size_t global = 0;
+  for (std::size_t i = 0; i < out.once.size(); ++i) {
+    const bool more = is_global(out.once[i].suspects.front()) && global < kOfOneKind;
+    if (i >= kPlaces && !more) continue;
+    global += is_global(out.once[i].suspects.front());
+    starts.push_back(&out.once[i]);
+  }
+  out.places = iterated(fitter, now, starts, kSteps, parallel);
+  return out;
+}
+
+std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
+                                       const std::vector<Localisation>& once,
+                                       const Parallel& parallel) {
+  const Linearised at = fitter.linearise(now.model, now.motion, Forcing::measured);
+  if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return {};
+  std::vector<Suspect> all;
+  for (const Localisation& l : once)
+    if (l.suspects.front().size() == 1) all.push_back(l.suspects.front());
+  std::vector<std::vector<Suspect>> lists;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j)
+      if (i < kPairLeaders ||
+          (all[i].kind == Suspect::Kind::axis && all[j].kind == Suspect::Kind::axis))
+        lists.push_back({all[i], all[j]});
+  std::vector<Localisation> pairs = localise_once(fitter, at, now.model, lists, parallel);
+  sort_by_ratio(pairs);
+  std::vector<const Localisation*> starts;
+  for (std::size_t i = 0; i < std::min(kPairs, pairs.size()); ++i) starts.push_back(&pairs[i]);
+  return iterated(fitter, now, starts, kPairSteps, parallel);
+}
+
+std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
+  std::vector<Localisation> out;
+  std::map<Suspect::Kind, int> of_kind;
+  if (places.empty()) return out;
+  const double margin = 2 * std::max(places.front().ratio - 1, 0.05) + 0.1;
+  for (const Localisation& place : places) {
+    if (place.ratio - 1 > margin || out.size() >= kMostContenders) break;
+    const bool another_kind = of_kind[place.suspects.front().kind]++ == 0;
+    if (out.size() < kContenders || another_kind) out.push_back(place);
+  }
+  return out;
+}
+
+}  // namespace framewatch

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/localise.h"
+
+namespace framewatch {
+
+/// Where it is that a model does not fit.
+struct Located {
+  std::vector<Localisation> places;  ///< the most likely ones, fitted again, best first
+  std::vector<Localisation> once;    ///< all, after one step, best first
+};
+
+/// Every place of the plant.
+Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel);
+
+/// Two places at once: the best single ones with every other, and every two axes. Best first.
+std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
+                                       const std::vector<Localisation>& once,
+                                       const Parallel& parallel);
+
+/// Those of the places whose laws are worth a fit: near the best, few of a kind.
+std::vector<Localisation> contenders(const std::vector<Localisation>& places);
+
+}  // namespace framewatch

@@ -1,0 +1,61 @@
+#include <algorithm>
+
+#include "estimator/diagnose/propose.h"
+
+namespace framewatch {
+
+EffectKind name_of_fit(const ModelEffect& effect, const Stretch& stretch) {
+  switch (effect.form) {
+    case LawForm::power:
+      return effect.knobs[1].plain() < 2.45 ? EffectKind::quadratic_stiffness
+                                            : EffectKind::cubic_stiffness;
+    case LawForm::hysteresis:
+      if (effect.knobs[1].plain() < 0.02 * effect.deformation) return EffectKind::coulomb_friction;
+      return effect.knobs[2].plain() > 20 ? EffectKind::bilinear_hysteresis : EffectKind::bouc_wen;
+    case LawForm::pinched:
+      return EffectKind::pinching;
+    case LawForm::friction:
+      return EffectKind::coulomb_friction;
+    case LawForm::power_damping:
+      return EffectKind::quadratic_damping;
+    case LawForm::gap_positive:
+    case LawForm::gap_negative:
+      return EffectKind::one_sided_gap;
+    case LawForm::gap_both:
+      return EffectKind::two_sided_gap;
+    case LawForm::changing: {
+      double longest = 0;
+      for (const std::vector<Knob>& knobs : effect.record_knobs)
+        longest = std::max(longest, knobs[1].plain());
+      return longest < 0.06 * stretch.seconds() ? EffectKind::stiffness_drop
+                                                : EffectKind::stiffness_drift;
+    }
+    case LawForm::mass:
+      return EffectKind::extra_mass;
+    case LawForm::resonator:
+      return EffectKind::tuned_mass_damper;
+    case LawForm::spring:
+      return EffectKind::added_spring;
+    case LawForm::damper:
+      return EffectKind::added_damper;
+    case LawForm::rocking:
+      return EffectKind::base_rocking;
+    case LawForm::bending:
+      return EffectKind::frame_bending;
+    case LawForm::harmonic:
+      return EffectKind::unmeasured_force;
+    case LawForm::panels:
+      return EffectKind::floor_flexibility;
+    case LawForm::broadband:
+      return EffectKind::unmeasured_force;
+    case LawForm::clipped:
+      return EffectKind::clipping;
+    case LawForm::misaligned:
+      return EffectKind::misalignment;
+    case LawForm::swapped:
+      break;
+  }
+  return EffectKind::swapped;
+}
+
+}  // namespace framewatch

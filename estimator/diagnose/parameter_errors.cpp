@@ -1,0 +1,56 @@
+#include "estimator/diagnose/parameter_errors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "estimator/diagnose/catalogue_form.h"
+
+namespace framewatch {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void set_errors(const Fitter& fitter, const Model& model,
+                const std::vector<Eigen::MatrixXcd>& motion, std::vector<FoundEffect>& effects) {
+  const bool laws = std::any_of(model.effects.begin(), model.effects.end(),
+                                [](const ModelEffect& e) { return e.element_law(); });
+  const Linearised at =
+      fitter.linearise(model, motion, laws ? Forcing::simulated : Forcing::measured);
+  if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return;
+  MatrixXd normal = at.normal;
+  normal.diagonal() += at.prior;
+  const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  const Eigen::LDLT<MatrixXd> factor(scaled);
+  for (FoundEffect& found : effects) {
+    if (found.ramp_mps3.size() > 0) continue;
+    const VectorXd value = catalogue_values(fitter.plant(), fitter.stretches(), found, model);
+    MatrixXd jacobian = MatrixXd::Zero(value.size(), normal.cols());
+    for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
+      const Unknown& unknown = at.unknowns[u];
+      const bool knob =
+          unknown.kind == Unknown::Kind::knob || unknown.kind == Unknown::Kind::record_knob;
+      const bool axis = unknown.kind == Unknown::Kind::gain || unknown.kind == Unknown::Kind::clock;
+      if (!(knob && unknown.index == found.index) &&
+          !(axis && found.index < 0 && unknown.index == found.chosen.place.channel))
+        continue;
+      constexpr double kPart = 0.05;  // of the unknown's unit: its scale is that of a derivative
+      Model moved = model;
+      set_value(moved, unknown, value_of(model, unknown) + kPart);
+      jacobian.col(static_cast<Index>(u)) =
+          (catalogue_values(fitter.plant(), fitter.stretches(), found, moved) - value) / kPart;
+    }
+    // A misfit beyond noise means that errors are larger in proportion.
+    const MatrixXd turned = scale.asDiagonal() * jacobian.transpose();
+    const VectorXd variance =
+        0.5 * at.level * (jacobian * (scale.asDiagonal() * factor.solve(turned))).diagonal();
+    found.std_error.clear();
+    for (const double v : variance) found.std_error.push_back(std::sqrt(std::max(v, 0.0)));
+  }
+}
+
+}  // namespace framewatch

@@ -1,0 +1,182 @@
+#include <cmath>
+#include <complex>
+#include <functional>
+
+#include "estimator/diagnose/propose_parts.h"
+
+namespace framewatch {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+constexpr Complex kJ{0, 1};
+constexpr double kBilinear = 40;  ///< exponent that stands for a corner
+
+class ElementProposals {
+ public:
+  ElementProposals(const Fitter& fitter, const Localisation& place,
+                   const std::vector<Needed>& needed, int element)
+      : fitter_(fitter), place_(place), needed_(needed), element_(element) {
+    for (const Needed& n : needed) {
+      peak_ = std::max(peak_, n.d_t.cwiseAbs().maxCoeff());
+      rate_ = std::max(rate_, n.v_t.cwiseAbs().maxCoeff());
+    }
+  }
+
+  std::vector<Proposal> all() {
+    const double k = fitter_.plant().design[element_];
+    const double force = k * peak_;
+    using F = LawForm;
+    best(F::power, EffectKind::cubic_stiffness, {1.5, 2, 3, 5}, [&](double p) {
+      return std::vector<Knob>{linear_knob(1, 0.01 * force), bounded_knob(p, 0.02, 1.2, 9)};
+    });
+    std::vector<double> yields;
+    for (double y = 0.9; y > 0.004; y *= 0.7) yields.push_back(y);
+    for (const double n : {1.0, 2.0, kBilinear})
+      best(F::hysteresis, n > 20 ? EffectKind::bilinear_hysteresis : EffectKind::bouc_wen, yields,
+           [&](double y) {
+             return std::vector<Knob>{
+                 linear_knob(1, 0.01 * k), logarithmic_knob(y * peak_, 1e-4 * peak_, 3 * peak_),
+                 bounded_knob(n, 0.05, 0.5, 60, false), bounded_knob(0.5, 0.02, 0.1, 1.0, false)};
+           });
+    if (fitter_.plant().table[element_].frame >= 0)
+      for (const double slip : {0.7, 0.9})
+        best(F::pinched, EffectKind::pinching, yields, [&](double y) {
+          return std::vector<Knob>{linear_knob(1, 0.01 * k),
+                                   logarithmic_knob(y * peak_, 1e-3 * peak_, 3 * peak_),
+                                   bounded_knob(2, 0.05, 0.5, 60, false),
+                                   bounded_knob(0.5, 0.02, 0.1, 1.0, false),
+                                   bounded_knob(slip, 0.02, 0.3, 0.99),
+                                   logarithmic_knob(0.2, 0.05, 1.0)};
+        });
+    best(F::friction, EffectKind::coulomb_friction, {0.1, 0.03, 0.01, 0.003}, [&](double v0) {
+      return std::vector<Knob>{linear_knob(1, 0.01 * force),
+                               logarithmic_knob(v0 * rate_, 1e-4 * rate_, 0.3 * rate_)};
+    });
+    best(F::power_damping, EffectKind::quadratic_damping, {0.4, 1.5, 2, 3}, [&](double p) {
+      return std::vector<Knob>{linear_knob(1, 0.01 * force), bounded_knob(p, 0.02, 0.15, 5)};
+    });
+    std::vector<double> gaps;
+    for (double g = 0.03; g < 0.97; g += g < 0.1 ? 0.03 : 0.07) gaps.push_back(g);
+    for (const F form : {F::gap_positive, F::gap_negative, F::gap_both})
+      best(form, form == F::gap_both ? EffectKind::two_sided_gap : EffectKind::one_sided_gap, gaps,
+           [&](double g) {
+             return std::vector<Knob>{linear_knob(1, 0.01 * k),
+                                      logarithmic_knob(g * peak_, 1e-3 * peak_, peak_)};
+           });
+    changing(k);
+    return std::move(out_);
+  }
+
+ private:
+  std::vector<std::vector<VectorXcd>> linear_columns() const {
+    std::vector<std::vector<VectorXcd>> out;
+    for (std::size_t r = 0; r < needed_.size(); ++r) {
+      const VectorXd& w = fitter_.stretches()[r].w;
+      out.push_back({needed_[r].d, VectorXcd(needed_[r].d.array() * w.array() * kJ)});
+    }
+    return out;
+  }
+
+  VectorXcd law_bins(const ModelEffect& effect, std::size_t r) const {
+    const Stretch& s = fitter_.stretches()[r];
+    const int ratio = fitter_.ratio(r);
+    return band_of(
+        law_force(effect.law(r), needed_[r].d_t, needed_[r].v_t, 1 / (s.rate_hz * ratio)), s,
+        ratio);
+  }
+
+  ModelEffect effect_of(LawForm form, std::vector<Knob> knobs) const {
+    ModelEffect out;
+    out.form = form;
+    out.place = place_.suspects.front().place;
+    out.knobs = std::move(knobs);
+    out.deformation = peak_;
+    out.rate = rate_;
+    return out;
+  }
+
+  void add(ModelEffect effect, EffectKind kind, const ScalarFit& fit) {
+    effect.knobs[0].value = fit.coefficients[2];
+    Proposal p{place_.model, kind, effect.place, fit.misfit};
+    const Index elements = fitter_.plant().element_count();
+    const double least = 0.05 * fitter_.plant().design[element_];
+    p.model.theta[element_] = std::max(place_.model.theta[element_] + fit.coefficients[0], least);
+    p.model.theta[element_ + elements] += fit.coefficients[1];
+    p.model.effects.push_back(std::move(effect));
+    out_.push_back(std::move(p));
+  }
+
+  void best(LawForm form, EffectKind kind, const std::vector<double>& grid,
+            const std::function<std::vector<Knob>(double)>& knobs) {
+    ScalarFit least;
+    ModelEffect chosen;
+    for (const double value : grid) {
+      const ModelEffect effect = effect_of(form, knobs(value));
+      auto columns = linear_columns();
+      for (std::size_t r = 0; r < needed_.size(); ++r) columns[r].push_back(law_bins(effect, r));
+      const ScalarFit fit = scalar_fit(needed_, columns);
+      const bool dissipates = form == LawForm::friction || form == LawForm::power_damping ||
+                              form == LawForm::hysteresis || form == LawForm::pinched;
+      if (dissipates && fit.coefficients[2] < 0) continue;
+      if (fit.misfit < least.misfit) {
+        least = fit;
+        chosen = effect;
+      }
+    }
+    if (least.misfit < 1e299) add(std::move(chosen), kind, least);
+  }
+
+  /// Onset and duration are each record's own; one change for all.
+  void changing(double k) {
+    for (const bool sudden : {true, false}) {
+      ModelEffect effect = effect_of(LawForm::changing, {linear_knob(1, 0.01 * k)});
+      effect.record_knobs.resize(needed_.size());
+      for (std::size_t r = 0; r < needed_.size(); ++r) {
+        const double seconds = fitter_.stretches()[r].seconds();
+        double lowest = 1e300;
+        std::vector<double> lengths{0.05};
+        if (!sudden) lengths = {0.3 * seconds, 0.6 * seconds, seconds};
+        for (const double length : lengths)
+          for (double t0 = 0; t0 < seconds - 0.5 * length; t0 += 0.025 * seconds) {
+            ModelEffect one = effect;
+            one.record_knobs[r] = {bounded_knob(t0, 0.1, -0.2 * seconds, seconds),
+                                   logarithmic_knob(length, 0.02, 2 * seconds)};
+            std::vector<std::vector<VectorXcd>> columns = linear_columns();
+            columns = {columns[r]};
+            columns[0].push_back(law_bins(one, r));
+            const ScalarFit fit = scalar_fit({needed_[r]}, columns);
+            if (fit.misfit < lowest) {
+              lowest = fit.misfit;
+              effect.record_knobs[r] = one.record_knobs[r];
+            }
+          }
+        effect.record_knobs[r][1].free = !sudden;
+      }
+      auto columns = linear_columns();
+      for (std::size_t r = 0; r < needed_.size(); ++r) columns[r].push_back(law_bins(effect, r));
+      add(effect, sudden ? EffectKind::stiffness_drop : EffectKind::stiffness_drift,
+          scalar_fit(needed_, columns));
+    }
+  }
+
+  const Fitter& fitter_;
+  const Localisation& place_;
+  const std::vector<Needed>& needed_;
+  int element_;
+  double peak_ = 0, rate_ = 0;
+  std::vector<Proposal> out_;
+};
+
+}  // namespace
+
+std::vector<Proposal> element_proposals(const Fitter& fitter, const Localisation& place,
+                                        const std::vector<Needed>& needed, int element) {
+  return ElementProposals(fitter, place, needed, element).all();
+}
+
+}  // namespace framewatch

@@ -1,0 +1,236 @@
+#include "estimator/diagnose/trials.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framewatch {
+namespace {
+
+constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
+constexpr double kRoundest = 20;  ///< exponent of hysteresis; above it has a corner
+constexpr double kDissipates = 0.15;
+constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
+constexpr int kSharpSteps = 12;
+constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
+
+bool contains(const std::vector<EffectKind>& list, EffectKind kind) {
+  return std::find(list.begin(), list.end(), kind) != list.end();
+}
+
+bool has_law(const Model& model) {
+  return std::any_of(model.effects.begin(), model.effects.end(),
+                     [](const ModelEffect& e) { return e.element_law(); });
+}
+
+/// A model with what it is called.
+struct Candidate {
+  Model model;
+  std::vector<Eigen::MatrixXcd> motion;
+  EffectKind kind;
+  EffectPlace place;
+  std::optional<std::pair<EffectKind, EffectPlace>> second;
+  std::size_t from = 0;  ///< place it is of
+  int steps = kFirstSteps;
+};
+
+struct Fitted {
+  FitResult fit;
+  const Candidate* candidate;
+};
+
+/// What a fit has become, and its name.
+void take(const TrialContext& c, const FitResult& run, Trial& t) {
+  std::size_t next = c.now.model.effects.size();
+  const auto name = [&](EffectKind guess) {
+    const bool in_model = guess != EffectKind::gain_error && guess != EffectKind::polarity &&
+                          guess != EffectKind::time_shift;
+    return in_model && next < run.model.effects.size()
+               ? name_of_fit(run.model.effects[next++], c.fitter.stretches().front())
+               : guess;
+  };
+  t.kind = name(t.kind);
+  if (t.second) t.second->first = name(t.second->first);
+  t.cost = run.cost + spared(c.fitter, run.model) - spared(c.fitter, c.now.model);
+  t.misfit = run.misfit;
+  t.model = run.model;
+}
+
+/// Energy that a cycle to the peak deformation takes, over that of the box around its loop.
+double dissipation(const ModelEffect& effect) {
+  constexpr int kSteps = 400, kCycles = 2;
+  Eigen::VectorXd d(kSteps * kCycles);
+  for (Eigen::Index i = 0; i < d.size(); ++i)
+    d[i] = effect.deformation * std::sin(2 * M_PI * static_cast<double>(i) / kSteps);
+  const Eigen::VectorXd f = law_force(effect.law(0), d, Eigen::VectorXd::Zero(d.size()), 1);
+  double work = 0, peak = 0;
+  for (Eigen::Index i = kSteps; i < d.size(); ++i) {
+    work += 0.5 * (f[i] + f[i - 1]) * (d[i] - d[i - 1]);
+    peak = std::max(peak, std::abs(f[i]));
+  }
+  return work / std::max(4 * peak * effect.deformation, 1e-300);
+}
+
+/// Whether its names may be given. A slip zone in what hardly yields is another elastic law.
+bool is_named(const TrialContext& c, const Trial& t) {
+  for (std::size_t e = c.now.model.effects.size(); e < t.model.effects.size(); ++e) {
+    const ModelEffect& effect = t.model.effects[e];
+    if (effect.form == LawForm::pinched &&
+        (dissipation(effect) < kDissipates || effect.knobs[5].plain() < kNarrowestSlip))
+      return false;
+  }
+  return !contains(c.without, t.kind) && !(t.second && contains(c.without, t.second->first));
+}
+
+FitOptions run_options(const Model& model) {
+  FitOptions options;
+  options.forcing = has_law(model) ? Forcing::simulated : Forcing::measured;
+  options.max_steps = has_law(model) ? kRunSteps : kLinearSteps;
+  return options;
+}
+
+/// Fits all at once: first with the measured motion, the best of each place then as free runs.
+std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& candidates) {
+  std::vector<Fitted> first(candidates.size());
+  run_all(c.parallel, static_cast<int>(candidates.size()), [&](int i) {
+    const Candidate& candidate = candidates[static_cast<std::size_t>(i)];
+    FitOptions options;
+    options.max_steps = candidate.steps;
+    first[static_cast<std::size_t>(i)] = {c.fitter.fit(candidate.model, candidate.motion, options),
+                                          &candidate};
+  });
+  std::erase_if(first, [](const Fitted& f) { return !f.fit.good; });
+  std::stable_sort(first.begin(), first.end(), [](const Fitted& a, const Fitted& b) {
+    return a.candidate->from != b.candidate->from ? a.candidate->from < b.candidate->from
+                                                  : a.fit.cost < b.fit.cost;
+  });
+  std::vector<Fitted> kept;
+  for (const Fitted& f : first) {
+    const auto same = std::count_if(kept.begin(), kept.end(), [&](const Fitted& k) {
+      return k.candidate->from == f.candidate->from;
+    });
+    if (f.candidate->second || static_cast<std::size_t>(same) < kLawsRun) kept.push_back(f);
+  }
+  std::vector<Trial> out(kept.size());
+  std::vector<char> good(kept.size());
+  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Fitted& f = kept[at];
+    const FitResult run = c.fitter.fit(f.fit.model, f.fit.motion, run_options(f.fit.model));
+    if (!run.good) return;
+    Trial& t = out[at];
+    t.kind = f.candidate->kind;
+    t.place = f.candidate->place;
+    t.second = f.candidate->second;
+    take(c, run, t);
+    good[at] = is_named(c, t);
+  });
+  std::vector<Trial> trials;
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (good[i]) trials.push_back(std::move(out[i]));
+  return trials;
+}
+
+void unite(std::vector<int>& list, const std::vector<int>& more) {
+  for (const int i : more)
+    if (std::find(list.begin(), list.end(), i) == list.end()) list.push_back(i);
+}
+
+/// Two proposals of one pair together.
+Candidate joined(const Localisation& pair, const Proposal& p, const Proposal& q) {
+  const std::size_t common = pair.model.effects.size();
+  Model model = p.model;
+  model.effects.insert(model.effects.end(), q.model.effects.begin() + static_cast<long>(common),
+                       q.model.effects.end());
+  model.theta += q.model.theta - pair.model.theta;
+  model.gain += q.model.gain - pair.model.gain;
+  model.clock_s += q.model.clock_s - pair.model.clock_s;
+  unite(model.free_gain, q.model.free_gain);
+  unite(model.free_clock, q.model.free_clock);
+  return {model, pair.motion, p.kind, p.place, std::pair(q.kind, q.place), 0, kPairSteps};
+}
+
+}  // namespace
+
+void free_shapes(Model& model) {
+  for (ModelEffect& e : model.effects) {
+    const bool hysteretic = e.form == LawForm::hysteresis || e.form == LawForm::pinched;
+    if (!hysteretic || e.knobs[2].plain() > kRoundest) continue;
+    e.knobs[2].free = e.knobs[3].free = true;
+    e.knobs[2].low = 1;
+    e.knobs[3].low = 0.5;
+  }
+}
+
+Trial sharpened(const TrialContext& c, const Trial& trial) {
+  Model start = trial.model;
+  free_shapes(start);
+  FitOptions options = run_options(start);
+  options.max_steps = kSharpSteps;
+  const FitResult run = c.fitter.fit(start, {}, options);
+  if (!run.good) return trial;
+  Trial out = trial;
+  take(c, run, out);
+  return out.cost < trial.cost && is_named(c, out) ? out : trial;
+}
+
+double spared(const Fitter& fitter, const Model& model) {
+  double directions = 0, bins = 0;
+  for (const ModelEffect& e : model.effects)
+    directions += e.form == LawForm::clipped || e.form == LawForm::broadband;
+  for (const Stretch& s : fitter.stretches()) bins += static_cast<double>(s.bins());
+  return directions * bins;
+}
+
+std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisation>& places) {
+  std::vector<std::vector<Proposal>> proposals(places.size());
+  c.progress("laws at " + std::to_string(places.size()) + " places", 0);
+  run_all(c.parallel, static_cast<int>(places.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    proposals[at] = propose(c.fitter, places[at], 0);
+  });
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const bool axis = places[i].suspects.front().kind == Suspect::Kind::axis;
+    std::size_t count = 0;
+    for (const Proposal& p : proposals[i]) {
+      // A family that has other names too is judged by the name after its fit.
+      if (contains(c.without, p.kind) && p.kind != EffectKind::cubic_stiffness &&
+          p.kind != EffectKind::bilinear_hysteresis && p.kind != EffectKind::bouc_wen)
+        continue;
+      if (!axis && count++ >= kLawsFitted) break;
+      candidates.push_back({p.model, places[i].motion, p.kind, p.place, {}, i, kFirstSteps});
+    }
+  }
+  c.progress(std::to_string(candidates.size()) + " laws", 0.3);
+  return fit_all(c, candidates);
+}
+
+std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
+  const Suspect &a = pair.suspects[0], &b = pair.suspects[1];
+  std::vector<Candidate> candidates;
+  if (a.kind == Suspect::Kind::axis && b.kind == Suspect::Kind::axis) {
+    ModelEffect swap;
+    swap.form = LawForm::swapped;
+    swap.place.kind = PlaceKind::channel_pair;
+    swap.place.channel = std::min(a.axis, b.axis);
+    swap.place.with_channel = std::max(a.axis, b.axis);
+    Candidate one{pair.model, {}, EffectKind::swapped, swap.place, {}, 1, 12};
+    one.model.effects.push_back(swap);
+    candidates.push_back(one);
+  }
+  std::vector<Proposal> first = propose(c.fitter, pair, 0), second = propose(c.fitter, pair, 1);
+  for (std::vector<Proposal>* list : {&first, &second}) {
+    std::erase_if(*list, [&](const Proposal& p) {
+      return p.kind == EffectKind::clipping || p.kind == EffectKind::misalignment ||
+             (p.model.effects.size() > pair.model.effects.size() &&
+              p.model.effects.back().form == LawForm::broadband) ||
+             contains(c.without, p.kind);
+    });
+    if (list->size() > kPairLaws) list->resize(kPairLaws);
+  }
+  for (const Proposal& p : first)
+    for (const Proposal& q : second) candidates.push_back(joined(pair, p, q));
+  return fit_all(c, candidates);
+}
+
+}  // namespace framewatch

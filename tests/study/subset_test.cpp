@@ -1,0 +1,69 @@
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "daemon/diagnose_command.h"
+#include "tests/study/study_case.h"
+#include "tests/study/study_score.h"
+#include "tests/support/temporary.h"
+
+namespace framewatch::study {
+namespace {
+
+constexpr int kLeastRight = 4;  ///< of the four below
+constexpr double kSeconds = 20;
+constexpr double kNoise = 0.01;
+
+Outcome diagnosed(const std::string& group, const std::string& name, std::uint64_t seed,
+                  const std::vector<std::string>& without = {}) {
+  const test::TemporaryDirectory folder;
+  CaseOptions options;
+  options.seconds = kSeconds;
+  options.noise_ratio = kNoise;
+  options.seed = seed;
+  std::string why;
+  const auto c = make_case(group, name, options, why);
+  const std::string directory = folder.path("case");
+  if (!c || !write_case(*c, directory, why)) {
+    ADD_FAILURE() << name << ": " << why;
+    return {};
+  }
+  daemon::DiagnoseArguments a;
+  a.config = directory + "/config.toml";
+  a.train = {directory + "/train.csv.gz"};
+  a.holdout = {directory + "/holdout.csv.gz"};
+  a.out = directory + "/out";
+  a.without = without;
+  a.quiet = true;
+  daemon::diagnose_command(a);
+  return score(directory).value_or(Outcome{});
+}
+
+TEST(StudySubset, EffectsAreNamedAtTheirPlaces) {
+  struct Case {
+    const char* name;
+    std::uint64_t seed;
+  };
+  int right = 0;
+  for (const Case c : {Case{"cubic_stiffness", 4000}, Case{"tuned_mass_damper", 4002},
+                       Case{"time_shift", 4003}, Case{"floor_flexibility", 4005}}) {
+    const Outcome o = diagnosed("catalogue", c.name, c.seed);
+    EXPECT_FALSE(o.confidently_wrong()) << c.name;
+    EXPECT_TRUE(o.all_right() || o.named.empty()) << c.name << ": " << o.verdict;
+    right += o.all_right();
+  }
+  EXPECT_GE(right, kLeastRight);
+}
+
+TEST(StudySubset, NothingHiddenIsAdequate) {
+  EXPECT_EQ(diagnosed("nothing", "none", 4100).verdict, "adequate");
+}
+
+TEST(StudySubset, AnEffectThatIsNotInTheCatalogueIsNotNamedConfidently) {
+  const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, {"two_sided_gap"});
+  EXPECT_FALSE(o.confidently_wrong()) << (o.named.empty() ? "" : o.named.front());
+  EXPECT_NE(o.verdict, "adequate");
+}
+
+}  // namespace
+}  // namespace framewatch::study
