@@ -16,7 +16,12 @@ namespace {
 
 class LogOutput : public EstimateOutput {
  public:
-  bool open(const std::string& path) { return writer_.open(path); }
+  bool open(const EstimateFile& file) {
+    const bool opened = writer_.open(file.path);
+    writer_.number_from(file.event);
+    return opened;
+  }
+  std::int64_t events() const override { return writer_.events(); }
   bool put(std::int64_t time_us, const std::string& channel,
            const std::vector<std::uint8_t>& bytes) override {
     return writer_.write(time_us, channel, bytes.data(), bytes.size());
@@ -32,17 +37,17 @@ class LogOutput : public EstimateOutput {
 template <typename Writer>
 class TableOutput : public EstimateOutput {
  public:
-  TableOutput(const Config& config, bool boxplot)
-      : channel_(config.lcm.prefix + "ESTIMATE"),
-        table_(config.pipeline.structure),
-        boxplot_(boxplot) {}
-  bool open(const std::string& path) {
+  explicit TableOutput(const Config& config)
+      : channel_(config.lcm.prefix + "ESTIMATE"), table_(config.pipeline.structure) {}
+  bool open(const EstimateFile& file) {
     std::vector<std::string> names, units;
     for (int i = 0; i < table_.size(); ++i) {
       names.push_back(table_[i].name);
       units.push_back(table_[i].unit);
     }
-    return writer_.open(path, names, units, boxplot_);
+    if constexpr (requires { writer_.continue_table(); })
+      if (file.goes_on) writer_.continue_table();
+    return writer_.open(file.path, names, units, file.boxplot);
   }
   bool put(std::int64_t, const std::string& channel,
            const std::vector<std::uint8_t>& bytes) override {
@@ -56,7 +61,6 @@ class TableOutput : public EstimateOutput {
  private:
   std::string channel_;
   ParameterTable table_;
-  bool boxplot_;
   Writer writer_;
 };
 
@@ -75,9 +79,9 @@ class LcmOutput : public EstimateOutput {
 };
 
 template <typename Output>
-std::unique_ptr<EstimateOutput> opened(std::unique_ptr<Output> output, const std::string& path,
+std::unique_ptr<EstimateOutput> opened(std::unique_ptr<Output> output, const EstimateFile& file,
                                        std::string& error) {
-  if (output->open(path)) return output;
+  if (output->open(file)) return output;
   error = output->error();
   return nullptr;
 }
@@ -93,13 +97,13 @@ std::string problem_of_output_name(const std::string& path) {
   return path + ": the output's name must end in .lcmlog, .csv, .csv.gz or .mat";
 }
 
-std::unique_ptr<EstimateOutput> estimate_output(const Config& config, const std::string& path,
-                                                bool boxplot, std::string& error) {
-  if (is_csv(path))
-    return opened(std::make_unique<TableOutput<EstimatesCsvWriter>>(config, boxplot), path, error);
-  if (path.ends_with(".mat"))
-    return opened(std::make_unique<TableOutput<EstimatesMatWriter>>(config, boxplot), path, error);
-  return opened(std::make_unique<LogOutput>(), path, error);
+std::unique_ptr<EstimateOutput> estimate_output(const Config& config, const EstimateFile& file,
+                                                std::string& error) {
+  if (is_csv(file.path))
+    return opened(std::make_unique<TableOutput<EstimatesCsvWriter>>(config), file, error);
+  if (file.path.ends_with(".mat"))
+    return opened(std::make_unique<TableOutput<EstimatesMatWriter>>(config), file, error);
+  return opened(std::make_unique<LogOutput>(), file, error);
 }
 
 std::unique_ptr<EstimateOutput> lcm_estimate_output(const Config& config, const std::string& url,

@@ -19,15 +19,24 @@ class EstimateOutput {
   /// A file appears under its name only now; without it nothing of it stays.
   [[nodiscard]] virtual bool close() = 0;
   virtual std::string error() const = 0;
+  /// Number of the next event, where events have one.
+  virtual std::int64_t events() const { return 0; }
 };
 
 /// Rule that the name of an output breaks; empty when it is good.
 std::string problem_of_output_name(const std::string& path);
 
+struct EstimateFile {
+  std::string path;
+  bool boxplot = false;    ///< statistics too, in .csv and .mat
+  bool goes_on = false;    ///< after another part: a .csv has no header of its own
+  std::int64_t event = 0;  ///< number of the first event
+};
+
 /// By the name's end: .lcmlog holds every message, .csv, .csv.gz and .mat the main window's
-/// estimates, with boxplot statistics when asked for. Null, and the reason, when it cannot be made.
-std::unique_ptr<EstimateOutput> estimate_output(const Config& config, const std::string& path,
-                                                bool boxplot, std::string& error);
+/// estimates. Null, and the reason, when it cannot be made.
+std::unique_ptr<EstimateOutput> estimate_output(const Config& config, const EstimateFile& file,
+                                                std::string& error);
 
 /// Publishes on LCM. Null, and the reason, when LCM cannot start there.
 std::unique_ptr<EstimateOutput> lcm_estimate_output(const Config& config, const std::string& url,

@@ -97,7 +97,7 @@ bool EstimatesCsvWriter::open(const std::string& path, const std::vector<std::st
                               const std::vector<std::string>&, bool boxplot) {
   parameters_ = names.size();
   boxplot_ = boxplot;
-  return file_.open(path) && file_.write(header(names, boxplot));
+  return file_.open(path) && (continued_ || file_.write(header(names, boxplot)));
 }
 
 bool EstimatesCsvWriter::write(const window_estimate_t& estimate) {

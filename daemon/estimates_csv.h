@@ -14,6 +14,8 @@ namespace framewatch::daemon {
 /// when the file cannot be written or the message breaks its type's rules; error() says why.
 class EstimatesCsvWriter {
  public:
+  /// Before open(): the file is the next part of a table, without a header.
+  void continue_table() { continued_ = true; }
   [[nodiscard]] bool open(const std::string& path, const std::vector<std::string>& names,
                           const std::vector<std::string>& units, bool boxplot);
   [[nodiscard]] bool write(const framewatch::window_estimate_t& estimate);
@@ -26,7 +28,7 @@ class EstimatesCsvWriter {
   drivers::TextOutput file_;
   std::string fault_;
   std::size_t parameters_ = 0;
-  bool boxplot_ = false;
+  bool boxplot_ = false, continued_ = false;
 };
 
 /// What is wrong with an estimate of so many parameters; empty when nothing is.

@@ -61,6 +61,16 @@ void Estimation::finish() {
   publish_state();
 }
 
+void Estimation::save(StateWriter& state) {
+  state(seconds_, windows_, intake_);
+  pipeline_.save(state);
+}
+
+bool Estimation::load(StateReader& state) {
+  state(seconds_, windows_, intake_);
+  return state.good() && pipeline_.load(state);
+}
+
 void Estimation::publish_state() {
   const PipelineCounters pipeline = pipeline_.counters();
   const drivers::IntakeCounters& intake = intake_.counters();

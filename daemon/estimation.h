@@ -18,6 +18,11 @@ class SensorSeconds {
   bool passed(std::int64_t time_us);
   std::int64_t newest_us() const { return newest_us_; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(started_, newest_us_, next_us_, strays_);
+  }
+
  private:
   static constexpr std::int64_t kSecond_us = 1'000'000;
   static constexpr std::int64_t kLargestStep_us = 10 * kSecond_us;
@@ -50,6 +55,10 @@ class Estimation {
   const drivers::AccelIntake& intake() const { return intake_; }
   const Pipeline& pipeline() const { return pipeline_; }
   std::int64_t windows() const { return windows_; }  ///< published
+
+  /// Everything that what is still to come depends on, and back; see Pipeline.
+  void save(StateWriter& state);
+  [[nodiscard]] bool load(StateReader& state);
 
  private:
   void publish_state();

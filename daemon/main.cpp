@@ -43,6 +43,12 @@ void add_run(CLI::App& app, Action& action, RunArguments& arguments) {
   command->footer("Example: framewatch run configs/table_two_story.toml");
   command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
   command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");
+  command->add_option("--state", arguments.state,
+                      "file that carries what was learned over a restart: read at the start,\n"
+                      "written every minute and at the end");
+  command->add_option("--state-every", arguments.state_every_s, "seconds between two writes of it")
+      ->check(CLI::Range(1, 86400))
+      ->capture_default_str();
   command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
   command->callback([&action, &arguments] { action = [&arguments] { return run(arguments); }; });
 }
@@ -80,6 +86,10 @@ void add_replay(CLI::App& app, Action& action, ReplayArguments& arguments) {
   CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
                                          "publish too, on this URL or the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
+  command->add_option("--save-state", arguments.save_state,
+                      "file to go on from with --load-state: the input goes on elsewhere");
+  command->add_option("--load-state", arguments.load_state,
+                      "go on where an earlier replay, or the daemon, stopped");
   command->add_option("--expect", arguments.expect, "file that says what must come out (TOML)");
   command->add_option("--write-expect", arguments.write_expect,
                       "make a first such file from what comes out");

@@ -20,6 +20,7 @@ Publisher::Publisher(const Config& config, MessageSink sink)
 
 template <typename MessageType>
 void Publisher::send(std::int64_t time_us, const std::string& channel, const MessageType& message) {
+  if (!sink_) return;
   bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
   message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
   sink_(time_us, channel, bytes_);
@@ -93,11 +94,13 @@ void Publisher::fill_values(const WindowEstimate& e) {
 }
 
 void Publisher::other(const WindowEstimate& e) {
+  if (!sink_) return;
   fill_values(e);
   send(estimate_.window_end_us, other_channels_[static_cast<std::size_t>(e.window - 1)], estimate_);
 }
 
 void Publisher::estimate(const WindowEstimate& e) {
+  if (!sink_) return;
   fill_values(e);
   framewatch::window_estimate_t& m = estimate_;
   const bool with_boxplot = e.sequence % config_.lcm.boxplot_every == 0;

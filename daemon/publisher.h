@@ -40,7 +40,7 @@ struct StatusCounts {
 /// give the same bytes.
 class Publisher {
  public:
-  /// `config` must outlive this.
+  /// `config` must outlive this. Without a sink nothing is encoded.
   Publisher(const Config& config, MessageSink sink);
 
   void parameters(std::int64_t time_us, const Pipeline& pipeline);

@@ -11,6 +11,7 @@
 #include "daemon/expectation_check.h"
 #include "daemon/progress.h"
 #include "daemon/replay_summary.h"
+#include "daemon/state_file.h"
 #include "drivers/message_check.h"
 #include "drivers/text_output.h"
 
@@ -38,8 +39,9 @@ std::vector<std::string> argument_problems(const ReplayArguments& a) {
       found.push_back(problem);
   std::vector<std::string> inputs = a.inputs;
   inputs.push_back(a.config);
-  if (!a.expect.empty()) inputs.push_back(a.expect);
-  for (const std::string& out : {a.out, a.write_expect, a.junit})
+  for (const std::string& input : {a.expect, a.load_state})
+    if (!input.empty()) inputs.push_back(input);
+  for (const std::string& out : {a.out, a.write_expect, a.junit, a.save_state})
     for (const std::string& input : inputs) {
       std::error_code error;
       if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
@@ -113,25 +115,43 @@ class ReplayRun {
         event_channel_(config.lcm.prefix + "EVENT"),
         survey_(config, a.salvage, a.span),
         series_(ParameterTable(config.pipeline.structure), expectations_.has_value()),
-        estimation_(
-            config,
-            [this](std::int64_t time_us, const std::string& channel,
-                   const std::vector<std::uint8_t>& bytes) { put(time_us, channel, bytes); },
-            [this](const WindowEstimate& e) { series_.add(e); }) {}
+        estimation_(config, sink(), [this](const WindowEstimate& e) { series_.add(e); }) {}
 
   int run() {
+    if (!a_.load_state.empty()) {
+      bool touched = false;
+      const LoadedState state = load_state(a_.load_state, config_, estimation_, touched);
+      if (!state.problem.empty()) return refuse(a_.load_state + ": " + state.problem);
+      events_before_ = state.events_before;
+      survey_.goes_on();
+    }
     if (!open_outputs()) return kBadInput;
     // At a pace the person should not learn after an hour that the end of the log is damaged.
     if (a_.speed > 0 && !sound_beforehand()) return kBadInput;
     read_everything();
     if (a_.speed > 0 ? !survey_.problems().empty() : !judge(survey_)) return kBadInput;
+    const std::int64_t events = outputs_.empty() ? events_before_ : outputs_.front()->events();
     for (const auto& output : outputs_)
       if (failed_.empty() && !output->close()) fail(*output);
     if (!failed_.empty()) return refuse(failed_);
+    if (!a_.save_state.empty()) {
+      const std::string problem =
+          write_state(a_.save_state, state_bytes(config_, estimation_, events));
+      if (!problem.empty()) return refuse(a_.save_state + ": " + problem);
+    }
     return conclude();
   }
 
  private:
+  /// Messages are made for somebody only.
+  MessageSink sink() {
+    const bool wanted =
+        !a_.out.empty() || a_.lcm || (expectations_.has_value() && !expectations_->events.empty());
+    if (!wanted) return {};
+    return [this](std::int64_t time_us, const std::string& channel,
+                  const std::vector<std::uint8_t>& bytes) { put(time_us, channel, bytes); };
+  }
+
   bool open_outputs() {
     std::string error;
     const auto add = [&](std::unique_ptr<EstimateOutput> output, const std::string& name) {
@@ -141,7 +161,10 @@ class ReplayRun {
         refuse(name.empty() ? error : fmt::format("{}: {}", name, error));
       return error.empty();
     };
-    return (a_.out.empty() || add(estimate_output(config_, a_.out, a_.boxplot, error), a_.out)) &&
+    return (a_.out.empty() ||
+            add(estimate_output(
+                    config_, {a_.out, a_.boxplot, !a_.load_state.empty(), events_before_}, error),
+                a_.out)) &&
            (!a_.lcm || add(lcm_estimate_output(config_, a_.lcm_url, error), ""));
   }
 
@@ -162,7 +185,7 @@ class ReplayRun {
     });
     for (const std::string& path : a_.inputs) survey_.add(path);
     survey_.finish();
-    estimation_.finish();
+    if (a_.save_state.empty()) estimation_.finish();  // else it has not ended
   }
 
   void put(std::int64_t time_us, const std::string& channel,
@@ -230,6 +253,7 @@ class ReplayRun {
   Clock::time_point start_ = Clock::now();
   std::optional<Expectations> expectations_;
   std::string event_channel_;
+  std::int64_t events_before_ = 0;  ///< of parts before this one
   ReplaySurvey survey_;
   EstimateSeries series_;
   std::vector<RaisedEvent> events_;

@@ -21,6 +21,8 @@ struct ReplayArguments {
   std::string lcm_url = {};       ///< empty: the configuration's
   std::string expect = {};        ///< expectation file to hold the replay to
   std::string write_expect = {};  ///< expectation file to write
+  std::string load_state = {};    ///< file to go on from
+  std::string save_state = {};    ///< file to go on from later: the input has not ended
   std::string junit = {};         ///< result of `expect` for a CI system
 };
 

@@ -40,6 +40,7 @@ ReplaySurvey::ReplaySurvey(const Config& config, bool salvage, ReplaySpan span)
       salvage_(salvage),
       span_(span),
       spanned_(!span.whole()),
+      place_(span.from_s > 0 ? Place::before : Place::inside),
       intake_(wanted_axes(config), [](const AccelSample&) {}) {}
 
 void ReplaySurvey::fault(std::string message) {
@@ -117,9 +118,18 @@ bool ReplaySurvey::outside(std::int64_t time_us) {
 }
 
 bool ReplaySurvey::left_out(const drivers::LogEvent& event) {
-  if (!spanned_ || !intake().binding().carries(event.channel)) return false;
-  const auto time_us = drivers::accel_time_us(event.data.data(), event.data.size());
-  return time_us && outside(*time_us);
+  if (!spanned_) return false;
+  const bool ours = intake().binding().carries(event.channel);
+  const auto time_us = ours ? drivers::accel_time_us(event.data.data(), event.data.size())
+                            : std::optional<std::int64_t>();
+  if (time_us) {
+    const bool is_outside = outside(*time_us);
+    const double time_s = static_cast<double>(*time_us - span_zero_us_) * 1e-6;
+    place_ = !is_outside ? Place::inside : time_s < span_.from_s ? Place::before : Place::after;
+  }
+  if (place_ != Place::before) return place_ == Place::after;
+  // Tables before the span say which channels are whose.
+  return goes_on_ || drivers::stream_of_table(event.channel).empty();
 }
 
 void ReplaySurvey::add_log(const std::string& path) {

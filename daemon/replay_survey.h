@@ -42,6 +42,8 @@ class ReplaySurvey {
 
   /// From now on everything goes through `estimation` too, which must outlive the calls of add().
   void feed(Estimation& estimation) { estimation_ = &estimation; }
+  /// The estimation has seen what was before --from: tables there are not given again.
+  void goes_on() { goes_on_ = true; }
   /// What to do at each event or instant of a record, before it is given on: bytes read so far of
   /// all files, and the time of the event or instant, microseconds.
   using Step = std::function<void(std::int64_t bytes, std::int64_t time_us)>;
@@ -97,6 +99,9 @@ class ReplaySurvey {
   bool salvage_;
   ReplaySpan span_;
   bool spanned_;
+  bool goes_on_ = false;
+  /// Where the newest sample stood: what has no time of its own is with it.
+  enum class Place { before, inside, after } place_;
   std::int64_t span_zero_us_ = std::numeric_limits<std::int64_t>::min();
   drivers::AccelIntake intake_;  ///< while nobody is fed
   Estimation* estimation_ = nullptr;

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <future>
 #include <optional>
 #include <vector>
 
 #include <fmt/core.h>
 
 #include "daemon/log.h"
+#include "daemon/state_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -77,6 +80,69 @@ class Complaints {
   bool said_unbound_ = false;
 };
 
+/// Goes on from a state file that is there; one that does not fit is put aside, and said.
+void resume(const std::string& path, const Config& config, lcm::LCM& lcm,
+            std::optional<LiveEstimation>& live) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) return;
+  bool touched = false;
+  const LoadedState state = load_state(path, config, live->estimation(), touched);
+  if (state.problem.empty()) {
+    log(LogLevel::notice,
+        fmt::format("goes on from {}: {} windows so far", path, live->estimation().windows()));
+    return;
+  }
+  const std::string aside = path + ".refused";
+  std::filesystem::rename(path, aside, none);
+  log(LogLevel::warning,
+      fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
+  if (touched) live.emplace(config, lcm);
+}
+
+/// Writes the state from time to time, in a thread: a slow disk delays no estimate.
+class StateKeeper {
+ public:
+  StateKeeper(const RunArguments& a, const Config& config)
+      : path_(a.state), every_us_(1'000'000LL * a.state_every_s), config_(config) {}
+  ~StateKeeper() {
+    if (writing_.valid()) writing_.wait();
+  }
+  StateKeeper(const StateKeeper&) = delete;
+  StateKeeper& operator=(const StateKeeper&) = delete;
+
+  void look(Estimation& estimation, std::int64_t now_us) {
+    if (path_.empty()) return;
+    if (next_us_ == 0) next_us_ = now_us + every_us_;
+    if (now_us < next_us_ || !written()) return;
+    next_us_ = now_us + every_us_;
+    writing_ =
+        std::async(std::launch::async, [path = path_, bytes = state_bytes(config_, estimation, 0)] {
+          return write_state(path, bytes);
+        });
+  }
+  void keep(Estimation& estimation) {
+    if (writing_.valid()) report(writing_.get());
+    report(write_state(path_, state_bytes(config_, estimation, 0)));
+  }
+
+ private:
+  bool written() {
+    if (!writing_.valid()) return true;
+    if (writing_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    report(writing_.get());
+    return true;
+  }
+  void report(const std::string& problem) {
+    if (!problem.empty())
+      log(LogLevel::error, fmt::format("{}: state not written: {}", path_, problem));
+  }
+
+  std::string path_;
+  std::int64_t every_us_, next_us_ = 0;
+  const Config& config_;
+  std::future<std::string> writing_;
+};
+
 }  // namespace
 
 LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm)
@@ -125,7 +191,10 @@ int run(const RunArguments& a) {
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
 
-  LiveEstimation live(*config, *lcm);
+  std::optional<LiveEstimation> estimation(std::in_place, *config, *lcm);
+  if (!a.state.empty()) resume(a.state, *config, *lcm, estimation);
+  LiveEstimation& live = *estimation;
+  StateKeeper keeper(a, *config);
   Complaints complaints;
   RateLimitedLog failures(LogLevel::error);
   if (!a.quiet)
@@ -137,8 +206,13 @@ int run(const RunArguments& a) {
       ::usleep(1000 * kPoll_ms);
     }
     complaints.look(live.estimation(), live.state(), host_clock_us());
+    keeper.look(live.estimation(), host_clock_us());
   }
-  live.finish();
+  // With a state the instants still open are given out by the next start.
+  if (a.state.empty())
+    live.finish();
+  else
+    keeper.keep(live.estimation());
   if (!a.quiet) {
     const PipelineCounters counters = live.estimation().pipeline().counters();
     log(LogLevel::info,

@@ -20,6 +20,7 @@ class LiveEstimation {
   [[nodiscard]] bool poll(int timeout_ms);
   void finish() { estimation_.finish(); }
   const Estimation& estimation() const { return estimation_; }
+  Estimation& estimation() { return estimation_; }
   const LiveState& state() const { return state_; }
 
  private:
@@ -36,6 +37,8 @@ struct RunArguments {
   std::string config;
   std::string url;  ///< empty: the configuration's
   bool quiet = false;
+  std::string state = {};  ///< file that carries the state over a restart; empty: none
+  int state_every_s = 60;  ///< between two writes of it
 };
 
 /// framewatch run: until SIGINT or SIGTERM. Exit code.

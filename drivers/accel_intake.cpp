@@ -1,5 +1,6 @@
 #include "drivers/accel_intake.h"
 
+#include <iterator>
 #include <utility>
 
 namespace framewatch::drivers {
@@ -35,6 +36,20 @@ bool AccelIntake::carried(const std::string& channel) {
   nodes_.clear();
   next_node_ = 0;
   return true;
+}
+
+std::int64_t AccelIntake::number_of(const SequenceCounter* counter) const {
+  std::int64_t number = 0;
+  for (const auto& [place, sequence] : sequences_) {
+    if (&sequence.counter == counter) return number;
+    ++number;
+  }
+  return -1;
+}
+
+const SequenceCounter* AccelIntake::counter_of(std::int64_t number) const {
+  if (number < 0 || number >= std::ssize(sequences_)) return nullptr;
+  return &std::next(sequences_.begin(), number)->second.counter;
 }
 
 /// Null when no configured axis is on the node. Nodes come in the same order every time, mostly.

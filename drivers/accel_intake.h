@@ -45,6 +45,26 @@ class AccelIntake {
   const NodeSample& last_sample() const { return last_sample_; }
   std::size_t last_node() const { return last_node_; }
 
+  /// State (estimator/state/archive.h): what the numbering of messages was and which tables came.
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(counters_.messages, counters_.foreign, counters_.malformed, counters_.duplicate);
+    a(lost_, backwards_, binding_);
+    using Named = std::pair<std::pair<std::string, std::int32_t>, Sequence>;
+    std::vector<Named> sequences(sequences_.begin(), sequences_.end());
+    sequences.resize(a.count(sequences.size()));
+    for (auto& [place, s] : sequences) a(place.first, place.second, s.counter, s.order);
+    std::vector<std::int64_t> of_axis;  // numbers among them
+    for (const SequenceCounter* counter : sequence_of_axis_) of_axis.push_back(number_of(counter));
+    a(of_axis);
+    if constexpr (!Archive::kReading) return;
+    sequences_ = {sequences.begin(), sequences.end()};
+    for (std::size_t i = 0; i < sequence_of_axis_.size() && i < of_axis.size(); ++i)
+      sequence_of_axis_[i] = counter_of(of_axis[i]);
+    stream_.clear();  // found again at the next message
+    nodes_.clear();
+  }
+
  private:
   /// A node on a stream of ours, as it was found: looked up once.
   struct Node {
@@ -57,6 +77,9 @@ class AccelIntake {
   IntakeResult accel(const std::string& channel, const void* data, std::size_t size);
   bool carried(const std::string& channel);
   const Node* find_node(const std::string& channel, std::int32_t number);
+  /// A counter's number in the order of sequences_, -1 for null, and back.
+  std::int64_t number_of(const SequenceCounter* counter) const;
+  const SequenceCounter* counter_of(std::int64_t number) const;
 
   ChannelBinding binding_;
   Sink sink_;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/channel_table.h"
@@ -37,6 +38,16 @@ class ChannelBinding {
   std::vector<std::string> streams() const;
   /// Names of the axes that no stream carries so far.
   std::vector<std::string> unbound() const;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    std::vector<std::pair<std::string, ChannelTable>> tables(tables_.begin(), tables_.end());
+    tables.resize(a.count(tables.size()));
+    for (auto& [stream, table] : tables) a(stream, table);
+    if constexpr (!Archive::kReading) return;
+    tables_ = {tables.begin(), tables.end()};
+    bind();
+  }
 
  private:
   void bind();

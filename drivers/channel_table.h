@@ -15,10 +15,22 @@ struct ChannelTable {
     std::int32_t node = 0;
     std::int32_t axis = 0;  ///< 0 x, 1 y, 2 z
     bool operator==(const Entry&) const = default;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(name, node, axis);
+    }
   };
   double rate_hz = 0;  ///< nominal, 0 when unknown
   std::vector<Entry> entries;
   bool operator==(const ChannelTable&) const = default;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(rate_hz);
+    entries.resize(a.count(entries.size()));
+    for (Entry& entry : entries) a(entry);
+  }
 };
 
 inline constexpr std::int32_t kMaxTableChannels = 65536;

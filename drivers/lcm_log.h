@@ -112,10 +112,12 @@ class LcmLogWriter {
                            std::size_t size);
   /// The same with the event's own number, as it was logged.
   [[nodiscard]] bool copy(const LogEvent& event);
+  /// The next event gets this number, and those after it follow.
+  void number_from(std::int64_t number) { number_ = number; }
   /// Flushes to the disk and renames. False when anything was not written; then nothing stays.
   [[nodiscard]] bool close();
   const std::string& error() const { return error_; }
-  std::int64_t events() const { return number_; }
+  std::int64_t events() const { return number_; }  ///< number of the next one
 
  private:
   void discard();

@@ -22,6 +22,12 @@ class SequenceCounter {
   std::int64_t restarts = 0;
   std::int64_t backwards = 0;
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(received, lost, duplicates, reordered, restarts, backwards, started_, newest_);
+    a(newest_time_us_, seen_);
+  }
+
  private:
   static constexpr std::int64_t kWindow = 64;
   static constexpr std::int64_t kMaxJump = 10'000'000;

@@ -51,6 +51,11 @@ class Pipeline::Implementation {
     return {sets_, estimator_.gaps(), windows_, estimator_.retunes(), acquisition_.counters()};
   }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(acquisition_, estimator_, sets_, windows_);
+  }
+
   const ParameterTable& table() const { return table_; }
   const WindowEstimator& estimator() const { return estimator_; }
 
@@ -103,6 +108,13 @@ int Pipeline::hop_rows() const {
 }
 PipelineCounters Pipeline::counters() const {
   return implementation_->counters();
+}
+void Pipeline::save(StateWriter& state) {
+  implementation_->archive(state);
+}
+bool Pipeline::load(StateReader& state) {
+  implementation_->archive(state);
+  return state.good();
 }
 
 }  // namespace framewatch

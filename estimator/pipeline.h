@@ -11,6 +11,7 @@
 #include "estimator/motion/sample.h"
 #include "estimator/motion/sample_merger.h"
 #include "estimator/options.h"
+#include "estimator/state/archive.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
@@ -63,6 +64,12 @@ class Pipeline {
   std::vector<int> other_window_rows() const;
   int hop_rows() const;
   PipelineCounters counters() const;
+
+  /// Everything that what is still to come depends on. A pipeline of the same configuration that
+  /// load()s it goes on as this one would, bit by bit; after a load() that is false it must not be
+  /// used any more.
+  void save(StateWriter& state);
+  [[nodiscard]] bool load(StateReader& state);
 
  private:
   class Implementation;

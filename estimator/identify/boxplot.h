@@ -18,6 +18,11 @@ class BoxplotWindow {
   void push(double value);
   BoxplotStatistics statistics() const;
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(ring_, sorted_, guide_, next_, count_);
+  }
+
  private:
   double quartile(std::size_t q) const;
 

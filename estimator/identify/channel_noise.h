@@ -24,6 +24,11 @@ class ChannelNoise {
   /// than rows should be weighted wrongly by.
   bool differs(const std::vector<double>& now, const std::vector<double>& used) const;
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(meter_);
+  }
+
  private:
   std::vector<double> given_;  ///< 0 = not configured
   bool configured_;

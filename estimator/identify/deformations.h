@@ -18,6 +18,11 @@ struct DeformationSet {
   std::vector<double> values;
   /// One flag per (floor 0..N, frame): its motion is known. Floor 0 is the base.
   std::vector<std::uint8_t> known;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(values, known);
+  }
 };
 
 /// Turns filtered axis motion into element deformations.

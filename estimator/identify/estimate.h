@@ -31,6 +31,11 @@ struct BoxplotStatistics {
   double whisker_high;
   int outliers = 0;
   int count = 0;  ///< windows behind the numbers
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(q1, median, q3, whisker_low, whisker_high, outliers, count);
+  }
 };
 
 /// What one window says. Vectors follow the parameter table; entries that are not observable are
@@ -59,6 +64,12 @@ struct WindowEstimate {
   std::vector<BoxplotStatistics> boxplot;
   /// What the normal equations say before the gate, SI; for study, never published.
   std::vector<double> solution;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(start, end, sequence, status, rows, residual_ratio, value, std_error, reason, snr);
+    a(prior_share, noise_share, last_value, last_std_error, last_end, boxplot, solution);
+  }
 };
 
 }  // namespace framewatch

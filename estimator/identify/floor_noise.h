@@ -17,6 +17,11 @@ struct FloorNoise {
   Eigen::MatrixXd deformation;  ///< front unknowns x axes
   Eigen::MatrixXd covariance;   ///< front unknowns x front unknowns, of deformations
   std::vector<bool> damping;    ///< per unknown: multiplies a rate, not a deformation
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(variance, covariance);
+  }
 };
 
 /// noise_density: of every axis, m/s^2/sqrt(Hz).

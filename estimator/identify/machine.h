@@ -25,6 +25,11 @@ class MotionRing {
   std::int64_t end() const { return next_; }
   std::int64_t capacity() const { return static_cast<std::int64_t>(sets_.size()); }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(sets_, next_);
+  }
+
  private:
   DeformationSet& slot(std::int64_t i) { return sets_[static_cast<std::size_t>(i % capacity())]; }
   std::vector<DeformationSet> sets_;
@@ -65,6 +70,11 @@ class Machine {
   RowTuning& tuning() { return tuning_; }
   WindowSums& sums() { return sums_; }
   const RowChain& rows() const { return entering_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(tuning_, entering_, delayed_, sums_, next_, delayed_next_, counted_from_, counting_);
+  }
 
  private:
   RowTuning tuning_;

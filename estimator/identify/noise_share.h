@@ -42,6 +42,17 @@ class NoiseShare {
   /// Expected weighted residual energy from noise alone.
   double residual() const { return residual_; }
 
+  /// rows: of the chain whose rows it speaks of.
+  template <typename Archive>
+  void archive(Archive& a, const RowChain& rows) {
+    for (std::size_t f = 0; f < floor_.size(); ++f) {
+      std::uint8_t origin = rows.origin_of(static_cast<int>(f), floor_[f].rows);
+      a(origin, floor_[f].instants);
+      floor_[f].rows = rows.floor_rows_from(static_cast<int>(f), origin);
+    }
+    a(energy_, residual_, level_);
+  }
+
  private:
   struct Floor {
     const FloorRows* rows = nullptr;

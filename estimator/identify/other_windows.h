@@ -33,6 +33,16 @@ class OtherWindows {
   /// One instant's share of the work; the estimate of a window that it completed, or null.
   const WindowEstimate* advance(const Context& context);
 
+  /// machine: the one in service.
+  template <typename Archive>
+  void archive(Archive& a, Machine& machine) {
+    for (Window& window : windows_) {
+      window.solution.archive(a, machine.rows(), machine.sums());
+      a(window.estimate);
+    }
+    a(current_, solved_, rows_, end_);
+  }
+
  private:
   int count() const { return static_cast<int>(windows_.size()); }
   void next(const WindowSums& sums);

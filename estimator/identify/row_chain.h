@@ -34,6 +34,27 @@ class RowChain {
   std::size_t offset(int floor) const { return offset_[static_cast<std::size_t>(floor)]; }
   const double* data() const { return rows_.data(); }
 
+  /// Where floor_rows() comes from: 1 the tuning, 2 what some known motions leave, 0 neither.
+  std::uint8_t origin_of(int floor, const FloorRows* rows) const {
+    if (rows == nullptr) return 0;
+    if (rows == &tuning_->rows(floor)) return 1;
+    return rows == &floor_[static_cast<std::size_t>(floor)].some_known ? 2 : 0;
+  }
+  const FloorRows* floor_rows_from(int floor, std::uint8_t origin) const {
+    if (origin == 1) return &tuning_->rows(floor);
+    return origin == 2 ? &floor_[static_cast<std::size_t>(floor)].some_known : nullptr;
+  }
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(settle_, known_, rows_);
+    for (int floor = 0; floor < layout_->floors(); ++floor) {
+      Floor& f = floor_[static_cast<std::size_t>(floor)];
+      std::uint8_t origin = origin_of(floor, f.rows);
+      a(origin, f.some_known, f.s1, f.s2, f.settling);
+      f.rows = floor_rows_from(floor, origin == 2 ? 2 : 1);
+    }
+  }
+
  private:
   struct Floor {
     const FloorRows* rows = nullptr;  ///< the tuning's, or those below

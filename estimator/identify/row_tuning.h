@@ -43,6 +43,12 @@ struct FloorRows {
   /// The part of these that the solver takes off per instant, packed like the sums.
   std::vector<double> noise_taken_off;
   double noise_residual = 0;  ///< expected weighted squared residual per instant
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(rows, gain, a1, a2, frequency_hz, beta, response, noise_energy, noise_diagonal, noise_pull);
+    a(noise_right, noise_response, noise_taken_off, noise_residual);
+  }
 };
 
 /// How the rows of every floor are formed for one design theta0. docs/equations.md, matched rows.
@@ -74,6 +80,11 @@ class RowTuning {
   int settle_rows(int least) const;
   /// Largest relative change of a floor's filters' corners between this design and `theta`.
   double detuning(int floor, const Eigen::VectorXd& theta);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(theta0_, noise_density_, noise_, rows_);
+  }
 
  private:
   void form(int floor, FloorRows& out);

@@ -46,6 +46,12 @@ class SelfTuning {
   bool tuned() const { return tuned_; }
   std::int64_t retunes() const { return retunes_; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(*spare_, phase_, tuned_, next_floor_, passes_, since_look_, detuning_, noise_known_);
+    a(noise_measured_, noise_differs_, noise_, retunes_, design_);
+  }
+
  private:
   enum class Phase { idle, looking, tuning, catching_up };
   void look_at_floors(Machine& active);

@@ -26,6 +26,11 @@ class StoryFactor {
   }
   int row_stride(int floor) const { return padded(layout_.front(floor)); }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(values_);
+  }
+
   /// One floor of N X = right, in place; right: unknowns x columns, row-major, columns a multiple
   /// of kLane. Forward from the lowest floor to the highest, then backward down again.
   void forward(int floor, double* right, int columns) const;
@@ -44,6 +49,11 @@ class InverseDiagonal {
 
   /// Writes the floor's own entries. Floors in descending order, starting at the highest.
   void step(const StoryFactor& factor, int floor, double* diagonal);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(inverse_, coupled_, middle_, transposed_);
+  }
 
  private:
   FloorLayout layout_;

@@ -32,6 +32,11 @@ class StorySolver {
   /// Gives the factor away for another one, which the next factor() overwrites.
   void swap_factor(StoryFactor& other) { factor_.swap(other); }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(x_, information_, usable_, response_energy_, residual_energy_);
+  }
+
  private:
   void gather_information(const WindowParts& sums, int floor);
 

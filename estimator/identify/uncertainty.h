@@ -56,6 +56,21 @@ class BatchMeans {
   /// Share of the pull of the noise left in the equations, 0..1 and rounding.
   const std::vector<double>& noise_share() const { return noise_share_; }
 
+  /// rows, sums: those of the pass under way, if any.
+  template <typename Archive>
+  void archive(Archive& a, const RowChain& rows, const WindowSums& sums) {
+    a(next_step_, factor_, inverse_, noise_level_, columns_values_, solution_, score_scale_);
+    a(prior_, inverse_diagonal_, new_error_, new_share_, new_noise_share_);
+    a(std_error_, prior_share_, noise_share_);
+    noise_.archive(a, rows);
+    shape_ = &sums.shape();
+    for (const double*& block : block_) {
+      std::int64_t number = running() ? sums.number_of(block) : -1;
+      a(number);
+      block = sums.block_of(number);
+    }
+  }
+
  private:
   void assemble(int floor);
   void add_block_scores(int floor);

@@ -37,6 +37,15 @@ class WindowEstimator {
   std::int64_t gaps() const { return gaps_; }
   std::int64_t retunes() const { return self_tuning_ ? self_tuning_->retunes() : 0; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(filter_, noise_, ring_, *active_);
+    if (self_tuning_) a(*self_tuning_);
+    main_.archive(a, active_->rows(), active_->sums());
+    others_.archive(a, *active_);
+    a(boxplots_, estimate_, expected_index_, since_hop_, gaps_);
+  }
+
  private:
   void restart();
   void advance_errors(Time window_end);

@@ -61,6 +61,15 @@ class WindowSolution {
   /// Everything of the estimate that one window says; not its times, boxplots and last values.
   void fill(const Situation& situation, WindowEstimate& estimate);
 
+  /// rows, sums: of the machine in service.
+  template <typename Archive>
+  void archive(Archive& a, const RowChain& rows, const WindowSums& sums) {
+    noise_.archive(a, rows);
+    errors_.archive(a, rows, sums);
+    a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_);
+    a(residual_energy_, noise_scale_, noise_level_);
+  }
+
  private:
   struct Unknown {
     int parameter;

@@ -82,6 +82,22 @@ class WindowSums {
   /// Completed block, age 0 = the newest; valid after maintain().
   const double* block(int age) const;
 
+  /// A completed block as a number, -1 for none, and back.
+  std::int64_t number_of(const double* block) const {
+    return block == nullptr ? -1 : (block - blocks_ring_.data()) / std::ptrdiff_t(shape_.size);
+  }
+  const double* block_of(std::int64_t number) const {
+    return number < 0 || number >= held_blocks_
+               ? nullptr
+               : &blocks_ring_[static_cast<std::size_t>(number) * shape_.size];
+  }
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(pushed_, current_, middle_, next_middle_, spans_, blocks_ring_, suffixes_, stored_rows_);
+    a(stored_counts_, forward_, middle_instants_, counts_);
+    oldest_ = zero_.data();
+  }
+
  private:
   double* suffix(int slot) { return &suffixes_[static_cast<std::size_t>(slot - 1) * shape_.size]; }
   void build_suffix(int j);
@@ -105,6 +121,11 @@ class WindowSums {
   struct Span {
     int blocks, every;
     std::vector<double> next, sum;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(next, sum);
+    }
   };
   std::vector<Span> spans_;
   std::vector<double> blocks_ring_;      ///< held blocks x state

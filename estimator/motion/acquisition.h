@@ -29,6 +29,11 @@ class Acquisition {
   const std::vector<SensorAxis>& axes() const { return axes_; }
   std::vector<AxisCounters> counters() const;
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(merger_, guard_, filler_);
+  }
+
  private:
   void drain();
   void guarded(const SampleSet& set);

@@ -36,6 +36,11 @@ class ChannelGuard {
 
   static constexpr int kLookAhead = 4;
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(state_, ring_, newest_, waiting_, stuck_, clipped_);
+  }
+
  private:
   struct State {
     Axis axis;
@@ -50,6 +55,12 @@ class ChannelGuard {
     double clips_below = -std::numeric_limits<double>::infinity();
     bool still = false;       ///< judged stuck, until it moves
     bool after_clip = false;  ///< the sample after a clipped one goes too
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(last, seen, run, step, smallest, lowest, highest, clips_at, clips_below, still);
+      a(after_clip);
+    }
   };
   SampleSet& held(int age) {
     return ring_[static_cast<std::size_t>((newest_ + kSlots - age) % kSlots)];

@@ -22,6 +22,11 @@ class GapFiller {
   /// Samples repaired so far, per axis.
   const std::vector<std::int64_t>& repaired() const { return repaired_; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(ring_, next_, filled_, waiting_, repaired_);
+  }
+
  private:
   static constexpr int kLookAhead = 2;
   SampleSet& held(int age) { return ring_[static_cast<std::size_t>((next_ + 4 - age) % 5)]; }

@@ -32,6 +32,11 @@ class MotionFilter {
   double first(int axis) const { return first_[index(axis)]; }
   double second(int axis) const { return second_[index(axis)]; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(newest_, x1_, x2_, y1_, y2_, filled_, ring_, value_, first_, second_);
+  }
+
  private:
   static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
   void push_axis(std::size_t axis, double accel);

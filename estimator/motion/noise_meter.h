@@ -15,11 +15,21 @@ class NoiseMeter {
   /// One-sided density, m/s^2/sqrt(Hz); 0 before a second has been measured.
   double density(int axis) const;
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(axis_, ring_, newest_, since_output_);
+  }
+
  private:
   struct Axis {
     int filled = 0;
     long measured = 0;
     double power = 0;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(filled, measured, power);
+    }
   };
   double rate_hz_;
   long least_, memory_;  ///< filter outputs

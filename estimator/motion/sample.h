@@ -35,6 +35,12 @@ struct SampleSet {
   Time time;
   std::int64_t index = 0;  ///< instant number on the common grid
   std::vector<double> accel;
+
+  /// State, here and in every other archive(): estimator/state/archive.h.
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(time, index, accel);
+  }
 };
 
 }  // namespace framewatch

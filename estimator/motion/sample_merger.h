@@ -16,6 +16,11 @@ struct AxisCounters {
   std::int64_t stuck = 0;     ///< taken out: the value stood still while the building moved
   std::int64_t clipped = 0;   ///< taken out: at the end of the sensor's range
   std::int64_t rejected = 0;  ///< NaN, infinite, duplicate, off the grid or far from the others
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(received, missing, late, repaired, stuck, clipped, rejected);
+  }
 };
 
 /// Brings the axes' samples together on one grid of instants. An instant is given out once every
@@ -38,11 +43,22 @@ class SampleMerger {
   const std::vector<AxisCounters>& counters() const { return counters_; }
   AxisCounters& counters_of(int axis) { return counters_[static_cast<std::size_t>(axis)]; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(open_, silent_, silent_count_, counters_, anchored_, finishing_, phase_us_, origin_);
+    a(first_open_, newest_, strays_, stray_time_us_);
+  }
+
  private:
   struct Instant {
     std::vector<double> accel;
     std::vector<std::uint8_t> has;
     int delivered = 0;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(accel, has, delivered);
+    }
   };
   Instant& instant(std::int64_t index) {
     return open_[static_cast<std::size_t>(index % static_cast<std::int64_t>(open_.size()))];

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <deque>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -53,6 +54,11 @@ class StateArchive {
       resize(values);
       for (T& value : values) item(value);
     }
+  }
+  void item(std::string& text) {
+    std::vector<char> characters(text.begin(), text.end());
+    self().block(characters);
+    text.assign(characters.begin(), characters.end());
   }
   template <typename T>
   void item(std::deque<T>& values) {  // of a size that the configuration gives
@@ -142,10 +148,12 @@ class StateReader : public StateArchive<StateReader> {
     values.resize(size);
     if (size > 0) take(values.data(), size * sizeof(T));
   }
+  /// A number of things of a byte at least: never more than there are bytes left.
   std::size_t count(std::size_t) {
     std::uint64_t stored = 0;
     plain(stored);
-    return static_cast<std::size_t>(stored);
+    if (stored > bytes_.size() - at_) refuse();
+    return good_ ? static_cast<std::size_t>(stored) : 0;
   }
   void refuse() { good_ = false; }
 
