@@ -107,13 +107,17 @@ class Comparison {
       : a_(a), b_(b), result_(result) {}
 
   void run() {
-    for (bool more = true; more;) {
-      more = take(a_, &Waiting::a);
-      more = take(b_, &Waiting::b) || more;
-    }
-    for (auto& [channel, waiting] : waiting_) {
-      for (const Estimate& e : waiting.a) only(e, result_.only_a);
-      for (const Estimate& e : waiting.b) only(e, result_.only_b);
+    bool more_a = true, more_b = true;
+    while (more_a || more_b) {
+      more_a = more_a && take(a_, &Waiting::a);
+      more_b = more_b && take(b_, &Waiting::b);
+      // Nothing comes any more that could go with these.
+      for (auto& [channel, waiting] : waiting_) {
+        for (; !more_b && !waiting.a.empty(); waiting.a.pop_front())
+          only(waiting.a.front(), result_.only_a);
+        for (; !more_a && !waiting.b.empty(); waiting.b.pop_front())
+          only(waiting.b.front(), result_.only_b);
+      }
     }
     if (!result_.diff) result_.diff.emplace(a_.names());
     result_.tables_differ = a_.names() != b_.names();

@@ -81,7 +81,8 @@ void add_replay(CLI::App& app, Action& action, ReplayArguments& arguments) {
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--speed", arguments.speed,
-                   "times real time, by the events' times (default: as fast as possible)")
+                   "times real time, by the events' times; pauses of over 10 s are\n"
+                   "left out (default: as fast as possible)")
       ->check(CLI::Range(1e-3, 1e6));
   CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
                                          "publish too, on this URL or the configuration's");

@@ -66,25 +66,30 @@ bool judge(const ReplaySurvey& survey) {
   return survey.problems().empty();
 }
 
-/// Waits until an event's time has come, at `speed` times real time from the first one on.
+/// Waits until an event's time has come, at `speed` times real time. A step back or of more than
+/// kLongest_us, the night between two logs, is not waited for.
 class Pace {
  public:
   explicit Pace(double speed) : speed_(speed) {}
   void wait_for(std::int64_t time_us) {
     if (speed_ <= 0) return;
-    if (!started_) first_us_ = time_us;
+    std::int64_t step_us = 0;
+    const bool usual = started_ && !__builtin_sub_overflow(time_us, newest_us_, &step_us) &&
+                       step_us >= 0 && step_us <= kLongest_us;
+    if (usual)
+      due_ += std::chrono::duration_cast<Clock::duration>(
+          std::chrono::duration<double, std::micro>(static_cast<double>(step_us) / speed_));
     started_ = true;
-    const double elapsed_s = static_cast<double>(time_us - first_us_) * 1e-6 / speed_;
-    if (elapsed_s > 0 && elapsed_s < 1e9)
-      std::this_thread::sleep_until(begin_ + std::chrono::duration_cast<Clock::duration>(
-                                                 std::chrono::duration<double>(elapsed_s)));
+    newest_us_ = time_us;
+    std::this_thread::sleep_until(due_);
   }
 
  private:
+  static constexpr std::int64_t kLongest_us = 10'000'000;
   double speed_;
   bool started_ = false;
-  std::int64_t first_us_ = 0;
-  Clock::time_point begin_ = Clock::now();
+  std::int64_t newest_us_ = 0;
+  Clock::time_point due_ = Clock::now();
 };
 
 std::int64_t bytes_of(const std::vector<std::string>& paths) {

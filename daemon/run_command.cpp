@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <future>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -115,10 +116,10 @@ class StateKeeper {
     if (next_us_ == 0) next_us_ = now_us + every_us_;
     if (now_us < next_us_ || !written()) return;
     next_us_ = now_us + every_us_;
-    writing_ =
-        std::async(std::launch::async, [path = path_, bytes = state_bytes(config_, estimation, 0)] {
-          return write_state(path, bytes);
-        });
+    writing_ = std::async(std::launch::async,
+                          [path = path_, bytes = state_bytes(config_, estimation, 0)]() mutable {
+                            return write_state(path, std::move(bytes));
+                          });
   }
   void keep(Estimation& estimation) {
     if (writing_.valid()) report(writing_.get());

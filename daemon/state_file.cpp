@@ -57,13 +57,12 @@ std::vector<std::uint8_t> state_bytes(const Config& config, Estimation& estimati
   head.events_before = events_before;
   state(head);
   estimation.save(state);
-  std::vector<std::uint8_t> bytes = state.bytes();
-  const std::string digest = digest_of(bytes, bytes.size());
-  bytes.insert(bytes.end(), digest.begin(), digest.end());
-  return bytes;
+  return state.bytes();
 }
 
-std::string write_state(const std::string& path, const std::vector<std::uint8_t>& bytes) {
+std::string write_state(const std::string& path, std::vector<std::uint8_t> bytes) {
+  const std::string digest = digest_of(bytes, bytes.size());
+  bytes.insert(bytes.end(), digest.begin(), digest.end());
   const std::string partial = path + ".partial";
   const int file = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) return std::strerror(errno);

@@ -10,13 +10,13 @@
 namespace framewatch::daemon {
 
 /// The state of an estimation as bytes: what it is, of which program and configuration, how many
-/// events of an output came before, and a digest over everything (docs/formats.md).
+/// events of an output came before (docs/formats.md).
 std::vector<std::uint8_t> state_bytes(const Config& config, Estimation& estimation,
                                       std::int64_t events_before);
 
-/// Writes them as PATH.partial, renamed when they are on the disk. Empty on success, else what went
-/// wrong.
-std::string write_state(const std::string& path, const std::vector<std::uint8_t>& bytes);
+/// Writes them with a digest as PATH.partial, renamed when they are on the disk. Empty on success,
+/// else what went wrong.
+std::string write_state(const std::string& path, std::vector<std::uint8_t> bytes);
 
 struct LoadedState {
   std::string problem;  ///< why it is refused; empty when it was loaded

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -399,6 +400,42 @@ TEST_F(Replay, RotatedLogsMayBeCutInsideAnInstant) {
   const Outcome parts = replay_of({path("1"), path("2")}, path("parts.lcmlog"));
   ASSERT_EQ(parts.exit_code, 0) << parts.err;
   EXPECT_EQ(read_file(path("whole.lcmlog")), read_file(path("parts.lcmlog")));
+}
+
+TEST_F(Replay, AFuzzedLogIsRefusedOrSalvagedAndNeverCrashes) {
+  constexpr int kRuns = 25;
+  std::mt19937 random(6);
+  const std::string good = read_file(log());
+  int refused = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    std::string bytes = good.substr(0, good.size() / 4);
+    for (int hit = 0; hit < 1 + run; ++hit) {
+      const std::size_t at = random() % bytes.size();
+      switch (random() % 4) {
+        case 0:
+          bytes[at] = static_cast<char>(random());
+          break;
+        case 1:
+          bytes.erase(at, 1 + random() % 200);
+          break;
+        case 2:
+          bytes.insert(at, std::string(1 + random() % 200, static_cast<char>(random())));
+          break;
+        default:
+          bytes.replace(at, 8, std::string(8, '\xff'));
+      }
+    }
+    write_file(path("bad"), bytes);
+    const Outcome plain = replay_of({path("bad")}, path("est.lcmlog"));
+    EXPECT_TRUE(plain.exit_code == 0 || plain.exit_code == 2) << run;
+    EXPECT_EQ(std::filesystem::exists(path("est.lcmlog")), plain.exit_code == 0);
+    refused += plain.exit_code == 2;
+    const Outcome salvaged = salvage_of(path("bad"), path("salvaged.lcmlog"));
+    EXPECT_TRUE(salvaged.exit_code == 0 || salvaged.exit_code == 2) << run;
+    std::filesystem::remove(path("est.lcmlog"));
+    std::filesystem::remove(path("salvaged.lcmlog"));
+  }
+  EXPECT_GT(refused, kRuns / 2);
 }
 
 TEST_F(Replay, SaysThatANewerTypeIsOne) {
