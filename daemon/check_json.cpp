@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/check_report.h"
+#include "drivers/can/bus_load.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -16,6 +17,9 @@ Json channels(const Config& config) {
                  {"story", axis.story},
                  {"direction", axis.direction == Direction::x ? "x" : "y"}};
     if (axis.frame >= 0) channel["frame"] = config.pipeline.structure.frame_name(axis.frame);
+    if (!source.can.empty())
+      channel["source"] = {{"can", source.can}, {"dbc_signal", source.dbc_signal}};
+    if (!source.can_node.empty()) channel["source"]["can_node"] = source.can_node;
     if (source.node >= 0)
       channel["source"] = {{"lcm", source.lcm_channel},
                            {"node", source.node},
@@ -47,6 +51,13 @@ std::string to_json(const std::string& path, const std::optional<CheckReport>& r
     for (const PanelOutlook& panel : report->panels)
       out["panel_shear_ratio"][panel.parameter] = panel.shear_ratio;
     out["lcm_url"] = report->config.lcm.url;
+    out["can"] = Json::array();
+    for (std::size_t b = 0; b < report->config.can.buses.size(); ++b) {
+      const drivers::BusLoad load = drivers::bus_load(report->config.can, static_cast<int>(b));
+      out["can"].push_back({{"interface", report->config.can.buses[b].interface},
+                            {"frames_hz", load.frames_hz},
+                            {"worst_load_ratio", load.share}});
+    }
     out["channels"] = channels(report->config);
     out["warnings"] = report->warnings;
   }

@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "drivers/can/bus_load.h"
 #include "estimator/pipeline.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/panel_excitation.h"
@@ -79,6 +80,17 @@ void warn_about_rounding(CheckReport& report) {
   check("hop_s", o.hop_s, report.hop_rows);
 }
 
+void warn_about_bus_load(CheckReport& report) {
+  for (std::size_t b = 0; b < report.config.can.buses.size(); ++b) {
+    const double share = drivers::bus_load(report.config.can, static_cast<int>(b)).share;
+    if (share > drivers::kHighBusLoad)
+      report.warnings.push_back(fmt::format(
+          "the configured nodes may take {:.0f} % of {}: above {:.0f} % frames wait long "
+          "and other devices suffer; a higher bit rate, a second bus or fewer nodes help",
+          100 * share, report.config.can.buses[b].interface, 100 * drivers::kHighBusLoad));
+  }
+}
+
 }  // namespace
 
 CheckReport make_check_report(const Config& config) {
@@ -93,6 +105,7 @@ CheckReport make_check_report(const Config& config) {
   const ParameterTable table(c.structure);
   for (int i = 0; i < table.size(); ++i) report.parameters.push_back(table[i].name);
   warn_about_rounding(report);
+  warn_about_bus_load(report);
   const bool small = c.structure.degrees_of_freedom() <= kMaxDegreesOfFreedom;
   if (c.design.size() > 0 && small) {
     report.design_hz = natural_frequencies_hz(c.structure, table, c.design);

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "daemon/check_report.h"
+#include "drivers/can/bus_load.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -42,10 +43,12 @@ std::string channel_text(const Structure& s, const SensorAxis& axis, const AxisS
   const std::string place = axis.story == 0 ? "base" : fmt::format("story {}", axis.story);
   const std::string frame =
       axis.frame >= 0 ? fmt::format(", frame {}", s.frame_name(axis.frame)) : "";
-  const std::string from = source.node < 0
-                               ? std::string("files only")
-                               : fmt::format("LCM {}, node {}, axis {}", source.lcm_channel,
-                                             source.node, "xyz"[source.axis]);
+  const std::string from =
+      !source.can.empty() ? fmt::format("{}, {}{}", source.can, source.dbc_signal,
+                                        source.can_node.empty() ? "" : " of " + source.can_node)
+      : source.node < 0   ? std::string("files only")
+                          : fmt::format("LCM {}, node {}, axis {}", source.lcm_channel, source.node,
+                                        "xyz"[source.axis]);
   return fmt::format("  {:<16} {}{}, along {}; {}\n", axis.name, place, frame,
                      axis.direction == Direction::x ? "x" : "y", from);
 }
@@ -88,6 +91,14 @@ std::string to_text(const CheckReport& r) {
         fmt::format("memory      {:.1f} MB of the estimator's, taken at the start and never more\n",
                     1e-6 * static_cast<double>(r.memory_bytes));
   out += fmt::format("lcm         {}, publishes on {}*\n", r.config.lcm.url, r.config.lcm.prefix);
+  for (std::size_t b = 0; b < r.config.can.buses.size(); ++b) {
+    const drivers::CanBusMap& bus = r.config.can.buses[b];
+    const drivers::BusLoad load = drivers::bus_load(r.config.can, static_cast<int>(b));
+    out += fmt::format("{:<11} {:g} kbit/s{}, {:g} frames/s, at most {:.1f} % of the bus\n",
+                       bus.interface, 1e-3 * bus.bit_rate,
+                       bus.fd ? fmt::format(" and {:g} kbit/s", 1e-3 * bus.data_bit_rate) : "",
+                       load.frames_hz, 100 * load.share);
+  }
   out += fmt::format("channels    {}\n", r.config.pipeline.axes.size());
   for (std::size_t i = 0; i < r.config.sources.size(); ++i)
     out +=

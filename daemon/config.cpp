@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config_can.h"
 #include "daemon/config_effects.h"
 #include "daemon/config_parts.h"
 #include "daemon/config_suggest.h"
@@ -14,7 +15,8 @@ namespace framewatch::daemon {
 namespace {
 
 void check_sections(const TomlValue& document, std::vector<TextProblem>& problems) {
-  const std::vector<std::string> known{"structure", "channel", "estimator", "lcm", "effect"};
+  const std::vector<std::string> known{"structure", "channel",  "estimator", "lcm",
+                                       "can",       "can_node", "effect"};
   for (const TomlEntry& entry : document.entries) {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
     const std::string meant = nearest(entry.key, known);
@@ -22,7 +24,8 @@ void check_sections(const TomlValue& document, std::vector<TextProblem>& problem
         {entry.place,
          fmt::format("unknown section or key {}: {}", entry.key,
                      meant.empty() ? "the sections are [structure], [structure.design], "
-                                     "[[channel]], [estimator], [lcm], [[effect]]"
+                                     "[[channel]], [estimator], [lcm], [[can]], "
+                                     "[[can_node]], [[effect]]"
                                    : fmt::format("did you mean {}?", meant))});
   }
 }
@@ -33,9 +36,10 @@ std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextPr
   });
   std::vector<ConfigProblem> out;
   for (const TextProblem& p : problems)
-    out.push_back(
-        {p.place.line > 0 ? fmt::format("{}:{}:{}", path, p.place.line, p.place.column) : path,
-         p.message});
+    out.push_back({!p.elsewhere.empty() ? p.elsewhere
+                   : p.place.line > 0 ? fmt::format("{}:{}:{}", path, p.place.line, p.place.column)
+                                      : path,
+                   p.message});
   return out;
 }
 
@@ -50,6 +54,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   read_channels(document, structure, config, problems);
   config.pipeline.options = read_estimator(document, problems);
   config.lcm = read_lcm(document, problems);
+  read_can(document, config, problems);
   if (problems.size() == before)
     for (const std::string& rule : framewatch::problems(config.pipeline))
       problems.push_back({{}, rule});

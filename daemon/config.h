@@ -4,16 +4,21 @@
 #include <string>
 #include <vector>
 
+#include "drivers/can/can_map.h"
 #include "estimator/pipeline.h"
 #include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
 
-/// Where a sensor axis' samples come from on LCM; node < 0: file only, matched by channel name.
+/// Where a sensor axis' samples come from. On LCM; node < 0: file only, matched by channel name. Or
+/// on CAN, when `can` names an interface.
 struct AxisSource {
   std::string lcm_channel;
   int node = -1;
   int axis = 0;  ///< 0 x, 1 y, 2 z
+  std::string can = {};
+  std::string dbc_signal = {};  ///< Message.Signal
+  std::string can_node = {};
 };
 
 struct LcmSettings {
@@ -31,6 +36,7 @@ struct Config {
   PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
   LcmSettings lcm;
+  drivers::CanMap can;          ///< axes as in pipeline.axes
   std::vector<Effect> effects;  ///< that the building has beyond the linear model
 };
 

@@ -64,10 +64,14 @@ AxisSource read_source(ConfigSection& channel, const std::string& label,
                        std::vector<TextProblem>& problems) {
   if (!channel.given("source")) return {};
   const TomlValue* table = channel.value("source");
-  if (const TomlEntry* can = table->find("can") ? table->find("can") : table->find("dbc_signal")) {
-    problems.push_back({can->place, label + ".source: CAN input is not in this version; "
-                                            "write { lcm = \"ACCEL\", node = 3, axis = \"x\" }"});
-    return {};
+  if (table->find("can") || table->find("dbc_signal")) {
+    ConfigSection section("channel.source.can", label + ".source", table, {}, problems);
+    AxisSource source;
+    if (!section.good("can") || !section.good("dbc_signal")) return source;
+    source.can = section.text("can");
+    source.dbc_signal = section.text("dbc_signal");
+    source.can_node = section.text("can_node");
+    return source;
   }
   ConfigSection section("channel.source", label + ".source", table, {}, problems);
   AxisSource source;

@@ -26,9 +26,14 @@ constexpr SectionText kSections[] = {
     {"channel", "[[channel]]",
      "One accelerometer axis each. Every frame has one on every floor, and the base one in every "
      "direction that has frames. The corrected value is polarity * (scale * raw - offset)."},
-    {"channel.source", "source = { ... }", "Where the samples of a channel come from."},
+    {"channel.source", "source = { lcm ... }", "Samples that come over LCM."},
+    {"channel.source.can", "source = { can ... }",
+     "Samples that come over CAN ([how to commission a bus](can.md))."},
     {"estimator", "[estimator]", "How the windows are estimated and when a value is published."},
     {"lcm", "[lcm]", "The bus the samples come from and the estimates go to."},
+    {"can", "[[can]]", "One CAN bus each, and what it carries."},
+    {"can_node", "[[can_node]]",
+     "One sender of samples on a CAN bus each, and how its samples get their time."},
     {"scenario", "Scenario files: at the top",
      "`framewatch simulate` reads a scenario: the building as above or `config`, and what happens "
      "to it."},

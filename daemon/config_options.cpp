@@ -239,15 +239,6 @@ const Option kOptions[] = {
      .required = true,
      .choices = "x|y|z",
      .meaning = "Axis of the node."},
-    {.section = "channel.source",
-     .key = "can",
-     .type = text,
-     .meaning = "CAN interface; CAN input is not in this version."},
-    {.section = "channel.source",
-     .key = "dbc_signal",
-     .type = text,
-     .meaning = "Signal of a DBC file; CAN input is not in this version."},
-
     {.section = "estimator",
      .key = "variant",
      .type = choice,
@@ -430,6 +421,8 @@ const Option kOptions[] = {
 std::span<const Option> options() {
   static const std::vector<Option> kAll = [] {
     std::vector<Option> all(std::begin(kOptions), std::end(kOptions));
+    const std::span<const Option> can = can_options();
+    all.insert(all.end(), can.begin(), can.end());
     const std::span<const Option> scenario = scenario_options();
     all.insert(all.end(), scenario.begin(), scenario.end());
     const std::span<const Option> effect = effect_options();

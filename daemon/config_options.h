@@ -35,6 +35,7 @@ std::span<const Option> options();
 std::span<const Option> effect_options();
 std::span<const Option> scenario_options();
 std::span<const Option> expectation_options();
+std::span<const Option> can_options();
 
 /// Null when the section has no such key.
 const Option* find_option(std::string_view section, std::string_view key);

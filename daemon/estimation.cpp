@@ -28,7 +28,8 @@ std::vector<drivers::WantedAxis> wanted_axes(const Config& config) {
   std::vector<drivers::WantedAxis> wanted;
   for (std::size_t i = 0; i < config.pipeline.axes.size(); ++i) {
     const AxisSource source = i < config.sources.size() ? config.sources[i] : AxisSource{};
-    wanted.push_back({config.pipeline.axes[i].name, source.lcm_channel, source.node, source.axis});
+    wanted.push_back({config.pipeline.axes[i].name, source.lcm_channel, source.node, source.axis,
+                      source.can.empty()});
   }
   return wanted;
 }
@@ -44,7 +45,8 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
             ++windows_;
           },
           [this](const WindowEstimate& estimate) { publisher_.other(estimate); }),
-      intake_(wanted_axes(config), [this](const AccelSample& s) { sample(s); }) {}
+      intake_(wanted_axes(config), [this](const AccelSample& s) { sample(s); }),
+      can_(config.can, [this](const AccelSample& s) { sample(s); }) {}
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
                                           std::size_t size) {
@@ -57,6 +59,7 @@ void Estimation::sample(const AccelSample& sample) {
 }
 
 void Estimation::finish() {
+  can_.finish();
   pipeline_.finish();
   publish_state();
 }
@@ -79,11 +82,16 @@ void Estimation::publish_state() {
   counts.sample_sets = pipeline.sample_sets;
   counts.gaps = pipeline.gaps;
   counts.rejected_messages = intake.foreign + intake.malformed + intake.duplicate;
+  for (std::size_t n = 0; n < can_.map().nodes.size(); ++n) {
+    const drivers::CanNodeCounters node = can_.node(n);
+    counts.rejected_messages +=
+        node.wrong_length + node.wrong_kind + node.unplaced + node.duplicates + node.late;
+  }
   const std::vector<double> noise = pipeline_.noise_density();
   for (std::size_t i = 0; i < pipeline.axes.size(); ++i) {
     const AxisCounters& axis = pipeline.axes[i];
     const drivers::SequenceCounter* node = intake_.sequence_of(i);
-    counts.axes.push_back({axis.received, node == nullptr ? 0 : node->lost, axis.late,
+    counts.axes.push_back({axis.received, node == nullptr ? can_.lost_of(i) : node->lost, axis.late,
                            axis.repaired, axis.rejected + (node == nullptr ? 0 : node->duplicates),
                            axis.stuck, axis.clipped});
     if (!noise.empty()) counts.axes.back().noise_density = noise[i];

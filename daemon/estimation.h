@@ -7,6 +7,7 @@
 #include "daemon/config.h"
 #include "daemon/publisher.h"
 #include "drivers/accel_intake.h"
+#include "drivers/can/can_intake.h"
 
 namespace framewatch::daemon {
 
@@ -45,6 +46,8 @@ class Estimation {
 
   /// One LCM message, whatever it is.
   drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size);
+  /// One CAN frame of the bus with this index in the configuration.
+  void frame(int bus, const drivers::CanFrame& frame) { can_.frame(bus, frame); }
   /// One value from a file that has names instead of messages.
   void sample(const AccelSample& sample);
   /// The input has ended: closes open instants, publishes the last table and status.
@@ -53,6 +56,7 @@ class Estimation {
   /// Goes out with the next status.
   void set_live(const LiveState& live) { live_ = live; }
   const drivers::AccelIntake& intake() const { return intake_; }
+  const drivers::CanIntake& can() const { return can_; }
   const Pipeline& pipeline() const { return pipeline_; }
   std::int64_t windows() const { return windows_; }  ///< published
 
@@ -67,6 +71,7 @@ class Estimation {
   Publisher publisher_;
   Pipeline pipeline_;
   drivers::AccelIntake intake_;
+  drivers::CanIntake can_;
   SensorSeconds seconds_;
   LiveState live_;
   std::int64_t windows_ = 0;

@@ -39,7 +39,8 @@ void add_demo(CLI::App& app, Action& action, DemoArguments& arguments) {
 }
 
 void add_run(CLI::App& app, Action& action, RunArguments& arguments) {
-  CLI::App* command = app.add_subcommand("run", "the daemon: live samples in, estimates out (LCM)");
+  CLI::App* command =
+      app.add_subcommand("run", "the daemon: live samples in (LCM, CAN), estimates out (LCM)");
   command->footer("Example: framewatch run configs/table_two_story.toml");
   command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
   command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");
@@ -49,6 +50,8 @@ void add_run(CLI::App& app, Action& action, RunArguments& arguments) {
   command->add_option("--state-every", arguments.state_every_s, "seconds between two writes of it")
       ->check(CLI::Range(1, 86400))
       ->capture_default_str();
+  command->add_option("--can-log", arguments.can_log,
+                      "file for every frame of the CAN buses, as candump -l writes it");
   command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
   command->callback([&action, &arguments] { action = [&arguments] { return run(arguments); }; });
 }
@@ -213,26 +216,32 @@ void add_convert(CLI::App& app, Action& action, ConvertArguments& arguments) {
 }
 
 void add_simulate(CLI::App& app, Action& action, SimulateArguments& arguments) {
-  CLI::App* command =
-      app.add_subcommand("simulate", "a virtual building's accelerometers, to LCM or to a file");
+  CLI::App* command = app.add_subcommand(
+      "simulate", "a virtual building's accelerometers, to LCM, to CAN or to a file");
   command->footer(
       "Examples:\n"
       "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
-      "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2");
+      "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2\n"
+      "  framewatch simulate configs/can/scenario_tower.toml --can vcan0");
   command->add_option("SCENARIO", arguments.scenario, "scenario file (TOML)")->required();
   command->add_option("--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog");
   CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
                                          "publish live, on this URL or the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
-  command->add_option("--speed", arguments.speed, "of --lcm, times real time")
+  CLI::Option* can = command->add_option(
+      "--can", arguments.can_interface,
+      "send the frames of the configuration's CAN nodes, on this interface or the configuration's");
+  can->expected(0, 1)->type_name("[INTERFACE]");
+  command->add_option("--speed", arguments.speed, "of --lcm and --can, times real time")
       ->check(CLI::Range(1e-3, 1e6))
       ->capture_default_str();
   command->add_option("--seconds", arguments.seconds, "instead of the scenario's duration")
       ->check(CLI::Range(1e-3, 1e6));
   command->add_option("--truth", arguments.truth, "JSON file to write what is hidden to");
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
-  command->callback([&action, &arguments, lcm] {
+  command->callback([&action, &arguments, lcm, can] {
     arguments.lcm = lcm->count() > 0;
+    arguments.can = can->count() > 0;
     action = [&arguments] { return simulate(arguments); };
   });
 }

@@ -218,7 +218,7 @@ class ReplayRun {
     if (!problem.empty()) return refuse(problem);
 
     const std::chrono::duration<double> work = Clock::now() - start_;
-    const ReplaySummary summary{series_, counts, survey_, work.count()};
+    const ReplaySummary summary{series_, counts, survey_, estimation_.can(), work.count()};
     const bool holds =
         std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
     if (a_.json) {

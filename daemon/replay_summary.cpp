@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/can_summary.h"
 #include "daemon/estimate_table.h"
 
 namespace framewatch::daemon {
@@ -27,6 +28,15 @@ std::string reasons(const EstimateSeries::Series& series) {
 ReplayCounts replay_counts(const Estimation& estimation) {
   const PipelineCounters pipeline = estimation.pipeline().counters();
   const drivers::IntakeCounters& intake = estimation.intake().counters();
+  std::int64_t lost = estimation.intake().lost(), malformed = intake.malformed;
+  std::int64_t foreign = intake.foreign;
+  const drivers::CanIntake& can = estimation.can();
+  for (std::size_t n = 0; n < can.map().nodes.size(); ++n) {
+    const drivers::CanNodeCounters node = can.node(n);
+    lost += node.lost;
+    malformed += node.wrong_length + node.wrong_kind;
+  }
+  for (const drivers::CanBusCounters& bus : can.buses()) foreign += bus.foreign;
   std::int64_t late = 0, repaired = 0, rejected = intake.duplicate, stuck = 0, clipped = 0;
   for (const AxisCounters& axis : pipeline.axes) {
     late += axis.late;
@@ -37,14 +47,14 @@ ReplayCounts replay_counts(const Estimation& estimation) {
   }
   return {{{"windows", pipeline.windows},
            {"gaps", pipeline.gaps},
-           {"lost", estimation.intake().lost()},
+           {"lost", lost},
            {"late", late},
            {"repaired", repaired},
            {"rejected", rejected},
            {"stuck", stuck},
            {"clipped", clipped},
-           {"malformed", intake.malformed},
-           {"foreign", intake.foreign}}};
+           {"malformed", malformed},
+           {"foreign", foreign}}};
 }
 
 std::string ReplaySummary::text() const {
@@ -53,12 +63,12 @@ std::string ReplaySummary::text() const {
       "{:.2f} s of motion in {:.2f} s ({:.0f} times real time)\n"
       "windows {}, gaps {}, lost messages {}, late {}, repaired {}, rejected {}, stuck {}, clipped "
       "{}\n"
-      "undecodable messages {}, foreign {}, damaged bytes {}\n\n"
+      "undecodable messages {}, foreign {}, damaged bytes {}\n\n{}"
       "{:<14} {:>12} {:>12} {:>12}  {:<11} {:>10}  {}\n",
       survey.measured_seconds(), work_s, survey.measured_seconds() / work_s, count(0), count(1),
       count(2), count(3), count(4), count(5), count(6), count(7), count(8), count(9),
-      survey.damaged_bytes(), "parameter", "q1", "median", "q3", "unit", "observable",
-      "windows without");
+      survey.damaged_bytes(), can_text(can), "parameter", "q1", "median", "q3", "unit",
+      "observable", "windows without");
   for (const EstimateSeries::Series& s : series.parameters()) {
     const EstimateSeries::Quartiles q = series.quartiles(s, series.all());
     const auto number = [](double v) { return std::isnan(v) ? "-" : fmt::format("{:.6g}", v); };
@@ -78,7 +88,7 @@ std::string ReplaySummary::json() const {
   out += fmt::format("\"damaged_bytes\": {},\n \"notes\": [", survey.damaged_bytes());
   for (std::size_t i = 0; i < survey.notes().size(); ++i)
     out += (i == 0 ? "" : ", ") + json_text(survey.notes()[i]);
-  out += "],\n \"parameters\": [";
+  out += "],\n " + can_json(can) + "\"parameters\": [";
   const char* comma = "";
   for (const EstimateSeries::Series& s : series.parameters()) {
     const EstimateSeries::Quartiles q = series.quartiles(s, series.all());

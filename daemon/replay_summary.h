@@ -20,6 +20,7 @@ struct ReplaySummary {
   const EstimateSeries& series;
   const ReplayCounts& counts;
   const ReplaySurvey& survey;
+  const drivers::CanIntake& can;
   double work_s;  ///< wall time the replay took
 
   std::string text() const;

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "drivers/can/can_log.h"
 #include "drivers/message_types.h"
 
 namespace framewatch::daemon {
@@ -55,6 +56,9 @@ void ReplaySurvey::add(const std::string& path) {
     problems_.push_back(fmt::format("{}: {}", path, failure.message()));
   } else if (size == 0) {
     problems_.push_back(fmt::format("{}: is empty", path));
+  } else if (drivers::looks_like_candump(path)) {
+    add_candump(path);
+    bytes_ += static_cast<std::int64_t>(size);
   } else if (!looks_like_record(path)) {
     add_log(path);
     bytes_ += static_cast<std::int64_t>(size);
@@ -167,6 +171,53 @@ void ReplaySurvey::add_log(const std::string& path) {
     fault(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
                       damaged_bytes_ - damaged_before));
   judge_log(path, seen, intake().counters().malformed - malformed);
+  inputs_.push_back({path, false, {}, {}});
+}
+
+void ReplaySurvey::add_candump(const std::string& path) {
+  if (config_.can.empty()) {
+    problems_.push_back(fmt::format(
+        "{}: is a candump log, and no channel of {} has a source on CAN", path, config_.path));
+    return;
+  }
+  drivers::CanIntake unfed(config_.can, [](const AccelSample&) {});
+  const drivers::CanIntake& intake = estimation_ != nullptr ? estimation_->can() : unfed;
+  const auto taken = [&] {
+    std::int64_t frames = 0;
+    for (std::size_t n = 0; n < config_.can.nodes.size(); ++n) frames += intake.node(n).frames;
+    return frames;
+  };
+  const std::int64_t before = taken();
+  std::map<std::string, std::int64_t, std::less<>> others;
+  std::vector<drivers::Problem> found;
+  std::int64_t first_us = INT64_MAX, last_us = INT64_MIN, line_bytes = 0;
+  drivers::read_candump(
+      path,
+      [&](const drivers::CanFrame& frame, std::string_view interface) {
+        line_bytes += drivers::kCandumpLineBytes + 2 * frame.length;
+        const int bus = intake.bus_of(interface);
+        if (bus < 0) {
+          const auto at = others.find(interface);
+          ++(at == others.end() ? others[std::string(interface)] : at->second);
+          return;
+        }
+        if (outside(frame.stamp_us)) return;
+        first_us = std::min(first_us, frame.stamp_us);
+        last_us = std::max(last_us, frame.stamp_us);
+        if (step_) step_(bytes_ + line_bytes, frame.stamp_us);
+        if (estimation_ != nullptr)
+          estimation_->frame(bus, frame);
+        else
+          unfed.frame(bus, frame);
+      },
+      found);
+  for (const drivers::Problem& p : found) fault(fmt::format("{}: {}", p.where, p.message));
+  for (const auto& [interface, count] : others)
+    notes_.push_back(fmt::format("{}: {} frames of {}, which {} does not have, ignored", path,
+                                 count, interface, config_.path));
+  if (taken() == before && !spanned_)
+    problems_.push_back(fmt::format("{}: no frame for the channels of {}", path, config_.path));
+  if (first_us <= last_us) extend(path, first_us, last_us);
   inputs_.push_back({path, false, {}, {}});
 }
 

@@ -16,7 +16,7 @@
 
 namespace framewatch::daemon {
 
-/// One file to replay: an LCM event log, or a record held in memory.
+/// One file to replay: an LCM event log, a candump log, or a record held in memory.
 struct ReplayInput {
   std::string path;
   bool is_record = false;
@@ -87,6 +87,7 @@ class ReplaySurvey {
     return estimation_ != nullptr ? estimation_->intake() : intake_;
   }
   void add_log(const std::string& path);
+  void add_candump(const std::string& path);
   void look_at(const drivers::LogEvent& event, LogSeen& seen);
   void judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed);
   void check_rate(const std::string& place, double rate_hz);

@@ -13,6 +13,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/can_complaints.h"
 #include "daemon/log.h"
 #include "daemon/state_file.h"
 
@@ -32,6 +33,12 @@ extern "C" void request_stop(int) {
 std::int64_t host_clock_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
              std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::int64_t steady_clock_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
 
@@ -83,7 +90,7 @@ class Complaints {
 
 /// Goes on from a state file that is there; one that does not fit is put aside, and said.
 void resume(const std::string& path, const Config& config, lcm::LCM& lcm,
-            std::optional<LiveEstimation>& live) {
+            drivers::CanLogWriter* can_log, std::optional<LiveEstimation>& live) {
   std::error_code none;
   if (!std::filesystem::exists(path, none)) return;
   bool touched = false;
@@ -97,7 +104,7 @@ void resume(const std::string& path, const Config& config, lcm::LCM& lcm,
   std::filesystem::rename(path, aside, none);
   log(LogLevel::warning,
       fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
-  if (touched) live.emplace(config, lcm);
+  if (touched) live.emplace(config, lcm, can_log);
 }
 
 /// Writes the state from time to time, in a thread: a slow disk delays no estimate.
@@ -146,8 +153,10 @@ class StateKeeper {
 
 }  // namespace
 
-LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm)
-    : lcm_(lcm),
+LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::CanLogWriter* can_log)
+    : config_(config),
+      lcm_(lcm),
+      can_log_(can_log),
       estimation_(
           config,
           [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
@@ -155,10 +164,29 @@ LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm)
           }),
       source_(lcm, channels_of(config), config.lcm.queue_capacity,
               [this](const std::string& channel, const void* data, std::size_t size,
-                     std::int64_t received_us) { on_message(channel, data, size, received_us); }) {}
+                     std::int64_t received_us) { on_message(channel, data, size, received_us); }),
+      can_(config.can, can_log != nullptr,
+           [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {}
 
 bool LiveEstimation::poll(int timeout_ms) {
-  return source_.handle(timeout_ms);
+  if (config_.can.empty()) return source_.handle(timeout_ms);
+  std::vector<pollfd> waiting{{lcm_.getFileno(), POLLIN, 0}};
+  can_.descriptors(waiting);
+  ::poll(waiting.data(), waiting.size(), timeout_ms);
+  can_.handle(steady_clock_us());
+  return source_.handle(0) && !can_log_failed_;
+}
+
+void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
+  const std::string& interface = config_.can.buses[static_cast<std::size_t>(bus)].interface;
+  if (can_log_ != nullptr && !can_log_->write(frame, interface)) can_log_failed_ = true;
+  const std::int64_t windows = estimation_.windows();
+  estimation_.frame(bus, frame);
+  const std::int64_t dropped = can_.dropped();
+  state_.queue_dropped += dropped - std::exchange(can_dropped_, dropped);
+  if (estimation_.windows() > windows)
+    state_.latency_s = 1e-6 * static_cast<double>(host_clock_us() - frame.stamp_us);
+  estimation_.set_live(state_);
 }
 
 void LiveEstimation::on_message(const std::string& channel, const void* data, std::size_t size,
@@ -192,21 +220,33 @@ int run(const RunArguments& a) {
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
 
-  std::optional<LiveEstimation> estimation(std::in_place, *config, *lcm);
-  if (!a.state.empty()) resume(a.state, *config, *lcm, estimation);
+  drivers::CanLogWriter can_log;
+  if (!a.can_log.empty() && !can_log.open(a.can_log)) {
+    fmt::print(stderr, "framewatch run: {}: {}\n", a.can_log, can_log.error());
+    return kBadInput;
+  }
+  drivers::CanLogWriter* const recorder = a.can_log.empty() ? nullptr : &can_log;
+  std::optional<LiveEstimation> estimation(std::in_place, *config, *lcm, recorder);
+  if (!a.state.empty()) resume(a.state, *config, *lcm, recorder, estimation);
   LiveEstimation& live = *estimation;
+  for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
   StateKeeper keeper(a, *config);
   Complaints complaints;
+  CanComplaints can_complaints(*config);
   RateLimitedLog failures(LogLevel::error);
   if (!a.quiet)
     log(LogLevel::info, fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name,
                                     config->path, config->pipeline.axes.size(), url));
   while (stop_requested == 0) {
     if (!live.poll(kPoll_ms) && stop_requested == 0) {
-      failures(host_clock_us(), "LCM failed to deliver");
+      failures(host_clock_us(),
+               can_log.error().empty() ? "LCM failed to deliver" : "CAN log: " + can_log.error());
       ::usleep(1000 * kPoll_ms);
     }
     complaints.look(live.estimation(), live.state(), host_clock_us());
+    for (const std::string& news :
+         can_complaints.look(live.estimation().can(), live.can(), host_clock_us()))
+      log(LogLevel::warning, news);
     keeper.look(live.estimation(), host_clock_us());
   }
   // With a state the instants still open are given out by the next start.
@@ -214,6 +254,10 @@ int run(const RunArguments& a) {
     live.finish();
   else
     keeper.keep(live.estimation());
+  if (recorder != nullptr && !can_log.close()) {
+    fmt::print(stderr, "framewatch run: {}: {}\n", a.can_log, can_log.error());
+    return kBadInput;
+  }
   if (!a.quiet) {
     const PipelineCounters counters = live.estimation().pipeline().counters();
     log(LogLevel::info,

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/can_output.h"
 #include "daemon/progress.h"
 #include "daemon/scenario.h"
 #include "daemon/simulation.h"
@@ -27,7 +28,8 @@ int refuse(const std::string& message) {
 }  // namespace
 
 int simulate(const SimulateArguments& a) {
-  if (a.out.empty() && !a.lcm) return refuse("nowhere to put it: --out FILE, --lcm or both");
+  if (a.out.empty() && !a.lcm && !a.can)
+    return refuse("nowhere to put it: --out FILE, --lcm, --can or several");
   std::vector<ConfigProblem> problems;
   std::optional<Scenario> scenario = load_scenario(a.scenario, problems);
   for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
@@ -47,6 +49,11 @@ int simulate(const SimulateArguments& a) {
     lcm = drivers::open_lcm(url, scenario->config.lcm.receive_buffer_bytes, error);
     if (!lcm) return refuse(error);
     outputs.push_back(live_output(*scenario, *lcm, a.speed));
+  }
+
+  if (a.can) {
+    outputs.push_back(can_output(*scenario, a.can_interface, a.speed, error));
+    if (!outputs.back()) return refuse(error);
   }
 
   const std::int64_t count = instants(*scenario);

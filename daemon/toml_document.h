@@ -44,6 +44,7 @@ struct TomlEntry {
 struct TextProblem {
   TextPlace place;
   std::string message;
+  std::string elsewhere = {};  ///< file:line in another file, in place of `place`
 };
 
 /// Tables of [[name]] in `table`; a problem when it is something else, none when it is absent.

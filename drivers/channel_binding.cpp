@@ -13,8 +13,9 @@ void ChannelBinding::apply(const std::string& stream, const ChannelTable& table)
   const auto known = tables_.find(stream);
   if (known != tables_.end() && known->second == table) return;
   const auto is_wanted = [this](const ChannelTable::Entry& entry) {
-    return std::any_of(wanted_.begin(), wanted_.end(),
-                       [&](const WantedAxis& wanted) { return wanted.name == entry.name; });
+    return std::any_of(wanted_.begin(), wanted_.end(), [&](const WantedAxis& wanted) {
+      return wanted.on_lcm && wanted.name == entry.name;
+    });
   };
   if (std::none_of(table.entries.begin(), table.entries.end(), is_wanted)) return;
   tables_[stream] = table;
@@ -38,7 +39,8 @@ void ChannelBinding::bind() {
   for (const auto& [stream, table] : tables_)
     for (const ChannelTable::Entry& entry : table.entries)
       for (std::size_t i = 0; i < wanted_.size(); ++i)
-        if (wanted_[i].name == entry.name) give(i, stream, entry.node, entry.axis);
+        if (wanted_[i].on_lcm && wanted_[i].name == entry.name)
+          give(i, stream, entry.node, entry.axis);
   for (std::size_t i = 0; i < wanted_.size(); ++i)
     if (wanted_[i].node >= 0) give(i, wanted_[i].lcm_channel, wanted_[i].node, wanted_[i].axis);
 }
@@ -54,7 +56,7 @@ const ChannelBinding::NodeAxes* ChannelBinding::axes_of(const std::string& strea
 std::vector<std::string> ChannelBinding::streams() const {
   std::vector<std::string> streams;
   for (const WantedAxis& wanted : wanted_)
-    streams.push_back(wanted.node >= 0 ? wanted.lcm_channel : "ACCEL");
+    if (wanted.on_lcm) streams.push_back(wanted.node >= 0 ? wanted.lcm_channel : "ACCEL");
   std::sort(streams.begin(), streams.end());
   streams.erase(std::unique(streams.begin(), streams.end()), streams.end());
   return streams;
@@ -63,7 +65,7 @@ std::vector<std::string> ChannelBinding::streams() const {
 std::vector<std::string> ChannelBinding::unbound() const {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < wanted_.size(); ++i)
-    if (!is_bound_[i]) names.push_back(wanted_[i].name);
+    if (wanted_[i].on_lcm && !is_bound_[i]) names.push_back(wanted_[i].name);
   return names;
 }
 

@@ -17,6 +17,7 @@ struct WantedAxis {
   std::string lcm_channel;
   std::int32_t node = -1;  ///< < 0: no address, found by name only
   int axis = 0;
+  bool on_lcm = true;  ///< else its samples come another way
 };
 
 /// Finds the sensor axis that an axis of a node on an LCM channel is. Names in a stream's channel

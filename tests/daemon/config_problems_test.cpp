@@ -171,7 +171,7 @@ const Malformed kMalformed[] = {
     {"CanSource",
      "source = { lcm = \"ACCEL\", node = 2, axis = \"x\" }",
      "source = { can = \"can0\", dbc_signal = \"Node3.AccX\" }",
-     {{"24:12", "channel 'F1-Y1'.source: CAN input is not in this version"}}},
+     {{"24:1", "channel 'F1-Y1'.source: can: no [[can]] has interface = \"can0\""}}},
     {"SourceWithoutNode", "node = 2, ", "", {{"24:10", "channel 'F1-Y1'.source.node: is missing"}}},
     {"SourceAxis",
      "axis = \"x\"",

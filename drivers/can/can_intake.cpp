@@ -1,0 +1,302 @@
+#include "drivers/can/can_intake.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace framewatch::drivers {
+namespace {
+
+/// Of the SYNC's period: frames later than this after it are of no known sample.
+constexpr double kSyncWindow = 0.95;
+/// Of the node's period: how soon the rest of a sample must follow the frame that opens it.
+constexpr double kAttachWindow = 0.5;
+
+double modulus_of(const CanNodeMap& node) {
+  const CanMessageMap& opens = node.messages.front();
+  const std::optional<CanField>& field =
+      node.timing == CanTiming::clock ? opens.clock : opens.counter;
+  if (!field || field->value != CanValue::integer || field->bits > 52) return 0;
+  const double scale = node.timing == CanTiming::clock ? std::abs(field->factor) : 1;
+  return std::ldexp(scale, field->bits);
+}
+
+StreamTimer::Settings settings_of(const CanNodeMap& node) {
+  StreamTimer::Settings s;
+  s.kind = node.timing;
+  s.period_us = node.period_us * node.samples_per_frame;
+  s.tick_us = node.timing == CanTiming::clock ? node.clock_unit_us : s.period_us;
+  s.modulus = modulus_of(node);
+  return s;
+}
+
+}  // namespace
+
+CanIntake::CanIntake(const CanMap& map, Sink sink, Observer observer)
+    : map_(map), sink_(std::move(sink)), observer_(std::move(observer)) {
+  int axes = 0;
+  for (const CanNodeMap& node : map.nodes)
+    for (const CanMessageMap& message : node.messages)
+      for (const CanReading& reading : message.readings) axes = std::max(axes, reading.axis + 1);
+  ranges_.resize(static_cast<std::size_t>(axes));
+  carrier_.assign(static_cast<std::size_t>(axes), {-1, -1});
+  if (map.resample)
+    resamplers_.assign(static_cast<std::size_t>(axes), Resampler(map.grid_period_us));
+  bus_counters_.resize(map.buses.size());
+  for (std::size_t b = 0; b < map.buses.size(); ++b)
+    buses_.push_back({FrameLookup(map, static_cast<int>(b)), nullptr, -1e18, {}});
+  for (const CanNodeMap& node : map.nodes) make_node(node);
+}
+
+void CanIntake::make_node(const CanNodeMap& node) {
+  const int index = static_cast<int>(nodes_.size());
+  Node made;
+  made.sequence.resize(node.messages.size());
+  made.attached.resize(node.messages.size());
+  for (std::size_t m = 0; m < node.messages.size(); ++m)
+    for (const CanReading& reading : node.messages[m].readings)
+      carrier_[static_cast<std::size_t>(reading.axis)] = {index, static_cast<int>(m)};
+  const auto make_timer = [this](const StreamTimer::Settings& settings) {
+    auto timer = std::make_unique<StreamTimer>(settings, steps_);
+    timer->on_delivery(
+        [this, t = timer.get()](const TimedValues& v, double time_us) { deliver(v, time_us, *t); });
+    return timer;
+  };
+  Bus& bus = buses_[static_cast<std::size_t>(node.bus)];
+  if (node.timing == CanTiming::sync) {
+    made.waiting.resize(node.messages.size());
+    bus.nodes.push_back(index);
+    if (!bus.sync) {
+      const double period_us = map_.buses[static_cast<std::size_t>(node.bus)].sync_period_us;
+      bus.sync = make_timer({CanTiming::period, period_us, period_us, 0});
+    }
+  } else {
+    made.timer = make_timer(settings_of(node));
+  }
+  nodes_.push_back(std::move(made));
+}
+
+int CanIntake::bus_of(std::string_view interface) const {
+  for (std::size_t b = 0; b < map_.buses.size(); ++b)
+    if (map_.buses[b].interface == interface) return static_cast<int>(b);
+  return -1;
+}
+
+void CanIntake::frame(int index, const CanFrame& frame) {
+  CanBusCounters& counters = bus_counters_[static_cast<std::size_t>(index)];
+  Bus& bus = buses_[static_cast<std::size_t>(index)];
+  newest_stamp_us_ = std::max(newest_stamp_us_, frame.stamp_us);
+  if (frame.error) return count_error_frame(frame, counters);
+  ++counters.frames;
+  if (counters.state == CanBusState::off) counters.state = CanBusState::active;
+  if (frame.remote) {
+    ++counters.remote;
+    return;
+  }
+  const double host_us = steps_.continuous(static_cast<double>(frame.stamp_us));
+  const CanBusMap& settings = map_.buses[static_cast<std::size_t>(index)];
+  if (bus.sync && frame.id == settings.sync_id && frame.extended == (settings.sync_id > 0x7FF)) {
+    ++counters.syncs;
+    return sync(bus, host_us);
+  }
+  const std::vector<FrameLookup::Target>& targets = bus.lookup.find(frame.id, frame.extended);
+  if (targets.empty()) {
+    counters.foreign += !canopen(index, frame);
+    return;
+  }
+  for (const FrameLookup::Target& target : targets)
+    message(target.node, target.message, frame, host_us);
+}
+
+/// Boot-up and heartbeat, EMCY. False: none of our nodes'.
+bool CanIntake::canopen(int bus, const CanFrame& frame) {
+  if (frame.extended || frame.fd || (frame.id & 0x7Fu) == 0) return false;
+  const int id = static_cast<int>(frame.id & 0x7Fu);
+  const bool heartbeat = (frame.id & 0x780u) == 0x700u && frame.length == 1;
+  const bool emergency = (frame.id & 0x780u) == 0x080u && frame.length == 8;
+  if (!heartbeat && !emergency) return false;
+  bool ours = false;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    if (map_.nodes[n].canopen_id != id || map_.nodes[n].bus != bus) continue;
+    ours = true;
+    CanNodeCounters& c = nodes_[n].counters;
+    if (heartbeat && frame.data[0] == 0) {
+      ++c.boot_ups;
+      if (nodes_[n].timer) nodes_[n].timer->restart();
+    }
+    if (!emergency) continue;
+    c.last_emergency = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
+    c.emergencies += c.last_emergency != 0;
+  }
+  return ours;
+}
+
+void CanIntake::message(int index, int at, const CanFrame& frame, double host_us) {
+  Node& node = nodes_[static_cast<std::size_t>(index)];
+  const CanMessageMap& m =
+      map_.nodes[static_cast<std::size_t>(index)].messages[static_cast<std::size_t>(at)];
+  if (m.multiplexor && fits(*m.multiplexor, frame.length) &&
+      raw_integer(*m.multiplexor, frame.data) != m.multiplexor_value)
+    return;
+  ++node.counters.frames;
+  node.counters.last_stamp_us = frame.stamp_us;
+  if (frame.fd != m.fd) {
+    ++node.counters.wrong_kind;
+    return;
+  }
+  if (frame.length != m.length) {
+    ++node.counters.wrong_length;
+    return;
+  }
+  TimedValues values{index, at, 0, {}};
+  values.values.reserve(m.readings.size());
+  for (const CanReading& reading : m.readings) {
+    const double value = physical(reading.field, frame.data);
+    values.values.push_back(value);
+    node.counters.not_finite += !std::isfinite(value);
+  }
+  place(node, at, frame, std::move(values), host_us);
+}
+
+void CanIntake::place(Node& node, int at, const CanFrame& frame, TimedValues values,
+                      double host_us) {
+  const auto m = static_cast<std::size_t>(at);
+  const CanNodeMap& map = map_.nodes[static_cast<std::size_t>(values.node)];
+  if (map.timing == CanTiming::sync) {
+    Bus& bus = buses_[static_cast<std::size_t>(map.bus)];
+    const double after_us = host_us - bus.sync_us;
+    const double window_us =
+        kSyncWindow * map_.buses[static_cast<std::size_t>(map.bus)].sync_period_us;
+    if (after_us < 0 || after_us > window_us) {
+      ++(bus.sync_us < 0 ? node.counters.unplaced : node.counters.late);
+      return;
+    }
+    Waiting& waiting = node.waiting[m];
+    (waiting.count++ == 0 ? waiting.first : waiting.second) = std::move(values);
+    return;
+  }
+  if (at > 0) {
+    const double after_us = host_us - node.opened_us;
+    const double window_us = kAttachWindow * map.period_us * map.samples_per_frame;
+    if (after_us < 0 || after_us > window_us || node.attached[m] != 0) {
+      ++node.counters.unplaced;
+      return;
+    }
+    node.attached[m] = 1;
+    return node.timer->attach(std::move(values));
+  }
+  node.opened_us = host_us;
+  std::fill(node.attached.begin(), node.attached.end(), std::uint8_t{0});
+  double reading = 0;
+  if (map.timing == CanTiming::clock) reading = physical(*map.messages[m].clock, frame.data);
+  if (map.timing == CanTiming::counter)
+    reading = static_cast<double>(raw_integer(*map.messages[m].counter, frame.data));
+  if (!std::isfinite(reading) || std::abs(reading) > 1e15) {
+    ++node.counters.unplaced;
+    return;
+  }
+  node.timer->see(reading, host_us, std::move(values));
+}
+
+void CanIntake::sync(Bus& bus, double host_us) {
+  flush(bus);
+  bus.sync_us = host_us;
+  bus.sync->see(0, host_us, {-1, -1, 0, {}});
+}
+
+/// A message that came twice between two SYNCs and not at all before: its first frame was late.
+void CanIntake::flush(Bus& bus) {
+  if (bus.sync_us < 0) return;
+  for (const int index : bus.nodes) {
+    Node& node = nodes_[static_cast<std::size_t>(index)];
+    for (Waiting& w : node.waiting) {
+      const int count = std::exchange(w.count, 0);
+      const bool late = count > 1 && !w.came_last_time;
+      w.came_last_time = count > 0;
+      if (count == 0) continue;
+      if (late) ++node.counters.late;
+      node.counters.duplicates += count - 1 - (late ? 1 : 0);
+      bus.sync->attach(std::move(late ? *w.second : *w.first));
+      w.first.reset();
+      w.second.reset();
+    }
+  }
+}
+
+void CanIntake::deliver(const TimedValues& v, double time_us, const StreamTimer& timer) {
+  if (v.node < 0) return;
+  Node& node = nodes_[static_cast<std::size_t>(v.node)];
+  const CanNodeMap& map = map_.nodes[static_cast<std::size_t>(v.node)];
+  SequenceCounter& sequence = node.sequence[static_cast<std::size_t>(v.message)];
+  const double offset_us = map.timing == CanTiming::sync
+                               ? map.delay_us
+                               : -map.latency_us - map.period_us * (map.samples_per_frame - 1);
+  const double first_us = time_us + offset_us;
+  if (sequence.see(v.number, std::llround(first_us)) == SequenceCounter::Verdict::duplicate) return;
+  if (v.message == 0) {
+    CanNodeCounters& c = node.counters;
+    if (c.received++ == 0) c.first_time_us = first_us;
+    c.last_time_us = std::max(c.last_time_us, first_us);
+  }
+  const double period_us =
+      map.timing == CanTiming::sync ? timer.period_us() : timer.period_us() / map.samples_per_frame;
+  const auto& readings = map.messages[static_cast<std::size_t>(v.message)].readings;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const auto axis = static_cast<std::size_t>(readings[i].axis);
+    const double value = v.values[i];
+    const double at_us = first_us + period_us * readings[i].sample;
+    const std::int64_t number = v.number * map.samples_per_frame + readings[i].sample;
+    if (std::isfinite(value)) {
+      CanRange& range = ranges_[axis];
+      range.least = range.count == 0 ? value : std::min(range.least, value);
+      range.most = range.count == 0 ? value : std::max(range.most, value);
+      ++range.count;
+    }
+    if (observer_) observer_({v.node, readings[i].axis, number, at_us, value});
+    if (resamplers_.empty()) {
+      sink_({from_microseconds(std::llround(at_us)), readings[i].axis, value});
+      continue;
+    }
+    resamplers_[axis].add(number, at_us, period_us, value,
+                          [&](std::int64_t grid_us, double resampled) {
+                            sink_({from_microseconds(grid_us), readings[i].axis, resampled});
+                          });
+  }
+}
+
+void CanIntake::finish() {
+  for (Bus& bus : buses_) {
+    if (!bus.sync) continue;
+    flush(bus);
+    bus.sync->finish();
+  }
+  for (Node& node : nodes_)
+    if (node.timer) node.timer->finish();
+}
+
+CanNodeCounters CanIntake::node(std::size_t index) const {
+  const Node& node = nodes_[index];
+  CanNodeCounters out = node.counters;
+  for (const SequenceCounter& s : node.sequence) {
+    out.lost += s.lost;
+    out.duplicates += s.duplicates;
+    out.reordered += s.reordered;
+  }
+  if (node.timer) {
+    out.restarts += node.timer->restarts();
+    out.unplaced += node.timer->unplaced();
+  }
+  if (!resamplers_.empty())
+    for (const CanMessageMap& m : map_.nodes[index].messages)
+      for (const CanReading& r : m.readings)
+        out.repaired += resamplers_[static_cast<std::size_t>(r.axis)].repaired();
+  return out;
+}
+
+std::int64_t CanIntake::lost_of(std::size_t axis) const {
+  if (axis >= carrier_.size() || carrier_[axis].first < 0) return 0;
+  const auto [node, message] = carrier_[axis];
+  return nodes_[static_cast<std::size_t>(node)].sequence[static_cast<std::size_t>(message)].lost;
+}
+
+}  // namespace framewatch::drivers

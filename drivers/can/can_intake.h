@@ -1,0 +1,97 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "drivers/can/can_map.h"
+#include "drivers/can/can_status.h"
+#include "drivers/can/frame_lookup.h"
+#include "drivers/can/resampler.h"
+#include "drivers/can/stream_timer.h"
+#include "drivers/sequence_counter.h"
+#include "estimator/motion/sample.h"
+
+namespace framewatch::drivers {
+
+/// Turns CAN frames, live or from a log, into samples of the configured axes with the time they
+/// were taken at. Pure: the same frames give the same samples. Never throws on any frame; counts
+/// what it does not take. Frames of one bus come in the order they were received.
+class CanIntake {
+ public:
+  using Sink = std::function<void(const AccelSample&)>;
+  /// One decoded value before it is brought to the grid; `number` counts the node's samples.
+  struct Decoded {
+    int node, axis;
+    std::int64_t number;
+    double time_us, value;
+  };
+  using Observer = std::function<void(const Decoded&)>;
+
+  /// `map` must outlive this.
+  CanIntake(const CanMap& map, Sink sink, Observer observer = {});
+  CanIntake(const CanIntake&) = delete;
+  CanIntake& operator=(const CanIntake&) = delete;
+
+  void frame(int bus, const CanFrame& frame);
+  /// The input has ended: gives out what waits for a next SYNC or for its time.
+  void finish();
+
+  /// Index of the bus on this interface; -1 when there is none.
+  int bus_of(std::string_view interface) const;
+  const std::vector<CanBusCounters>& buses() const { return bus_counters_; }
+  CanNodeCounters node(std::size_t index) const;
+  const CanRange& range_of(std::size_t axis) const { return ranges_[axis]; }
+  /// Frames lost that would have carried the axis.
+  std::int64_t lost_of(std::size_t axis) const;
+  std::int64_t host_steps() const { return steps_.count(); }
+  /// Host's time of the newest frame, 0 before any.
+  std::int64_t newest_stamp_us() const { return newest_stamp_us_; }
+  const CanMap& map() const { return map_; }
+
+ private:
+  /// A frame of a SYNC-latched node that waits for the next SYNC.
+  struct Waiting {
+    std::optional<TimedValues> first, second;
+    int count = 0;
+    bool came_last_time = true;
+  };
+  struct Node {
+    CanNodeCounters counters;
+    std::vector<SequenceCounter> sequence;  ///< by message
+    std::unique_ptr<StreamTimer> timer;     ///< null when SYNC gives the time
+    std::vector<Waiting> waiting;           ///< by message, SYNC only
+    double opened_us = -1e18;               ///< stamp of the frame that opened the sample
+    std::vector<std::uint8_t> attached;     ///< by message, to that sample
+  };
+  struct Bus {
+    FrameLookup lookup;
+    std::unique_ptr<StreamTimer> sync;  ///< null when no node needs it
+    double sync_us = -1e18;
+    std::vector<int> nodes;  ///< SYNC-latched
+  };
+
+  void make_node(const CanNodeMap& node);
+  void sync(Bus& bus, double host_us);
+  void flush(Bus& bus);
+  bool canopen(int bus, const CanFrame& frame);
+  void message(int node, int message, const CanFrame& frame, double host_us);
+  void place(Node& node, int message, const CanFrame& frame, TimedValues values, double host_us);
+  void deliver(const TimedValues& values, double time_us, const StreamTimer& timer);
+
+  const CanMap& map_;
+  Sink sink_;
+  Observer observer_;
+  HostSteps steps_;
+  std::vector<Node> nodes_;
+  std::vector<Bus> buses_;
+  std::vector<CanBusCounters> bus_counters_;
+  std::vector<Resampler> resamplers_;  ///< by axis; empty when the nodes share their instants
+  std::vector<CanRange> ranges_;       ///< by axis
+  std::vector<std::pair<int, int>> carrier_;  ///< by axis: node and message; -1: not on CAN
+  std::int64_t newest_stamp_us_ = 0;
+};
+
+}  // namespace framewatch::drivers

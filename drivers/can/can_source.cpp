@@ -1,0 +1,195 @@
+#include "drivers/can/can_source.h"
+
+#include <sys/timerfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace framewatch::drivers {
+namespace {
+
+constexpr std::int64_t kLookAgain_us = 50'000;
+constexpr int kBatches = 64;  ///< of frames from one bus before the others have their turn
+constexpr std::uint8_t kNmtStart = 1;
+
+bool is_latched(const CanMap& map, std::size_t bus) {
+  return std::any_of(map.nodes.begin(), map.nodes.end(), [&](const CanNodeMap& n) {
+    return n.bus == static_cast<int>(bus) && n.timing == CanTiming::sync;
+  });
+}
+
+int make_timer(double period_us) {
+  const int timer = ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+  const auto ns = static_cast<std::int64_t>(1000 * period_us);
+  itimerspec every{};
+  every.it_interval.tv_sec = ns / 1'000'000'000;
+  every.it_interval.tv_nsec = ns % 1'000'000'000;
+  every.it_value = every.it_interval;
+  ::timerfd_settime(timer, 0, &every, nullptr);
+  return timer;
+}
+
+}  // namespace
+
+std::vector<CanFilter> filters_of(const CanMap& map, int bus) {
+  std::vector<CanFilter> out;
+  bool latched = false;
+  for (const CanNodeMap& node : map.nodes) {
+    if (node.bus != bus) continue;
+    latched = latched || node.timing == CanTiming::sync;
+    for (const CanMessageMap& m : node.messages) out.push_back({m.id, m.mask, m.extended});
+    if (node.canopen_id == 0) continue;
+    out.push_back({0x080u + static_cast<std::uint32_t>(node.canopen_id), 0x7FF, false});
+    out.push_back({0x700u + static_cast<std::uint32_t>(node.canopen_id), 0x7FF, false});
+  }
+  if (latched) out.push_back({map.buses[static_cast<std::size_t>(bus)].sync_id, 0x7FF, false});
+  if (map.buses[static_cast<std::size_t>(bus)].nmt_start) out.push_back({0x700, 0x780, false});
+  return out;
+}
+
+CanSource::CanSource(const CanMap& map, bool everything, Handler handler)
+    : map_(map), everything_(everything), handler_(std::move(handler)), buses_(map.buses.size()) {
+  for (std::size_t b = 0; b < buses_.size(); ++b)
+    if (map.buses[b].send_sync && is_latched(map, b))
+      buses_[b].timer = make_timer(map.buses[b].sync_period_us);
+  stamps_.now(host_clock_offset_us());
+}
+
+CanSource::~CanSource() {
+  for (const Bus& bus : buses_)
+    if (bus.timer >= 0) ::close(bus.timer);
+}
+
+bool CanSource::open_bus(std::size_t b, std::string& error) {
+  const CanBusMap& settings = map_.buses[b];
+  const auto filters =
+      everything_ ? std::vector<CanFilter>{} : filters_of(map_, static_cast<int>(b));
+  return buses_[b].socket.open(settings.interface, settings.receive_buffer_bytes, filters,
+                               settings.send_sync, error);
+}
+
+std::vector<std::string> CanSource::open() {
+  std::vector<std::string> notes;
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    if (buses_[b].attached) continue;
+    const CanBusMap& settings = map_.buses[b];
+    std::string error;
+    look(b, 0);
+    const Bus& bus = buses_[b];
+    if (!bus.socket.is_open()) {
+      (void)open_bus(b, error);
+      notes.push_back(error + "; waiting for it");
+    } else if (!bus.state.open) {
+      notes.push_back(settings.interface + ": the interface is down; waiting for it");
+    }
+    if (bus.socket.is_open() && bus.socket.receive_buffer_bytes() < settings.receive_buffer_bytes)
+      notes.push_back(fmt::format(
+          "{}: the kernel grants {} of {} bytes of receive buffer: raise net.core.rmem_max "
+          "(deploy/can)",
+          settings.interface, bus.socket.receive_buffer_bytes(), settings.receive_buffer_bytes));
+  }
+  return notes;
+}
+
+void CanSource::attach(int bus, int descriptor) {
+  Bus& b = buses_[static_cast<std::size_t>(bus)];
+  b.socket = CanSocket(descriptor);
+  b.attached = true;
+  b.state.open = true;
+}
+
+void CanSource::descriptors(std::vector<pollfd>& out) const {
+  for (const Bus& bus : buses_) {
+    if (bus.socket.is_open()) out.push_back({bus.socket.descriptor(), POLLIN, 0});
+    if (bus.timer >= 0) out.push_back({bus.timer, POLLIN, 0});
+  }
+}
+
+void CanSource::lose(Bus& bus) {
+  if (bus.state.open) ++bus.state.downs;
+  bus.state.open = false;
+}
+
+/// Whether the interface came, went or is another one of the same name.
+void CanSource::look(std::size_t b, std::int64_t now_us) {
+  Bus& bus = buses_[b];
+  if (bus.attached || now_us < bus.look_again_us) return;
+  bus.look_again_us = now_us + kLookAgain_us;
+  bool up = false;
+  const int index = find_interface(map_.buses[b].interface, up);
+  if (bus.socket.is_open() && index != bus.socket.interface_index()) {
+    bus.dropped_before += bus.socket.dropped();
+    bus.socket = CanSocket();
+    lose(bus);
+  }
+  std::string error;
+  if (!bus.socket.is_open() && (index == 0 || !open_bus(b, error))) return;
+  if (!up) return lose(bus);
+  if (bus.state.open) return;
+  bus.state.open = true;
+  if (map_.buses[b].nmt_start) start_node(bus, 0);
+}
+
+void CanSource::start_node(const Bus& bus, std::uint8_t node) const {
+  CanFrame start;
+  start.length = 2;
+  start.data = {kNmtStart, node};
+  (void)bus.socket.write(start);
+}
+
+void CanSource::send_sync(std::size_t b) {
+  std::uint64_t due = 0;
+  if (::read(buses_[b].timer, &due, sizeof due) != sizeof due || due == 0) return;
+  if (!buses_[b].state.open) return;
+  CanFrame sync;
+  sync.id = map_.buses[b].sync_id;
+  (void)buses_[b].socket.write(sync);
+}
+
+void CanSource::read(std::size_t b) {
+  Bus& bus = buses_[b];
+  for (int i = 0; i < kBatches && bus.socket.is_open(); ++i) {
+    switch (bus.socket.read(batch_)) {
+      case CanSocket::Read::frames:
+        break;
+      case CanSocket::Read::idle:
+        return;
+      case CanSocket::Read::down:
+        bus.look_again_us = 0;
+        return lose(bus);
+      case CanSocket::Read::failed:
+        bus.dropped_before += bus.socket.dropped();
+        bus.socket = CanSocket();
+        bus.look_again_us = 0;
+        return lose(bus);
+    }
+    for (CanFrame& frame : batch_) {
+      frame.stamp_us = stamps_.continuous(frame.stamp_us);
+      const bool boot_up = !frame.extended && !frame.error && (frame.id & 0x780u) == 0x700u &&
+                           frame.length == 1 && frame.data[0] == 0;
+      if (boot_up && map_.buses[b].nmt_start)
+        start_node(bus, static_cast<std::uint8_t>(frame.id & 0x7Fu));
+      handler_(static_cast<int>(b), frame);
+    }
+  }
+}
+
+void CanSource::handle(std::int64_t now_us) {
+  stamps_.now(host_clock_offset_us());
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    look(b, now_us);
+    if (buses_[b].timer >= 0) send_sync(b);
+    if (buses_[b].socket.is_open()) read(b);
+  }
+}
+
+std::int64_t CanSource::dropped() const {
+  std::int64_t sum = 0;
+  for (const Bus& bus : buses_) sum += bus.dropped_before + bus.socket.dropped();
+  return sum;
+}
+
+}  // namespace framewatch::drivers

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "drivers/can/can_map.h"
+#include "drivers/can/clock_line.h"
+
+namespace framewatch::drivers {
+
+/// Values of one frame that wait for their time.
+struct TimedValues {
+  int node = 0, message = 0;  ///< of the map
+  std::int64_t number = 0;    ///< of the frame in its stream; set by StreamTimer
+  std::vector<double> values;
+};
+
+class StreamTimer;
+
+/// Steps of the host's clock are everybody's: told from a node's restart by how many streams see
+/// the same step at the same time.
+class HostSteps {
+ public:
+  void join(StreamTimer& timer) { timers_.push_back(&timer); }
+  /// Stamp without the steps so far.
+  double continuous(double stamp_us) const { return stamp_us - total_us_; }
+  std::int64_t count() const { return count_; }
+
+ private:
+  friend class StreamTimer;
+  /// Called by a stream that is sure that something stepped. False: it was the node.
+  bool resolve(double step_us, double now_us);
+
+  std::vector<StreamTimer*> timers_;
+  double total_us_ = 0;
+  std::int64_t count_ = 0;
+};
+
+/// Gives the frames of one free-running stream (a node, or a bus' SYNC) their number and time from
+/// counter, clock or arrival, by the lower envelope of their receive stamps (ClockLine). Pure:
+/// asks no clock. Frames whose stamps disagree with the line by more than a delay could explain are
+/// held until it is clear whether the node restarted, the host's clock stepped or they were late.
+class StreamTimer {
+ public:
+  struct Settings {
+    CanTiming kind = CanTiming::period;  ///< not sync
+    double period_us = 10000;            ///< between frames
+    double tick_us = 10000;              ///< device microseconds per unit of `reading`
+    double modulus = 0;                  ///< units after which the reading wraps; 0: never
+  };
+  using Deliver = std::function<void(const TimedValues&, double time_us)>;
+
+  StreamTimer(const Settings& settings, HostSteps& steps);
+  StreamTimer(const StreamTimer&) = delete;
+  StreamTimer& operator=(const StreamTimer&) = delete;
+
+  /// To be set before the first frame.
+  void on_delivery(Deliver deliver) { deliver_ = std::move(deliver); }
+
+  /// A frame that opens a sample. `reading`: counter or clock, in its units; unused for period.
+  void see(double reading, double host_us, TimedValues values);
+  /// More of the sample opened last.
+  void attach(TimedValues values);
+  /// The node said that it starts anew (CANopen boot-up).
+  void restart();
+  /// Gives out what is still held.
+  void finish();
+
+  double period_us() const { return settings_.period_us * line_.rate(); }
+  std::int64_t restarts() const { return restarts_; }
+  std::int64_t unplaced() const { return unplaced_; }  ///< frames without a believable time
+
+ private:
+  friend class HostSteps;
+  struct Held {
+    double device_us, host_us;
+    bool timed;  ///< opened a sample
+    TimedValues values;
+  };
+
+  double device_of(double reading, double host_us) const;
+  double late_us(const Held& held) const { return held.host_us - line_.host_us(held.device_us); }
+  bool believable(double late_us) const;
+  std::size_t timed_held() const;
+  void remember(const Held& held);
+  void take(Held held);
+  void hold(Held held);
+  void settle();
+  void give_out_held();
+  void start_anew();
+  void shift(double step_us);
+
+  Settings settings_;
+  HostSteps& steps_;
+  Deliver deliver_;
+  ClockLine line_;
+  std::vector<Held> held_;
+  bool starting_ = true;   ///< holding frames until the line has a few
+  bool any_ = false;       ///< the last_ are of this start
+  bool renumber_ = false;  ///< numbers of this start go on after delivered_
+  double last_device_us_ = 0, last_host_us_ = 0;
+  std::int64_t last_number_ = 0;
+  Held opened_{};  ///< by see(), without its values
+  bool opened_is_held_ = false;
+  std::int64_t delivered_ = -1;  ///< largest number
+  std::int64_t restarts_ = 0, unplaced_ = 0;
+};
+
+}  // namespace framewatch::drivers
