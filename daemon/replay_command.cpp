@@ -277,6 +277,10 @@ int replay(const ReplayArguments& a) {
   const std::optional<Config> config = load_config(a.config, problems);
   print(problems);
   if (!config) return kBadInput;
+  if (!config->can.empty() && !(a.save_state.empty() && a.load_state.empty()))
+    return refuse(a.config +
+                  ": --save-state and --load-state are for logs of LCM and records: how far "
+                  "the nodes on CAN have come is not in a state");
   std::optional<Expectations> expectations;
   if (!a.expect.empty()) {
     problems.clear();
