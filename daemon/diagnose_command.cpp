@@ -21,9 +21,11 @@ namespace {
 constexpr int kGapRemains = 1;
 constexpr int kBadInput = 2;
 constexpr double kBandLow = 0.4, kBandHigh = 1.6;  ///< of the lowest and highest natural frequency
+constexpr double kComponentBandLow = 0.1;          ///< displacement is known far below too
 constexpr double kHighest = 0.4;                   ///< of the sampling rate
 constexpr Eigen::Index kLeastBins = 30;
-constexpr double kLeastSignal = 5;  ///< rms of a floor's motion in the band over its noise
+constexpr double kComponentMass = 0.1;  ///< tolerance
+constexpr double kLeastSignal = 5;      ///< rms of a floor's motion in the band over its noise
 
 bool write_file(const std::string& path, const std::string& text) {
   drivers::TextOutput out;
@@ -53,6 +55,9 @@ int diagnose_command(const DiagnoseArguments& a) {
   if (!config) return kBadInput;
 
   std::vector<std::string> problems;
+  const Structure& s = config->pipeline.structure;
+  if (a.component.any() && (s.stories != 1 || s.frames() != 1))
+    problems.push_back(a.config + ": a component test has one story and one frame");
   std::vector<EffectKind> without;
   for (const std::string& name : a.without) {
     if (const auto kind = find_effect(name))
@@ -63,7 +68,7 @@ int diagnose_command(const DiagnoseArguments& a) {
   std::vector<DiagnoseRecord> records;
   for (const auto* list : {&a.train, &a.holdout})
     for (const std::string& path : *list)
-      if (auto record = read_diagnose_record(*config, path, problems))
+      if (auto record = read_diagnose_record(*config, path, a.component, problems))
         records.push_back(std::move(*record));
   for (std::size_t i = 0; i < records.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -76,26 +81,38 @@ int diagnose_command(const DiagnoseArguments& a) {
   const ParameterTable table(pc.structure);
   const Eigen::VectorXd design =
       pc.design.size() > 0 ? pc.design : guessed_design(pc.structure, table);
-  const auto plant = make_plant(pc.structure, pc.axes, design, records.front().rate_hz);
+  auto plant = make_plant(pc.structure, pc.axes, design, records.front().rate_hz);
   if (!plant) {
     fmt::print(stderr, "{}: the channels do not measure every motion that diagnose needs\n",
                a.config);
     return kBadInput;
   }
+  if (!a.component.force.empty()) {
+    SensorAxis force;
+    force.name = a.component.force;
+    force.story = 1;
+    force.frame = 0;
+    plant = with_force_axis(*plant, force);
+    plant->prescribed = a.component.prescribed;
+  }
+  std::vector<char> displaced(plant->axes.size(), 0);
+  for (std::size_t i = 0; i < plant->axes.size(); ++i)
+    displaced[i] = a.component.displacement && plant->axes[i].story == 1 &&
+                   !plant->is_force(static_cast<Eigen::Index>(i));
   const std::vector<double> hz = natural_frequencies_hz(pc.structure, table, design);
   std::vector<Stretch> stretches;
   for (const DiagnoseRecord& record : records) {
-    Eigen::VectorXd noise(plant->axis_count());
-    for (Eigen::Index i = 0; i < noise.size(); ++i)
+    Eigen::VectorXd noise = Eigen::VectorXd::Zero(plant->axis_count());
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(pc.axes.size()); ++i)
       noise[i] = pc.axes[static_cast<std::size_t>(i)].noise_density * std::sqrt(record.rate_hz / 2);
-    const Band band{kBandLow * hz.front(),
+    const Band band{(a.component.any() ? kComponentBandLow : kBandLow) * hz.front(),
                     std::min(kHighest * record.rate_hz, kBandHigh * hz.back())};
-    stretches.push_back(make_stretch(record.accel, record.rate_hz, noise, band));
+    stretches.push_back(make_stretch(record.accel, record.rate_hz, noise, band, displaced));
     if (stretches.back().bins() < kLeastBins)
       problems.push_back(fmt::format(
           "{}: too short: {} frequencies lie between {:.2f} and {:.2f} Hz, at least {} are needed",
           record.path, stretches.back().bins(), band.low_hz, band.high_hz, kLeastBins));
-    else if (!(signal_ratio(*plant, stretches.back()) > kLeastSignal))
+    else if (!a.component.any() && !(signal_ratio(*plant, stretches.back()) > kLeastSignal))
       problems.push_back(record.path +
                          ": no excitation: the floors' motion does not stand out of "
                          "the sensors' noise");
@@ -104,6 +121,7 @@ int diagnose_command(const DiagnoseArguments& a) {
   if (!problems.empty()) return kBadInput;
 
   DiagnosisOptions options;
+  if (a.component.any()) options.tolerances.mass = kComponentMass;
   options.holdout_from = a.train.size();
   options.known = config->effects;
   options.without = without;

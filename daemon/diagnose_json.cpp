@@ -34,7 +34,7 @@ Json gap_json(const DiagnoseOutput& o, const std::vector<Gap>& gaps, bool holdou
   }
   if (count == 0) return {{"overall", nullptr}, {"channels", Json::object()}};
   for (Eigen::Index a = 0; a < sum.size(); ++a)
-    if (o.plant.axes[static_cast<std::size_t>(a)].story > 0)
+    if (!o.plant.is_input(a) || o.plant.prescribed)
       channels[o.plant.axes[static_cast<std::size_t>(a)].name] = number(sum[a] / count);
   return {{"overall", number(overall / count)}, {"channels", channels}};
 }

@@ -1,5 +1,6 @@
 #include "daemon/diagnose_records.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -25,7 +26,9 @@ std::string digest(const std::string& path) {
   return sha256({std::istreambuf_iterator<char>(in), {}});
 }
 
-bool from_record(const Config& config, DiagnoseRecord& out, std::vector<std::string>& problems) {
+/// As wide as the channels, and the force of a component test.
+bool from_record(const Config& config, const ComponentTest& component, DiagnoseRecord& out,
+                 std::vector<std::string>& problems) {
   std::vector<drivers::Problem> found;
   const auto record = drivers::read_record(out.path, {}, found);
   for (const drivers::Problem& p : found)
@@ -34,12 +37,16 @@ bool from_record(const Config& config, DiagnoseRecord& out, std::vector<std::str
   const auto& axes = config.pipeline.axes;
   out.rate_hz = record->rate_hz;
   out.accel.resize(static_cast<Eigen::Index>(record->time_s.size()),
-                   static_cast<Eigen::Index>(axes.size()));
+                   static_cast<Eigen::Index>(axes.size() + (component.force.empty() ? 0 : 1)));
   bool complete = true;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const SensorAxis& axis = axes[a];
     std::size_t column = 0;
     while (column < record->names.size() && record->names[column] != axis.name) ++column;
+    if (column == record->names.size() && component.any() && axis.story == 0) {
+      out.accel.col(static_cast<Eigen::Index>(a)).setZero();
+      continue;
+    }
     if (column == record->names.size()) {
       problems.push_back(fmt::format("{}: no channel '{}'", out.path, axis.name));
       complete = false;
@@ -49,6 +56,17 @@ bool from_record(const Config& config, DiagnoseRecord& out, std::vector<std::str
       out.accel(i, static_cast<Eigen::Index>(a)) =
           axis.polarity *
           (axis.scale * record->accel_mps2[column][static_cast<std::size_t>(i)] - axis.offset);
+  }
+  if (!component.force.empty()) {
+    const auto at = std::find(record->names.begin(), record->names.end(), component.force);
+    if (at == record->names.end()) {
+      problems.push_back(fmt::format("{}: no channel '{}'", out.path, component.force));
+      return false;
+    }
+    const std::vector<double>& force =
+        record->accel_mps2[static_cast<std::size_t>(at - record->names.begin())];
+    for (Eigen::Index i = 0; i < out.accel.rows(); ++i)
+      out.accel(i, out.accel.cols() - 1) = force[static_cast<std::size_t>(i)];
   }
   return complete;
 }
@@ -76,8 +94,14 @@ bool from_log(const Config& config, DiagnoseRecord& out, std::vector<std::string
   return false;
 }
 
+std::string name_of_column(const Config& config, const ComponentTest& component, Eigen::Index a) {
+  const auto at = static_cast<std::size_t>(a);
+  return at < config.pipeline.axes.size() ? config.pipeline.axes[at].name : component.force;
+}
+
 /// Bridges short gaps by straight lines; longer ones are a problem.
-void bridge(const Config& config, DiagnoseRecord& record, std::vector<std::string>& problems) {
+void bridge(const Config& config, const ComponentTest& component, DiagnoseRecord& record,
+            std::vector<std::string>& problems) {
   for (Eigen::Index a = 0; a < record.accel.cols(); ++a) {
     Eigen::Index last = -1;
     for (Eigen::Index i = 0; i <= record.accel.rows(); ++i) {
@@ -86,9 +110,8 @@ void bridge(const Config& config, DiagnoseRecord& record, std::vector<std::strin
       const Eigen::Index missing = i - last - 1;
       if (missing > kLongestGap) {
         problems.push_back(fmt::format("{}: channel '{}': {} samples missing after {:.3f} s",
-                                       record.path,
-                                       config.pipeline.axes[static_cast<std::size_t>(a)].name,
-                                       missing, static_cast<double>(last + 1) / record.rate_hz));
+                                       record.path, name_of_column(config, component, a), missing,
+                                       static_cast<double>(last + 1) / record.rate_hz));
         break;
       }
       for (Eigen::Index k = last + 1; k < i; ++k) {
@@ -105,6 +128,7 @@ void bridge(const Config& config, DiagnoseRecord& record, std::vector<std::strin
 }  // namespace
 
 std::optional<DiagnoseRecord> read_diagnose_record(const Config& config, const std::string& path,
+                                                   const ComponentTest& component,
                                                    std::vector<std::string>& problems) {
   DiagnoseRecord out;
   out.path = path;
@@ -114,12 +138,12 @@ std::optional<DiagnoseRecord> read_diagnose_record(const Config& config, const s
     return std::nullopt;
   }
   const bool read = drivers::is_event_log(path) ? from_log(config, out, problems)
-                                                : from_record(config, out, problems);
+                                                : from_record(config, component, out, problems);
   if (!read) return std::nullopt;
   if (out.accel.rows() < kLeastInstants)
     problems.push_back(fmt::format("{}: {} instants are too short, at least {} are needed", path,
                                    out.accel.rows(), kLeastInstants));
-  bridge(config, out, problems);
+  bridge(config, component, out, problems);
   out.sha256 = digest(path);
   if (problems.size() > before) return std::nullopt;
   return out;

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "daemon/config.h"
+#include "daemon/diagnose_command.h"
 
 namespace framewatch::daemon {
 
@@ -21,6 +22,7 @@ struct DiagnoseRecord {
 /// Reads a record file or an LCM event log. Empty with every problem ("place: rule") when a channel
 /// is missing, when samples are, or when it is too short.
 std::optional<DiagnoseRecord> read_diagnose_record(const Config& config, const std::string& path,
+                                                   const ComponentTest& component,
                                                    std::vector<std::string>& problems);
 
 }  // namespace framewatch::daemon

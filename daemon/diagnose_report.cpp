@@ -36,7 +36,7 @@ std::string gap_section(const DiagnoseOutput& o) {
     SvgSeries b{"before", 1, SvgMark::rings, {}, {}}, a{"after", 0, SvgMark::dots, {}, {}},
         n{"noise floor", 6, SvgMark::bars, {}, {}};
     for (std::size_t c = 0; c < o.plant.axes.size(); ++c) {
-      if (o.plant.axes[c].story == 0) continue;
+      if (o.plant.is_input(static_cast<Eigen::Index>(c)) && !o.plant.prescribed) continue;
       names.categories.push_back(o.plant.axes[c].name);
       const auto x = static_cast<double>(names.categories.size());
       const auto at = static_cast<Eigen::Index>(c);
@@ -51,9 +51,14 @@ std::string gap_section(const DiagnoseOutput& o) {
     plot.add(a);
     plots.push_back(plot.svg());
   }
+  const std::string fitted =
+      o.diagnosis.after_of_all
+          ? "The training records do not determine the effects: the gap after is of a model fitted "
+            "to all records."
+          : "Both models were fitted to the training records alone.";
   return "<h2>Gap between simulation and measurement</h2>\n"
-         "<p>Free run from the measured motion of the base alone.</p>\n" +
-         html_table({"record", "before", "after", "noise floor"}, rows) +
+         "<p>Free run from the measured motion of the base alone. " +
+         fitted + "</p>\n" + html_table({"record", "before", "after", "noise floor"}, rows) +
          html_figure(plots, "Gap per channel, over what the sensors' noise alone would make.");
 }
 
@@ -126,16 +131,33 @@ std::string loop_section(const DiagnoseOutput& o) {
                              html_figure(plots, "Of the last record, as the model has it.");
 }
 
+/// When nine tenths of the signal are there that a place needs.
+std::string when(const DiagnoseOutput& o, const WhereEntry& w) {
+  if (!(w.to_s > w.from_s)) return "";
+  return fmt::format("{:.1f} to {:.1f} s of {}", w.from_s, w.to_s,
+                     html_text(o.records[w.record].path));
+}
+
+std::string band(const WhereEntry& w) {
+  return w.high_hz > w.low_hz ? fmt::format("{:.2f} to {:.2f} Hz", w.low_hz, w.high_hz) : "";
+}
+
+std::string peak(const WhereEntry& w) {
+  const char* unit = w.place.kind == PlaceKind::channel ? "m/s^2" : "N";
+  return w.peak > 0 ? fmt::format("{:.3g} {}", w.peak, unit) : "";
+}
+
 std::string where_section(const DiagnoseOutput& o) {
   std::vector<std::vector<std::string>> rows;
   for (const WhereEntry& w : o.diagnosis.where)
-    rows.push_back({place(o, w.place), fmt::format("{:.3f}", w.ratio)});
+    rows.push_back(
+        {place(o, w.place), fmt::format("{:.3f}", w.ratio), when(o, w), band(w), peak(w)});
   return fmt::format(
              "<h2>Where</h2>\n<p>If one place may do anything at all, the rest of a linear "
              "building "
              "fits again when it is the right one: the misfit falls to 1, from {:.3g}.</p>\n",
              o.diagnosis.ratio_before) +
-         html_table({"place", "misfit left, 1 is noise"}, rows);
+         html_table({"place", "misfit left, 1 is noise", "when", "frequencies", "largest"}, rows);
 }
 
 std::string ranking(const DiagnoseOutput& o, const std::vector<Trial>& trials, double best) {
@@ -156,21 +178,26 @@ std::string effects_section(const DiagnoseOutput& o) {
            html_text(std::string(d.equation)) + "</p>\n";
     std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < d.parameters.size(); ++i)
-      rows.push_back({html_text(std::string(d.parameters[i].meaning)),
-                      fmt::format("{:.5g}", effect.values[i]),
-                      html_text(std::string(d.parameters[i].unit))});
-    if (!rows.empty()) out += html_table({"parameter", "value", "unit"}, rows);
+      rows.push_back(
+          {html_text(std::string(d.parameters[i].meaning)), fmt::format("{:.5g}", effect.values[i]),
+           i < f.std_error.size() && f.std_error[i] > 0 ? fmt::format("{:.2g}", f.std_error[i])
+                                                        : "",
+           html_text(std::string(d.parameters[i].unit))});
+    if (!rows.empty()) out += html_table({"parameter", "value", "standard error", "unit"}, rows);
     out += fmt::format("<p>Held-out gap {} before, {} after.</p>\n", percent(f.before),
                        percent(f.after));
     for (const EffectKind kind : f.like)
       out += "<p>Cannot be told from " + html_text(std::string(name_of(kind))) +
              " with these records: a motion of another strength would tell.</p>\n";
     if (!f.alternatives.empty())
-      out += "<h3>Runners-up</h3>\n" + ranking(o, f.alternatives, f.chosen.cost);
+      out +=
+          "<h3>Runners-up</h3>\n<p>Fitted as fully as the one that was chosen; they lost by what "
+          "they leave unexplained.</p>\n" +
+          ranking(o, f.alternatives, f.chosen.cost);
   }
   if (!o.diagnosis.rejected.empty())
     out +=
-        "<h2>What did not earn its place</h2>\n<p>None explains nine tenths of what an arbitrary "
+        "<h2>What did not earn its place</h2>\n<p>None explains 97 % of what an arbitrary "
         "force at the best place would, without worsening a record.</p>\n" +
         ranking(o, o.diagnosis.rejected, o.diagnosis.rejected.front().cost);
   return out;

@@ -287,6 +287,14 @@ void add_diagnose(CLI::App& app, Action& action, DiagnoseArguments& arguments) {
       ->required();
   command->add_option("--out", arguments.out, "directory to write to")->required();
   command->add_option("--without", arguments.without, "effects that are not looked for, by name");
+  command->add_option("--force", arguments.component.force,
+                      "component test: column with the force on floor 1, N");
+  command->add_flag("--displacement", arguments.component.displacement,
+                    "component test: floor 1 measures displacement relative to the base, m");
+  command
+      ->add_flag("--prescribed", arguments.component.prescribed,
+                 "component test: the motion is prescribed, the force is what it needs")
+      ->needs("--force");
   command->add_option("--threads", arguments.threads, "at most so many; the result is the same")
       ->check(CLI::Range(1, 256));
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");

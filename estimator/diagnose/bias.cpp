@@ -98,7 +98,7 @@ Stretch without_ramp(const Stretch& s, Index axis, const Ramp& ramp) {
   const double step = s.w.size() > 1 ? s.w[1] - s.w[0] : 1;
   const Band band{(s.w[0] - 0.25 * step) / (2 * M_PI),
                   (s.w[s.w.size() - 1] + 0.25 * step) / (2 * M_PI)};
-  return make_stretch(accel, s.rate_hz, s.variance.cwiseSqrt(), band);
+  return make_stretch(accel, s.rate_hz, s.variance.cwiseSqrt(), band, s.displaced);
 }
 
 }  // namespace framewatch

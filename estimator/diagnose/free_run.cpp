@@ -95,7 +95,8 @@ System assemble_system(const Plant& plant, const Model& model, const std::vector
         -plant.constraint.transpose() * frame_mass.cwiseProduct(plant.ground.col(base[i]));
   for (std::size_t i = 0; i < base.size(); ++i) {
     auto column = out.inputs.col(static_cast<Index>(i));
-    column.head(n) = column.head(n).cwiseProduct((1 + model.mass_change.array()).matrix());
+    column.head(n) = column.head(n).cwiseProduct((1 + model.mass_change.array()).matrix()) -
+                     plant.push.col(base[i]);
   }
   for (const ModelEffect& e : model.effects) {
     if (e.form != LawForm::mass) continue;
@@ -171,7 +172,7 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
   FreeRun out;
   std::vector<Index> base;
   for (Index a = 0; a < plant.axis_count(); ++a)
-    if (plant.ground.col(a).cwiseAbs().maxCoeff() > 0) base.push_back(a);
+    if (plant.ground.col(a).cwiseAbs().maxCoeff() > 0 || plant.is_force(a)) base.push_back(a);
   const System parts = assemble_system(plant, model, base);
   const double step = 1 / (stretch.rate_hz * ratio);
   ModalSystem system(parts.mass, parts.damping, parts.stiffness, parts.inputs, step);

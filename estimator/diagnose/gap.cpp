@@ -44,6 +44,34 @@ void clip_difference(const Stretch& stretch, const VectorXcd& measured, Index ax
   difference.row(axis) = band_of(reading - cut, stretch, 1).transpose();
 }
 
+/// Of the force that a prescribed motion needs.
+Gap force_gap(const Plant& plant, const Model& model, const Stretch& stretch,
+              const Whitened& system) {
+  const Index n = plant.equations(), axes = plant.axis_count(), bins = system.bins();
+  Gap out;
+  out.difference = MatrixXcd::Zero(axes, bins);
+  out.axis = out.floor = VectorXd::Zero(axes);
+  double error = 0, noise = 0, power = 0;
+  Index axis = 0;
+  while (axis + 1 < axes && !plant.is_force(axis)) ++axis;
+  for (Index b = 0; b < bins; ++b) {
+    const auto at = static_cast<std::size_t>(b);
+    VectorXcd e(n);
+    e.real() = system.rest.segment(2 * n * b, n);
+    e.imag() = system.rest.segment(2 * n * b + n, n);
+    system.whitener[at].triangularView<Eigen::Lower>().solveInPlace(e);
+    out.difference(axis, b) = plant.push.col(axis).cast<Complex>().dot(e);
+    const VectorXcd row = system.operation[at].adjoint() * plant.push.col(axis).cast<Complex>();
+    error += std::norm(out.difference(axis, b));
+    noise += row.cwiseAbs2().dot(bin_noise(model, stretch, b));
+    power += std::norm(system.calibrated(axis, b));
+  }
+  out.axis[axis] = out.overall = out.worst = std::sqrt(error / std::max(power, 1e-300));
+  out.floor[axis] = out.overall_floor = std::sqrt(noise / std::max(power, 1e-300));
+  out.worst_axis = static_cast<int>(axis);
+  return out;
+}
+
 }  // namespace
 
 Gap gap_of(const Plant& plant, const Model& model, const Stretch& stretch, const Whitened& system) {
@@ -54,15 +82,15 @@ Gap gap_of(const Plant& plant, const Model& model, const Stretch& stretch, const
   VectorXd is_base = VectorXd::Zero(axes);
   for (Index a = 0; a < axes; ++a) {
     const SensorAxis& axis = plant.axes[static_cast<std::size_t>(a)];
-    if (axis.story == 0)
+    if (plant.is_input(a))
       is_base[a] = 1;
     else
       seen.row(a) = plant.constraint.row(plant.structure.dof(axis.story, axis.frame));
   }
+  if (plant.prescribed) return force_gap(plant, model, stretch, system);
   Gap out;
   out.difference = MatrixXcd::Zero(axes, bins);
   VectorXd noise = VectorXd::Zero(axes), power = VectorXd::Zero(axes), error = noise;
-  const VectorXd variance = bin_noise(model, stretch);
   MatrixXcd pushed(n, 0);
   for (const ModelEffect& effect : model.effects)
     if (effect.form == LawForm::broadband) {
@@ -72,6 +100,7 @@ Gap gap_of(const Plant& plant, const Model& model, const Stretch& stretch, const
     }
   for (Index b = 0; b < bins; ++b) {
     const auto at = static_cast<std::size_t>(b);
+    const VectorXd variance = bin_noise(model, stretch, b);
     VectorXcd e(n);
     e.real() = system.rest.segment(2 * n * b, n);
     e.imag() = system.rest.segment(2 * n * b + n, n);
@@ -86,8 +115,13 @@ Gap gap_of(const Plant& plant, const Model& model, const Stretch& stretch, const
         solver.solve(MatrixXcd(system.operation[at] * is_base.cast<Complex>().asDiagonal()));
     out.difference.col(b) = seen.cast<Complex>() * difference;
     const MatrixXcd carried = seen.cast<Complex>() * from_base;
-    noise += carried.cwiseAbs2() * variance + (1 - is_base.array()).matrix().cwiseProduct(variance);
-    power += system.calibrated.col(b).cwiseAbs2().cwiseProduct((1 - is_base.array()).matrix());
+    // Of a displacement in displacement.
+    VectorXd square = (1 - is_base.array()).matrix();
+    for (Index a = 0; a < axes; ++a)
+      if (stretch.is_displaced(a)) square[a] *= std::pow(stretch.w[b], -4);
+    out.difference.col(b).array() *= square.array().sqrt();
+    noise += square.cwiseProduct(carried.cwiseAbs2() * variance + variance);
+    power += square.cwiseProduct(system.calibrated.col(b).cwiseAbs2());
   }
   for (const ModelEffect& effect : model.effects)
     if (effect.form == LawForm::clipped)

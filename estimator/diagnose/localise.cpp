@@ -122,6 +122,29 @@ VectorXd step_of(const Reduced& reduced, const Linearised& at, double level,
   return normal.ldlt().solve(right);
 }
 
+bool takes_everything(const Fitter& fitter, const std::vector<Suspect>& suspects) {
+  Index size = 0;
+  for (const Suspect& s : suspects) size += s.size();
+  return size >= fitter.plant().equations();
+}
+
+/// Of places that could explain everything whatever it is: as if they did.
+Localisation everything(const Fitter& fitter, const Model& model,
+                        const std::vector<Suspect>& suspects,
+                        const std::vector<Whitened>& systems) {
+  Localisation out;
+  out.suspects = suspects;
+  out.misfit = 0;
+  out.ratio = 1;
+  out.model = model;
+  for (std::size_t r = 0; r < systems.size(); ++r) {
+    out.misfit += fitter.expected(r, model);
+    out.record_ratio.push_back(1);
+    out.motion.push_back(systems[r].calibrated);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& at,
@@ -135,6 +158,10 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   run_all(parallel, static_cast<int>(lists.size()), [&](int i) {
     Localisation& one = out[static_cast<std::size_t>(i)];
     one.suspects = lists[static_cast<std::size_t>(i)];
+    if (takes_everything(fitter, one.suspects)) {
+      one = everything(fitter, model, one.suspects, at.systems);
+      return;
+    }
     const Reduced reduced = reduce(fitter, at, model, squares, one.suspects);
     const VectorXd step = step_of(reduced, at, 1.0, kept);
     if (!step.allFinite()) return;
@@ -168,6 +195,7 @@ Localisation localise(const Fitter& fitter, const Model& start,
   for (int step = 0; step <= steps; ++step) {
     const Linearised at = fitter.linearise(model, driving, Forcing::measured);
     if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return out;
+    if (takes_everything(fitter, suspects)) return everything(fitter, model, suspects, at.systems);
     const std::vector<Index> kept = moving(at, true);
     std::vector<Square> squares;
     for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));

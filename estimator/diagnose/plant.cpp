@@ -45,6 +45,7 @@ Plant::Plant(const Structure& s, const std::vector<SensorAxis>& sensors, VectorX
   const Matrices matrices = assemble(s, table, VectorXd::Zero(table.size()));
   mass = (constraint.transpose() * matrices.mass.asDiagonal() * constraint).diagonal();
   motion = mass.cwiseInverse().asDiagonal() * building.mass;
+  push = MatrixXd::Zero(building.equations(), building.axes());
   ground = MatrixXd::Zero(s.degrees_of_freedom(), building.axes());
   for (const Element& e : elements) {
     if (e.frame < 0 || e.story != 1) continue;
@@ -53,6 +54,31 @@ Plant::Plant(const Structure& s, const std::vector<SensorAxis>& sensors, VectorX
     for (int story = 1; story <= s.stories; ++story)
       ground.row(s.dof(story, e.frame)) = share.transpose();
   }
+}
+
+Plant with_force_axis(const Plant& plant, const SensorAxis& axis) {
+  MeasuredBuilding wider = plant.building;
+  const Index axes = wider.axes() + 1;
+  const auto widen = [&](MatrixXd& m) {
+    m.conservativeResize(Eigen::NoChange, axes);
+    m.col(axes - 1).setZero();
+  };
+  widen(wider.mass);
+  widen(wider.sense);
+  for (VectorXd* v : {&wider.variance, &wider.delay}) {
+    v->conservativeResize(axes);
+    (*v)[axes - 1] = 0;
+  }
+  std::vector<SensorAxis> sensors = plant.axes;
+  sensors.push_back(axis);
+  Plant out(plant.structure, sensors, plant.design, std::move(wider));
+  out.stiff_floors = plant.stiff_floors;
+  out.highest_hz = plant.highest_hz;
+  out.prescribed = plant.prescribed;
+  out.push.leftCols(axes - 1) = plant.push;
+  out.push.col(axes - 1) =
+      -out.constraint.row(plant.structure.dof(axis.story, axis.frame)).transpose();
+  return out;
 }
 
 std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,

@@ -34,11 +34,25 @@ struct Plant {
   Eigen::VectorXd mass;        ///< of the coordinates, kg
   Eigen::MatrixXd motion;      ///< coordinates x axes: their absolute motion
   Eigen::MatrixXd ground;      ///< degrees of freedom x axes: the ground's motion there
+  /// equations x axes: minus where the force that an axis measures acts; zero for others.
+  Eigen::MatrixXd push;
+  /// A component's motion is prescribed and the force for it measured: the model's output is that
+  /// force.
+  bool prescribed = false;
 
   Eigen::Index equations() const { return building.equations(); }
   Eigen::Index element_count() const { return building.elements(); }
   Eigen::Index axis_count() const { return building.axes(); }
+  bool is_force(Eigen::Index axis) const { return !push.col(axis).isZero(0); }
+  /// Of the base, or of a force: what a simulation is driven by.
+  bool is_input(Eigen::Index axis) const {
+    return axes[static_cast<std::size_t>(axis)].story == 0 || is_force(axis);
+  }
 };
+
+/// The same with one more axis, which measures a force (N) on one degree of freedom from outside.
+/// frame and story of `axis` say where.
+Plant with_force_axis(const Plant& plant, const SensorAxis& axis);
 
 /// design: in the order of `structure`'s parameters. Empty when the equations need a motion that no
 /// axis measures.

@@ -13,13 +13,14 @@ using Eigen::Index;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr double kNoiseLow = 0.20;   ///< of the sampling rate
-constexpr double kNoiseHigh = 0.46;  ///< likewise
+constexpr double kComponentLow = 0.40;  ///< of the sampling rate; tests shake higher than quakes
+constexpr double kNoiseLow = 0.20;      ///< of the sampling rate
+constexpr double kNoiseHigh = 0.46;     ///< likewise
 constexpr double kQuietShare = 0.2;
 constexpr double kLeastVariance = 1e-16;  ///< (m/s^2)^2; exact data have no noise at all
 
 /// Mean of the periodogram between the two shares of the sampling rate, per sample.
-double high_variance(const VectorXd& block) {
+double high_variance(const VectorXd& block, double low) {
   const Index size = block.size();
   VectorXd tapered = block.array() - block.mean();
   double power = 0;
@@ -34,7 +35,7 @@ double high_variance(const VectorXd& block) {
   int count = 0;
   for (Index k = 0; k < half.size(); ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(size);
-    if (share < kNoiseLow || share > kNoiseHigh) continue;
+    if (share < low || share > kNoiseHigh) continue;
     sum += std::norm(half[k]);
     ++count;
   }
@@ -43,11 +44,11 @@ double high_variance(const VectorXd& block) {
 
 }  // namespace
 
-double quiet_noise_variance(const VectorXd& accel, double rate_hz) {
+double quiet_noise_variance(const VectorXd& accel, double rate_hz, double low) {
   const Index block = smooth_size(std::max<Index>(32, static_cast<Index>(std::lround(rate_hz))));
   std::vector<double> levels;
   for (Index at = 0; at + block <= accel.size(); at += block)
-    levels.push_back(high_variance(accel.segment(at, block)));
+    levels.push_back(high_variance(accel.segment(at, block), low));
   if (levels.empty()) return kLeastVariance;
   std::sort(levels.begin(), levels.end());
   const auto kept = std::max<std::size_t>(
@@ -56,13 +57,14 @@ double quiet_noise_variance(const VectorXd& accel, double rate_hz) {
   for (std::size_t i = 0; i < kept; ++i) log_sum += levels[i];
   const double mean = log_sum / static_cast<double>(kept);
   // The quietest fifth of Gaussian estimates lies below their mean: 1.40 standard deviations.
-  const double averaged = static_cast<double>(block) * (kNoiseHigh - kNoiseLow) / 1.94;
+  const double averaged = static_cast<double>(block) * (kNoiseHigh - low) / 1.94;
   return std::max(kLeastVariance, mean / std::max(0.5, 1 - 1.40 / std::sqrt(averaged)));
 }
 
 Stretch make_stretch(const Eigen::MatrixXd& accel, double rate_hz, const VectorXd& noise,
-                     const Band& band) {
+                     const Band& band, const std::vector<char>& displaced) {
   Stretch out;
+  out.displaced = displaced;
   out.rate_hz = rate_hz;
   const Index intervals = smooth_size(std::max<Index>(accel.rows() - 1, 0));
   out.accel = accel.topRows(intervals + 1);
@@ -70,7 +72,11 @@ Stretch make_stretch(const Eigen::MatrixXd& accel, double rate_hz, const VectorX
   out.variance.resize(accel.cols());
   for (Index a = 0; a < accel.cols(); ++a)
     out.variance[a] =
-        noise[a] > 0 ? noise[a] * noise[a] : quiet_noise_variance(accel.col(a), rate_hz);
+        noise[a] > 0 ? noise[a] * noise[a]
+                     : quiet_noise_variance(accel.col(a), rate_hz,
+                                            std::count(displaced.begin(), displaced.end(), 1) > 0
+                                                ? kComponentLow
+                                                : kNoiseLow);
 
   const double step_hz = rate_hz / static_cast<double>(std::max<Index>(intervals, 1));
   out.first_bin = std::max<Index>(1, static_cast<Index>(std::ceil(band.low_hz / step_hz)));
@@ -85,6 +91,7 @@ Stretch make_stretch(const Eigen::MatrixXd& accel, double rate_hz, const VectorX
     VectorXd periodic = out.accel.col(a).head(intervals);
     periodic[0] = 0.5 * (out.accel(0, a) + out.accel(intervals, a));
     out.spectrum.row(a) = forward_fourier(periodic).segment(out.first_bin, bins).transpose();
+    if (out.is_displaced(a)) out.spectrum.row(a).array() *= -out.w.transpose().array().square();
   }
   return out;
 }

@@ -47,7 +47,8 @@ void follow(const Plant& plant, const Model& model, std::vector<Suspect>& suspec
 std::vector<Suspect> suspects_of(const Plant& plant, const Model& model) {
   std::vector<Suspect> out;
   const Structure& s = plant.structure;
-  for (Index a = 0; a < plant.axis_count(); ++a) {
+  // One equation does not tell a reading from a force.
+  for (Index a = 0; a < plant.axis_count() && plant.equations() > 1; ++a) {
     Suspect axis;
     axis.kind = Suspect::Kind::axis;
     axis.axis = static_cast<int>(a);

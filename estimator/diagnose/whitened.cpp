@@ -83,12 +83,26 @@ VectorXd whiten_axis(const Whitened& s, Index axis, const VectorXcd& signal) {
   return out;
 }
 
-VectorXd bin_noise(const Model& model, const Stretch& stretch) {
+VectorXd bin_noise(const Model& model, const Stretch& stretch, Index bin) {
   VectorXd out = static_cast<double>(stretch.intervals()) * stretch.variance;
+  for (Index a = 0; a < out.size(); ++a)
+    if (stretch.is_displaced(a)) out[a] *= std::pow(stretch.w[bin], 4);
   for (const ModelEffect& e : model.effects)
     if (e.form == LawForm::swapped) std::swap(out[e.place.channel], out[e.place.with_channel]);
   return out;
 }
+
+namespace {
+
+/// The same, with axes whose reading is not believed.
+VectorXd believed_noise(const Model& model, const Stretch& stretch, Index bin) {
+  VectorXd out = bin_noise(model, stretch, bin);
+  for (const ModelEffect& e : model.effects)
+    if (e.form == LawForm::clipped) out[e.place.channel] *= kNotBelieved;
+  return out;
+}
+
+}  // namespace
 
 Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
                 Forcing forcing, const MatrixXcd& motion, int ratio, const Whitened* weights) {
@@ -100,7 +114,7 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
   std::vector<const ModelEffect*> laws;
   for (const ModelEffect& e : model.effects)
     if (e.element_law()) laws.push_back(&e);
-  if (forcing == Forcing::simulated && !laws.empty()) {
+  if (forcing == Forcing::simulated && !laws.empty() && !plant.prescribed) {
     FreeRun run = free_run(plant, model, stretch, record, ratio);
     if (!run.good) return out;
     out.tracks = std::move(run.tracks);
@@ -147,10 +161,8 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
               band_of(signal, stretch, 1).transpose();
   }
 
-  VectorXd noise = bin_noise(model, stretch);
   MatrixXd pushed = MatrixXd::Zero(n, n);  // covariance of forces that may be anything
   for (const ModelEffect& effect : model.effects) {
-    if (effect.form == LawForm::clipped) noise[effect.place.channel] *= kNotBelieved;
     if (effect.form != LawForm::broadband) continue;
     const VectorXd at = node_direction(plant, effect.place.story, effect.place.frame);
     pushed += at * at.transpose() / at.squaredNorm();
@@ -176,9 +188,10 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
   VectorXcd e(n);
   for (Index b = 0; b < bins; ++b) {
     const double w = stretch.w[b];
+    const VectorXd noise = believed_noise(model, stretch, b);
     MatrixXcd& d = out.operation[static_cast<std::size_t>(b)];
     d.resize(n, plant.axis_count());
-    d.real() = mass + act * (theta.head(elements) / -(w * w)).asDiagonal() * sense;
+    d.real() = mass + plant.push + act * (theta.head(elements) / -(w * w)).asDiagonal() * sense;
     d.imag() = act * (theta.tail(elements) / -w).asDiagonal() * sense;
     for (const ModelEffect& effect : model.effects)
       if (!effect.element_law()) d += linear_operation(plant, model, effect, w);
@@ -244,6 +257,7 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
     r.real() = out.rest.segment(2 * n * b, n);
     r.imag() = out.rest.segment(2 * n * b + n, n);
     const std::size_t at = static_cast<std::size_t>(b);
+    const VectorXd noise = believed_noise(model, stretch, b);
     out.motion.col(b) -= share * (noise.asDiagonal() *
                                   (out.operation[at].adjoint() * (out.whitener[at].adjoint() * r)));
   }

@@ -36,8 +36,8 @@ struct Whitened {
   Eigen::Index bins() const { return calibrated.cols(); }
 };
 
-/// Variance of every axis' noise in one bin, of the motion that the model says it is of.
-Eigen::VectorXd bin_noise(const Model& model, const Stretch& stretch);
+/// Variance of every axis' noise in a bin, of the motion that the model says it is of.
+Eigen::VectorXd bin_noise(const Model& model, const Stretch& stretch, Eigen::Index bin);
 
 /// motion: axes x bins that drives the laws when forcing is `measured`; empty: the measured one.
 /// weights: whose whitener and end terms are taken; null: the model's own.

@@ -1,3 +1,5 @@
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -63,6 +65,42 @@ TEST(StudySubset, AnEffectThatIsNotInTheCatalogueIsNotNamedConfidently) {
   const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, {"two_sided_gap"});
   EXPECT_FALSE(o.confidently_wrong()) << (o.named.empty() ? "" : o.named.front());
   EXPECT_NE(o.verdict, "adequate");
+}
+
+TEST(DiagnoseRefuses, WhatItCannotJudge) {
+  constexpr int kBadInput = 2;
+  const test::TemporaryDirectory folder;
+  const std::string directory = folder.path("case"), brief = folder.path("brief.csv");
+  CaseOptions options;
+  std::string why;
+  options.seconds = 8;
+  ASSERT_TRUE(write_case(*make_case("nothing", "none", options, why), directory, why)) << why;
+  std::ofstream(brief) << "time_s,F1-y1\n0,0\n0.01,0\n0.02,0\n";
+  daemon::DiagnoseArguments good;
+  good.config = directory + "/config.toml";
+  good.train = {directory + "/train.csv.gz"};
+  good.holdout = {directory + "/holdout.csv.gz"};
+  good.out = directory + "/out";
+  good.quiet = true;
+  const auto refused = [&](daemon::DiagnoseArguments a) {
+    const bool two = daemon::diagnose_command(a) == kBadInput;
+    return two && !std::filesystem::exists(good.out);
+  };
+  daemon::DiagnoseArguments a = good;
+  a.holdout = a.train;
+  EXPECT_TRUE(refused(a)) << "one file twice";
+  a = good;
+  a.holdout = {brief};
+  EXPECT_TRUE(refused(a)) << "too short, and channels are missing";
+  a = good;
+  a.without = {"gremlins"};
+  EXPECT_TRUE(refused(a)) << "no such effect";
+  a = good;
+  a.component.displacement = true;
+  EXPECT_TRUE(refused(a)) << "a building is no component";
+  a = good;
+  a.train = {directory + "/nowhere.csv"};
+  EXPECT_TRUE(refused(a)) << "no such file";
 }
 
 }  // namespace
