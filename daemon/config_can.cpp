@@ -161,8 +161,9 @@ class Reader {
                  : timing == "clock" || (timing.empty() && has_clock)     ? CanTiming::clock
                  : timing == "counter" || (timing.empty() && has_counter) ? CanTiming::counter
                                                                           : CanTiming::period;
-    read_stamp("clock", map.timing == CanTiming::clock, node.clock, node, section);
-    read_stamp("counter", map.timing == CanTiming::counter, node.counter, node, section);
+    read_stamp("clock", map.timing == CanTiming::clock, false, node.clock, node, section);
+    read_stamp("counter", map.timing == CanTiming::counter, map.timing == CanTiming::sync,
+               node.counter, node, section);
     if (map.timing == CanTiming::sync && section.given("rate_hz") && rate_hz > 0)
       section.problem("rate_hz", "the SYNC sets the rate: see sync_period_s of [[can]]");
     if (map.timing == CanTiming::sync) map.period_us = config_.can.buses[node.bus].sync_period_us;
@@ -174,13 +175,13 @@ class Reader {
       section.problem("delay_s", "without timing = \"sync\" it is latency_s that counts");
   }
 
-  void read_stamp(const char* key, bool used, Found& found, const NodeReading& node,
+  void read_stamp(const char* key, bool needed, bool allowed, Found& found, const NodeReading& node,
                   ConfigSection& section) {
     if (!section.given(key) || section.text(key).empty()) {
-      if (used) section.problem(key, fmt::format("is missing for timing = \"{}\"", key));
+      if (needed) section.problem(key, fmt::format("is missing for timing = \"{}\"", key));
       return;
     }
-    if (!used) return section.problem(key, "is not used with this timing");
+    if (!needed && !allowed) return section.problem(key, "is not used with this timing");
     if (!buses_[node.bus].known) return;
     found = find_signal(buses_[node.bus], section.text(key));
     if (found.problem.empty() && std::find(node.messages.begin(), node.messages.end(),

@@ -55,6 +55,9 @@ std::vector<CanBusReading> read_can_buses(const TomlValue& document, Config& con
     map.sync_id = static_cast<std::uint32_t>(section.integer("sync_id"));
     const double sync_s = section.number("sync_period_s");
     map.sync_period_us = sync_s > 0 ? 1e6 * sync_s : 1e6 / config.pipeline.options.rate_hz;
+    map.sync_overflow = static_cast<std::int16_t>(section.integer("sync_overflow"));
+    if (section.good("sync_overflow") && map.sync_overflow == 1)
+      section.problem("sync_overflow", "must be 0 or 2 to 240, got 1");
     map.send_sync = section.boolean("send_sync");
     map.nmt_start = section.boolean("nmt_start");
     map.receive_buffer_bytes = section.integer("receive_buffer_bytes");

@@ -25,6 +25,10 @@ std::vector<BusFrame> CanEncoder::instant(const std::vector<double>& values) {
     if (!latched) continue;
     BusFrame sync{static_cast<int>(b), {}};
     sync.frame.id = map_.buses[b].sync_id;
+    if (const int overflow = map_.buses[b].sync_overflow; overflow > 0) {
+      sync.frame.length = 1;
+      sync.frame.data[0] = static_cast<std::uint8_t>(1 + instant_ % overflow);
+    }
     out.push_back(sync);
   }
   for (const std::size_t n : order_) add_node(n, values, out);

@@ -68,7 +68,9 @@ void CanIntake::make_node(const CanNodeMap& node) {
     bus.nodes.push_back(index);
     if (!bus.sync) {
       const double period_us = map_.buses[static_cast<std::size_t>(node.bus)].sync_period_us;
-      bus.sync = make_timer({CanTiming::period, period_us, period_us, 0});
+      const int overflow = map_.buses[static_cast<std::size_t>(node.bus)].sync_overflow;
+      bus.sync = make_timer({overflow > 0 ? CanTiming::counter : CanTiming::period, period_us,
+                             period_us, static_cast<double>(overflow)});
     }
   } else {
     made.timer = make_timer(settings_of(node));
@@ -97,7 +99,7 @@ void CanIntake::frame(int index, const CanFrame& frame) {
   const CanBusMap& settings = map_.buses[static_cast<std::size_t>(index)];
   if (bus.sync && frame.id == settings.sync_id && frame.extended == (settings.sync_id > 0x7FF)) {
     ++counters.syncs;
-    return sync(bus, host_us);
+    return sync(bus, settings, frame, host_us);
   }
   const std::vector<FrameLookup::Target>& targets = bus.lookup.find(frame.id, frame.extended);
   if (targets.empty()) {
@@ -167,7 +169,9 @@ void CanIntake::place(Node& node, int at, const CanFrame& frame, TimedValues val
     const double after_us = host_us - bus.sync_us;
     const double window_us =
         kSyncWindow * map_.buses[static_cast<std::size_t>(map.bus)].sync_period_us;
-    if (after_us < 0 || after_us > window_us) {
+    const bool in_window = after_us >= 0 && after_us <= window_us;
+    const bool counted = map.messages[m].counter && bus.sync_us >= 0;
+    if (counted ? !agrees(node, *map.messages[m].counter, frame, bus, in_window) : !in_window) {
       ++(bus.sync_us < 0 ? node.counters.unplaced : node.counters.late);
       return;
     }
@@ -198,10 +202,29 @@ void CanIntake::place(Node& node, int at, const CanFrame& frame, TimedValues val
   node.timer->see(reading, host_us, std::move(values));
 }
 
-void CanIntake::sync(Bus& bus, double host_us) {
+/// Whether a latched node's counter says that its frame belongs to the last SYNC. A node that
+/// missed a SYNC or restarted counts otherwise from then on.
+bool CanIntake::agrees(Node& node, const CanField& counter, const CanFrame& frame, const Bus& bus,
+                       bool in_window) {
+  constexpr int kSure = 5;
+  const std::int64_t modulus = std::int64_t{1} << std::min(counter.bits, 62);
+  const std::int64_t difference = raw_integer(counter, frame.data) - bus.sync->opened_number();
+  const std::int64_t at_sync = (difference % modulus + modulus) % modulus;
+  if (node.counter_at_sync == at_sync) {
+    node.disagreements = 0;
+    return true;
+  }
+  if (!in_window || (node.counter_at_sync >= 0 && ++node.disagreements < kSure)) return false;
+  node.counter_at_sync = at_sync;
+  node.disagreements = 0;
+  return true;
+}
+
+void CanIntake::sync(Bus& bus, const CanBusMap& settings, const CanFrame& frame, double host_us) {
+  if (settings.sync_overflow > 0 && frame.length != 1) return;
   flush(bus);
   bus.sync_us = host_us;
-  bus.sync->see(0, host_us, {-1, -1, 0, {}});
+  bus.sync->see(frame.data[0] % std::max<int>(settings.sync_overflow, 1), host_us, {-1, -1, 0, {}});
 }
 
 /// A message that came twice between two SYNCs and not at all before: its first frame was late.

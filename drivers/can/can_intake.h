@@ -63,6 +63,8 @@ class CanIntake {
     std::vector<SequenceCounter> sequence;  ///< by message
     std::unique_ptr<StreamTimer> timer;     ///< null when SYNC gives the time
     std::vector<Waiting> waiting;           ///< by message, SYNC only
+    std::int64_t counter_at_sync = -1;      ///< counter minus the SYNC's number; -1: not known
+    int disagreements = 0;                  ///< in a row, of counters with the SYNC
     double opened_us = -1e18;               ///< stamp of the frame that opened the sample
     std::vector<std::uint8_t> attached;     ///< by message, to that sample
   };
@@ -74,7 +76,9 @@ class CanIntake {
   };
 
   void make_node(const CanNodeMap& node);
-  void sync(Bus& bus, double host_us);
+  void sync(Bus& bus, const CanBusMap& settings, const CanFrame& frame, double host_us);
+  bool agrees(Node& node, const CanField& counter, const CanFrame& frame, const Bus& bus,
+              bool in_window);
   void flush(Bus& bus);
   bool canopen(int bus, const CanFrame& frame);
   void message(int node, int message, const CanFrame& frame, double host_us);

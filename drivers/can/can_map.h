@@ -62,6 +62,7 @@ struct CanBusMap {
   double sync_period_us = 10000;
   bool send_sync = false;
   bool nmt_start = false;
+  std::int16_t sync_overflow = 0;  ///< the SYNC carries a counter from 1 to this; 0: none
   int receive_buffer_bytes = 2097152;
 };
 

@@ -146,6 +146,10 @@ void CanSource::send_sync(std::size_t b) {
   if (!buses_[b].state.open) return;
   CanFrame sync;
   sync.id = map_.buses[b].sync_id;
+  if (const int overflow = map_.buses[b].sync_overflow; overflow > 0) {
+    sync.length = 1;
+    sync.data[0] = static_cast<std::uint8_t>(1 + buses_[b].syncs++ % overflow);
+  }
   (void)buses_[b].socket.write(sync);
 }
 

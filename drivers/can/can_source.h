@@ -49,6 +49,7 @@ class CanSource {
     CanSocket socket;
     bool attached = false;
     int timer = -1;  ///< of the SYNC; -1: none
+    std::int64_t syncs = 0;
     BusState state;
     std::int64_t dropped_before = 0;  ///< by sockets that are closed
     std::int64_t look_again_us = 0;

@@ -15,6 +15,8 @@ constexpr double kEarliest_us = -5'000;  ///< before the line: nothing is receiv
 constexpr double kLatest_us = 30'000;    ///< a busy bus
 constexpr double kSame_us = 20'000;      ///< what two frames of one step may differ by
 constexpr double kAbsurd_us = 2e6;       ///< nobody delivers so late
+constexpr int kPatience = 100;           ///< late frames without a jump before they are a new start
+constexpr std::int64_t kNoJump = 3;      ///< numbers
 constexpr double kActive_us = 2e6;       ///< a stream without a frame for so long does not vote
 /// Of a period, that a frame may come before the line; after it the rest.
 constexpr double kEarlyShare = 0.25;
@@ -67,6 +69,13 @@ bool StreamTimer::believable(double late_us) const {
          late_us <= std::max(kLatest_us, 1.5 * settings_.period_us);
 }
 
+/// A starved sender or adapter, and nothing that restarted.
+bool StreamTimer::only_late(const Held& held) const {
+  const std::int64_t jump = held.values.number - delivered_;
+  const double late = late_us(held);
+  return jump > 0 && jump <= kNoJump && late > 0 && late < kAbsurd_us;
+}
+
 std::size_t StreamTimer::timed_held() const {
   return static_cast<std::size_t>(
       std::count_if(held_.begin(), held_.end(), [](const Held& h) { return h.timed; }));
@@ -110,6 +119,7 @@ void StreamTimer::take(Held held) {
   }
   if (!believable(late_us(held))) return hold(std::move(held));
   if (!held_.empty()) give_out_held();
+  late_ = false;
   opened_is_held_ = false;
   line_.add(held.device_us, held.host_us);
   remember(held);
@@ -129,13 +139,24 @@ void StreamTimer::attach(TimedValues values) {
 void StreamTimer::hold(Held held) {
   const double late = late_us(held);
   if (!held_.empty() && std::abs(late_us(held_.front()) - late) > kSame_us) give_out_held();
+  const bool wait = late_ && patience_ > 0 && only_late(held);
   held_.push_back(std::move(held));
+  if (wait) {
+    --patience_;
+    return give_out_held();
+  }
   if (timed_held() < kSure) return;
   double step_us = late;
   for (const Held& h : held_)
     if (h.timed) step_us = std::min(step_us, late_us(h));
   const double now_us = held_.back().host_us;
   if (steps_.resolve(step_us, now_us)) return;
+  if (!late_ && only_late(held_.front())) {
+    late_ = true;
+    patience_ = kPatience;
+    return give_out_held();
+  }
+  late_ = false;
   ++restarts_;
   start_anew();
 }

@@ -61,6 +61,8 @@ class StreamTimer {
 
   /// A frame that opens a sample. `reading`: counter or clock, in its units; unused for period.
   void see(double reading, double host_us, TimedValues values);
+  /// Number of the frame seen last.
+  std::int64_t opened_number() const { return opened_.values.number; }
   /// More of the sample opened last.
   void attach(TimedValues values);
   /// The node said that it starts anew (CANopen boot-up).
@@ -83,6 +85,7 @@ class StreamTimer {
   double device_of(double reading, double host_us) const;
   double late_us(const Held& held) const { return held.host_us - line_.host_us(held.device_us); }
   bool believable(double late_us) const;
+  bool only_late(const Held& held) const;
   std::size_t timed_held() const;
   void remember(const Held& held);
   void take(Held held);
@@ -105,6 +108,8 @@ class StreamTimer {
   Held opened_{};  ///< by see(), without its values
   bool opened_is_held_ = false;
   std::int64_t delivered_ = -1;  ///< largest number
+  bool late_ = false;  ///< the stream goes on without a jump, only later than a bus explains
+  int patience_ = 0;   ///< frames it may go on so
   std::int64_t restarts_ = 0, unplaced_ = 0;
 };
 

@@ -62,7 +62,7 @@ TEST(ConfigCan, TellsEveryProblemAtItsPlace) {
          "no [[can_node]] is named \"O\"");
   expect(problems_of(kX, kBus + kNode + "counter = \"Accel.Cont\"\n"), "did you mean Count?");
   expect(problems_of(kX, kBus + kNode + "timing = \"clock\"\n"), "clock: is missing for timing");
-  expect(problems_of(kX, kBus + kNode + "timing = \"sync\"\ncounter = \"Accel.Count\"\n"),
+  expect(problems_of(kX, kBus + kNode + "timing = \"period\"\ncounter = \"Accel.Count\"\n"),
          "counter: is not used with this timing");
   expect(problems_of(kX, kBus + kNode + "timing = \"sync\"\nlatency_s = 0.001\n"), "latency_s:");
   expect(problems_of(kX, kBus + kNode + "delay_s = 0.001\n"), "delay_s:");
