@@ -214,8 +214,10 @@ class Search {
     sharpen(trials, now);
     rank();
     const Trial& best = trials.front();
-    const bool most =
-        best.fraction >= kTakesAway || (best.fraction >= kTakesMost && best.cost - bound < needed);
+    // In a component test the place is no question, and real parts follow no law to the end.
+    const bool component = plant_.equations() == 1;
+    const bool most = best.fraction >= (component ? kTakesMost : kTakesAway) ||
+                      (best.fraction >= kTakesMost && best.cost - bound < needed);
     bool holds = most && cost - best.cost > needed;
     for (std::size_t r = 0; r < stretches_.size(); ++r)
       if (best.misfit[r] > 1.02 * now.misfit[r] + needed) holds = false;
@@ -227,7 +229,7 @@ class Search {
       const FoundEffect& earlier = out_.effects[i];
       if (!same_spot(earlier.chosen.place, best.place)) continue;
       // Two laws at one place are one that the catalogue does not have.
-      if (earlier.chosen.fraction < kOneLaw) withdraw(now, i);
+      if (earlier.chosen.fraction < kOneLaw && !component) withdraw(now, i);
       return false;
     }
     adopt(trials, now);

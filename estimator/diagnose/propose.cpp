@@ -95,7 +95,7 @@ std::vector<Proposal> propose(const Fitter& fitter, const Localisation& all, std
   const bool element = suspect.kind == Suspect::Kind::element;
   if (element) out = element_proposals(fitter, place, needed, suspect.element);
   if (suspect.kind == Suspect::Kind::node ||
-      (element && suspect.place.story == 1 && suspect.place.frame >= 0)) {
+      (element && plant.equations() > 1 && suspect.place.story == 1 && suspect.place.frame >= 0)) {
     EffectPlace node = suspect.place;
     node.kind = PlaceKind::node;
     add_node_proposals(fitter, place, needed, node, out);
