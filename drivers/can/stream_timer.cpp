@@ -69,11 +69,11 @@ bool StreamTimer::believable(double late_us) const {
          late_us <= std::max(kLatest_us, 1.5 * settings_.period_us);
 }
 
-/// A starved sender or adapter, and nothing that restarted.
-bool StreamTimer::only_late(const Held& held) const {
+/// Nothing restarted: a starved sender or adapter, or a line begun with late frames.
+bool StreamTimer::goes_on(const Held& held) const {
   const std::int64_t jump = held.values.number - delivered_;
   const double late = late_us(held);
-  return jump > 0 && jump <= kNoJump && late > 0 && late < kAbsurd_us;
+  return jump > 0 && jump <= kNoJump && late > -kLatest_us && late < kAbsurd_us;
 }
 
 std::size_t StreamTimer::timed_held() const {
@@ -117,7 +117,8 @@ void StreamTimer::take(Held held) {
     if (timed_held() >= wanted) settle();
     return;
   }
-  if (!believable(late_us(held))) return hold(std::move(held));
+  const double late = late_us(held);
+  if (!believable(late) && !(late < 0 && goes_on(held))) return hold(std::move(held));
   if (!held_.empty()) give_out_held();
   late_ = false;
   opened_is_held_ = false;
@@ -139,7 +140,7 @@ void StreamTimer::attach(TimedValues values) {
 void StreamTimer::hold(Held held) {
   const double late = late_us(held);
   if (!held_.empty() && std::abs(late_us(held_.front()) - late) > kSame_us) give_out_held();
-  const bool wait = late_ && patience_ > 0 && only_late(held);
+  const bool wait = late_ && patience_ > 0 && goes_on(held);
   held_.push_back(std::move(held));
   if (wait) {
     --patience_;
@@ -151,7 +152,7 @@ void StreamTimer::hold(Held held) {
     if (h.timed) step_us = std::min(step_us, late_us(h));
   const double now_us = held_.back().host_us;
   if (steps_.resolve(step_us, now_us)) return;
-  if (!late_ && only_late(held_.front())) {
+  if (!late_ && goes_on(held_.front())) {
     late_ = true;
     patience_ = kPatience;
     return give_out_held();

@@ -85,7 +85,7 @@ class StreamTimer {
   double device_of(double reading, double host_us) const;
   double late_us(const Held& held) const { return held.host_us - line_.host_us(held.device_us); }
   bool believable(double late_us) const;
-  bool only_late(const Held& held) const;
+  bool goes_on(const Held& held) const;
   std::size_t timed_held() const;
   void remember(const Held& held);
   void take(Held held);
