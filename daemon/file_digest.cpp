@@ -45,4 +45,17 @@ std::string sha256(const std::string& bytes) {
   return digest.get();
 }
 
+std::string sha256_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return {};
+  const std::unique_ptr<GChecksum, decltype(&g_checksum_free)> sum(
+      g_checksum_new(G_CHECKSUM_SHA256), &g_checksum_free);
+  std::string part(1 << 20, '\0');
+  while (file) {
+    file.read(part.data(), static_cast<std::streamsize>(part.size()));
+    g_checksum_update(sum.get(), reinterpret_cast<const guchar*>(part.data()), file.gcount());
+  }
+  return file.bad() ? std::string() : g_checksum_get_string(sum.get());
+}
+
 }  // namespace framewatch::daemon

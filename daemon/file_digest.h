@@ -10,5 +10,7 @@ std::optional<std::string> read_text_file(const std::string& path, std::string& 
 
 /// SHA-256, 64 lower-case hexadecimal digits.
 std::string sha256(const std::string& bytes);
+/// The same of a file of any size; empty when it cannot be read.
+std::string sha256_of_file(const std::string& path);
 
 }  // namespace framewatch::daemon

@@ -84,6 +84,10 @@ std::optional<window_estimate_t> decode_window_estimate(std::span<const std::uin
   return decode<window_estimate_t>(payload, "8888448n[884444]n[4888]4n[8888844]");
 }
 
+std::optional<status_t> decode_status(std::span<const std::uint8_t> payload) {
+  return decode<status_t>(payload, "88ss8888488n[s88888888]");
+}
+
 std::optional<event_t> decode_event(std::span<const std::uint8_t> payload) {
   return decode<event_t>(payload, "888844ss88sss");
 }

@@ -8,6 +8,7 @@
 
 #include <framewatch/event_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
+#include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 namespace framewatch::drivers {
@@ -19,6 +20,7 @@ std::optional<std::int64_t> fingerprint(std::span<const std::uint8_t> payload);
 /// generated decoders allocate whatever a length says. Empty when anything is not as it must be.
 std::optional<parameter_table_t> decode_parameter_table(std::span<const std::uint8_t> payload);
 std::optional<window_estimate_t> decode_window_estimate(std::span<const std::uint8_t> payload);
+std::optional<status_t> decode_status(std::span<const std::uint8_t> payload);
 std::optional<event_t> decode_event(std::span<const std::uint8_t> payload);
 
 }  // namespace framewatch::drivers
