@@ -2,8 +2,11 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -16,8 +19,12 @@
 #include "daemon/demo_network.h"
 #include "daemon/demo_view.h"
 #include "daemon/estimation.h"
+#include "daemon/live_view.h"
+#include "daemon/report_command.h"
 #include "daemon/scenario.h"
 #include "daemon/simulation_output.h"
+#include "daemon/web_server.h"
+#include "drivers/lcm_log.h"
 #include "drivers/lcm_source.h"
 
 namespace framewatch::daemon {
@@ -28,14 +35,72 @@ int demo_port() {
   return 7700 + static_cast<int>(::getpid() % 1000);
 }
 
-std::map<std::string, double> truth_of(const Scenario& s) {
+// What the viewer is to see.
+constexpr double kDropAt_s = 20, kDrop_ratio = 0.15;
+constexpr const char* kDropped = "kx_1_y2";
+constexpr double kForgotten_s = 6;  // the window and the filters have seen nothing else by then
+constexpr double kFlush_s = 0.05;
+
+std::map<std::string, double> truth_of(const Scenario& s, const Eigen::VectorXd& theta) {
   const ParameterTable table(s.config.pipeline.structure);
   std::map<std::string, double> out;
-  for (int i = 0; i < table.size(); ++i) out[table[i].name] = s.truth[i];
+  for (int i = 0; i < table.size(); ++i) out[table[i].name] = theta[i];
   return out;
 }
 
-/// The three parties of the demo, each with its own LCM where the provider allows it.
+/// What the frame is like after it has lost some of its stiffness.
+Eigen::VectorXd dropped(const Scenario& s) {
+  Eigen::VectorXd theta = s.truth;
+  theta[ParameterTable(s.config.pipeline.structure).find(kDropped).value()] *= 1 - kDrop_ratio;
+  return theta;
+}
+
+/// The logs of a demo that is to have a report, in a folder of their own; and the report.
+class DemoLogs {
+ public:
+  explicit DemoLogs(const std::string& report) : report_(report) {
+    if (report_.empty()) return;
+    char name[] = "/tmp/framewatch-demo-XXXXXX";
+    if (const char* made = ::mkdtemp(name)) folder_ = made;
+    open_ = !folder_.empty() && raw_.open(folder_ + "/raw.lcmlog") &&
+            estimates_.open(folder_ + "/estimates.lcmlog");
+    if (!open_) fmt::print(stderr, "framewatch demo: no log in /tmp, so no report\n");
+  }
+  ~DemoLogs() {
+    std::error_code ignored;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
+  }
+  DemoLogs(const DemoLogs&) = delete;
+  DemoLogs& operator=(const DemoLogs&) = delete;
+
+  void raw(std::int64_t time_us, const std::string& channel, const void* data, std::size_t size) {
+    open_ = open_ && raw_.write(time_us, channel, data, size);
+  }
+  void estimate(std::int64_t time_us, const std::string& channel,
+                const std::vector<std::uint8_t>& bytes) {
+    open_ = open_ && estimates_.write(time_us, channel, bytes.data(), bytes.size());
+  }
+  void write_report() {
+    if (report_.empty()) return;
+    const std::string config = folder_ + "/table_two_story.toml";
+    std::ofstream(config) << kDemoConfig;
+    if (!open_ || !raw_.close() || !estimates_.close()) return;
+    ReportArguments a;
+    a.estimates = folder_ + "/estimates.lcmlog";
+    a.config = config;
+    a.raw = {folder_ + "/raw.lcmlog"};
+    a.out = report_;
+    a.title = "Demo: a frame loses 15 % of its stiffness";
+    (void)report(a);
+  }
+
+ private:
+  std::string report_, folder_;
+  bool open_ = false;
+  drivers::LcmLogWriter raw_, estimates_;
+};
+
+/// The four parties of the demo, each with its own LCM where the provider allows it.
 class DemoBus {
  public:
   bool open(const DemoNetwork& network, int receive_buffer_bytes, std::string& error) {
@@ -49,16 +114,22 @@ class DemoBus {
   lcm::LCM& building() { return *all_[0]; }
   lcm::LCM& estimator() { return all_[1] ? *all_[1] : building(); }
   lcm::LCM& view() { return all_[2] ? *all_[2] : building(); }
+  lcm::LCM& page() { return all_[3] ? *all_[3] : building(); }
 
  private:
-  std::unique_ptr<lcm::LCM> all_[3];
+  std::unique_ptr<lcm::LCM> all_[4];
 };
 
-void introduce(const Scenario& s, const DemoNetwork& network, double seconds) {
+void introduce(const Scenario& s, const DemoNetwork& network, double seconds,
+               const std::string& page) {
   fmt::print("{}: {} accelerometers, a truth the estimator does not know, shaken for {:g} s.\n",
              s.config.pipeline.structure.name, s.config.pipeline.axes.size(), seconds);
   fmt::print("{}.\n", network.explanation);
   if (!network.in_process) fmt::print("Listen with LCM_DEFAULT_URL='{}'.\n", network.url);
+  if (!page.empty()) fmt::print("\n  Open {}\n\n", page);
+  if (seconds > kDropAt_s)
+    fmt::print("At {:g} s the frame of {} loses {:g} % of its stiffness: see where it shows.\n",
+               kDropAt_s, kDropped, 100 * kDrop_ratio);
   std::fflush(stdout);
 }
 
@@ -77,6 +148,11 @@ Scenario demo_scenario() {
 int demo(const DemoArguments& a) {
   Scenario scenario = demo_scenario();
   scenario.duration_s = a.seconds;
+  scenario.changes.push_back({kDropAt_s, dropped(scenario)});
+  // Before the network: the page is for a browser outside of it.
+  std::string no_page;
+  int socket = listen_on("127.0.0.1", a.port, no_page);
+  if (socket < 0) socket = listen_on("127.0.0.1", 0, no_page);
   const DemoNetwork network = open_demo_network(demo_port());
   const LcmSettings& settings = scenario.config.lcm;
   DemoBus bus;
@@ -85,24 +161,46 @@ int demo(const DemoArguments& a) {
     fmt::print(stderr, "framewatch demo: {}\n", error);
     return 2;
   }
-  if (!a.quiet) introduce(scenario, network, a.seconds);
+  DemoLogs logs(a.report);
+  WebSettings web;
+  web.token = random_token();
+  LiveView live(scenario.config, [&](std::int64_t, const std::string& channel,
+                                     const std::vector<std::uint8_t>& bytes) {
+    bus.page().publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+  });
+  WebServer server(web, live);
+  const bool served = socket >= 0 && server.start(socket, no_page);
+  if (!served) fmt::print(stderr, "framewatch demo: no page: {}\n", no_page);
+  if (!a.quiet)
+    introduce(scenario, network, a.seconds,
+              served ? page_address(web, server.port(), web.token) : std::string());
 
   const auto sensors = live_output(scenario, bus.building(), 1);
-  Estimation estimation(scenario.config, [&](std::int64_t, const std::string& channel,
+  Estimation estimation(scenario.config, [&](std::int64_t time_us, const std::string& channel,
                                              const std::vector<std::uint8_t>& bytes) {
+    logs.estimate(time_us, channel, bytes);
     bus.estimator().publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
   });
   std::vector<std::string> inputs;
   for (const drivers::ChannelAddress& at : addresses(scenario.config.sources))
-    inputs.push_back(at.lcm_channel);
+    if (std::find(inputs.begin(), inputs.end(), at.lcm_channel) == inputs.end())
+      inputs.push_back(at.lcm_channel);
   drivers::LcmSource source(bus.estimator(), inputs, settings.queue_capacity,
                             [&](const std::string& channel, const void* data, std::size_t size,
-                                std::int64_t) { estimation.message(channel, data, size); });
-  DemoView view(truth_of(scenario), ::isatty(STDOUT_FILENO) == 1, a.quiet);
+                                std::int64_t received_us) {
+                              logs.raw(received_us, channel, data, size);
+                              estimation.message(channel, data, size);
+                            });
+  drivers::LcmSource page_source(bus.page(), live.channels(), settings.queue_capacity,
+                                 [&](const std::string& channel, const void* data, std::size_t size,
+                                     std::int64_t) { live.message(channel, data, size); });
+  DemoView view(truth_of(scenario, scenario.truth), ::isatty(STDOUT_FILENO) == 1, a.quiet);
   view.subscribe(bus.view(), settings.prefix);
 
   Simulation simulation(scenario);
   const std::int64_t count = instants(scenario);
+  double next_flush_s = 0;
+  bool changed = false;
   const auto look = [&] {
     while (bus.view().handleTimeout(0) > 0) {
     }
@@ -119,6 +217,16 @@ int demo(const DemoArguments& a) {
       return 2;
     }
     look();
+    if (!page_source.handle(0)) fmt::print(stderr, "framewatch demo: the page gets no messages\n");
+    if (simulation.time_s() >= next_flush_s) {
+      next_flush_s += kFlush_s;
+      live.flush();
+      server.wake();
+    }
+    if (!changed && simulation.time_s() > kDropAt_s + kForgotten_s) {
+      changed = true;
+      view.set_truth(truth_of(scenario, scenario.changes.front().theta));
+    }
     view.update(simulation.time_s(), a.seconds);
   }
   // The last messages may still be on their way on a busy machine.
@@ -130,6 +238,7 @@ int demo(const DemoArguments& a) {
   estimation.finish();
   while (bus.view().handleTimeout(200) > 0) {
   }
+  logs.write_report();
   return view.finish();
 }
 

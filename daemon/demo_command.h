@@ -1,17 +1,22 @@
 #pragma once
 
+#include <string>
+
 #include "daemon/simulation.h"
 
 namespace framewatch::daemon {
 
 struct DemoArguments {
-  double seconds = 60;
+  double seconds = 300;
   bool quiet = false;
+  int port = 8080;     ///< of the page; any free one when it is taken
+  std::string report;  ///< page to write at the end; empty: none
 };
 
 /// framewatch demo: the two-story table of configs/scenario_table_two_story.toml is shaken in real
-/// time; its sensors' messages, the estimates and the table on the screen all go over LCM. Exit
-/// code: 0 when the stiffnesses are found within the limits of DemoView.
+/// time; its sensors' messages, the estimates, the table on the screen and the live page all go
+/// over LCM. After 20 s one frame loses 15 % of its stiffness. Exit code: 0 when the stiffnesses
+/// are found within the limits of DemoView.
 int demo(const DemoArguments& arguments);
 
 /// The built-in scenario.

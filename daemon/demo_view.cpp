@@ -50,6 +50,14 @@ void DemoView::subscribe(lcm::LCM& lcm, const std::string& prefix) {
   lcm.subscribe(prefix + "ESTIMATE", &DemoView::on_estimate, this)->setQueueCapacity(10000);
 }
 
+void DemoView::set_truth(std::map<std::string, double> truth) {
+  truth_by_name_ = std::move(truth);
+  worst_frame_ratio_ = worst_panel_ratio_ = 0;
+  valid_ = 0;
+  for (std::size_t i = 0; table_ && i < truth_.size(); ++i)
+    truth_[i] = truth_by_name_.at(table_->name[i]);
+}
+
 void DemoView::on_parameters(const lcm::ReceiveBuffer* buffer, const std::string&) {
   auto table = drivers::decode_parameter_table(payload(buffer));
   if (!table) return;

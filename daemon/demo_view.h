@@ -24,6 +24,8 @@ class DemoView {
   /// Truth by parameter name, SI.
   DemoView(std::map<std::string, double> truth, bool terminal, bool quiet);
 
+  /// From now on the building is another one.
+  void set_truth(std::map<std::string, double> truth);
   void subscribe(lcm::LCM& lcm, const std::string& prefix);
   /// `elapsed_s` of `total_s` have passed; draws when it is time to.
   void update(double elapsed_s, double total_s);

@@ -13,8 +13,10 @@
 #include "daemon/refine_command.h"
 #include "daemon/repair_command.h"
 #include "daemon/replay_command.h"
+#include "daemon/report_command.h"
 #include "daemon/reproduce_command.h"
 #include "daemon/run_command.h"
+#include "daemon/serve_command.h"
 #include "daemon/simulate_command.h"
 
 // The one translation unit that sees CLI11 (it costs seconds to compile): it turns the command line
@@ -29,13 +31,24 @@ using Action = std::function<int()>;
 void add_demo(CLI::App& app, Action& action, DemoArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "demo",
-      "a virtual two-story shaking-table test over LCM, with a table of truth and estimate");
-  command->footer("Example: framewatch demo --seconds 30");
+      "a virtual two-story shaking-table test over LCM, with a live page and a table of truth");
+  command->footer(
+      "After 20 s one frame loses 15 % of its stiffness; the page says which, how much, how sure.\n"
+      "Example: framewatch demo --seconds 60 --report demo.html");
+  CLI::Option* report = command->add_option("--report", arguments.report,
+                                            "page to write about it at the end (demo.html)");
+  report->expected(0, 1)->type_name("[FILE]");
+  command->add_option("--port", arguments.port, "of the live page; any free one if it is taken")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   command->add_option("--seconds", arguments.seconds, "how long the table shakes")
       ->check(CLI::Range(1, 3600))
       ->capture_default_str();
   command->add_flag("--quiet", arguments.quiet, "only whether the stiffnesses were found");
-  command->callback([&action, &arguments] { action = [&arguments] { return demo(arguments); }; });
+  command->callback([&action, &arguments, report] {
+    if (report->count() > 0 && arguments.report.empty()) arguments.report = "demo.html";
+    action = [&arguments] { return demo(arguments); };
+  });
 }
 
 void add_run(CLI::App& app, Action& action, RunArguments& arguments) {
@@ -302,6 +315,50 @@ void add_diagnose(CLI::App& app, Action& action, DiagnoseArguments& arguments) {
       [&action, &arguments] { action = [&arguments] { return diagnose_command(arguments); }; });
 }
 
+void add_report(CLI::App& app, Action& action, ReportArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "report", "one self-contained page of a session: boxplots, parameters, histories, loops");
+  command->footer(
+      "With --config and --raw also stages (forced and free vibration side by side),\n"
+      "reference-dynamic values, transfer functions, drifts and forces.\n"
+      "Example: framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html");
+  command->add_option("EST", arguments.estimates, "LCM event log of estimates")->required();
+  command->add_option("--out", arguments.out, "page to write (default: EST with .html)");
+  command->add_option("--config", arguments.config, "the building's configuration (TOML)");
+  command->add_option("--raw", arguments.raw,
+                      "raw samples: LCM event logs and record files, in order of time");
+  command->add_option("--title", arguments.title, "of the page");
+  command->add_option("--test", arguments.test, "name of the test");
+  command->add_option("--operator", arguments.operator_name, "who made it");
+  command->add_option("--notes", arguments.notes, "what the next reader should know");
+  command->add_flag("--quiet", arguments.quiet, "do not print the page's path");
+  command->callback([&action, &arguments] { action = [&arguments] { return report(arguments); }; });
+}
+
+void add_serve(CLI::App& app, Action& action, ServeArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "serve", "the live page: building, boxplots, histories, health and alarms in a browser");
+  command->footer(
+      "Prints the page's address. Whoever opens it with its token may acknowledge alarms. An\n"
+      "address that others can reach needs a token of your own, in a file.\n"
+      "Examples:\n"
+      "  framewatch serve configs/table_two_story.toml\n"
+      "  framewatch serve b.toml --address 192.168.1.7 --token-file /etc/framewatch/token");
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");
+  command->add_option("--address", arguments.address, "IP address to listen on")
+      ->capture_default_str();
+  command->add_option("--port", arguments.port, "to listen on; 0: any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  command->add_option("--token-file", arguments.token_file,
+                      "file with the token, 16 letters, digits, - or _ at least");
+  command->add_option("--host", arguments.hosts, "further host name the page may be opened under");
+  command->add_option("--page", arguments.files, "folder to read the page from, for work on it");
+  command->add_flag("--quiet", arguments.quiet, "only the address and what goes wrong");
+  command->callback([&action, &arguments] { action = [&arguments] { return serve(arguments); }; });
+}
+
 /// What every command can be told, as far as the command line tells it.
 struct Arguments {
   DemoArguments demo;
@@ -315,6 +372,8 @@ struct Arguments {
   ConvertArguments convert;
   SimulateArguments simulate;
   ReproduceArguments reproduce;
+  ReportArguments report;
+  ServeArguments serve;
 };
 
 }  // namespace
@@ -340,6 +399,8 @@ int main(int argc, char** argv) {
   add_convert(app, action, arguments.convert);
   add_simulate(app, action, arguments.simulate);
   add_reproduce(app, action, arguments.reproduce);
+  add_report(app, action, arguments.report);
+  add_serve(app, action, arguments.serve);
 
   try {
     app.parse(argc, argv);

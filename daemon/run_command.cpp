@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <future>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "daemon/can_complaints.h"
 #include "daemon/log.h"
 #include "daemon/state_file.h"
+#include "daemon/stop_signal.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -23,12 +23,6 @@ namespace {
 constexpr int kBadInput = 2;
 constexpr int kPoll_ms = 100;
 constexpr std::int64_t kReport_us = 1'000'000;
-
-volatile std::sig_atomic_t stop_requested = 0;
-
-extern "C" void request_stop(int) {
-  stop_requested = 1;
-}
 
 std::int64_t host_clock_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
@@ -215,10 +209,7 @@ int run(const RunArguments& a) {
     fmt::print(stderr, "framewatch run: {}\n", error);
     return kBadInput;
   }
-  struct sigaction action {};
-  action.sa_handler = request_stop;
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
+  catch_stop_signals();
 
   drivers::CanLogWriter can_log;
   if (!a.can_log.empty() && !can_log.open(a.can_log)) {
@@ -237,8 +228,8 @@ int run(const RunArguments& a) {
   if (!a.quiet)
     log(LogLevel::info, fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name,
                                     config->path, config->pipeline.axes.size(), url));
-  while (stop_requested == 0) {
-    if (!live.poll(kPoll_ms) && stop_requested == 0) {
+  while (!stop_requested()) {
+    if (!live.poll(kPoll_ms) && !stop_requested()) {
       failures(host_clock_us(),
                can_log.error().empty() ? "LCM failed to deliver" : "CAN log: " + can_log.error());
       ::usleep(1000 * kPoll_ms);

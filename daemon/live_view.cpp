@@ -1,0 +1,308 @@
+#include "daemon/live_view.h"
+
+#include <cmath>
+#include <span>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/estimation.h"
+#include "drivers/message_check.h"
+#include "estimator/structure/parameter_table.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t kRing = 256;         // 10 s of events
+constexpr std::size_t kMostRows = 200;     // of one motion event
+constexpr std::size_t kMostEvents = 1000;  // kept for viewers that come later
+constexpr int kFlushesPerBoxplot = 5;
+constexpr double kMostRate_hz = 200;  // of the rows that go to the page
+constexpr double kWatched_s = 2.5;
+
+std::span<const std::uint8_t> bytes(const void* data, std::size_t size) {
+  return {static_cast<const std::uint8_t*>(data), size};
+}
+
+/// "1.25,null,3"
+template <typename Values>
+std::string list(const Values& values, const char* format = "{}") {
+  std::string out;
+  for (const auto value : values) {
+    if (!out.empty()) out += ',';
+    if (std::isfinite(static_cast<double>(value)))
+      fmt::format_to(std::back_inserter(out), fmt::runtime(format), value);
+    else
+      out += "null";
+  }
+  return "[" + out + "]";
+}
+
+std::string finite(double value) {
+  return std::isfinite(value) ? fmt::format("{}", value) : "null";
+}
+
+std::string dumped(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string boxes_json(const window_estimate_t& e) {
+  return fmt::format(
+      R"({{"windows":{},"q1":{},"median":{},"q3":{},"low":{},"high":{},"outliers":{},"count":{}}})",
+      e.boxplot_windows, list(e.q1, "{:.6g}"), list(e.median, "{:.6g}"), list(e.q3, "{:.6g}"),
+      list(e.whisker_low, "{:.6g}"), list(e.whisker_high, "{:.6g}"), list(e.outliers),
+      list(e.boxplot_count));
+}
+
+}  // namespace
+
+LiveView::LiveView(const Config& config, MessageSink publish)
+    : config_(config),
+      publish_(std::move(publish)),
+      acquisition_(config.pipeline.axes, config.pipeline.options,
+                   [this](const SampleSet& set) { keep(set); }),
+      intake_(wanted_axes(config),
+              [this](const AccelSample& sample) { acquisition_.push(sample); }),
+      ring_(kRing) {
+  stride_ =
+      std::max(1, static_cast<int>(std::ceil(config.pipeline.options.rate_hz / kMostRate_hz)));
+}
+
+std::vector<std::string> LiveView::channels() const {
+  std::vector<std::string> out = drivers::ChannelBinding(wanted_axes(config_)).streams();
+  for (std::size_t i = 0, streams = out.size(); i < streams; ++i)
+    out.push_back(out[i] + "_CHANNELS");
+  const std::string& prefix = config_.lcm.prefix;
+  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT"})
+    out.push_back(prefix + name);
+  for (const double window_s : config_.pipeline.options.other_windows_s)
+    if (std::abs(window_s - kWatched_s) < 1e-9)
+      out.push_back(fmt::format("{}ESTIMATE_{:g}S", prefix, window_s));
+  return out;
+}
+
+void LiveView::push(const std::string& name, const std::string& data) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ring_.push(name, data);
+}
+
+void LiveView::message(const std::string& channel, const void* data, std::size_t size) {
+  const std::string& prefix = config_.lcm.prefix;
+  if (!channel.starts_with(prefix)) {
+    (void)intake_.message(channel, data, size);
+  } else if (channel == prefix + "PARAMETERS") {
+    parameters(data, size);
+  } else if (channel.starts_with(prefix + "ESTIMATE")) {
+    estimate(channel, data, size);
+  } else if (channel == prefix + "EVENT") {
+    event(data, size);
+  } else if (channel == prefix + "STATUS") {
+    const auto status = drivers::decode_status(bytes(data, size));
+    if (!status) return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_ = status_json(*status);
+    ring_.push("status", status_);
+  }
+}
+
+void LiveView::keep(const SampleSet& set) {
+  if (set.index % stride_ != 0) return;
+  if (row_count_ == kMostRows) {
+    ++rows_left_out_;
+    return;
+  }
+  if (row_count_ == 0) first_row_us_ = to_microseconds(set.time);
+  rows_ += fmt::format("{}[{},{}]", row_count_ == 0 ? "" : ",",
+                       to_microseconds(set.time) - first_row_us_, list(set.accel, "{:.5g}"));
+  ++row_count_;
+}
+
+void LiveView::parameters(const void* data, std::size_t size) {
+  auto table = drivers::decode_parameter_table(bytes(data, size));
+  if (!table) return;
+  const bool same = table_ && table_->name == table->name;
+  table_ = std::move(*table);
+  if (same) return;
+  watched_channel_ = config_.lcm.prefix + "ESTIMATE";
+  double window_s = table_->window_rows / table_->rate_hz;
+  for (std::size_t i = 0; i < table_->other_channel.size(); ++i) {
+    const double other_s = table_->other_rows[i] / table_->rate_hz;
+    if (std::abs(other_s - kWatched_s) > 0.2) continue;
+    watched_channel_ = table_->other_channel[i];
+    window_s = other_s;
+  }
+  watch_.emplace(*table_, window_s, std::max<std::int64_t>(1, table_->time_us));
+}
+
+void LiveView::estimate(const std::string& channel, const void* data, std::size_t size) {
+  const bool main = channel == config_.lcm.prefix + "ESTIMATE";
+  if (!main && channel != watched_channel_) return;
+  auto found = drivers::decode_window_estimate(bytes(data, size));
+  if (!found) return;
+  if (channel == watched_channel_ && watch_) {
+    bool renew = false;
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      std::swap(renew, renew_);
+    }
+    if (renew) watch_->renew();
+    for (const event_t& e : watch_->observe(*found)) {
+      std::vector<std::uint8_t> out(static_cast<std::size_t>(e.getEncodedSize()));
+      e.encode(out.data(), 0, static_cast<int>(out.size()));
+      publish_(e.time_us, config_.lcm.prefix + "EVENT", out);
+    }
+  }
+  if (!main) return;
+  ++estimates_;
+  newest_ = std::move(*found);
+}
+
+void LiveView::event(const void* data, std::size_t size) {
+  const auto e = drivers::decode_event(bytes(data, size));
+  if (!e) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  events_[e->id] = *e;
+  if (events_.size() > kMostEvents) {
+    acknowledged_.erase(events_.begin()->first);
+    events_.erase(events_.begin());
+  }
+  ring_.push("alarm", event_json(*e));
+}
+
+void LiveView::flush() {
+  if (row_count_ > 0)
+    push("motion", fmt::format(R"({{"first_us":{},"rows":[{}],"left_out":{}}})", first_row_us_,
+                               rows_, rows_left_out_));
+  row_count_ = 0;
+  rows_.clear();
+  if (++flushes_ % 20 == 0) {
+    const std::string baseline = baseline_json();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (baseline != baseline_) ring_.push("baseline", baseline);
+    baseline_ = baseline;
+    ring_.push("alive", "{}");
+  }
+  if (!newest_) return;
+  if (estimates_ > 0)
+    push("estimate",
+         fmt::format(R"({{"start_us":{},"end_us":{},"sequence":{},"status":{},"rows":{},)"
+                     R"("residual":{},"value":{},"error":{},"reason":{},"snr":{}}})",
+                     newest_->window_start_us, newest_->window_end_us, newest_->sequence,
+                     newest_->status, newest_->rows, finite(newest_->residual_ratio),
+                     list(newest_->value), list(newest_->std_error, "{:.4g}"),
+                     list(newest_->reason), list(newest_->snr, "{:.3g}")));
+  estimates_ = 0;
+  if (flushes_ % kFlushesPerBoxplot == 0 && newest_->boxplots > 0)
+    push("boxes", boxes_json(*newest_));
+}
+
+std::string LiveView::status_json(const status_t& s) const {
+  Json channels = Json::array();
+  for (std::size_t i = 0; i < s.name.size(); ++i) {
+    Json one{{"name", s.name[i]},   {"received", s.received[i]}, {"lost", s.lost[i]},
+             {"late", s.late[i]},   {"repaired", s.repaired[i]}, {"rejected", s.rejected[i]},
+             {"stuck", s.stuck[i]}, {"clipped", s.clipped[i]}};
+    const double noise = s.noise_mps2_per_rthz[i];
+    one["noise"] = std::isfinite(noise) ? Json(noise) : Json(nullptr);
+    channels.push_back(std::move(one));
+  }
+  return dumped({{"time_us", s.time_us},
+                 {"windows", s.windows},
+                 {"sets", s.sample_sets},
+                 {"gaps", s.gaps},
+                 {"refused", s.rejected_messages},
+                 {"queue_high", s.queue_high_water},
+                 {"queue_dropped", s.queue_dropped},
+                 {"latency_s", s.latency_s},
+                 {"same_config", s.config_sha256 == config_.sha256},
+                 {"channels", channels}});
+}
+
+std::string LiveView::event_json(const event_t& e) const {
+  const auto found = acknowledged_.find(e.id);
+  return dumped({{"id", e.id},
+                 {"time_us", e.time_us},
+                 {"since_us", e.since_us},
+                 {"state", e.state},
+                 {"severity", e.severity},
+                 {"kind", e.kind},
+                 {"place", e.place},
+                 {"value", std::isfinite(e.value) ? Json(e.value) : Json(nullptr)},
+                 {"error", std::isfinite(e.std_error) ? Json(e.std_error) : Json(nullptr)},
+                 {"unit", e.unit},
+                 {"message", e.message},
+                 {"acknowledged", found != acknowledged_.end() && found->second}});
+}
+
+std::string LiveView::baseline_json() const {
+  return watch_ ? "{\"value\":" + list(watch_->baseline()) + "}" : "{\"value\":[]}";
+}
+
+std::string LiveView::building_json() const {
+  const Structure& s = config_.pipeline.structure;
+  const ParameterTable table(s);
+  Json parameters = Json::array();
+  const Eigen::VectorXd& design = config_.pipeline.design;
+  for (int p = 0; p < table.size(); ++p)
+    parameters.push_back({{"name", table[p].name},
+                          {"unit", table[p].unit},
+                          {"kind", static_cast<int>(table[p].kind)},
+                          {"story", table[p].story},
+                          {"frame", table[p].frame},
+                          {"panel", table[p].panel},
+                          {"design", design.size() > p ? Json(design[p]) : Json(nullptr)}});
+  Json axes = Json::array();
+  for (const SensorAxis& a : config_.pipeline.axes)
+    axes.push_back({{"name", a.name},
+                    {"story", a.story},
+                    {"direction", a.direction == Direction::x ? "x" : "y"},
+                    {"frame", a.frame}});
+  const EstimatorOptions& o = config_.pipeline.options;
+  return dumped({{"name", s.name},
+                 {"stories", s.stories},
+                 {"frames_x", s.frames_x},
+                 {"frames_y", s.frames_y},
+                 {"span_x_m", s.span_x},
+                 {"span_y_m", s.span_y},
+                 {"story_height_m", s.story_height},
+                 {"rigid", s.floor == FloorModel::rigid},
+                 {"parameters", parameters},
+                 {"axes", axes},
+                 {"rate_hz", o.rate_hz / stride_},
+                 {"window_s", o.window_s},
+                 {"high_pass_hz", o.high_pass_hz},
+                 {"version", FRAMEWATCH_VERSION},
+                 {"config_sha256", config_.sha256}});
+}
+
+EventRing::Cursor LiveView::join() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::string first = "retry: 1000\n\n";
+  if (!status_.empty()) first += EventRing::text("status", status_);
+  if (!baseline_.empty()) first += EventRing::text("baseline", baseline_);
+  for (const auto& [id, e] : events_) first += EventRing::text("alarm", event_json(e));
+  return ring_.join(std::move(first));
+}
+
+std::size_t LiveView::read(EventRing::Cursor& cursor, char* buffer, std::size_t size) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return ring_.read(cursor, buffer, size);
+}
+
+bool LiveView::acknowledge(std::int64_t id) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto found = events_.find(id);
+  if (found == events_.end()) return false;
+  acknowledged_[id] = true;
+  ring_.push("alarm", event_json(found->second));
+  return true;
+}
+
+void LiveView::renew_baseline() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  renew_ = true;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,97 @@
+#include "daemon/serve_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "daemon/file_digest.h"
+#include "daemon/live_view.h"
+#include "daemon/log.h"
+#include "daemon/stop_signal.h"
+#include "daemon/web_server.h"
+#include "drivers/lcm_source.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kBadInput = 2;
+constexpr int kPoll_ms = 10;
+constexpr std::chrono::milliseconds kFlush{50};
+
+/// The first line of the token file.
+std::optional<std::string> read_token(const std::string& path, std::string& error) {
+  auto text = read_text_file(path, error);
+  if (text) text->resize(std::min(text->size(), text->find_first_of("\r\n")));
+  return text;
+}
+
+}  // namespace
+
+int serve(const ServeArguments& a) {
+  std::vector<ConfigProblem> problems_found;
+  const std::optional<Config> config = load_config(a.config, problems_found);
+  bool good = config.has_value();
+  for (const ConfigProblem& p : problems_found) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  WebSettings settings{a.address, a.port, {}, a.hosts, a.files};
+  std::string error;
+  if (!a.token_file.empty()) {
+    const auto token = read_token(a.token_file, error);
+    if (!token) {
+      fmt::print(stderr, "framewatch serve: {}: {}\n", a.token_file, error);
+      good = false;
+    }
+    settings.token = token.value_or("");
+  }
+  for (const std::string& problem : problems(settings)) {
+    fmt::print(stderr, "framewatch serve: {}\n", problem);
+    good = false;
+  }
+  if (!good) return kBadInput;
+  // At home nobody need choose one, and acknowledging still takes it.
+  if (settings.token.empty()) settings.token = random_token();
+
+  const std::string& url = a.url.empty() ? config->lcm.url : a.url;
+  const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
+  if (!lcm) {
+    fmt::print(stderr, "framewatch serve: {}\n", error);
+    return kBadInput;
+  }
+  LiveView view(*config, [&](std::int64_t, const std::string& channel,
+                             const std::vector<std::uint8_t>& bytes) {
+    lcm->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+  });
+  drivers::LcmSource source(*lcm, view.channels(), config->lcm.queue_capacity,
+                            [&](const std::string& channel, const void* data, std::size_t size,
+                                std::int64_t) { view.message(channel, data, size); });
+  WebServer server(settings, view);
+  const int socket = listen_on(settings.address, settings.port, error);
+  if (socket < 0 || !server.start(socket, error)) {
+    fmt::print(stderr, "framewatch serve: {}\n", error);
+    return kBadInput;
+  }
+  catch_stop_signals();
+  // A token of one's own does not go into logs.
+  fmt::print("{}\n", page_address(settings, server.port(),
+                                  a.token_file.empty() ? settings.token : std::string()));
+  std::fflush(stdout);
+  if (!a.quiet) log(LogLevel::info, fmt::format("{} on {}", config->pipeline.structure.name, url));
+
+  RateLimitedLog failures(LogLevel::error);
+  for (Clock::time_point next = Clock::now(); !stop_requested();) {
+    if (!source.handle(kPoll_ms) && !stop_requested())
+      failures(
+          std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch())
+              .count(),
+          "LCM failed to deliver");
+    if (Clock::now() < next) continue;
+    next = std::max(next + kFlush, Clock::now());
+    view.flush();
+    server.wake();
+  }
+  return 0;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,48 @@
+'use strict';
+// Histories on uPlot. Rings are mirrored so that the newest stretch is one subarray.
+class Ring {
+  constructor(columns, size) { this.size = size; this.n = 0; this.data = Array.from({length: columns}, () => new Float64Array(2 * size).fill(NaN)); }
+  push(values) {
+    const k = this.n++ % this.size;
+    values.forEach((v, c) => { const x = v === null || v === undefined ? NaN : v; this.data[c][k] = x; this.data[c][k + this.size] = x; });
+  }
+  view() {
+    const count = Math.min(this.n, this.size), end = this.n <= this.size ? this.n : this.n % this.size + this.size;
+    return this.data.map((d, c) => c === 0 ? d.subarray(end - count, end) : Array.from(d.subarray(end - count, end), v => Number.isNaN(v) ? null : v));
+  }
+}
+class Strip {
+  constructor(parent, title, why, series, seconds, rate) {
+    this.box = document.createElement('div');
+    this.box.className = 'strip';
+    parent.append(this.box);
+    this.title = title; this.why = why; this.series = series;
+    this.ring = new Ring(series.length + 1, Math.ceil(seconds * rate));
+    this.seconds = seconds;
+    this.make();
+  }
+  make() {
+    if (this.plot) this.plot.destroy();
+    const style = theme(), axis = {stroke: style.soft, grid: {stroke: style.rule, width: 1}, ticks: {stroke: style.rule}, font: '11px system-ui'};
+    this.plot = new uPlot({
+      title: this.title, width: Math.max(200, this.box.clientWidth || 400), height: 150, legend: {show: this.series.length > 1, live: false},
+      cursor: {drag: {x: false, y: false}}, scales: {x: {time: false}, y: {range: (u, a, b) => a === null || b === null ? [0, 1] : uPlot.rangeNum(a, b, 0.12, true)}},
+      axes: [{...axis, size: 26, values: (u, v) => v.map(x => x + ' s')}, {...axis, size: 56, values: (u, v, i, room, step) => v.map(x => Math.abs(x) >= 1e5 || step < 1e-5 ? x.toExponential(1) : x.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))))}],
+      series: [{}, ...this.series.map(s => ({label: s.name, stroke: style[s.color], width: s.width || 1.4, dash: s.dash, points: {show: false}, spanGaps: false}))],
+      bands: this.series.some(s => s.band) ? [{series: [3, 2], fill: style.blue + '33'}] : [],
+    }, [[], ...this.series.map(() => [])], this.box);
+    this.box.querySelector('.u-title').title = this.why;
+  }
+  name(title) { if (title === this.title) return; this.title = title; this.box.querySelector('.u-title').textContent = title; }
+  clear() { this.ring = new Ring(this.series.length + 1, this.ring.size); }
+  push(values) { this.ring.push(values); this.fresh = true; }
+  draw() {
+    const width = Math.max(200, this.box.clientWidth);
+    if (Math.abs(this.plot.width - width) > 2) this.plot.setSize({width, height: 150});
+    if (!this.fresh) return;
+    this.fresh = false;
+    const view = this.ring.view(), last = view[0].at(-1);
+    this.plot.setData(view, false);
+    this.plot.setScale('x', {min: Math.max(last - this.seconds, view[0][0] - 1e-3), max: last});
+  }
+}
