@@ -1,0 +1,111 @@
+'use strict';
+// The page of `framewatch serve` beside `framewatch run` and a virtual test over LCM: what it shows is
+// what LCM carried, a drop of stiffness is named in time, and silence is said.
+const {chromium} = require('playwright-core');
+const {spawn, execFileSync} = require('child_process');
+const fs = require('fs'), os = require('os'), path = require('path');
+
+const [program, browserPath, configs] = process.argv.slice(2);
+// Limits.
+const kDrop_s = 20, kTold_s = 5, kDrop_ratio = -0.15, kDropError = 0.02;
+const kLeastFrames = 20, kMostLatency_ms = 150; // frames/s on a busy machine; 50 on a quiet one
+const kCompared = 200;
+
+const children = [], failures = [];
+const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
+function start(command, ...args) {
+  const child = spawn(command, args, {stdio: ['ignore', 'pipe', 'inherit']});
+  children.push(child);
+  child.ended = new Promise(done => child.on('exit', done));
+  return child;
+}
+const pause = ms => new Promise(done => setTimeout(done, ms));
+
+async function main() {
+  const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-browser-'));
+  const url = `udpm://239.255.76.67:${7800 + process.pid % 1000}?ttl=0`;
+  const config = path.join(configs, 'table_two_story.toml'), scenario = path.join(work, 'scenario.toml');
+  fs.writeFileSync(scenario, fs.readFileSync(path.join(configs, 'scenario_table_two_story.toml'), 'utf8')
+    .replace('"table_two_story.toml"', JSON.stringify(fs.realpathSync(config))) +
+    `\n[[change]]\nat_s = ${kDrop_s}.0\nparameter = "kx_1_y2"\nfactor = ${1 + kDrop_ratio}\n`);
+  const log = path.join(work, 'estimates.lcmlog');
+  const logger = start('lcm-logger', '--lcm-url', url, '--channel', 'FRAMEWATCH_(ESTIMATE|PARAMETERS)', '--quiet', log);
+  start(program, 'run', config, '--url', url, '--quiet');
+  const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--quiet');
+  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+
+  const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
+  const page = await browser.newPage({viewport: {width: 1400, height: 1350}});
+  const said = [];
+  page.on('console', m => said.push(m.text()));
+  page.on('pageerror', e => said.push(e.message));
+  await page.addInitScript(() => { window.seen = []; });
+  await page.goto(address);
+  expect(!page.url().includes('token'), 'the token leaves the address');
+  await page.waitForFunction(() => document.getElementById('state').textContent === 'waiting for samples');
+  await page.evaluate(() => setInterval(() => {
+    const e = window.framewatch.estimate;
+    if (e && (!window.seen.length || window.seen.at(-1).end_us !== e.end_us)) window.seen.push(e);
+  }, 20));
+  const simulation = start(program, 'simulate', scenario, '--lcm', url, '--seconds', '32', '--quiet');
+
+  await page.waitForFunction(() => window.framewatch.motion);
+  const first_us = await page.evaluate(() => window.framewatch.motion.first_us);
+  await pause(15000);
+  await page.screenshot({path: 'page-light.png'});
+  const live = await page.evaluate(() => ({state: document.getElementById('state').textContent, rows: framewatch.rows, lost: framewatch.lost, fps: framewatch.fps(), dropped: framewatch.dropped,
+    latency: [...framewatch.latency].sort((a, b) => a - b)[framewatch.latency.length >> 1]}));
+  console.log(JSON.stringify(live));
+  expect(live.state === 'live', 'says that it is live');
+  expect(live.rows > 1400 && live.lost === 0 && live.dropped === 0, '100 rows a second, none lost');
+  expect(live.fps >= kLeastFrames, `at least ${kLeastFrames} frames/s`);
+  expect(live.latency < kMostLatency_ms, `sample to screen under ${kMostLatency_ms} ms in the median`);
+
+  await page.waitForSelector('#alarm:not([hidden])', {timeout: 15000}).catch(() => {});
+  const alarm = await page.evaluate(() => [...framewatch.alarms.values()][0]);
+  console.log(JSON.stringify(alarm));
+  expect(alarm && alarm.place === 'kx_1_y2' && Math.abs(alarm.value - kDrop_ratio) < kDropError, 'the frame that dropped is named, and by how much');
+  expect(alarm && alarm.time_us - first_us < 1e6 * (kDrop_s + kTold_s), `within ${kTold_s} s`);
+  await pause(5000);
+  expect(await page.evaluate(() => framewatch.alarms.size) === 1, 'no other alarm');
+  await page.click('#theme');
+  await pause(500);
+  await page.screenshot({path: 'page-dark.png'});
+  await page.setViewportSize({width: 390, height: 844});
+  await pause(800);
+  await page.screenshot({path: 'page-phone.png', fullPage: true});
+  expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'a phone need not scroll sideways');
+  await page.focus('#building');
+  const before = await page.inputValue('#element');
+  await page.keyboard.press('ArrowRight');
+  expect(await page.inputValue('#element') !== before, 'arrow keys choose an element');
+  await page.click('#alarm button');
+  await page.waitForSelector('#alarm', {state: 'hidden', timeout: 3000});
+  expect((await page.textContent('#alarms')).includes('acknowledged'), 'an alarm is acknowledged');
+
+  await simulation.ended;
+  await pause(2600);
+  expect((await page.textContent('#state')).startsWith('no samples for'), 'silence is said');
+  const seen = await page.evaluate(() => window.seen);
+  logger.kill('SIGINT');
+  await logger.ended;
+  const csv = path.join(work, 'estimates.csv');
+  execFileSync(program, ['convert', log, '--channel', 'FRAMEWATCH_ESTIMATE', csv]);
+  const lines = fs.readFileSync(csv, 'utf8').trim().split('\n').map(l => l.split(','));
+  const column = lines[0].indexOf('kx_1_y2'), logged = new Map(lines.slice(1).map(l => [Math.round(1e6 * l[0]), l[column]]));
+  const shown = seen.filter(e => e.reason[1] === 0), same = shown.filter(e => Number(logged.get(e.end_us)) === e.value[1]);
+  expect(shown.length > kCompared && same.length === shown.length, `${same.length} of ${shown.length} values are exactly those on LCM`);
+  serve.kill();
+  await pause(3600);
+  expect((await page.textContent('#state')).startsWith('no connection'), 'a lost server is said');
+  const errors = said.filter(t => !/ERR_CONNECTION_REFUSED|ERR_INCOMPLETE_CHUNKED/.test(t));
+  expect(errors.length === 0, 'nothing on the console ' + errors.join('; '));
+  await browser.close();
+  fs.rmSync(work, {recursive: true});
+}
+
+main().catch(e => { failures.push(e.message); console.log(e); }).finally(() => {
+  for (const child of children) if (child.exitCode === null) child.kill();
+  console.log(failures.length ? `browser: ${failures.length} failed` : 'browser: all passed');
+  process.exit(failures.length ? 1 : 0);
+});
