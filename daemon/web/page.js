@@ -184,6 +184,7 @@ function onAlarm(a) {
   }
   banner(list);
 }
+const sure = n => n > 100 ? 'more than 100 standard errors' : `${Math.round(n)} standard errors`;
 function banner(list) {
   const open = list.filter(x => x.state !== 0 && !x.acknowledged).sort((x, y) => Math.abs(y.value) - Math.abs(x.value)), box = $('alarm');
   box.hidden = open.length === 0;
@@ -191,9 +192,9 @@ function banner(list) {
   const a = open[0], q = plan.parameters.find(p => p.name === a.place);
   const what = document.createElement('strong');
   what.textContent = a.value === null ? a.message : `${q ? place(q) : a.place}: ${a.value < 0 ? 'softer' : 'stiffer'} by ${Math.abs(100 * a.value).toFixed(1)} %`;
-  const sure = document.createElement('span');
-  sure.textContent = a.value === null ? '' : `± ${(100 * a.error).toFixed(1)} % (${Math.round(Math.abs(a.value / a.error))} standard errors), ${a.place}, since ${clock(a.since_us)}` + (open.length > 1 ? `; ${open.length - 1} more` : '');
-  box.replaceChildren(what, sure, acknowledgeButton(a.id));
+  const error = document.createElement('span');
+  error.textContent = a.value === null ? '' : `± ${(100 * a.error).toPrecision(2)} % (${sure(Math.abs(a.value / a.error))}), ${a.place}, since ${clock(a.since_us)}` + (open.length > 1 ? `; ${open.length - 1} more` : '');
+  box.replaceChildren(what, error, acknowledgeButton(a.id));
 }
 function acknowledgeButton(id) {
   const b = document.createElement('button');
