@@ -16,7 +16,7 @@ namespace {
 
 void check_sections(const TomlValue& document, std::vector<TextProblem>& problems) {
   const std::vector<std::string> known{"structure", "channel",  "estimator", "lcm",
-                                       "can",       "can_node", "effect"};
+                                       "can",       "can_node", "watch",     "effect"};
   for (const TomlEntry& entry : document.entries) {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
     const std::string meant = nearest(entry.key, known);
@@ -25,10 +25,12 @@ void check_sections(const TomlValue& document, std::vector<TextProblem>& problem
          fmt::format("unknown section or key {}: {}", entry.key,
                      meant.empty() ? "the sections are [structure], [structure.design], "
                                      "[[channel]], [estimator], [lcm], [[can]], "
-                                     "[[can_node]], [[effect]]"
+                                     "[[can_node]], [watch], [[effect]]"
                                    : fmt::format("did you mean {}?", meant))});
   }
 }
+
+}  // namespace
 
 std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextProblem> problems) {
   std::stable_sort(problems.begin(), problems.end(), [](const auto& a, const auto& b) {
@@ -43,8 +45,6 @@ std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextPr
   return out;
 }
 
-}  // namespace
-
 bool read_config(const TomlValue& document, Config& config, std::vector<TextProblem>& problems) {
   const std::size_t before = problems.size();
   check_sections(document, problems);
@@ -55,6 +55,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.pipeline.options = read_estimator(document, problems);
   config.lcm = read_lcm(document, problems);
   read_can(document, config, problems);
+  config.watch = read_watch(document, problems);
   if (problems.size() == before)
     for (const std::string& rule : framewatch::problems(config.pipeline))
       problems.push_back({{}, rule});
@@ -73,7 +74,11 @@ std::optional<Config> parse_config(const std::string& path, const std::string& t
   std::vector<TextProblem> found;
   if (const std::optional<TomlValue> document = parse_toml(text, found))
     read_config(*document, config, found);
-  if (found.empty()) return config;
+  if (found.empty()) {
+    load_watch_baseline(config, problems);
+    if (problems.empty()) return config;
+    return std::nullopt;
+  }
   problems = with_file(path, std::move(found));
   return std::nullopt;
 }

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "daemon/toml_document.h"
 #include "drivers/can/can_map.h"
 #include "estimator/pipeline.h"
 #include "estimator/structure/effect.h"
+#include "estimator/watch/watch.h"
 
 namespace framewatch::daemon {
 
@@ -29,6 +31,12 @@ struct LcmSettings {
   int boxplot_every = 1;  ///< publish boxplot statistics with every n-th window
 };
 
+struct WatchSettings {
+  WatchOptions options;
+  std::string baseline_path;         ///< empty: none
+  std::optional<Baseline> baseline;  ///< of that file, if there is one yet
+};
+
 /// One configuration file, defaults filled in.
 struct Config {
   std::string path;
@@ -36,14 +44,18 @@ struct Config {
   PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
   LcmSettings lcm;
-  drivers::CanMap can;          ///< axes as in pipeline.axes
-  std::vector<Effect> effects;  ///< that the building has beyond the linear model
+  drivers::CanMap can;                 ///< axes as in pipeline.axes
+  std::optional<WatchSettings> watch;  ///< none: nothing is watched
+  std::vector<Effect> effects;         ///< that the building has beyond the linear model
 };
 
 struct ConfigProblem {
   std::string where;  ///< file:line:column, or file
   std::string message;
 };
+
+/// Problems of a text as problems of its file, in order of place.
+std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextProblem> problems);
 
 /// Reads and validates. Empty optional and every problem at once when it is not valid.
 std::optional<Config> load_config(const std::string& path, std::vector<ConfigProblem>& problems);

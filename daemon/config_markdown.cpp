@@ -34,6 +34,9 @@ constexpr SectionText kSections[] = {
     {"can", "[[can]]", "One CAN bus each, and what it carries."},
     {"can_node", "[[can_node]]",
      "One sender of samples on a CAN bus each, and how its samples get their time."},
+    {"watch", "[watch]",
+     "Optional: stiffness is watched for lasting changes, and event_t messages say which element, "
+     "how much, how sure and since when."},
     {"scenario", "Scenario files: at the top",
      "`framewatch simulate` reads a scenario: the building as above or `config`, and what happens "
      "to it."},
@@ -53,6 +56,7 @@ constexpr SectionText kSections[] = {
     {"expect.counts", "[counts]", "What became of the input."},
     {"expect.parameter", "[[parameter]]", "What the windows of a parameter, or of a group, say."},
     {"expect.event", "[[event]]", "Alarms, by the time since when they hold."},
+    {"baseline.parameter", "Baseline files: [[parameter]]", "Reference parameters of [watch]."},
 };
 
 /// | would end the cell.

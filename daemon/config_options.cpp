@@ -423,6 +423,8 @@ std::span<const Option> options() {
     std::vector<Option> all(std::begin(kOptions), std::end(kOptions));
     const std::span<const Option> can = can_options();
     all.insert(all.end(), can.begin(), can.end());
+    const std::span<const Option> watch = watch_options();
+    all.insert(all.end(), watch.begin(), watch.end());
     const std::span<const Option> scenario = scenario_options();
     all.insert(all.end(), scenario.begin(), scenario.end());
     const std::span<const Option> effect = effect_options();

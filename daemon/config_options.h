@@ -30,12 +30,13 @@ struct Option {
 };
 
 /// Of the configuration file, then of the scenario file, then of [[effect]], which both may have,
-/// then of the expectation file.
+/// then of the expectation file; [watch] of the configuration file and the baseline file.
 std::span<const Option> options();
 std::span<const Option> effect_options();
 std::span<const Option> scenario_options();
 std::span<const Option> expectation_options();
 std::span<const Option> can_options();
+std::span<const Option> watch_options();
 
 /// Null when the section has no such key.
 const Option* find_option(std::string_view section, std::string_view key);

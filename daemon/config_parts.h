@@ -35,5 +35,9 @@ void read_channels(const TomlValue& document, const StructureReading& structure,
 
 EstimatorOptions read_estimator(const TomlValue& document, std::vector<TextProblem>& problems);
 LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& problems);
+std::optional<WatchSettings> read_watch(const TomlValue& document,
+                                        std::vector<TextProblem>& problems);
+/// Resolves the baseline's path beside the configuration file and reads it if it exists.
+void load_watch_baseline(Config& config, std::vector<ConfigProblem>& problems);
 
 }  // namespace framewatch::daemon

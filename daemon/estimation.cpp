@@ -43,10 +43,25 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
             if (observer_) observer_(estimate);
             publisher_.estimate(estimate);
             ++windows_;
+            watch(estimate);
           },
-          [this](const WindowEstimate& estimate) { publisher_.other(estimate); }),
+          [this](const WindowEstimate& estimate) {
+            publisher_.other(estimate);
+            watch(estimate);
+          }),
       intake_(wanted_axes(config), [this](const AccelSample& s) { sample(s); }),
-      can_(config.can, [this](const AccelSample& s) { sample(s); }) {}
+      can_(config.can, [this](const AccelSample& s) { sample(s); }) {
+  if (!config.watch) return;
+  std::vector<double> windows_s{config.pipeline.options.window_s};
+  windows_s.insert(windows_s.end(), config.pipeline.options.other_windows_s.begin(),
+                   config.pipeline.options.other_windows_s.end());
+  watch_.emplace(pipeline_.parameters(), config.watch->options, windows_s, config.watch->baseline);
+}
+
+void Estimation::watch(const WindowEstimate& estimate) {
+  if (!watch_) return;
+  for (const Alarm& alarm : watch_->push(estimate)) publisher_.alarm(alarm, pipeline_.parameters());
+}
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
                                           std::size_t size) {
@@ -66,11 +81,13 @@ void Estimation::finish() {
 
 void Estimation::save(StateWriter& state) {
   state(seconds_, windows_, intake_);
+  if (watch_) state(*watch_);
   pipeline_.save(state);
 }
 
 bool Estimation::load(StateReader& state) {
   state(seconds_, windows_, intake_);
+  if (watch_) state(*watch_);
   return state.good() && pipeline_.load(state);
 }
 

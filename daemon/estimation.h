@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "daemon/config.h"
@@ -59,6 +60,8 @@ class Estimation {
   const drivers::CanIntake& can() const { return can_; }
   const Pipeline& pipeline() const { return pipeline_; }
   std::int64_t windows() const { return windows_; }  ///< published
+  /// What changes are judged against; null while it is learned, or when nothing is watched.
+  const Baseline* baseline() const { return watch_ ? watch_->baseline() : nullptr; }
 
   /// Everything that what is still to come depends on, and back; see Pipeline.
   void save(StateWriter& state);
@@ -66,10 +69,12 @@ class Estimation {
 
  private:
   void publish_state();
+  void watch(const WindowEstimate& estimate);
 
   Observer observer_;
   Publisher publisher_;
   Pipeline pipeline_;
+  std::optional<Watch> watch_;
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   SensorSeconds seconds_;

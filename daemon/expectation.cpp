@@ -150,15 +150,9 @@ std::optional<Expectations> load_expectations(const std::string& path, const Par
   if (const std::optional<TomlValue> document = parse_toml(*text, found))
     expectations = ExpectationReader(table, found).read(*document);
   expectations.path = path;
-  std::stable_sort(found.begin(), found.end(), [](const TextProblem& a, const TextProblem& b) {
-    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
-  });
-  for (const TextProblem& p : found)
-    problems.push_back(
-        {p.place.line > 0 ? fmt::format("{}:{}:{}", path, p.place.line, p.place.column) : path,
-         p.message});
-  if (!found.empty()) return std::nullopt;
-  return expectations;
+  if (found.empty()) return expectations;
+  for (ConfigProblem& p : with_file(path, std::move(found))) problems.push_back(std::move(p));
+  return std::nullopt;
 }
 
 }  // namespace framewatch::daemon

@@ -110,6 +110,8 @@ void add_replay(CLI::App& app, Action& action, ReplayArguments& arguments) {
   command->add_option("--expect", arguments.expect, "file that says what must come out (TOML)");
   command->add_option("--write-expect", arguments.write_expect,
                       "make a first such file from what comes out");
+  command->add_option("--write-baseline", arguments.write_baseline,
+                      "baseline file for [watch] to write, of all windows of the replay");
   command->add_option("--junit", arguments.junit, "file for the result of --expect, as JUnit XML");
   command->add_flag("--salvage", arguments.salvage,
                     "replay what is intact of a damaged log instead of refusing it");

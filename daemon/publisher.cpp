@@ -13,7 +13,8 @@ Publisher::Publisher(const Config& config, MessageSink sink)
       sink_(std::move(sink)),
       parameters_channel_(config.lcm.prefix + "PARAMETERS"),
       estimate_channel_(config.lcm.prefix + "ESTIMATE"),
-      status_channel_(config.lcm.prefix + "STATUS") {
+      status_channel_(config.lcm.prefix + "STATUS"),
+      event_channel_(config.lcm.prefix + "EVENT") {
   for (const double window_s : config.pipeline.options.other_windows_s)
     other_channels_.push_back(fmt::format("{}_{:g}S", estimate_channel_, window_s));
 }
@@ -119,6 +120,29 @@ void Publisher::estimate(const WindowEstimate& e) {
     }
   }
   send(m.window_end_us, estimate_channel_, m);
+}
+
+void Publisher::alarm(const Alarm& alarm, const ParameterTable& table) {
+  constexpr int kWarning = 1, kAlarm = 2;
+  const std::string& name = table[alarm.parameter].name;
+  const double change = 100 * alarm.change.ratio, error = 100 * alarm.change.std_error;
+  const double since_s = 1e-6 * static_cast<double>(to_microseconds(alarm.change.since));
+  framewatch::event_t m{};
+  m.time_us = to_microseconds(alarm.found);
+  m.since_us = to_microseconds(alarm.change.since);
+  m.id = alarm.id;
+  m.state = static_cast<std::int32_t>(alarm.state);
+  m.severity = alarm.state == AlarmState::cleared ? kWarning : kAlarm;
+  m.kind = "stiffness_change";
+  m.place = name;
+  m.value = change;
+  m.std_error = error;
+  m.unit = "%";
+  m.message = alarm.state == AlarmState::cleared
+                  ? fmt::format("{} is at its baseline again", name)
+                  : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {:.2f} s", name,
+                                std::abs(change), error, change < 0 ? "below" : "above", since_s);
+  send(m.time_us, event_channel_, m);
 }
 
 void Publisher::status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live) {

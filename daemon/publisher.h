@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <framewatch/event_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
@@ -48,6 +49,8 @@ class Publisher {
   void estimate(const WindowEstimate& estimate);
   /// One of the other windows, on its own channel.
   void other(const WindowEstimate& estimate);
+  /// News of an alarm; lasting until it is cleared.
+  void alarm(const Alarm& alarm, const ParameterTable& table);
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
 
  private:
@@ -57,7 +60,7 @@ class Publisher {
 
   const Config& config_;
   MessageSink sink_;
-  std::string parameters_channel_, estimate_channel_, status_channel_;
+  std::string parameters_channel_, estimate_channel_, status_channel_, event_channel_;
   std::vector<std::string> other_channels_;
   framewatch::parameter_table_t parameters_{};
   framewatch::window_estimate_t estimate_{};

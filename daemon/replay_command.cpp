@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <thread>
 
 #include <fmt/core.h>
 
+#include "daemon/baseline_file.h"
 #include "daemon/estimate_output.h"
 #include "daemon/expectation_check.h"
 #include "daemon/progress.h"
@@ -41,7 +44,7 @@ std::vector<std::string> argument_problems(const ReplayArguments& a) {
   inputs.push_back(a.config);
   for (const std::string& input : {a.expect, a.load_state})
     if (!input.empty()) inputs.push_back(input);
-  for (const std::string& out : {a.out, a.write_expect, a.junit, a.save_state})
+  for (const std::string& out : {a.out, a.write_expect, a.write_baseline, a.junit, a.save_state})
     for (const std::string& input : inputs) {
       std::error_code error;
       if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
@@ -102,13 +105,6 @@ std::int64_t bytes_of(const std::vector<std::string>& paths) {
   return sum;
 }
 
-/// Empty when the text is in the file.
-std::string write_text(const std::string& path, const std::string& text) {
-  drivers::TextOutput file;
-  if (file.open(path) && file.write(text) && file.close()) return {};
-  return fmt::format("{}: {}", path, file.error());
-}
-
 /// One replay, from the first byte to the summary.
 class ReplayRun {
  public:
@@ -119,8 +115,13 @@ class ReplayRun {
         expectations_(std::move(expectations)),
         event_channel_(config.lcm.prefix + "EVENT"),
         survey_(config, a.salvage, a.span),
+        learner_(ParameterTable(config.pipeline.structure).size(),
+                 std::numeric_limits<double>::infinity()),
         series_(ParameterTable(config.pipeline.structure), expectations_.has_value()),
-        estimation_(config, sink(), [this](const WindowEstimate& e) { series_.add(e); }) {}
+        estimation_(config, sink(), [this](const WindowEstimate& e) {
+          series_.add(e);
+          learner_.push(e);
+        }) {}
 
   int run() {
     if (!a_.load_state.empty()) {
@@ -199,7 +200,9 @@ class ReplayRun {
       if (failed_.empty() && !output->put(time_us, channel, bytes)) fail(*output);
     if (channel != event_channel_) return;
     const auto event = drivers::decode_event(bytes);
-    if (event && event->state == 1) events_.push_back({event->kind, event->place, event->since_us});
+    if (!event || event->state != 1) return;
+    events_.push_back({event->kind, event->place, event->since_us});
+    if (!a_.quiet && !a_.json) alarms_ += fmt::format("alarm: {}\n", event->message);
   }
 
   void fail(const EstimateOutput& output) {
@@ -212,9 +215,11 @@ class ReplayRun {
     std::vector<Check> checks;
     if (expectations_) checks = check_expectations(*expectations_, outcome);
     std::string problem;
-    if (!a_.junit.empty()) problem = write_text(a_.junit, junit_xml(checks, a_.expect));
+    if (!a_.junit.empty())
+      problem = drivers::write_text_file(a_.junit, junit_xml(checks, a_.expect));
     if (!a_.write_expect.empty())
-      problem = write_text(a_.write_expect, written_expectations(outcome, command()));
+      problem = drivers::write_text_file(a_.write_expect, written_expectations(outcome, command()));
+    if (!a_.write_baseline.empty()) problem = write_baseline();
     if (!problem.empty()) return refuse(problem);
 
     const std::chrono::duration<double> work = Clock::now() - start_;
@@ -228,12 +233,21 @@ class ReplayRun {
                             differences_json(checks));
       fmt::print("{}}}\n", json);
     } else if (!a_.quiet) {
-      fmt::print("{}", summary.text());
+      fmt::print("{}{}", summary.text(), alarms_);
       if (holds && expectations_) fmt::print("\nas expected: {} of {}\n", checks.size(), a_.expect);
     }
     if (holds) return 0;
     tell_differences(checks);
     return kNotAsExpected;
+  }
+
+  std::string write_baseline() const {
+    const Baseline baseline = learner_.baseline();
+    if (std::all_of(baseline.value.begin(), baseline.value.end(),
+                    [](double v) { return std::isnan(v); }))
+      return "--write-baseline: no parameter has a value in half of the windows";
+    return drivers::write_text_file(
+        a_.write_baseline, baseline_text(baseline, ParameterTable(config_.pipeline.structure)));
   }
 
   void tell_differences(const std::vector<Check>& checks) const {
@@ -260,8 +274,10 @@ class ReplayRun {
   std::string event_channel_;
   std::int64_t events_before_ = 0;  ///< of parts before this one
   ReplaySurvey survey_;
+  BaselineLearner learner_;
   EstimateSeries series_;
   std::vector<RaisedEvent> events_;
+  std::string alarms_;
   std::vector<std::unique_ptr<EstimateOutput>> outputs_;
   std::string failed_;
   Estimation estimation_;

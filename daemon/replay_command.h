@@ -16,14 +16,15 @@ struct ReplayArguments {
   bool json = false;     ///< summary as JSON
   bool boxplot = false;  ///< boxplot statistics in .csv and .mat
   ReplaySpan span = {};
-  double speed = 0;               ///< times real time; 0: as fast as possible
-  bool lcm = false;               ///< publish too
-  std::string lcm_url = {};       ///< empty: the configuration's
-  std::string expect = {};        ///< expectation file to hold the replay to
-  std::string write_expect = {};  ///< expectation file to write
-  std::string load_state = {};    ///< file to go on from
-  std::string save_state = {};    ///< file to go on from later: the input has not ended
-  std::string junit = {};         ///< result of `expect` for a CI system
+  double speed = 0;                 ///< times real time; 0: as fast as possible
+  bool lcm = false;                 ///< publish too
+  std::string lcm_url = {};         ///< empty: the configuration's
+  std::string expect = {};          ///< expectation file to hold the replay to
+  std::string write_expect = {};    ///< expectation file to write
+  std::string load_state = {};      ///< file to go on from
+  std::string save_state = {};      ///< file to go on from later: the input has not ended
+  std::string write_baseline = {};  ///< baseline file of [watch] to write
+  std::string junit = {};           ///< result of `expect` for a CI system
 };
 
 /// framewatch replay. Exit code: 1 when it is not as expected.

@@ -12,6 +12,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/baseline_keeper.h"
 #include "daemon/can_complaints.h"
 #include "daemon/log.h"
 #include "daemon/state_file.h"
@@ -224,6 +225,7 @@ int run(const RunArguments& a) {
   StateKeeper keeper(a, *config);
   Complaints complaints;
   CanComplaints can_complaints(*config);
+  BaselineKeeper baseline(*config);
   RateLimitedLog failures(LogLevel::error);
   if (!a.quiet)
     log(LogLevel::info, fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name,
@@ -239,6 +241,7 @@ int run(const RunArguments& a) {
          can_complaints.look(live.estimation().can(), live.can(), host_clock_us()))
       log(LogLevel::warning, news);
     keeper.look(live.estimation(), host_clock_us());
+    baseline.look(live.estimation());
   }
   // With a state the instants still open are given out by the next start.
   if (a.state.empty())

@@ -43,4 +43,10 @@ bool TextOutput::close() {
   return false;
 }
 
+std::string write_text_file(const std::string& path, std::string_view text) {
+  TextOutput file;
+  if (file.open(path) && file.write(text) && file.close()) return {};
+  return path + ": " + file.error();
+}
+
 }  // namespace framewatch::drivers

@@ -30,4 +30,7 @@ class TextOutput {
   std::string error_;
 };
 
+/// A whole text as a file. Empty, or the path and why not; then what was there is still there.
+std::string write_text_file(const std::string& path, std::string_view text);
+
 }  // namespace framewatch::drivers

@@ -1,0 +1,77 @@
+#include "daemon/baseline_file.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "daemon/config_section.h"
+#include "daemon/config_suggest.h"
+#include "daemon/file_digest.h"
+#include "daemon/toml_document.h"
+
+namespace framewatch::daemon {
+namespace {
+
+void read_parameter(const TomlValue& value, const ParameterTable& table, Baseline& out,
+                    std::vector<TextProblem>& problems) {
+  ConfigSection s("baseline.parameter", "parameter", &value, {}, problems);
+  if (!s.given("name")) return;
+  const std::string name = s.text("name");
+  int found = -1;
+  std::vector<std::string> names;
+  for (int p = 0; p < table.size(); ++p) {
+    names.push_back(table[p].name);
+    if (table[p].name == name) found = p;
+  }
+  if (found < 0) {
+    const std::string meant = nearest(name, names);
+    s.problem("name", fmt::format("this building has no parameter {}{}", name,
+                                  meant.empty() ? "" : fmt::format(": did you mean {}?", meant)));
+    return;
+  }
+  const auto p = static_cast<std::size_t>(found);
+  if (!std::isnan(out.value[p])) s.problem("name", fmt::format("{} is given twice", name));
+  if (s.given("unit") && s.text("unit") != table[found].unit)
+    s.problem("unit", fmt::format("{} is in {}", name, table[found].unit));
+  if (!s.given("value") || !s.given("std_error")) return;
+  out.value[p] = s.number("value");
+  out.std_error[p] = s.number("std_error");
+}
+
+}  // namespace
+
+std::string baseline_text(const Baseline& baseline, const ParameterTable& table) {
+  std::string text = "# Reference parameters of framewatch's [watch].\n";
+  for (int i = 0; i < table.size(); ++i) {
+    const auto p = static_cast<std::size_t>(i);
+    if (std::isnan(baseline.value[p])) continue;
+    text += fmt::format(
+        "\n[[parameter]]\nname = \"{}\"\nvalue = {:.17g}\nstd_error = {:.17g}\nunit = \"{}\"\n",
+        table[i].name, baseline.value[p], baseline.std_error[p], table[i].unit);
+  }
+  return text;
+}
+
+std::optional<Baseline> load_baseline(const std::string& path, const ParameterTable& table,
+                                      std::vector<ConfigProblem>& problems) {
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  if (!text) {
+    problems.push_back({path, error});
+    return std::nullopt;
+  }
+  std::vector<TextProblem> found;
+  Baseline out(static_cast<std::size_t>(table.size()));
+  if (const std::optional<TomlValue> document = parse_toml(*text, found)) {
+    const ConfigSection top("baseline", "baseline", &*document, {}, found);
+    const std::vector<const TomlValue*> parameters = tables_of(*document, "parameter", found);
+    for (const TomlValue* value : parameters) read_parameter(*value, table, out, found);
+    if (parameters.empty() && found.empty())
+      found.push_back({{}, "has no [[parameter]]: nothing could be watched"});
+  }
+  for (ConfigProblem& p : with_file(path, std::move(found))) problems.push_back(std::move(p));
+  if (!problems.empty()) return std::nullopt;
+  return out;
+}
+
+}  // namespace framewatch::daemon

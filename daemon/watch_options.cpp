@@ -1,0 +1,81 @@
+#include "daemon/config_options.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using enum OptionType;
+
+const Option kOptions[] = {
+    {.section = "watch",
+     .key = "baseline",
+     .type = text,
+     .meaning = "File of reference parameters, beside this one unless its path says otherwise. "
+                "When it does not exist, `framewatch run` learns a baseline and writes it; "
+                "`framewatch replay --write-baseline` makes one from records. Without a file every "
+                "run learns its own."},
+    {.section = "watch",
+     .key = "learn_s",
+     .unit = "s",
+     .default_value = "60",
+     .min = 0,
+     .max = 1e6,
+     .above_min = true,
+     .meaning = "Sum of the windows with values that a baseline is learned from."},
+    {.section = "watch",
+     .key = "smallest_change_k_ratio",
+     .default_value = "0.03",
+     .min = 0,
+     .max = 1,
+     .meaning = "Smallest lasting change of a frame's stiffness that matters; 0: not watched."},
+    {.section = "watch",
+     .key = "smallest_change_g_ratio",
+     .default_value = "0.2",
+     .min = 0,
+     .max = 1,
+     .meaning = "The same of a floor panel's."},
+    {.section = "watch",
+     .key = "alarms_per_year",
+     .default_value = "1",
+     .min = 0,
+     .max = 1e6,
+     .above_min = true,
+     .meaning = "False alarms that are put up with, of the whole building."},
+    {.section = "watch",
+     .key = "shaking_hours_per_year",
+     .unit = "h",
+     .default_value = "10",
+     .min = 0,
+     .max = 8766,
+     .above_min = true,
+     .meaning = "Time a year in which the building moves enough for windows to have values."},
+    {.section = "baseline.parameter",
+     .key = "name",
+     .type = text,
+     .required = true,
+     .meaning = "The parameter."},
+    {.section = "baseline.parameter",
+     .key = "value",
+     .required = true,
+     .min = 0,
+     .above_min = true,
+     .meaning = "Its reference value, in `unit`."},
+    {.section = "baseline.parameter",
+     .key = "std_error",
+     .required = true,
+     .min = 0,
+     .above_min = true,
+     .meaning = "How well that is known, likewise."},
+    {.section = "baseline.parameter",
+     .key = "unit",
+     .type = text,
+     .required = true,
+     .meaning = "As in estimates."},
+};
+
+}  // namespace
+
+std::span<const Option> watch_options() {
+  return kOptions;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,96 @@
+#include "estimator/watch/change_detector.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framewatch {
+namespace {
+
+constexpr double kFreedom = 19;         // of standard errors from 20 blocks
+constexpr double kMemory_s = 15;        // of the usual standard error
+constexpr double kMostOfThreshold = 2;  // a sum beyond that tells nothing more
+
+double log_likelihood(double z) {
+  return -(kFreedom + 1) / 2 * std::log1p(z * z / kFreedom);
+}
+
+}  // namespace
+
+ChangeDetector::ChangeDetector(const Baseline& baseline, const std::vector<Watched>& watched,
+                               double threshold)
+    : baseline_(baseline), threshold_(threshold), parameters_(watched.size()) {
+  for (std::size_t p = 0; p < watched.size(); ++p)
+    if (std::isfinite(baseline.value[p])) parameters_[p].watched = watched[p];
+  used_until_.fill(Time::min());
+}
+
+void ChangeDetector::push(const WindowEstimate& e) {
+  const auto length = e.end - e.start;
+  const Time newest = *std::max_element(used_until_.begin(), used_until_.end());
+  if (newest != Time::min() && e.end - newest < length / kPhases) return;
+  const auto free = std::find_if(used_until_.begin(), used_until_.end(),
+                                 [&](Time until) { return until <= e.start; });
+  if (free == used_until_.end()) return;
+  *free = e.end;
+  const auto phase = static_cast<int>(free - used_until_.begin());
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    const Watched& watched = parameters_[p].watched;
+    if (watched.smallest > 0 && e.reason[p] == Observability::observable &&
+        e.prior_share[p] + e.noise_share[p] <= watched.most_pull)
+      judge(p, phase, e);
+  }
+}
+
+void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
+  Parameter& parameter = parameters_[p];
+  const double error = e.std_error[p] / baseline_.value[p];
+  const double baseline_error = baseline_.std_error[p] / baseline_.value[p];
+  const double window_s = std::chrono::duration<double>(e.end - e.start).count();
+  double& usual = parameter.usual_error;
+  usual =
+      usual == 0 ? error : usual + std::min(1.0, window_s / kPhases / kMemory_s) * (error - usual);
+  const double scale = std::hypot(std::max(error, usual), baseline_error);
+  const double off = e.value[p] / baseline_.value[p] - 1;
+  const double spare = parameter.watched.spare / scale;
+  const double z = off / scale, least = parameter.watched.smallest / scale;
+
+  for (const int sign : {-1, 1}) {
+    Track& track = parameter.away[sign < 0 ? 0 : 1][static_cast<std::size_t>(phase)];
+    const double toward = sign * z;
+    const double gain = log_likelihood(toward - std::max(toward, least)) -
+                        log_likelihood(toward - std::clamp(toward, 0.0, spare));
+    if (track.sum + gain <= 0) {
+      track = {};
+      continue;
+    }
+    if (track.sum == 0) track.since = e.start;
+    track.sum = std::min(track.sum + gain, kMostOfThreshold * threshold_);
+    track.weight += 1 / (scale * scale);
+    track.off += off / (scale * scale);
+    if (parameter.sign == 0 && track.sum > threshold_) {
+      parameter.sign = sign;
+      parameter.phase = phase;
+      parameter.back.fill(0);
+    }
+  }
+  if (parameter.sign == 0) return;
+  double& back = parameter.back[static_cast<std::size_t>(phase)];
+  const double toward = parameter.sign * z;
+  back = std::max(0.0, back + log_likelihood(toward - std::clamp(toward, 0.0, spare)) -
+                           log_likelihood(toward - std::max(toward, least)));
+  if (back <= threshold_) return;
+  parameter.sign = 0;
+  for (auto& tracks : parameter.away) tracks.fill({});
+}
+
+Change ChangeDetector::change(int parameter) const {
+  const Parameter& p = of(parameter);
+  const auto u = static_cast<std::size_t>(parameter);
+  const Track& track = p.away[p.sign < 0 ? 0 : 1][static_cast<std::size_t>(p.phase)];
+  if (track.weight <= 0) return {};
+  return {track.off / track.weight,
+          std::hypot(1 / std::sqrt(track.weight), baseline_.std_error[u] / baseline_.value[u]),
+          track.since};
+}
+
+}  // namespace framewatch

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "estimator/pipeline.h"
+
+namespace framewatch::test {
+
+/// Table 1's building under a minute of strong shaking, 5 % noise on every accelerometer, and what
+/// a pipeline with a wrong design says of it.
+class ShakenMinute {
+ public:
+  static constexpr double kDuration_s = 60, kNoise = 0.05;
+  /// What a frame of the first story loses, and when.
+  static constexpr double kDamage = 0.05, kDamage_s = 30;
+
+  ShakenMinute();
+  int frame() const { return frame_; }
+  const ParameterTable& table() const { return table_; }
+  /// By WindowEstimate::window.
+  std::vector<double> windows_s() const;
+  /// Every window of one motion.
+  void run(std::uint64_t seed, bool damaged,
+           const std::function<void(const WindowEstimate&)>& take) const;
+
+ private:
+  Eigen::MatrixXd motion(std::uint64_t seed, bool damaged) const;
+
+  Structure structure_;
+  ParameterTable table_;
+  int frame_;
+};
+
+}  // namespace framewatch::test
