@@ -29,7 +29,7 @@ struct Watched {
 
 /// Looks for lasting changes of parameters in the windows of one length: cumulative sums of
 /// log-likelihood ratios between "changed by at least the smallest change that matters" and "as the
-/// baseline, but for a spare" (docs/equations.md, changes). Windows of one sum do not overlap, so
+/// baseline, but for a spare" (docs/equations.md 39, 40). Windows of one sum do not overlap, so
 /// their errors are nearly independent; kPhases sums, staggered, let no change wait for a window's
 /// end. The likelihood is Student's, because standard errors come from 20 blocks, and a window that
 /// claims less error than usual is not believed. A value that prior and noise pull far toward the

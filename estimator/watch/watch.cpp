@@ -30,7 +30,8 @@ std::vector<Watched> what_is_watched(const ParameterTable& table, const WatchOpt
   return out;
 }
 
-/// Sums that may cross the threshold, per year, over the false alarms that are put up with.
+/// Sums that may cross it, per year, over the false alarms that are put up with:
+/// docs/equations.md (41).
 double threshold_for(const WatchOptions& o, const std::vector<double>& windows_s,
                      const std::vector<Watched>& watched) {
   const auto count = static_cast<double>(std::count_if(
