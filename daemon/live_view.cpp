@@ -149,6 +149,7 @@ void LiveView::estimate(const std::string& channel, const void* data, std::size_
     }
     if (renew) watch_->renew();
     for (const event_t& e : watch_->observe(*found)) {
+      if (config_.watch) continue;  // the estimator's own alarms come over LCM
       std::vector<std::uint8_t> out(static_cast<std::size_t>(e.getEncodedSize()));
       e.encode(out.data(), 0, static_cast<int>(out.size()));
       publish_(e.time_us, config_.lcm.prefix + "EVENT", out);
