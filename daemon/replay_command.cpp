@@ -151,8 +151,8 @@ class ReplayRun {
  private:
   /// Messages are made for somebody only.
   MessageSink sink() {
-    const bool wanted =
-        !a_.out.empty() || a_.lcm || (expectations_.has_value() && !expectations_->events.empty());
+    const bool wanted = !a_.out.empty() || a_.lcm || config_.watch ||
+                        (expectations_.has_value() && !expectations_->events.empty());
     if (!wanted) return {};
     return [this](std::int64_t time_us, const std::string& channel,
                   const std::vector<std::uint8_t>& bytes) { put(time_us, channel, bytes); };
@@ -290,9 +290,12 @@ int replay(const ReplayArguments& a) {
   for (const std::string& problem : wrong) refuse(problem);
   if (!wrong.empty()) return kBadInput;
   std::vector<ConfigProblem> problems;
-  const std::optional<Config> config = load_config(a.config, problems);
+  std::optional<Config> config = load_config(a.config, problems);
   print(problems);
   if (!config) return kBadInput;
+  const bool boxplots_are_read =
+      !a.out.empty() || a.lcm || !a.save_state.empty() || !a.load_state.empty();
+  if (!boxplots_are_read) config->pipeline.options.boxplot_windows = 0;
   if (!config->can.empty() && !(a.save_state.empty() && a.load_state.empty()))
     return refuse(a.config +
                   ": --save-state and --load-state are for logs of LCM and records: how far "

@@ -76,13 +76,14 @@ TEST(StudyCase, NoiseIsAsLargeAsItIsSaidToBe) {
 }
 
 TEST(StudyCase, WhatIsHiddenShows) {
+  constexpr double kShows = 2;  // times the noise of all channels; one sensor's fault is in one
   for (const char* name : {"bouc_wen", "gain_error", "smooth gap", "cubic_stiffness+gain_error"}) {
     const StudyCase c = made("any", name, quick());
     EXPECT_GE(c.gap_over_floor, 3) << name;
     StudyCase nothing = c;
     nothing.hidden = {{}, {}, c.building.theta};
     EXPECT_GT((clean_record(c, 0) - clean_record(nothing, 0)).norm(),
-              0.05 * clean_record(nothing, 0).norm())
+              kShows * c.options.noise_ratio * clean_record(nothing, 0).norm())
         << name;
   }
 }
