@@ -46,7 +46,16 @@ struct HiddenEffect {
 };
 class StudyEffects : public testing::TestWithParam<HiddenEffect> {};
 
+/// Several minutes a case where nothing is optimised.
+#ifdef __OPTIMIZE__
+#define FRAMEWATCH_OPTIMISED_OR_SKIP() static_cast<void>(0)
+#else
+#define FRAMEWATCH_OPTIMISED_OR_SKIP() \
+  GTEST_SKIP() << "diagnoses take minutes without optimisation; asan and release builds run them"
+#endif
+
 TEST_P(StudyEffects, AreNamedAtTheirPlaces) {
+  FRAMEWATCH_OPTIMISED_OR_SKIP();
   const Outcome o = diagnosed("catalogue", GetParam().name, GetParam().seed);
   EXPECT_TRUE(o.all_right()) << o.verdict;
 }
@@ -63,6 +72,7 @@ TEST(StudySubset, NothingHiddenIsAdequate) {
 }
 
 TEST(StudySubset, AnEffectThatIsNotInTheCatalogueIsNotNamedConfidently) {
+  FRAMEWATCH_OPTIMISED_OR_SKIP();
   const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, {"two_sided_gap"});
   EXPECT_FALSE(o.confidently_wrong()) << (o.named.empty() ? "" : o.named.front());
   EXPECT_NE(o.verdict, "adequate");
