@@ -1,5 +1,6 @@
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -44,6 +45,9 @@ struct HiddenEffect {
   const char* name;
   std::uint64_t seed;
 };
+void PrintTo(const HiddenEffect& effect, std::ostream* out) {
+  *out << "seed " << effect.seed;
+}
 class StudyEffects : public testing::TestWithParam<HiddenEffect> {};
 
 /// Several minutes a case where nothing is optimised.
