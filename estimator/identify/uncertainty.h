@@ -77,7 +77,7 @@ class BatchMeans {
   void add_pulls(int floor);
   void finish(int floor);
   double* columns(int unknown) {
-    return &columns_values_[static_cast<std::size_t>(unknown * columns_)];
+    return columns_values_.data() + unknown * columns_;
   }
 
   FloorLayout layout_;
