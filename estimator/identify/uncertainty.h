@@ -76,9 +76,7 @@ class BatchMeans {
   void add_block_scores(int floor);
   void add_pulls(int floor);
   void finish(int floor);
-  double* columns(int unknown) {
-    return columns_values_.data() + unknown * columns_;
-  }
+  double* columns(int unknown) { return columns_values_.data() + unknown * columns_; }
 
   FloorLayout layout_;
   int columns_;

@@ -178,8 +178,8 @@ TEST(Page, IsLightAndFetchesNothingFromElsewhere) {
   EXPECT_LT(bytes, kPageBytes);
 }
 
-/// One answer, whole, of a server on this machine; what it was waiting for when `bytes` are enough.
-std::string ask(int port, const std::string& request, std::size_t enough = 1'000'000) {
+/// Answer of a server on this machine: whole, or until `last` has come, if it is given.
+std::string ask(int port, const std::string& request, const std::string& last = {}) {
   const int s = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in to{};
   to.sin_family = AF_INET;
@@ -191,7 +191,8 @@ std::string ask(int port, const std::string& request, std::size_t enough = 1'000
   if (::connect(s, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 &&
       ::send(s, request.data(), request.size(), MSG_NOSIGNAL) > 0) {
     char part[4096];
-    for (ssize_t got; out.size() < enough && (got = ::recv(s, part, sizeof part, 0)) > 0;)
+    const auto all = [&] { return !last.empty() && out.find(last) != std::string::npos; };
+    for (ssize_t got; !all() && (got = ::recv(s, part, sizeof part, 0)) > 0;)
       out.append(part, static_cast<std::size_t>(got));
   }
   ::close(s);
@@ -279,7 +280,7 @@ TEST_F(Served, ValuesOnTheStreamAreThoseOfTheMessages) {
 
   EXPECT_FALSE(view_.acknowledge(41));
   EXPECT_TRUE(view_.acknowledge(42));
-  const std::string stream = ask(server_.port(), request("GET /events"), 300);
+  const std::string stream = ask(server_.port(), request("GET /events"), "\"acknowledged\":true");
   EXPECT_NE(stream.find("text/event-stream"), std::string::npos);
   EXPECT_NE(stream.find("\"acknowledged\":true"), std::string::npos) << stream;
 }
