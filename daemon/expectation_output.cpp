@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>
 
 #include "daemon/expectation_check.h"
+#include "daemon/html_page.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -15,21 +17,11 @@ bool is_damping(ParameterKind kind) {
   return kind == ParameterKind::frame_damping || kind == ParameterKind::panel_damping;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out;
+/// XML has no control characters.
+std::string escaped(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  return html_text(text);
 }
 
 }  // namespace
