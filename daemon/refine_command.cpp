@@ -8,9 +8,9 @@
 
 #include "daemon/estimation.h"
 #include "daemon/replay_survey.h"
+#include "daemon/stored_samples.h"
 #include "daemon/stretch_collector.h"
 #include "drivers/accel_intake.h"
-#include "drivers/lcm_log.h"
 #include "estimator/identify/design.h"
 #include "estimator/refine/max_likelihood.h"
 
@@ -27,27 +27,6 @@ struct Report {
   Refinement refinement;
   std::vector<double> streaming;  ///< theta order; NaN: not published
 };
-
-void push_record(const ReplayInput& input, const drivers::AccelIntake::Sink& sink) {
-  const drivers::Record& record = input.record;
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    const Time time = from_microseconds(std::llround(record.time_s[i] * 1e6));
-    for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
-      if (input.axis_of_column[c] >= 0)
-        sink({time, input.axis_of_column[c], record.accel_mps2[c][i]});
-  }
-}
-
-std::string push_log(const std::string& path, drivers::AccelIntake& intake) {
-  drivers::LcmLogReader reader;
-  drivers::LogEvent event;
-  auto read = reader.open(path) ? reader.next(event) : drivers::LogRead::error;
-  for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
-       read = reader.next(event))
-    if (read == drivers::LogRead::event)
-      intake.message(event.channel, event.data.data(), event.data.size());
-  return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
-}
 
 /// A number, or null when there is none.
 Json number(double value) {
@@ -147,8 +126,7 @@ int refine(const RefineArguments& a) {
   };
   drivers::AccelIntake intake(wanted_axes(*config), sink);
   for (const ReplayInput& input : survey.inputs()) {
-    if (input.is_record) push_record(input, sink);
-    const std::string problem = input.is_record ? "" : push_log(input.path, intake);
+    const std::string problem = push_stored_samples(input, intake, sink);
     if (problem.empty()) continue;
     fmt::print(stderr, "{}\n", problem);
     return kBadInput;

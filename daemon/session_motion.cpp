@@ -7,8 +7,8 @@
 
 #include "daemon/estimation.h"
 #include "daemon/replay_survey.h"
+#include "daemon/stored_samples.h"
 #include "drivers/accel_intake.h"
-#include "drivers/lcm_log.h"
 #include "estimator/motion/acquisition.h"
 
 namespace framewatch::daemon {
@@ -55,27 +55,6 @@ class Collector {
   bool too_long_ = false;
   Acquisition acquisition_;
 };
-
-void push_record(const ReplayInput& input, Collector& collector) {
-  const drivers::Record& record = input.record;
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    const Time time = from_microseconds(std::llround(record.time_s[i] * 1e6));
-    for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
-      if (input.axis_of_column[c] >= 0)
-        collector.push({time, input.axis_of_column[c], record.accel_mps2[c][i]});
-  }
-}
-
-std::string push_log(const std::string& path, drivers::AccelIntake& intake) {
-  drivers::LcmLogReader reader;
-  drivers::LogEvent event;
-  auto read = reader.open(path) ? reader.next(event) : drivers::LogRead::error;
-  for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
-       read = reader.next(event))
-    if (read == drivers::LogRead::event)
-      intake.message(event.channel, event.data.data(), event.data.size());
-  return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
-}
 
 /// rms of every block of some axes, without the blocks' means; the largest of the axes.
 std::vector<double> block_rms(const SessionMotion& m, bool base, Eigen::Index block) {
@@ -135,8 +114,8 @@ std::optional<SessionMotion> read_session_motion(const Config& config,
   drivers::AccelIntake intake(wanted_axes(config),
                               [&](const AccelSample& sample) { collector.push(sample); });
   for (const ReplayInput& input : survey.inputs()) {
-    if (input.is_record) push_record(input, collector);
-    const std::string problem = input.is_record ? "" : push_log(input.path, intake);
+    const std::string problem = push_stored_samples(
+        input, intake, [&](const AccelSample& sample) { collector.push(sample); });
     if (!problem.empty()) problems.push_back(problem);
   }
   collector.finish();

@@ -1,0 +1,42 @@
+#include "daemon/stored_samples.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "drivers/lcm_log.h"
+
+namespace framewatch::daemon {
+namespace {
+
+void push_record(const ReplayInput& input, const drivers::AccelIntake::Sink& sink) {
+  const drivers::Record& record = input.record;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const Time time = from_microseconds(std::llround(record.time_s[i] * 1e6));
+    for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
+      if (input.axis_of_column[c] >= 0)
+        sink({time, input.axis_of_column[c], record.accel_mps2[c][i]});
+  }
+}
+
+std::string push_log(const std::string& path, drivers::AccelIntake& intake) {
+  drivers::LcmLogReader reader;
+  drivers::LogEvent event;
+  auto read = reader.open(path) ? reader.next(event) : drivers::LogRead::error;
+  for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
+       read = reader.next(event))
+    if (read == drivers::LogRead::event)
+      intake.message(event.channel, event.data.data(), event.data.size());
+  return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
+}
+
+}  // namespace
+
+std::string push_stored_samples(const ReplayInput& input, drivers::AccelIntake& intake,
+                                const drivers::AccelIntake::Sink& sink) {
+  if (!input.is_record) return push_log(input.path, intake);
+  push_record(input, sink);
+  return {};
+}
+
+}  // namespace framewatch::daemon
