@@ -7,8 +7,6 @@
 namespace framewatch::drivers {
 namespace {
 
-/// Of the SYNC's period: frames later than this after it are of no known sample.
-constexpr double kSyncWindow = 0.95;
 /// Of the node's period: how soon the rest of a sample must follow the frame that opens it.
 constexpr double kAttachWindow = 0.5;
 
@@ -44,7 +42,7 @@ CanIntake::CanIntake(const CanMap& map, Sink sink, Observer observer)
     resamplers_.assign(static_cast<std::size_t>(axes), Resampler(map.grid_period_us));
   bus_counters_.resize(map.buses.size());
   for (std::size_t b = 0; b < map.buses.size(); ++b)
-    buses_.push_back({FrameLookup(map, static_cast<int>(b)), nullptr, -1e18, {}});
+    buses_.push_back({FrameLookup(map, static_cast<int>(b)), nullptr});
   for (const CanNodeMap& node : map.nodes) make_node(node);
 }
 
@@ -56,24 +54,17 @@ void CanIntake::make_node(const CanNodeMap& node) {
   for (std::size_t m = 0; m < node.messages.size(); ++m)
     for (const CanReading& reading : node.messages[m].readings)
       carrier_[static_cast<std::size_t>(reading.axis)] = {index, static_cast<int>(m)};
-  const auto make_timer = [this](const StreamTimer::Settings& settings) {
-    auto timer = std::make_unique<StreamTimer>(settings, steps_);
-    timer->on_delivery(
-        [this, t = timer.get()](const TimedValues& v, double time_us) { deliver(v, time_us, *t); });
-    return timer;
-  };
   Bus& bus = buses_[static_cast<std::size_t>(node.bus)];
-  if (node.timing == CanTiming::sync) {
-    made.waiting.resize(node.messages.size());
-    bus.nodes.push_back(index);
-    if (!bus.sync) {
-      const double period_us = map_.buses[static_cast<std::size_t>(node.bus)].sync_period_us;
-      const int overflow = map_.buses[static_cast<std::size_t>(node.bus)].sync_overflow;
-      bus.sync = make_timer({overflow > 0 ? CanTiming::counter : CanTiming::period, period_us,
-                             period_us, static_cast<double>(overflow)});
-    }
-  } else {
-    made.timer = make_timer(settings_of(node));
+  if (node.timing != CanTiming::sync) {
+    made.timer = std::make_unique<StreamTimer>(settings_of(node), steps_);
+    made.timer->on_delivery([this, t = made.timer.get()](const TimedValues& v, double time_us) {
+      deliver(v, time_us, t->period_us());
+    });
+  } else if (!bus.latch) {
+    bus.latch = std::make_unique<SyncLatch>(map_, node.bus, steps_,
+                                            [this, &bus](const TimedValues& v, double time_us) {
+                                              deliver(v, time_us, bus.latch->period_us());
+                                            });
   }
   nodes_.push_back(std::move(made));
 }
@@ -97,9 +88,9 @@ void CanIntake::frame(int index, const CanFrame& frame) {
   }
   const double host_us = steps_.continuous(static_cast<double>(frame.stamp_us));
   const CanBusMap& settings = map_.buses[static_cast<std::size_t>(index)];
-  if (bus.sync && frame.id == settings.sync_id && frame.extended == (settings.sync_id > 0x7FF)) {
+  if (bus.latch && frame.id == settings.sync_id && frame.extended == (settings.sync_id > 0x7FF)) {
     ++counters.syncs;
-    return sync(bus, settings, frame, host_us);
+    return bus.latch->sync(frame, host_us);
   }
   const std::vector<FrameLookup::Target>& targets = bus.lookup.find(frame.id, frame.extended);
   if (targets.empty()) {
@@ -164,21 +155,8 @@ void CanIntake::place(Node& node, int at, const CanFrame& frame, TimedValues val
                       double host_us) {
   const auto m = static_cast<std::size_t>(at);
   const CanNodeMap& map = map_.nodes[static_cast<std::size_t>(values.node)];
-  if (map.timing == CanTiming::sync) {
-    Bus& bus = buses_[static_cast<std::size_t>(map.bus)];
-    const double after_us = host_us - bus.sync_us;
-    const double window_us =
-        kSyncWindow * map_.buses[static_cast<std::size_t>(map.bus)].sync_period_us;
-    const bool in_window = after_us >= 0 && after_us <= window_us;
-    const bool counted = map.messages[m].counter && bus.sync_us >= 0;
-    if (counted ? !agrees(node, *map.messages[m].counter, frame, bus, in_window) : !in_window) {
-      ++(bus.sync_us < 0 ? node.counters.unplaced : node.counters.late);
-      return;
-    }
-    Waiting& waiting = node.waiting[m];
-    (waiting.count++ == 0 ? waiting.first : waiting.second) = std::move(values);
-    return;
-  }
+  if (map.timing == CanTiming::sync)
+    return buses_[static_cast<std::size_t>(map.bus)].latch->add(frame, host_us, std::move(values));
   if (at > 0) {
     const double after_us = host_us - node.opened_us;
     const double window_us = kAttachWindow * map.period_us * map.samples_per_frame;
@@ -202,51 +180,7 @@ void CanIntake::place(Node& node, int at, const CanFrame& frame, TimedValues val
   node.timer->see(reading, host_us, std::move(values));
 }
 
-/// Whether a latched node's counter says that its frame belongs to the last SYNC. A node that
-/// missed a SYNC or restarted counts otherwise from then on.
-bool CanIntake::agrees(Node& node, const CanField& counter, const CanFrame& frame, const Bus& bus,
-                       bool in_window) {
-  constexpr int kSure = 5;
-  const std::int64_t modulus = std::int64_t{1} << std::min(counter.bits, 62);
-  const std::int64_t difference = raw_integer(counter, frame.data) - bus.sync->opened_number();
-  const std::int64_t at_sync = (difference % modulus + modulus) % modulus;
-  if (node.counter_at_sync == at_sync) {
-    node.disagreements = 0;
-    return true;
-  }
-  if (!in_window || (node.counter_at_sync >= 0 && ++node.disagreements < kSure)) return false;
-  node.counter_at_sync = at_sync;
-  node.disagreements = 0;
-  return true;
-}
-
-void CanIntake::sync(Bus& bus, const CanBusMap& settings, const CanFrame& frame, double host_us) {
-  if (settings.sync_overflow > 0 && frame.length != 1) return;
-  flush(bus);
-  bus.sync_us = host_us;
-  bus.sync->see(frame.data[0] % std::max<int>(settings.sync_overflow, 1), host_us, {-1, -1, 0, {}});
-}
-
-/// A message that came twice between two SYNCs and not at all before: its first frame was late.
-void CanIntake::flush(Bus& bus) {
-  if (bus.sync_us < 0) return;
-  for (const int index : bus.nodes) {
-    Node& node = nodes_[static_cast<std::size_t>(index)];
-    for (Waiting& w : node.waiting) {
-      const int count = std::exchange(w.count, 0);
-      const bool late = count > 1 && !w.came_last_time;
-      w.came_last_time = count > 0;
-      if (count == 0) continue;
-      if (late) ++node.counters.late;
-      node.counters.duplicates += count - 1 - (late ? 1 : 0);
-      bus.sync->attach(std::move(late ? *w.second : *w.first));
-      w.first.reset();
-      w.second.reset();
-    }
-  }
-}
-
-void CanIntake::deliver(const TimedValues& v, double time_us, const StreamTimer& timer) {
+void CanIntake::deliver(const TimedValues& v, double time_us, double frame_us) {
   if (v.node < 0) return;
   Node& node = nodes_[static_cast<std::size_t>(v.node)];
   const CanNodeMap& map = map_.nodes[static_cast<std::size_t>(v.node)];
@@ -261,8 +195,7 @@ void CanIntake::deliver(const TimedValues& v, double time_us, const StreamTimer&
     if (c.received++ == 0) c.first_time_us = first_us;
     c.last_time_us = std::max(c.last_time_us, first_us);
   }
-  const double period_us =
-      map.timing == CanTiming::sync ? timer.period_us() : timer.period_us() / map.samples_per_frame;
+  const double period_us = frame_us / map.samples_per_frame;
   const auto& readings = map.messages[static_cast<std::size_t>(v.message)].readings;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     const auto axis = static_cast<std::size_t>(readings[i].axis);
@@ -288,11 +221,8 @@ void CanIntake::deliver(const TimedValues& v, double time_us, const StreamTimer&
 }
 
 void CanIntake::finish() {
-  for (Bus& bus : buses_) {
-    if (!bus.sync) continue;
-    flush(bus);
-    bus.sync->finish();
-  }
+  for (Bus& bus : buses_)
+    if (bus.latch) bus.latch->finish();
   for (Node& node : nodes_)
     if (node.timer) node.timer->finish();
 }
@@ -305,6 +235,8 @@ CanNodeCounters CanIntake::node(std::size_t index) const {
     out.duplicates += s.duplicates;
     out.reordered += s.reordered;
   }
+  const auto& latch = buses_[static_cast<std::size_t>(map_.nodes[index].bus)].latch;
+  if (latch) latch->count(static_cast<int>(index), out);
   if (node.timer) {
     out.restarts += node.timer->restarts();
     out.unplaced += node.timer->unplaced();

@@ -11,6 +11,7 @@
 #include "drivers/can/frame_lookup.h"
 #include "drivers/can/resampler.h"
 #include "drivers/can/stream_timer.h"
+#include "drivers/can/sync_latch.h"
 #include "drivers/sequence_counter.h"
 #include "estimator/motion/sample.h"
 
@@ -51,39 +52,41 @@ class CanIntake {
   std::int64_t newest_stamp_us() const { return newest_stamp_us_; }
   const CanMap& map() const { return map_; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(steps_, nodes_, buses_, bus_counters_, resamplers_, ranges_, newest_stamp_us_);
+  }
+
  private:
-  /// A frame of a SYNC-latched node that waits for the next SYNC.
-  struct Waiting {
-    std::optional<TimedValues> first, second;
-    int count = 0;
-    bool came_last_time = true;
-  };
   struct Node {
     CanNodeCounters counters;
     std::vector<SequenceCounter> sequence;  ///< by message
     std::unique_ptr<StreamTimer> timer;     ///< null when SYNC gives the time
-    std::vector<Waiting> waiting;           ///< by message, SYNC only
-    std::int64_t counter_at_sync = -1;      ///< counter minus the SYNC's number; -1: not known
-    int disagreements = 0;                  ///< in a row, of counters with the SYNC
     double opened_us = -1e18;               ///< stamp of the frame that opened the sample
     std::vector<std::uint8_t> attached;     ///< by message, to that sample
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(counters, sequence, opened_us, attached);
+      if (timer) a(*timer);
+    }
   };
   struct Bus {
     FrameLookup lookup;
-    std::unique_ptr<StreamTimer> sync;  ///< null when no node needs it
-    double sync_us = -1e18;
-    std::vector<int> nodes;  ///< SYNC-latched
+    std::unique_ptr<SyncLatch> latch;  ///< null when no node needs it
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      if (latch) a(*latch);
+    }
   };
 
   void make_node(const CanNodeMap& node);
-  void sync(Bus& bus, const CanBusMap& settings, const CanFrame& frame, double host_us);
-  bool agrees(Node& node, const CanField& counter, const CanFrame& frame, const Bus& bus,
-              bool in_window);
-  void flush(Bus& bus);
   bool canopen(int bus, const CanFrame& frame);
   void message(int node, int message, const CanFrame& frame, double host_us);
   void place(Node& node, int message, const CanFrame& frame, TimedValues values, double host_us);
-  void deliver(const TimedValues& values, double time_us, const StreamTimer& timer);
+  /// `period_us` is between the node's frames now.
+  void deliver(const TimedValues& values, double time_us, double period_us);
 
   const CanMap& map_;
   Sink sink_;

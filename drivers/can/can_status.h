@@ -23,6 +23,12 @@ struct CanBusCounters {
   std::int64_t bus_errors = 0;  ///< protocol, acknowledgement and transceiver
   std::int64_t syncs = 0;
   CanBusState state = CanBusState::active;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(frames, foreign, remote, error_frames, bus_off, restarted, overflow, bus_errors, syncs);
+    a(state);
+  }
 };
 
 /// Brings an error frame into the counters (linux/can/error.h).
@@ -52,12 +58,24 @@ struct CanNodeCounters {
                ? 1e6 * static_cast<double>(received - 1) / (last_time_us - first_time_us)
                : 0;
   }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(frames, received, lost, duplicates, reordered, late, unplaced, wrong_length, wrong_kind);
+    a(not_finite, restarts, boot_ups, emergencies, last_emergency, repaired, last_stamp_us);
+    a(first_time_us, last_time_us);
+  }
 };
 
 /// Smallest and largest value decoded, scale and offset of the DBC applied.
 struct CanRange {
   double least = 0, most = 0;
   std::int64_t count = 0;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(least, most, count);
+  }
 };
 
 }  // namespace framewatch::drivers

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "drivers/can/archive_list.h"
+
 namespace framewatch::drivers {
 
 /// The line that maps a device's time to the host's: host = a + b * device, both microseconds.
@@ -20,6 +22,12 @@ class ClockLine {
   /// Host's microseconds per device's.
   double rate() const { return 1 + slope_; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(started_, device0_us_, host0_us_, offset_, slope_, current_, in_bucket_);
+    archive_list(a, lowest_);
+  }
+
  private:
   static constexpr int kBucket = 32;           ///< stamps, of which the lowest is kept
   static constexpr std::size_t kBuckets = 64;  ///< kept
@@ -27,7 +35,12 @@ class ClockLine {
   static constexpr double kMaxSlope = 500e-6;
 
   struct Point {
-    double x, e;  ///< device time since origin; host minus device since origin
+    double x = 0, e = 0;  ///< device time since origin; host minus device since origin
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(x, e);
+    }
   };
   double above(const Point& p) const { return p.e - offset_ - slope_ * p.x; }
   void fit();

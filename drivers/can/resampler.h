@@ -22,6 +22,11 @@ class Resampler {
   void add(std::int64_t number, double time_us, double period_us, double value, const Sink& sink);
   std::int64_t repaired() const { return repaired_; }
 
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(ring_, started_, newest_, next_, repaired_);
+  }
+
  private:
   static constexpr std::int64_t kHalf = 5;      ///< taps on each side
   static constexpr std::int64_t kPatience = 3;  ///< samples to wait for one that is overtaken
@@ -31,6 +36,11 @@ class Resampler {
     std::int64_t number = -1;
     double time_us = 0, value = 0;
     bool filled = false;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(number, time_us, value, filled);
+    }
   };
   Slot& slot(std::int64_t number) { return ring_[static_cast<std::size_t>(number) % kRing]; }
   bool has(std::int64_t number);

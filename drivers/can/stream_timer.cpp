@@ -15,11 +15,16 @@ constexpr double kEarliest_us = -5'000;  ///< before the line: nothing is receiv
 constexpr double kLatest_us = 30'000;    ///< a busy bus
 constexpr double kSame_us = 20'000;      ///< what two frames of one step may differ by
 constexpr double kAbsurd_us = 2e6;       ///< nobody delivers so late
-constexpr int kPatience = 100;           ///< late frames without a jump before they are a new start
 constexpr std::int64_t kNoJump = 3;      ///< numbers
+constexpr double kStall_us = 1e6;        ///< frames may be late by after an outage, and
+constexpr double kStallOfWrap = 0.125;   ///< not more of the counter: a restart would look like it
+constexpr double kSlew = 0.002;          ///< that times may run faster or slower by than the line
 constexpr double kActive_us = 2e6;       ///< a stream without a frame for so long does not vote
-/// Of a period, that a frame may come before the line; after it the rest.
-constexpr double kEarlyShare = 0.25;
+/// Of a period, that a frame may come before a line that is well known; one that is not: of few
+/// stamps, or long ago.
+constexpr double kShare = 0.05, kVagueShare = 0.25;
+constexpr std::int64_t kFewStamps = 256;
+constexpr double kLongAgo = 100;  ///< periods
 
 }  // namespace
 
@@ -51,11 +56,7 @@ double StreamTimer::device_of(double reading, double host_us) const {
   const double period_us = settings_.period_us;
   if (settings_.kind == CanTiming::period) {
     if (!any_) return last_device_us_ + period_us;
-    if (starting_)
-      return last_device_us_ + period_us * std::round((host_us - last_host_us_) / period_us);
-    const double since = host_us - line_.host_us(last_device_us_);
-    return last_device_us_ +
-           period_us * std::floor(since / (period_us * line_.rate()) + kEarlyShare);
+    return last_device_us_ + period_us * std::round((host_us - last_host_us_) / period_us);
   }
   const double device_us = reading * settings_.tick_us;
   const double wrap_us = settings_.modulus * settings_.tick_us;
@@ -69,11 +70,32 @@ bool StreamTimer::believable(double late_us) const {
          late_us <= std::max(kLatest_us, 1.5 * settings_.period_us);
 }
 
-/// Nothing restarted: a starved sender or adapter, or a line begun with late frames.
+/// Nothing restarted: a starved sender or adapter, a line begun with late frames, or an outage that
+/// ends with a burst.
 bool StreamTimer::goes_on(const Held& held) const {
   const std::int64_t jump = held.values.number - delivered_;
   const double late = late_us(held);
-  return jump > 0 && jump <= kNoJump && late > -kLatest_us && late < kAbsurd_us;
+  if (jump <= 0) return false;
+  if (jump <= kNoJump) return late > -kLatest_us && late < kAbsurd_us;
+  const double wrap_us = settings_.modulus * settings_.tick_us;
+  return late >= 0 && late < kStall_us && (wrap_us <= 0 || late < kStallOfWrap * wrap_us);
+}
+
+/// On the line, but without its jumps: who takes equal steps shall not see one when the line is
+/// found to be lower.
+double StreamTimer::time_of(double device_us) {
+  const double line_us = line_.host_us(device_us);
+  const double step_us = device_us - told_device_us_;
+  const double free_us = kSlew * std::max(0.0, step_us);
+  const double on_us = told_us_ + step_us * line_.rate();
+  const double time_us =
+      told_any_ ? on_us + std::clamp(line_us - on_us, -free_us, free_us) : line_us;
+  if (!told_any_ || step_us > 0) {
+    told_any_ = true;
+    told_device_us_ = device_us;
+    told_us_ = time_us;
+  }
+  return time_us;
 }
 
 std::size_t StreamTimer::timed_held() const {
@@ -90,12 +112,52 @@ void StreamTimer::remember(const Held& held) {
 }
 
 void StreamTimer::see(double reading, double host_us, TimedValues values) {
+  if (settings_.kind == CanTiming::period && !starting_)
+    return see_arrival(host_us, std::move(values));
   const double device_us = device_of(reading, host_us);
   values.number =
       any_ ? last_number_ + std::llround((device_us - last_device_us_) / settings_.period_us)
            : last_number_;
   opened_ = {device_us, host_us, false, {values.node, values.message, values.number, {}}};
   take({device_us, host_us, true, std::move(values)});
+}
+
+void StreamTimer::see_arrival(double host_us, TimedValues values) {
+  const double since = (host_us - line_.host_us(last_device_us_)) / period_us();
+  arrivals_.add(since, seen_ < kFewStamps || since > kLongAgo ? kVagueShare : kShare);
+  values.number = last_number_ + arrivals_.newest();
+  opened_ = {0, host_us, false, {values.node, values.message, values.number, {}}};
+  unnumbered_.push_back({0, host_us, true, std::move(values)});
+  if (arrivals_.settled()) give_numbers();
+}
+
+bool StreamTimer::confirm(std::int64_t number) {
+  if (number == opened_.values.number && !arrivals_.waiting()) return true;
+  if (!arrivals_.confirm(number - last_number_)) return false;
+  give_numbers();
+  return true;
+}
+
+void StreamTimer::give_numbers() {
+  const std::vector<std::int64_t> numbers = arrivals_.settle();
+  std::vector<Held> unnumbered = std::exchange(unnumbered_, {});
+  const std::int64_t number0 = last_number_;
+  const double device0_us = last_device_us_;
+  std::size_t next = 0;
+  for (Held& held : unnumbered) {
+    if (!held.timed) {
+      attach(std::move(held.values));
+      continue;
+    }
+    const std::int64_t number = numbers[next++];
+    held.values.number = number0 + number;
+    held.device_us = device0_us + settings_.period_us * static_cast<double>(number);
+    opened_ = {held.device_us,
+               held.host_us,
+               false,
+               {held.values.node, held.values.message, held.values.number, {}}};
+    take(std::move(held));
+  }
 }
 
 void StreamTimer::take(Held held) {
@@ -118,23 +180,29 @@ void StreamTimer::take(Held held) {
     return;
   }
   const double late = late_us(held);
-  if (!believable(late) && !(late < 0 && goes_on(held))) return hold(std::move(held));
+  const bool explained = settings_.kind == CanTiming::period && late >= 0;
+  if (!explained && !believable(late) && !(late < 0 && goes_on(held))) return hold(std::move(held));
   if (!held_.empty()) give_out_held();
   late_ = false;
   opened_is_held_ = false;
   line_.add(held.device_us, held.host_us);
+  ++seen_;
   remember(held);
   delivered_ = std::max(delivered_, held.values.number);
-  deliver_(held.values, line_.host_us(held.device_us));
+  deliver_(held.values, time_of(held.device_us));
 }
 
 void StreamTimer::attach(TimedValues values) {
+  if (!unnumbered_.empty()) {
+    unnumbered_.push_back({0, 0, false, std::move(values)});
+    return;
+  }
   values.number = opened_.values.number;
   if (opened_is_held_) {
     held_.push_back({opened_.device_us, opened_.host_us, false, std::move(values)});
     return;
   }
-  deliver_(values, line_.host_us(opened_.device_us));
+  deliver_(values, time_of(opened_.device_us));
 }
 
 void StreamTimer::hold(Held held) {
@@ -154,7 +222,7 @@ void StreamTimer::hold(Held held) {
   if (steps_.resolve(step_us, now_us)) return;
   if (!late_ && goes_on(held_.front())) {
     late_ = true;
-    patience_ = kPatience;
+    patience_ = static_cast<int>(settings_.patience_us / settings_.period_us);
     return give_out_held();
   }
   late_ = false;
@@ -172,7 +240,7 @@ void StreamTimer::give_out_held() {
     }
     if (h.timed) remember(h);
     delivered_ = std::max(delivered_, h.values.number);
-    deliver_(h.values, line_.host_us(h.device_us));
+    deliver_(h.values, time_of(h.device_us));
   }
   opened_is_held_ = false;
 }
@@ -186,10 +254,37 @@ void StreamTimer::start_anew() {
     if (h.timed) remember(h);
 }
 
+/// Their numbers so far come from the distance to the one before.
+void StreamTimer::number_first() {
+  std::vector<double> arrivals;
+  for (const Held& h : held_)
+    if (h.timed) arrivals.push_back((h.host_us - held_.front().host_us) / settings_.period_us);
+  const std::vector<std::int64_t> numbers = first_numbers(arrivals);
+  const Held first = held_.front();
+  std::size_t next = 0;
+  std::int64_t number = 0;
+  for (Held& h : held_) {
+    if (h.timed) number = numbers[next++];
+    h.values.number = first.values.number + number;
+    h.device_us = first.device_us + settings_.period_us * static_cast<double>(number);
+    if (h.timed) remember(h);
+  }
+  opened_.values.number = held_.back().values.number;
+  opened_.device_us = held_.back().device_us;
+}
+
 void StreamTimer::settle() {
+  if (settings_.kind == CanTiming::period && !held_.empty()) {
+    any_ = false;
+    number_first();
+  }
   starting_ = false;
+  seen_ = 0;
+  told_any_ = false;
   std::vector<Held> held = std::exchange(held_, {});
   if (held.empty()) return;
+  std::stable_sort(held.begin(), held.end(),
+                   [](const Held& a, const Held& b) { return a.values.number < b.values.number; });
   const std::int64_t shift =
       std::exchange(renumber_, false) ? delivered_ + 1 - held.front().values.number : 0;
   last_number_ += shift;
@@ -204,11 +299,12 @@ void StreamTimer::settle() {
   for (Held& h : held) {
     h.values.number += shift;
     delivered_ = std::max(delivered_, h.values.number);
-    deliver_(h.values, line_.host_us(h.device_us));
+    deliver_(h.values, time_of(h.device_us));
   }
 }
 
 void StreamTimer::restart() {
+  give_numbers();
   if (starting_) {
     held_.clear();
     any_ = false;
@@ -222,6 +318,8 @@ void StreamTimer::restart() {
 void StreamTimer::shift(double step_us) {
   if (starting_ || settings_.kind == CanTiming::period) {
     // It cannot tell which of its frames were stamped after the step.
+    arrivals_ = {};
+    unnumbered_.clear();
     if (!starting_) start_anew();
     held_.clear();
     any_ = false;
@@ -238,12 +336,13 @@ void StreamTimer::shift(double step_us) {
   }
   for (const Held& h : held) {
     delivered_ = std::max(delivered_, h.values.number);
-    deliver_(h.values, line_.host_us(h.device_us));
+    deliver_(h.values, time_of(h.device_us));
   }
   opened_is_held_ = false;
 }
 
 void StreamTimer::finish() {
+  give_numbers();
   if (starting_)
     settle();
   else

@@ -6,50 +6,18 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/config.h"
-#include "drivers/can/can_encoder.h"
 #include "drivers/can/can_log.h"
+#include "tests/can/can_traffic.h"
 #include "tests/support/data.h"
 
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::int64_t kStart_us = 1'700'000'000'000'000;
+constexpr std::int64_t kStart_us = test::kTrafficStart_us;
 constexpr double kWaveError_mps2 = 0.01;  ///< quantisation of the coarsest example is 0.01
 
-daemon::Config example(const std::string& name) {
-  std::vector<daemon::ConfigProblem> problems;
-  const auto config =
-      daemon::load_config(FRAMEWATCH_SOURCE_DIR "/configs/can/" + name + ".toml", problems);
-  for (const auto& p : problems) ADD_FAILURE() << p.where << ": " << p.message;
-  return config.value_or(daemon::Config{});
-}
-
-double wave(std::size_t axis, double t_s) {
-  return std::sin(2 * M_PI * 2.5 * t_s + 0.4 * static_cast<double>(axis));
-}
-
-struct Traffic {
-  std::vector<BusFrame> frames;  ///< stamped
-};
-
-/// A building's frames: instants at the configured rate, frames of a bus one after the other.
-Traffic traffic(const daemon::Config& config, int instants, double unit = 1) {
-  CanEncoder encoder(config.can);
-  Traffic out;
-  const double period_us = 1e6 / config.pipeline.options.rate_hz;
-  for (int k = 0; k < instants; ++k) {
-    std::vector<double> values;
-    for (std::size_t a = 0; a < config.pipeline.axes.size(); ++a)
-      values.push_back(wave(a, 1e-6 * period_us * k) / unit);
-    std::map<int, int> on_bus;
-    for (BusFrame& f : encoder.instant(values)) {
-      f.frame.stamp_us = kStart_us + std::llround(period_us * k) + 135 + 270 * on_bus[f.bus]++;
-      out.frames.push_back(f);
-    }
-  }
-  return out;
-}
+using test::can_example;
+using Traffic = std::vector<BusFrame>;
 
 struct Result {
   std::map<std::pair<int, std::int64_t>, double> samples;  ///< by axis and microsecond
@@ -62,7 +30,7 @@ Result run(const CanMap& map, const Traffic& traffic) {
   CanIntake intake(map, [&](const AccelSample& s) {
     EXPECT_TRUE(out.samples.emplace(std::pair(s.axis, to_microseconds(s.time)), s.accel).second);
   });
-  for (const BusFrame& f : traffic.frames) intake.frame(f.bus, f.frame);
+  for (const BusFrame& f : traffic) intake.frame(f.bus, f.frame);
   intake.finish();
   for (std::size_t n = 0; n < map.nodes.size(); ++n) out.nodes.push_back(intake.node(n));
   out.buses = intake.buses();
@@ -72,10 +40,10 @@ Result run(const CanMap& map, const Traffic& traffic) {
 class Example : public testing::TestWithParam<const char*> {};
 
 TEST_P(Example, GivesBackTheMotionAtTheRightTimes) {
-  const daemon::Config config = example(GetParam());
+  const daemon::Config config = can_example(GetParam());
   const double unit = std::abs(config.pipeline.axes[0].scale);
   const auto rate = static_cast<int>(config.pipeline.options.rate_hz);
-  const Result result = run(config.can, traffic(config, 12 * rate, unit));
+  const Result result = run(config.can, test::can_traffic(config, 12 * rate, unit));
   ASSERT_EQ(result.nodes.size(), config.can.nodes.size());
   for (const CanNodeCounters& c : result.nodes) {
     EXPECT_NEAR(c.rate_hz() * config.can.nodes[0].samples_per_frame, rate, 1e-3 * rate);
@@ -87,7 +55,7 @@ TEST_P(Example, GivesBackTheMotionAtTheRightTimes) {
   for (const auto& [at, value] : result.samples) {
     const double t_s = 1e-6 * static_cast<double>(at.second - kStart_us);
     EXPECT_NEAR(
-        value * unit, wave(static_cast<std::size_t>(at.first), t_s),
+        value * unit, test::can_wave(static_cast<std::size_t>(at.first), t_s),
         kWaveError_mps2 + slope * (config.can.nodes[0].samples_per_frame > 1 ? 0.012 : 0.002));
   }
 }
@@ -98,8 +66,8 @@ INSTANTIATE_TEST_SUITE_P(Maps, Example,
                          [](const auto& param) { return std::string(param.param); });
 
 TEST(CanIntake, LatchedSamplesAllHaveTheTimeOfTheSync) {
-  const daemon::Config config = example("tower");
-  const Result result = run(config.can, traffic(config, 1000));
+  const daemon::Config config = can_example("tower");
+  const Result result = run(config.can, test::can_traffic(config, 1000));
   EXPECT_EQ(result.samples.size(), 18u * 1000);
   std::map<std::int64_t, int> instants;
   for (const auto& [at, value] : result.samples) ++instants[at.second];
@@ -111,17 +79,17 @@ TEST(CanIntake, LatchedSamplesAllHaveTheTimeOfTheSync) {
 
 TEST(CanIntake, LostFramesAreCountedAndShiftNothing) {
   for (const char* name : {"tower", "raw_int16"}) {
-    const daemon::Config config = example(name);
-    Traffic all = traffic(config, 3000), some;
+    const daemon::Config config = can_example(name);
+    Traffic all = test::can_traffic(config, 3000), some;
     std::mt19937 random(23);
     std::map<std::uint32_t, std::int64_t> dropped;
-    for (const BusFrame& f : all.frames) {
+    for (const BusFrame& f : all) {
       const bool edge =
           f.frame.stamp_us < kStart_us + 1'000'000 || f.frame.stamp_us > kStart_us + 29'000'000;
       if (!edge && f.frame.id != 0x80 && random() % 20 == 0)
         ++dropped[f.frame.id];
       else
-        some.frames.push_back(f);
+        some.push_back(f);
     }
     const Result whole = run(config.can, all), holes = run(config.can, some);
     for (std::size_t n = 0; n < config.can.nodes.size(); ++n)
@@ -135,35 +103,109 @@ TEST(CanIntake, LostFramesAreCountedAndShiftNothing) {
 }
 
 TEST(CanIntake, AFrameAfterTheNextSyncIsLateAndNotTheNextSample) {
-  const daemon::Config config = example("tower");
-  Traffic t = traffic(config, 200);
+  const daemon::Config config = can_example("tower");
+  Traffic t = test::can_traffic(config, 200);
   // Node 3's frame of instant 100 comes after SYNC 101, before its own frame of instant 101.
   const std::uint32_t id = config.can.nodes[2].messages[0].id;
-  auto at = std::find_if(t.frames.begin(), t.frames.end(), [&](const BusFrame& f) {
+  auto at = std::find_if(t.begin(), t.end(), [&](const BusFrame& f) {
     return f.frame.id == id && f.frame.stamp_us >= kStart_us + 1'000'000;
   });
   BusFrame late = *at;
-  t.frames.erase(at);
-  at = std::find_if(t.frames.begin(), t.frames.end(), [&](const BusFrame& f) {
+  t.erase(at);
+  at = std::find_if(t.begin(), t.end(), [&](const BusFrame& f) {
     return f.frame.id == 0x80 && f.frame.stamp_us >= kStart_us + 1'010'000;
   });
   late.frame.stamp_us = at->frame.stamp_us + 100;
-  t.frames.insert(at + 1, late);
-  const Result result = run(config.can, t), whole = run(config.can, traffic(config, 200));
+  t.insert(at + 1, late);
+  const Result result = run(config.can, t), whole = run(config.can, test::can_traffic(config, 200));
   EXPECT_EQ(result.nodes[2].late, 1);
   EXPECT_EQ(result.nodes[2].lost, 1);
   EXPECT_EQ(result.samples.size() + 1, whole.samples.size());
   for (const auto& [place, value] : result.samples) EXPECT_EQ(value, whole.samples.at(place));
 }
 
+/// The host stalls for 10 to 40 ms now and then: what came meanwhile is stamped at the end.
+Traffic stalled(Traffic t) {
+  std::mt19937 random(41);
+  std::uniform_int_distribution<std::int64_t> length_us(10'000, 40'000), apart_us(200'000, 700'000);
+  std::int64_t begin = kStart_us + 30'000, end = begin + length_us(random), last = 0;
+  for (BusFrame& f : t) {
+    std::int64_t& stamp = f.frame.stamp_us;
+    while (stamp > end) {
+      begin = end + apart_us(random);
+      end = begin + length_us(random);
+    }
+    if (stamp > begin) stamp = end;
+    last = stamp = std::max(stamp, last + 20);
+  }
+  return t;
+}
+
+/// Without the microseconds by which the SYNC's line may differ.
+std::map<std::pair<int, std::int64_t>, double> by_period(const Result& result) {
+  std::map<std::pair<int, std::int64_t>, double> out;
+  for (const auto& [at, value] : result.samples)
+    out[{at.first, (at.second - kStart_us + 5'000) / 10'000}] = value;
+  return out;
+}
+
+TEST(CanIntake, LateSyncsThatDoNotCountShiftNothing) {
+  for (const bool counting_nodes : {true, false}) {
+    daemon::Config config = can_example("tower");
+    config.can.buses[0].sync_overflow = 0;
+    for (CanNodeMap& node : config.can.nodes)
+      if (!counting_nodes) node.messages[0].counter.reset();
+    const Traffic good = test::can_traffic(config, 6000);
+    const Result whole = run(config.can, good), late = run(config.can, stalled(good));
+    EXPECT_EQ(whole.samples.size(), 18u * 6000);
+    const auto right = by_period(whole), told = by_period(late);
+    for (const auto& [at, value] : told) EXPECT_EQ(value, right.at(at));
+    std::int64_t dropped = 0;
+    for (const CanNodeCounters& c : late.nodes) {
+      EXPECT_EQ(c.received + c.lost, 6000);
+      EXPECT_EQ(c.duplicates + c.unplaced, 0);
+      EXPECT_EQ(c.lost, c.late);
+      dropped += c.late;
+    }
+    // Alone, a frame so long after its SYNC may be of the next one, lost.
+    EXPECT_EQ(told.size() + static_cast<std::size_t>(dropped), right.size());
+    EXPECT_EQ(dropped == 0, counting_nodes);
+  }
+}
+
+TEST(CanIntake, TheNodesCountersTellWhichSyncWasLost) {
+  daemon::Config config = can_example("tower");
+  config.can.buses[0].sync_overflow = 0;
+  const Traffic good = test::can_traffic(config, 6000);
+  Traffic holes;
+  std::mt19937 random(43);
+  std::int64_t syncs = 0, lost = 0;
+  bool without = false;
+  for (const BusFrame& f : stalled(good)) {
+    if (f.frame.id == 0x80) {
+      without = ++syncs > 100 && syncs < 5990 && random() % 40 == 0;
+      lost += without;
+    }
+    if (!without) holes.push_back(f);  // the whole sample, also within a burst
+  }
+  const auto whole = by_period(run(config.can, good));
+  const Result result = run(config.can, holes);
+  EXPECT_EQ(result.samples.size(), 18u * static_cast<std::size_t>(6000 - lost));
+  for (const auto& [at, value] : by_period(result)) EXPECT_EQ(value, whole.at(at));
+  for (const CanNodeCounters& c : result.nodes) {
+    EXPECT_EQ(c.lost, lost);
+    EXPECT_EQ(c.late + c.duplicates + c.unplaced, 0);
+  }
+}
+
 TEST(CanIntake, BadFramesAreCountedAndDisturbNobody) {
-  const daemon::Config config = example("tower");
-  const Traffic good = traffic(config, 500);
+  const daemon::Config config = can_example("tower");
+  const Traffic good = test::can_traffic(config, 500);
   Traffic bad;
   std::mt19937 random(29);
   std::int64_t wrong_length = 0, wrong_kind = 0, foreign = 0, twice = 0;
-  for (const BusFrame& f : good.frames) {
-    bad.frames.push_back(f);
+  for (const BusFrame& f : good) {
+    bad.push_back(f);
     BusFrame extra = f;
     ++extra.frame.stamp_us;
     switch (random() % 6) {
@@ -171,34 +213,34 @@ TEST(CanIntake, BadFramesAreCountedAndDisturbNobody) {
         if (f.frame.id == 0x80) break;
         extra.frame.length = static_cast<std::uint8_t>(random() % 8);
         ++wrong_length;
-        bad.frames.push_back(extra);
+        bad.push_back(extra);
         break;
       case 1:
         if (f.frame.id == 0x80) break;
         extra.frame.fd = true;
         ++wrong_kind;
-        bad.frames.push_back(extra);
+        bad.push_back(extra);
         break;
       case 2:
         for (int i = 0; i < 20; ++i) {
           extra.frame.id = static_cast<std::uint32_t>(0x200 + random() % 0x400);
           extra.frame.extended = random() % 2 == 0;
           ++foreign;
-          bad.frames.push_back(extra);
+          bad.push_back(extra);
         }
         break;
       case 3:
         if (f.frame.id == 0x80) break;
         ++twice;
-        bad.frames.push_back(extra);
+        bad.push_back(extra);
         break;
       case 4:
         extra.frame.remote = true;
-        bad.frames.push_back(extra);
+        bad.push_back(extra);
         break;
       default:
         extra.frame.error = true;
-        bad.frames.push_back(extra);
+        bad.push_back(extra);
     }
   }
   const Result a = run(config.can, good), b = run(config.can, bad);
@@ -217,26 +259,26 @@ TEST(CanIntake, BadFramesAreCountedAndDisturbNobody) {
 }
 
 TEST(CanIntake, AClassicalFrameIsNoFdFrame) {
-  const daemon::Config config = example("fd_block");
-  Traffic t = traffic(config, 2000);
-  for (std::size_t i = 0; i < t.frames.size(); i += 5) {
-    t.frames[i].frame.fd = false;
-    t.frames[i].frame.length = 8;
+  const daemon::Config config = can_example("fd_block");
+  Traffic t = test::can_traffic(config, 2000);
+  for (std::size_t i = 0; i < t.size(); i += 5) {
+    t[i].frame.fd = false;
+    t[i].frame.length = 8;
   }
   const Result result = run(config.can, t);
   EXPECT_EQ(result.nodes[0].wrong_kind + result.nodes[1].wrong_kind, 80);
 }
 
 TEST(CanIntake, ABabblingNodeHurtsOnlyItself) {
-  const daemon::Config config = example("raw_int16");
-  const Traffic good = traffic(config, 1000);
+  const daemon::Config config = can_example("raw_int16");
+  const Traffic good = test::can_traffic(config, 1000);
   Traffic bad;
-  for (const BusFrame& f : good.frames) {
-    bad.frames.push_back(f);
+  for (const BusFrame& f : good) {
+    bad.push_back(f);
     if (f.frame.id != 0x182) continue;
     for (int i = 1; i <= 10; ++i) {  // the same frame again and again
-      bad.frames.push_back(f);
-      bad.frames.back().frame.stamp_us += 200 * i;
+      bad.push_back(f);
+      bad.back().frame.stamp_us += 200 * i;
     }
   }
   const Result a = run(config.can, good), b = run(config.can, bad);
@@ -245,8 +287,8 @@ TEST(CanIntake, ABabblingNodeHurtsOnlyItself) {
 }
 
 TEST(CanIntake, SeesBootUpAndEmergency) {
-  const daemon::Config config = example("tower");
-  Traffic t = traffic(config, 100);
+  const daemon::Config config = can_example("tower");
+  Traffic t = test::can_traffic(config, 100);
   CanFrame boot;
   boot.id = 0x703;
   boot.length = 1;
@@ -255,8 +297,8 @@ TEST(CanIntake, SeesBootUpAndEmergency) {
   emergency.id = 0x083;
   emergency.length = 8;
   emergency.data = {0x10, 0x81};
-  t.frames.push_back({0, boot});
-  t.frames.push_back({0, emergency});
+  t.push_back({0, boot});
+  t.push_back({0, emergency});
   const Result result = run(config.can, t);
   EXPECT_EQ(result.nodes[2].boot_ups, 1);
   EXPECT_EQ(result.nodes[2].emergencies, 1);

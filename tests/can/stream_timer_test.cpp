@@ -190,6 +190,130 @@ TEST(StreamTimer, WithoutCounterArrivalTellsTheNumber) {
   EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
 }
 
+/// Arrivals when the host or its adapter stalls for 10 to 40 ms now and then: what was due comes
+/// at the end of the stall, in order.
+std::vector<double> with_stalls(Node& node, std::int64_t frames, std::int64_t from) {
+  std::mt19937 random(31);
+  std::uniform_real_distribution<double> length_us(10'000, 40'000), apart_us(300'000, 900'000);
+  std::vector<double> out;
+  double begin = node.true_us(from), end = begin + length_us(random);
+  for (std::int64_t k = 0; k < frames; ++k) {
+    double stamp = node.stamp_us(k);
+    while (stamp > end) {
+      begin = end + apart_us(random);
+      end = begin + length_us(random);
+    }
+    if (stamp > begin) stamp = end;
+    if (!out.empty()) stamp = std::max(stamp, out.back() + 100);
+    out.push_back(stamp);
+  }
+  return out;
+}
+
+TEST(StreamTimer, AStalledStreamWithoutCounterLosesAndShiftsNothing) {
+  for (const double ppm : {-100.0, 0.0, 100.0})
+    for (const std::int64_t from : {2, 17, 100}) {
+      HostSteps steps;
+      Node node(ppm, 300, 0, {CanTiming::period, kPeriod_us, kPeriod_us, 0}, steps);
+      std::int64_t wrong = 0;
+      node.timer.on_delivery([&](const TimedValues& v, double time_us) {
+        node.told[v.number] = time_us;
+        wrong += v.values.at(0) != static_cast<double>(v.number);
+      });
+      constexpr std::int64_t kFrames = 20000;
+      const std::vector<double> stamps = with_stalls(node, kFrames, from);
+      for (std::int64_t k = 0; k < kFrames; ++k)
+        node.timer.see(0, stamps[static_cast<std::size_t>(k)], {0, 0, 0, {static_cast<double>(k)}});
+      node.timer.finish();
+      EXPECT_EQ(wrong, 0) << ppm << " ppm, from " << from;
+      EXPECT_EQ(node.told.size(), static_cast<std::size_t>(kFrames));
+      EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
+      EXPECT_EQ(node.timer.restarts(), 0);
+    }
+}
+
+TEST(StreamTimer, LossesBetweenStallsAreGapsWhereTheyWere) {
+  HostSteps steps;
+  Node node(30, 300, 0, {CanTiming::period, kPeriod_us, kPeriod_us, 0}, steps);
+  std::int64_t wrong = 0, sent = 0;
+  node.timer.on_delivery([&](const TimedValues& v, double time_us) {
+    node.told[v.number] = time_us;
+    wrong += v.values.at(0) != static_cast<double>(v.number);
+  });
+  constexpr std::int64_t kFrames = 20000;
+  const std::vector<double> stamps = with_stalls(node, kFrames, 100);
+  const auto on_time = [&](std::int64_t k) {
+    return stamps[static_cast<std::size_t>(k)] < node.true_us(k) + 600;
+  };
+  std::mt19937 random(37);
+  for (std::int64_t k = 0; k < kFrames; ++k) {
+    // Of a late frame after a lost one nobody could tell which it is.
+    bool quiet = k > 100 && k < kFrames - 4;
+    for (std::int64_t n = k - 3; quiet && n <= k + 3; ++n) quiet = on_time(n);
+    if (quiet && random() % 50 == 0) continue;
+    ++sent;
+    node.timer.see(0, stamps[static_cast<std::size_t>(k)], {0, 0, 0, {static_cast<double>(k)}});
+  }
+  node.timer.finish();
+  EXPECT_LT(sent, kFrames - 100);
+  EXPECT_EQ(wrong, 0);
+  EXPECT_EQ(node.told.size(), static_cast<std::size_t>(sent));
+}
+
+TEST(StreamTimer, ASenderHeldUpForSecondsShiftsNothing) {
+  HostSteps steps;
+  // As a bus' SYNC that counts to 240.
+  Node node(20, 300, 0, {CanTiming::counter, kPeriod_us, kPeriod_us, 240, 30e6}, steps);
+  constexpr std::int64_t kFrames = 6000;
+  double last = 0;
+  for (std::int64_t k = 0; k < kFrames; ++k) {
+    const double behind_s = k < 2000   ? 0
+                            : k < 4000 ? 1.1 * std::min(1.0, 1e-3 * static_cast<double>(k - 2000))
+                                       : 0;
+    last = std::max(last + 100, node.stamp_us(k) + 1e6 * behind_s);
+    node.timer.see(static_cast<double>(k % 240), last, {0, 0, 0, {}});
+  }
+  node.timer.finish();
+  EXPECT_EQ(node.told.size(), static_cast<std::size_t>(kFrames));
+  EXPECT_EQ(node.timer.restarts(), 0);
+  EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
+}
+
+TEST(StreamTimer, ALineBegunLateIsFoundWithoutASharpStep) {
+  constexpr double kStep_us = 0.0026 * kPeriod_us;
+  for (const CanTiming kind : {CanTiming::period, CanTiming::counter}) {
+    // Arrival alone cannot tell more than half a period late from twice.
+    const double late_us = kind == CanTiming::period ? 4'000 : 7'000;
+    HostSteps steps;
+    Node node(0, 200, 0, {kind, kPeriod_us, kPeriod_us, 0}, steps);
+    for (std::int64_t k = 0; k < 2000; ++k)
+      node.timer.see(static_cast<double>(k), node.stamp_us(k) + (k < 40 ? late_us : 0),
+                     {0, 0, 0, {}});
+    node.timer.finish();
+    ASSERT_EQ(node.told.size(), 2000u);
+    for (std::int64_t k = 1; k < 2000; ++k)
+      ASSERT_NEAR(node.told.at(k) - node.told.at(k - 1), kPeriod_us, kStep_us) << k;
+    EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
+  }
+}
+
+TEST(StreamTimer, AnOutageThatEndsWithLateFramesIsAGapOfItsLength) {
+  HostSteps steps;
+  Node node(0, 200, 0, counter16(), steps);
+  double last = 0;
+  for (std::int64_t k = 0; k < 3000; ++k) {
+    if (k >= 1000 && k < 1100) continue;
+    const double stamp = node.stamp_us(k);
+    last = std::max(last + 300, k >= 1100 && k < 1112 ? node.true_us(1112) + 70'000 : stamp);
+    node.timer.see(static_cast<double>(k), last, {0, 0, 0, {}});
+  }
+  node.timer.finish();
+  EXPECT_EQ(node.timer.restarts(), 0);
+  ASSERT_EQ(node.told.size(), 2900u);
+  EXPECT_EQ(node.told.upper_bound(999)->first, 1100);
+  EXPECT_LT(worst_after_settling(node, 500), kAlignment_us);
+}
+
 TEST(StreamTimer, OneLateBurstIsPlacedByItsCounter) {
   HostSteps steps;
   Node node(0, 500, 0, counter16(), steps);
