@@ -80,13 +80,13 @@ void Estimation::finish() {
 }
 
 void Estimation::save(StateWriter& state) {
-  state(seconds_, windows_, intake_);
+  state(seconds_, windows_, intake_, can_);
   if (watch_) state(*watch_);
   pipeline_.save(state);
 }
 
 bool Estimation::load(StateReader& state) {
-  state(seconds_, windows_, intake_);
+  state(seconds_, windows_, intake_, can_);
   if (watch_) state(*watch_);
   return state.good() && pipeline_.load(state);
 }

@@ -296,10 +296,6 @@ int replay(const ReplayArguments& a) {
   const bool boxplots_are_read =
       !a.out.empty() || a.lcm || !a.save_state.empty() || !a.load_state.empty();
   if (!boxplots_are_read) config->pipeline.options.boxplot_windows = 0;
-  if (!config->can.empty() && !(a.save_state.empty() && a.load_state.empty()))
-    return refuse(a.config +
-                  ": --save-state and --load-state are for logs of LCM and records: how far "
-                  "the nodes on CAN have come is not in a state");
   std::optional<Expectations> expectations;
   if (!a.expect.empty()) {
     problems.clear();
