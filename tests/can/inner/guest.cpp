@@ -1,5 +1,8 @@
 #include "tests/can/inner/guest.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <chrono>
 #include <cstdlib>
 #include <stdexcept>
@@ -19,6 +22,30 @@ daemon::Config example_on(const std::string& name, const std::string& interface)
 
 void shell(const std::string& command) {
   if (std::system(command.c_str()) != 0) throw std::runtime_error("failed: " + command);
+}
+
+Process::Process(std::vector<std::string> arguments) : pid_(::fork()) {
+  if (pid_ != 0) return;
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  ::execv(pointers[0], pointers.data());
+  ::_exit(127);
+}
+
+bool Process::ended() {
+  if (!ended_) {
+    int status = 0;
+    ended_ = ::waitpid(pid_, &status, WNOHANG) == pid_;
+    if (ended_) {
+      EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    }
+  }
+  return ended_;
+}
+
+Process::~Process() {
+  if (!ended_) ::waitpid(pid_, nullptr, 0);
 }
 
 LiveBuses::LiveBuses(const daemon::Config& config)

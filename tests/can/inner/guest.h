@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -15,6 +17,20 @@ daemon::Config example_on(const std::string& name, const std::string& interface)
 
 /// Runs a command of a shell that must succeed.
 void shell(const std::string& command);
+
+/// A process; waited for at the end.
+class Process {
+ public:
+  explicit Process(std::vector<std::string> arguments);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  bool ended();
+
+ private:
+  pid_t pid_;
+  bool ended_ = false;
+};
 
 /// The buses of a configuration, live, in this process.
 class LiveBuses {
