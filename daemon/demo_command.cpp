@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -15,6 +16,8 @@
 
 #include <fmt/core.h>
 
+#include "daemon/can_output.h"
+#include "daemon/demo_can.h"
 #include "daemon/demo_files.h"
 #include "daemon/demo_network.h"
 #include "daemon/demo_view.h"
@@ -24,6 +27,7 @@
 #include "daemon/scenario.h"
 #include "daemon/simulation_output.h"
 #include "daemon/web_server.h"
+#include "drivers/can/can_source.h"
 #include "drivers/lcm_log.h"
 #include "drivers/lcm_source.h"
 
@@ -88,7 +92,7 @@ class DemoLogs {
     ReportArguments a;
     a.estimates = folder_ + "/estimates.lcmlog";
     a.config = config;
-    a.raw = {folder_ + "/raw.lcmlog"};
+    if (raw_.events() > 0) a.raw = {folder_ + "/raw.lcmlog"};
     a.out = report_;
     a.title = "Demo: a frame loses 15 % of its stiffness";
     (void)report(a);
@@ -120,11 +124,20 @@ class DemoBus {
   std::unique_ptr<lcm::LCM> all_[4];
 };
 
+std::int64_t steady_clock_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
 void introduce(const Scenario& s, const DemoNetwork& network, double seconds,
                const std::string& page) {
   fmt::print("{}: {} accelerometers, a truth the estimator does not know, shaken for {:g} s.\n",
              s.config.pipeline.structure.name, s.config.pipeline.axes.size(), seconds);
   fmt::print("{}.\n", network.explanation);
+  for (const drivers::CanBusMap& bus : s.config.can.buses)
+    fmt::print("Samples come as frames of {} CANopen nodes on {}, estimates over LCM.\n",
+               s.config.can.nodes.size(), bus.interface);
   if (!network.in_process) fmt::print("Listen with LCM_DEFAULT_URL='{}'.\n", network.url);
   if (!page.empty()) fmt::print("\n  Open {}\n\n", page);
   if (seconds > kDropAt_s)
@@ -147,6 +160,7 @@ Scenario demo_scenario() {
 
 int demo(const DemoArguments& a) {
   Scenario scenario = demo_scenario();
+  if (!a.can.empty()) put_on_can(scenario.config, a.can);
   scenario.duration_s = a.seconds;
   scenario.changes.push_back({kDropAt_s, dropped(scenario)});
   // Before the network: the page is for a browser outside of it.
@@ -169,18 +183,28 @@ int demo(const DemoArguments& a) {
     bus.page().publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
   });
   WebServer server(web, live);
-  const bool served = socket >= 0 && server.start(socket, no_page);
-  if (!served) fmt::print(stderr, "framewatch demo: no page: {}\n", no_page);
+  // The page draws samples of LCM messages.
+  const bool served = a.can.empty() && socket >= 0 && server.start(socket, no_page);
+  if (!served && a.can.empty()) fmt::print(stderr, "framewatch demo: no page: {}\n", no_page);
   if (!a.quiet)
     introduce(scenario, network, a.seconds,
               served ? page_address(web, server.port(), web.token) : std::string());
 
-  const auto sensors = live_output(scenario, bus.building(), 1);
+  const auto sensors =
+      a.can.empty() ? live_output(scenario, bus.building(), 1) : can_output(scenario, "", 1, error);
+  if (!sensors) {
+    fmt::print(stderr, "framewatch demo: {}\n", error);
+    return 2;
+  }
   Estimation estimation(scenario.config, [&](std::int64_t time_us, const std::string& channel,
                                              const std::vector<std::uint8_t>& bytes) {
     logs.estimate(time_us, channel, bytes);
     bus.estimator().publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
   });
+  drivers::CanSource can(
+      scenario.config.can, false,
+      [&](int index, const drivers::CanFrame& frame) { estimation.frame(index, frame); });
+  for (const std::string& note : can.open()) fmt::print(stderr, "framewatch demo: {}\n", note);
   std::vector<std::string> inputs;
   for (const drivers::ChannelAddress& at : addresses(scenario.config.sources))
     if (std::find(inputs.begin(), inputs.end(), at.lcm_channel) == inputs.end())
@@ -216,6 +240,7 @@ int demo(const DemoArguments& a) {
       fmt::print(stderr, "framewatch demo: LCM failed\n");
       return 2;
     }
+    can.handle(steady_clock_us());
     look();
     if (!page_source.handle(0)) fmt::print(stderr, "framewatch demo: the page gets no messages\n");
     if (simulation.time_s() >= next_flush_s) {
@@ -233,6 +258,7 @@ int demo(const DemoArguments& a) {
   for (std::int64_t seen = -1; seen != estimation.intake().counters().messages;) {
     seen = estimation.intake().counters().messages;
     if (!source.handle(300)) break;
+    can.handle(steady_clock_us());
     look();
   }
   estimation.finish();

@@ -32,6 +32,10 @@ void add_demo(CLI::App& app, Action& action, DemoArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "demo",
       "a virtual two-story shaking-table test over LCM, with a live page and a table of truth");
+  command
+      ->add_option("--can", arguments.can,
+                   "interface that carries the samples, as frames; no page then")
+      ->type_name("INTERFACE");
   command->footer(
       "After 20 s one frame loses 15 % of its stiffness; the page says which, how much, how sure.\n"
       "Example: framewatch demo --seconds 60 --report demo.html");

@@ -195,6 +195,12 @@ TEST(Vcan, AnInterfaceThatGoesAndComesLosesWhatItLost) {
              instants * 18);
 }
 
+TEST(Vcan, TheDemoFindsItsStiffnessesOverCan) {
+  const Vcan vcan("vcan0");
+  Process demo({FRAMEWATCH_PROGRAM, "demo", "--can", "vcan0", "--seconds", "12", "--quiet"});
+  while (!demo.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+}
+
 TEST(Vxcan, LossReorderingAndJitterPublishNothingWrong) {
   constexpr int kInstants = 2500;
   shell(
