@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace framewatch::drivers {
@@ -95,6 +96,11 @@ class LcmLogReader {
   std::string pack_damage_;  ///< of the zstd file; told at the end
   std::string error_;
 };
+
+/// Appends one event as it stands in a log to `out`. Channel and size must be within the reader's
+/// bounds.
+void append_log_event(std::string& out, std::int64_t number, std::int64_t timestamp_us,
+                      std::string_view channel, const void* data, std::size_t size);
 
 /// Writes LCM event logs that lcm-logplayer plays. Event numbers count from 0.
 /// The file is written as PATH.partial and renamed by close(): nothing half-written under its name.

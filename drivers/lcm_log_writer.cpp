@@ -18,7 +18,26 @@ std::uint8_t* put_big_endian(std::uint8_t* out, Integer value) {
   return out;
 }
 
+std::array<std::uint8_t, kHeaderBytes> header_of(std::int64_t number, std::int64_t timestamp_us,
+                                                 std::size_t channel_bytes, std::size_t size) {
+  std::array<std::uint8_t, kHeaderBytes> header{};
+  std::uint8_t* out = put_big_endian(header.data(), std::uint32_t{0xEDA1DA01});
+  out = put_big_endian(out, number);
+  out = put_big_endian(out, timestamp_us);
+  out = put_big_endian(out, static_cast<std::int32_t>(channel_bytes));
+  put_big_endian(out, static_cast<std::int32_t>(size));
+  return header;
+}
+
 }  // namespace
+
+void append_log_event(std::string& out, std::int64_t number, std::int64_t timestamp_us,
+                      std::string_view channel, const void* data, std::size_t size) {
+  const auto header = header_of(number, timestamp_us, channel.size(), size);
+  out.append(header.begin(), header.end());
+  out += channel;
+  out.append(static_cast<const char*>(data), size);
+}
 
 LcmLogWriter::~LcmLogWriter() {
   discard();
@@ -54,12 +73,7 @@ bool LcmLogWriter::write(std::int64_t timestamp_us, const std::string& channel, 
     error_ = "payload is larger than 16 MiB";
     return false;
   }
-  std::array<std::uint8_t, kHeaderBytes> header{};
-  std::uint8_t* out = put_big_endian(header.data(), std::uint32_t{0xEDA1DA01});
-  out = put_big_endian(out, number_);
-  out = put_big_endian(out, timestamp_us);
-  out = put_big_endian(out, static_cast<std::int32_t>(channel.size()));
-  put_big_endian(out, static_cast<std::int32_t>(size));
+  const auto header = header_of(number_, timestamp_us, channel.size(), size);
   if (std::fwrite(header.data(), 1, header.size(), file_) != header.size() ||
       std::fwrite(channel.data(), 1, channel.size(), file_) != channel.size() ||
       (size > 0 && std::fwrite(data, 1, size, file_) != size)) {

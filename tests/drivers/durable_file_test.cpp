@@ -1,0 +1,119 @@
+#include "drivers/durable_file.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary.h"
+
+namespace framewatch::drivers {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Limits.
+constexpr auto kSoon = 3s;  // for what should take a quarter of a second
+
+/// A disk that is full: files of this process cannot grow beyond some bytes.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    before_ = std::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &limit_);
+    const rlimit low{bytes, limit_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &low);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &limit_);
+    std::signal(SIGXFSZ, before_);
+  }
+
+ private:
+  rlimit limit_{};
+  void (*before_)(int);
+};
+
+template <typename Condition>
+bool comes_true(Condition condition) {
+  for (const auto until = std::chrono::steady_clock::now() + kSoon;
+       std::chrono::steady_clock::now() < until; std::this_thread::sleep_for(10ms))
+    if (condition()) return true;
+  return condition();
+}
+
+TEST(DurableFile, WhatIsAppendedIsOnTheDiskBeforeItIsClosed) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.path("log");
+  std::string error, expected;
+  DurableFile file;
+  ASSERT_TRUE(file.open(path, error)) << error;
+  for (int i = 0; i < 1000; ++i) {
+    const std::string line = "line " + std::to_string(i) + "\n";
+    EXPECT_TRUE(file.append(line));
+    expected += line;
+  }
+  EXPECT_TRUE(comes_true([&] { return test::read_file(path + ".partial") == expected; }));
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_TRUE(DurableFile::in_use(path));
+  EXPECT_TRUE(file.close(error)) << error;
+  EXPECT_EQ(test::read_file(path), expected);
+  EXPECT_FALSE(DurableFile::in_use(path));
+  EXPECT_EQ(directory.names(), std::vector<std::string>{"log"});
+}
+
+TEST(DurableFile, AFullDiskDelaysAndTearsNothing) {
+  const test::TemporaryDirectory directory;
+  std::string error, expected;
+  DurableFile file;
+  ASSERT_TRUE(file.open(directory.path("log"), error)) << error;
+  {
+    const FullDisk full(1000);
+    for (int i = 0; i < 300; ++i) {
+      expected += "0123456789";
+      EXPECT_TRUE(file.append("0123456789"));
+    }
+    EXPECT_TRUE(comes_true([&] { return !file.trouble().empty(); }));
+    EXPECT_EQ(file.counters().bytes, 1000);
+  }
+  EXPECT_TRUE(comes_true([&] { return file.trouble().empty(); })) << file.trouble();
+  EXPECT_TRUE(file.append("end"));
+  EXPECT_TRUE(file.close(error)) << error;
+  EXPECT_EQ(test::read_file(directory.path("log")), expected + "end");
+  EXPECT_EQ(file.counters().dropped, 0);
+}
+
+TEST(DurableFile, WhatDoesNotFitIsCountedAndWhatWasWrittenStays) {
+  const test::TemporaryDirectory directory;
+  std::string error;
+  DurableFile file(100);
+  ASSERT_TRUE(file.open(directory.path("log"), error)) << error;
+  const FullDisk full(30);
+  int taken = 0;
+  for (int i = 0; i < 50; ++i) taken += file.append("0123456789");
+  EXPECT_TRUE(comes_true([&] { return !file.trouble().empty(); }));
+  EXPECT_LE(taken, 13);
+  EXPECT_EQ(file.counters().appended, taken);
+  EXPECT_EQ(file.counters().dropped, 50 - taken);
+  EXPECT_LE(file.counters().queue_high_water, 100u);
+  EXPECT_FALSE(file.close(error, 50ms));
+  EXPECT_NE(error.find("log.partial"), std::string::npos) << error;
+  EXPECT_EQ(directory.names(), std::vector<std::string>{"log.partial"});
+  EXPECT_EQ(test::read_file(directory.path("log.partial")), "012345678901234567890123456789");
+}
+
+TEST(DurableFile, NeverWritesOverWhatIsThere) {
+  const test::TemporaryDirectory directory;
+  test::write_file(directory.path("log.partial"), "of a crash");
+  std::string error;
+  DurableFile file;
+  EXPECT_FALSE(file.open(directory.path("log"), error));
+  EXPECT_NE(error.find("log.partial"), std::string::npos);
+  EXPECT_FALSE(DurableFile().open(directory.path("no/such"), error));
+  EXPECT_EQ(test::read_file(directory.path("log.partial")), "of a crash");
+}
+
+}  // namespace
+}  // namespace framewatch::drivers
