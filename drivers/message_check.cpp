@@ -92,4 +92,16 @@ std::optional<event_t> decode_event(std::span<const std::uint8_t> payload) {
   return decode<event_t>(payload, "888844ss88sss");
 }
 
+std::optional<gap_t> decode_gap(std::span<const std::uint8_t> payload) {
+  return decode<gap_t>(payload, "88888n[s88]");
+}
+
+std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload) {
+  return decode<session_command_t>(payload, "88ssss888");
+}
+
+std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload) {
+  return decode<session_status_t>(payload, "884ssss8s888888888n[s8888884s]");
+}
+
 }  // namespace framewatch::drivers

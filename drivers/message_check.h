@@ -7,7 +7,10 @@
 #include <vector>
 
 #include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
+#include <framewatch/session_command_t.hpp>
+#include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
@@ -22,5 +25,8 @@ std::optional<parameter_table_t> decode_parameter_table(std::span<const std::uin
 std::optional<window_estimate_t> decode_window_estimate(std::span<const std::uint8_t> payload);
 std::optional<status_t> decode_status(std::span<const std::uint8_t> payload);
 std::optional<event_t> decode_event(std::span<const std::uint8_t> payload);
+std::optional<gap_t> decode_gap(std::span<const std::uint8_t> payload);
+std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload);
+std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload);
 
 }  // namespace framewatch::drivers

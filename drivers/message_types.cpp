@@ -8,6 +8,8 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
+#include <framewatch/session_command_t.hpp>
+#include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
@@ -19,8 +21,8 @@
 namespace framewatch::drivers {
 namespace {
 
-const std::array<std::pair<const char*, std::int64_t>, 7>& types() {
-  static const std::array<std::pair<const char*, std::int64_t>, 7> all{{
+const std::array<std::pair<const char*, std::int64_t>, 9>& types() {
+  static const std::array<std::pair<const char*, std::int64_t>, 9> all{{
       {"accel_t", accel_t::getHash()},
       {"channel_table_t", channel_table_t::getHash()},
       {"parameter_table_t", parameter_table_t::getHash()},
@@ -28,6 +30,8 @@ const std::array<std::pair<const char*, std::int64_t>, 7>& types() {
       {"status_t", status_t::getHash()},
       {"event_t", event_t::getHash()},
       {"gap_t", gap_t::getHash()},
+      {"session_command_t", session_command_t::getHash()},
+      {"session_status_t", session_status_t::getHash()},
   }};
   return all;
 }
@@ -50,6 +54,8 @@ const char* type_of_channel(const std::string& channel, const std::string& prefi
   if (rest == "STATUS") return "status_t";
   if (rest == "EVENT") return "event_t";
   if (rest == "GAP") return "gap_t";
+  if (rest == "SESSION") return "session_status_t";
+  if (rest == "SESSION_COMMAND") return "session_command_t";
   return nullptr;
 }
 
