@@ -1,6 +1,3 @@
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
@@ -12,6 +9,7 @@
 #include "daemon/replay_command.h"
 #include "daemon/run_command.h"
 #include "drivers/lcm_log.h"
+#include "tests/support/child.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
 
@@ -119,31 +117,6 @@ TEST(SensorSeconds, FollowsWhenEverybodysClockJumps) {
   EXPECT_LT(seconds.newest_us(), 30'000'000);
 }
 
-class Child {
- public:
-  explicit Child(std::vector<std::string> arguments) {
-    pid_ = ::fork();
-    if (pid_ != 0) return;
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments) pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    ::execv(pointers[0], pointers.data());
-    ::_exit(127);
-  }
-  int stop(int signal) {
-    ::kill(pid_, signal);
-    return wait();
-  }
-  int wait() {
-    int status = 0;
-    ::waitpid(pid_, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  }
-
- private:
-  pid_t pid_;
-};
-
 TEST(Run, EstimatesOverMulticastAndStopsCleanly) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::string error;
@@ -155,10 +128,10 @@ TEST(Run, EstimatesOverMulticastAndStopsCleanly) {
 
   for (const int signal : {SIGINT, SIGTERM}) {
     collected = {};
-    Child daemon({FRAMEWATCH_PROGRAM, "run", test::table_config(), "--quiet"});
-    Child table_test({FRAMEWATCH_PROGRAM, "simulate",
-                      FRAMEWATCH_SOURCE_DIR "/configs/scenario_table_two_story.toml", "--lcm",
-                      "--seconds", "7", "--speed", "2", "--quiet"});
+    test::Child daemon({FRAMEWATCH_PROGRAM, "run", test::table_config(), "--quiet"});
+    test::Child table_test({FRAMEWATCH_PROGRAM, "simulate",
+                            FRAMEWATCH_SOURCE_DIR "/configs/scenario_table_two_story.toml", "--lcm",
+                            "--seconds", "7", "--speed", "2", "--quiet"});
     while (collected.estimates.size() < 20 && lcm->handleTimeout(20000) > 0) {
     }
     EXPECT_GE(collected.estimates.size(), 20u);

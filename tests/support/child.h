@@ -1,0 +1,30 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <string>
+#include <vector>
+
+namespace framewatch::test {
+
+/// Another process; killed when a test forgets it.
+class Child {
+ public:
+  explicit Child(std::vector<std::string> arguments);
+  ~Child();
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  void signal(int number) const;
+  /// Its exit code, 128 and its signal when one ended it.
+  int wait();
+  int stop(int number) {
+    signal(number);
+    return wait();
+  }
+
+ private:
+  pid_t pid_;
+};
+
+}  // namespace framewatch::test
