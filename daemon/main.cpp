@@ -10,6 +10,7 @@
 #include "daemon/demo_command.h"
 #include "daemon/diagnose_command.h"
 #include "daemon/diff_command.h"
+#include "daemon/record_command.h"
 #include "daemon/refine_command.h"
 #include "daemon/repair_command.h"
 #include "daemon/replay_command.h"
@@ -337,8 +338,61 @@ void add_report(CLI::App& app, Action& action, ReportArguments& arguments) {
   command->add_option("--test", arguments.test, "name of the test");
   command->add_option("--operator", arguments.operator_name, "who made it");
   command->add_option("--notes", arguments.notes, "what the next reader should know");
+  command->add_option("--session", arguments.session,
+                      "session.json of framewatch record: check of the channels, trigger");
   command->add_flag("--quiet", arguments.quiet, "do not print the page's path");
   command->callback([&action, &arguments] { action = [&arguments] { return report(arguments); }; });
+}
+
+void add_record(CLI::App& app, Action& action, RecordArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "record", "acquisition sessions: raw samples and estimates in logs, and a report at the end");
+  command->footer(
+      "Checks the channels for 3 s, then records until Ctrl-C, --seconds or --send stop. With\n"
+      "--standby it waits for the live page, or for --send from another terminal.\n"
+      "Exit status: 0 recorded and reported, 1 not everything, 2 bad usage or configuration.\n"
+      "Examples:\n"
+      "  framewatch record table.toml --test \"El Centro 30 %\" --operator me --seconds 60\n"
+      "  framewatch record table.toml --test sweep --trigger 0.2 --pre-trigger 5 --seconds 60\n"
+      "  framewatch record table.toml --standby --out /data/sessions\n"
+      "  framewatch record table.toml --send start --test sweep");
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
+  command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");
+  command->add_option("--out", arguments.out, "folder that gets a folder per session")
+      ->type_name("DIR")
+      ->capture_default_str();
+  SessionRequest& request = arguments.request;
+  command->add_option("--test", request.test, "name of the test");
+  command->add_option("--operator", request.operator_name, "who makes it");
+  command->add_option("--notes", request.notes, "what the next reader should know");
+  command->add_option("--seconds", request.length_s, "length after the start or trigger");
+  command->add_option("--trigger", request.trigger_mps2,
+                      "arm: begin when a base channel is so far from rest, m/s^2");
+  CLI::Option* before = command->add_option("--pre-trigger", request.pre_trigger_s,
+                                            "seconds stored from before the trigger (default 5)");
+  command->add_option("--tap-test", arguments.tap_s,
+                      "first wait at most so many seconds for a tap next to every sensor, in the\n"
+                      "building's positive direction: tells reversed ones");
+  command->add_flag("!--no-check", arguments.check, "begin without the check of the channels");
+  command->add_flag("--strict", arguments.strict, "record nothing when a channel has a problem");
+  command->add_flag("--standby", arguments.standby, "wait for commands, session after session");
+  command
+      ->add_option("--send", arguments.send, "tell the recorder that runs: start, arm, tap or stop")
+      ->check(CLI::IsMember({"start", "arm", "tap", "stop"}));
+  command->add_option("--finish", arguments.finish,
+                      "stages and report of a session that was cut off, or whose report failed");
+  command->add_option("--reports", arguments.reports,
+                      "folder for the report (default: the session's own)");
+  command->add_flag("--csv", arguments.csv, "raw samples and estimates as CSV too");
+  command->add_flag("--mat", arguments.mat, "raw samples and estimates for MATLAB too");
+  command->add_flag("--split", arguments.split, "a raw log for every stage too");
+  command->add_flag("!--no-report", arguments.report, "no report at the end");
+  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  command->callback([&action, &arguments, before] {
+    if (before->count() == 0 && arguments.request.trigger_mps2 > 0)
+      arguments.request.pre_trigger_s = 5;
+    action = [&arguments] { return record(arguments); };
+  });
 }
 
 void add_serve(CLI::App& app, Action& action, ServeArguments& arguments) {
@@ -360,6 +414,11 @@ void add_serve(CLI::App& app, Action& action, ServeArguments& arguments) {
   command->add_option("--token-file", arguments.token_file,
                       "file with the token, 16 letters, digits, - or _ at least");
   command->add_option("--host", arguments.hosts, "further host name the page may be opened under");
+  command
+      ->add_option("--sessions", arguments.sessions,
+                   "folder of framewatch record (--out), whose reports the page opens")
+      ->type_name("DIR")
+      ->capture_default_str();
   command->add_option("--page", arguments.files, "folder to read the page from, for work on it");
   command->add_flag("--quiet", arguments.quiet, "only the address and what goes wrong");
   command->callback([&action, &arguments] { action = [&arguments] { return serve(arguments); }; });
@@ -380,6 +439,7 @@ struct Arguments {
   ReproduceArguments reproduce;
   ReportArguments report;
   ServeArguments serve;
+  RecordArguments record;
 };
 
 }  // namespace
@@ -407,6 +467,7 @@ int main(int argc, char** argv) {
   add_reproduce(app, action, arguments.reproduce);
   add_report(app, action, arguments.report);
   add_serve(app, action, arguments.serve);
+  add_record(app, action, arguments.record);
 
   try {
     app.parse(argc, argv);

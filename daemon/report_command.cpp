@@ -61,6 +61,11 @@ int report(const ReportArguments& a) {
     r.config = load_config(a.config, problems);
     for (const ConfigProblem& p : problems) complain(p.where + ": " + p.message);
   }
+  if (!a.session.empty()) {
+    std::string error;
+    r.session = read_session_file(a.session, error);
+    if (!r.session) complain(a.session + ": " + error);
+  }
   std::vector<drivers::Problem> problems;
   auto estimates = read_session_estimates(a.estimates, problems);
   for (const drivers::Problem& p : problems) complain(p.where + ": " + p.message);

@@ -11,6 +11,7 @@ struct ReportArguments {
   std::string config;            ///< needed with raw
   std::vector<std::string> raw;  ///< logs and record files, in order of time
   std::string title, test, operator_name, notes;
+  std::string session;  ///< session.json of `framewatch record`; empty: none
   bool quiet = false;
 };
 

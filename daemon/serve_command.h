@@ -12,7 +12,8 @@ struct ServeArguments {
   int port = 8080;
   std::string token_file;
   std::vector<std::string> hosts;
-  std::string files;  ///< folder with the page, for work on it
+  std::string files;                  ///< folder with the page, for work on it
+  std::string sessions = "sessions";  ///< folder of `framewatch record`
   bool quiet = false;
 };
 

@@ -24,6 +24,16 @@ std::string summary(const SessionReport& r) {
   const std::int64_t end =
       r.motion ? r.motion->time_us(r.motion->accel.rows() - 1) : e.end_us.back();
   row("length", fmt::format("{:.1f} s", session_seconds(r, end)));
+  if (r.session) {
+    row("began by",
+        r.session->triggered_by.empty()
+            ? "hand"
+            : fmt::format("{}, {:g} m/s^2 from rest, {:g} s stored from before",
+                          html_text(r.session->triggered_by), r.session->request.trigger_mps2,
+                          r.session->request.pre_trigger_s));
+    row("lost", fmt::format("{} samples, {} of the recorder's {} messages", r.session->lost,
+                            r.session->dropped, r.session->messages));
+  }
   row("windows",
       fmt::format("{} of {:g} s, {:g} s apart", e.windows(), e.table.window_rows / e.table.rate_hz,
                   e.table.hop_rows / e.table.rate_hz));
@@ -79,8 +89,8 @@ std::string session_report_html(const SessionReport& r) {
   const std::string title = r.title.empty() ? "Session of " + r.estimates.table.structure : r.title;
   return html_page(title, "<h1>" + html_text(title) + "</h1>\n" + summary(r) +
                               figure_10_section(r) + parameter_section(r) + transfer_section(r) +
-                              loops_section(r) + histories_section(r) + health_section(r) +
-                              provenance(r));
+                              loops_section(r) + histories_section(r) + check_section(r) +
+                              health_section(r) + provenance(r));
 }
 
 }  // namespace framewatch::daemon

@@ -8,6 +8,7 @@
 #include "daemon/config.h"
 #include "daemon/frame_loops.h"
 #include "daemon/session_estimates.h"
+#include "daemon/session_file.h"
 #include "daemon/session_motion.h"
 #include "daemon/transfer_function.h"
 
@@ -29,6 +30,7 @@ struct ReportFile {
 struct SessionReport {
   std::string title, test, operator_name, notes;  ///< as the person said; may be empty
   SessionEstimates estimates;
+  std::optional<SessionFile> session;  ///< of `framewatch record`
   std::optional<Config> config;
   std::optional<SessionMotion> motion;
   std::vector<Stage> stages;          ///< empty without motion
@@ -56,6 +58,7 @@ std::string histories_section(const SessionReport& report);
 std::string transfer_section(const SessionReport& report);
 std::string loops_section(const SessionReport& report);
 std::string health_section(const SessionReport& report);
+std::string check_section(const SessionReport& report);
 
 /// Seconds since the session's first window or sample.
 double session_seconds(const SessionReport& report, std::int64_t time_us);

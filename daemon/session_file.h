@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/channel_check.h"
+#include "daemon/session_motion.h"
+
+namespace framewatch::daemon {
+
+/// What a person asks of a session.
+struct SessionRequest {
+  std::string test, operator_name, notes;
+  double length_s = 0;       ///< 0: until stopped
+  double trigger_mps2 = 0;   ///< 0: begins at once
+  double pre_trigger_s = 0;  ///< stored from before the trigger
+};
+
+/// A session as its folder's session.json has it (docs/recording.md).
+struct SessionFile {
+  std::string state;  ///< recording, recorded, finished
+  SessionRequest request;
+  std::string config_path, config_sha256, version;
+  std::int64_t began_us = 0;                ///< host clock
+  std::int64_t trigger_us = 0, end_us = 0;  ///< sensor time of start or trigger, and of the end
+  std::string triggered_by;                 ///< channel; empty: nothing, it was started
+  std::string ended_by;                     ///< command, length, signal, no samples
+  std::int64_t messages = 0, estimates = 0, lost = 0, dropped = 0;
+  std::vector<ChannelResult> check, run;  ///< before the session, and of it
+  std::vector<Stage> stages;              ///< finished
+  std::vector<std::string> files;         ///< beside session.json
+  std::string report;                     ///< path; empty: there is none
+  std::vector<std::string> problems;      ///< one sentence each
+};
+
+std::string session_json(const SessionFile& session);
+/// Empty, with the reason, when the file cannot be read or is no session.
+std::optional<SessionFile> read_session_file(const std::string& path, std::string& error);
+
+/// "2026-11-21T14-03-10_el-centro-30-deg": of a test's name what may stand in a file's name.
+std::string session_folder_name(std::int64_t began_us, const std::string& test);
+
+/// Every value of a request that cannot be: one sentence each.
+std::vector<std::string> problems(const SessionRequest& request);
+
+}  // namespace framewatch::daemon
