@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/estimation.h"
+#include "daemon/session_command.h"
 #include "drivers/message_check.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -18,6 +19,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kRing = 256;         // 10 s of events
 constexpr std::size_t kMostRows = 200;     // of one motion event
 constexpr std::size_t kMostEvents = 1000;  // kept for viewers that come later
+constexpr std::size_t kMostCommands = 16;  // that wait
 constexpr int kFlushesPerBoxplot = 5;
 constexpr double kMostRate_hz = 200;  // of the rows that go to the page
 constexpr double kWatched_s = 2.5;
@@ -48,6 +50,51 @@ std::string dumped(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+std::string gap_json(const gap_t& g) {
+  Json names = Json::array();
+  for (const std::string& name : g.name) names.push_back(name);
+  return fmt::format(
+      R"({{"start_us":{},"end_us":{},"overall":{},"noise_floor":{},"name":{},"nrmse":{},"floor":{}}})",
+      g.window_start_us, g.window_end_us, finite(g.overall_nrmse), finite(g.noise_floor),
+      dumped(names), list(g.nrmse, "{:.4g}"), list(g.floor, "{:.4g}"));
+}
+
+std::string session_json(const session_status_t& s) {
+  Json channels = Json::array();
+  const auto number = [](double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+  };
+  for (std::size_t i = 0; i < s.name.size(); ++i)
+    channels.push_back({{"name", s.name[i]},
+                        {"noise", number(s.noise_mps2_per_rthz[i])},
+                        {"rms", number(s.rms_mps2[i])},
+                        {"offset", number(s.offset_mps2[i])},
+                        {"peak", number(s.peak_mps2[i])},
+                        {"range", number(s.range_mps2[i])},
+                        {"saturated", s.saturated[i]},
+                        {"polarity", s.polarity[i]},
+                        {"problem", s.problem[i]}});
+  // Ids are beyond what JavaScript counts exactly.
+  return dumped({{"time_us", s.time_us},
+                 {"state", s.state},
+                 {"test", s.test},
+                 {"session", s.session},
+                 {"report", s.report},
+                 {"message", s.message},
+                 {"answered", std::to_string(s.answered)},
+                 {"refused", s.refused},
+                 {"elapsed_s", number(s.elapsed_s)},
+                 {"length_s", number(s.length_s)},
+                 {"trigger_mps2", number(s.trigger_mps2)},
+                 {"messages", s.messages},
+                 {"estimates", s.estimates},
+                 {"lost", s.lost},
+                 {"dropped", s.dropped},
+                 {"bytes", s.bytes},
+                 {"disk_free_bytes", s.disk_free_bytes},
+                 {"channels", channels}});
+}
+
 std::string boxes_json(const window_estimate_t& e) {
   return fmt::format(
       R"({{"windows":{},"q1":{},"median":{},"q3":{},"low":{},"high":{},"outliers":{},"count":{}}})",
@@ -75,7 +122,7 @@ std::vector<std::string> LiveView::channels() const {
   for (std::size_t i = 0, streams = out.size(); i < streams; ++i)
     out.push_back(out[i] + "_CHANNELS");
   const std::string& prefix = config_.lcm.prefix;
-  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT"})
+  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "SESSION"})
     out.push_back(prefix + name);
   for (const double window_s : config_.pipeline.options.other_windows_s)
     if (std::abs(window_s - kWatched_s) < 1e-9)
@@ -99,12 +146,39 @@ void LiveView::message(const std::string& channel, const void* data, std::size_t
   } else if (channel == prefix + "EVENT") {
     event(data, size);
   } else if (channel == prefix + "STATUS") {
-    const auto status = drivers::decode_status(bytes(data, size));
-    if (!status) return;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    status_ = status_json(*status);
-    ring_.push("status", status_);
+    if (const auto s = drivers::decode_status(bytes(data, size)))
+      status("status", status_, status_json(*s));
+  } else if (channel == prefix + "SESSION") {
+    if (const auto s = drivers::decode_session_status(bytes(data, size)))
+      status("session", session_, session_json(*s));
+  } else if (channel == prefix + "GAP") {
+    if (const auto gap = drivers::decode_gap(bytes(data, size)))
+      status("gap", gap_, gap_json(*gap));
   }
+}
+
+/// What a viewer that comes later is to know at once.
+void LiveView::status(const std::string& name, std::string& kept, std::string json) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  kept = std::move(json);
+  ring_.push(name, kept);
+}
+
+bool LiveView::tell_recorder(const session_command_t& command) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (commands_.size() == kMostCommands) return false;
+  commands_.push_back(command);
+  return true;
+}
+
+void LiveView::send_commands() {
+  std::vector<session_command_t> commands;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    commands.swap(commands_);
+  }
+  for (const session_command_t& command : commands)
+    publish_(0, config_.lcm.prefix + "SESSION_COMMAND", encoded(command));
 }
 
 void LiveView::keep(const SampleSet& set) {
@@ -173,6 +247,7 @@ void LiveView::event(const void* data, std::size_t size) {
 }
 
 void LiveView::flush() {
+  send_commands();
   if (row_count_ > 0)
     push("motion", fmt::format(R"({{"first_us":{},"rows":[{}],"left_out":{}}})", first_row_us_,
                                rows_, rows_left_out_));
@@ -283,6 +358,8 @@ EventRing::Cursor LiveView::join() {
   std::string first = "retry: 1000\n\n";
   if (!status_.empty()) first += EventRing::text("status", status_);
   if (!baseline_.empty()) first += EventRing::text("baseline", baseline_);
+  if (!session_.empty()) first += EventRing::text("session", session_);
+  if (!gap_.empty()) first += EventRing::text("gap", gap_);
   for (const auto& [id, e] : events_) first += EventRing::text("alarm", event_json(e));
   return ring_.join(std::move(first));
 }

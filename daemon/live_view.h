@@ -7,6 +7,9 @@
 #include <string>
 #include <vector>
 
+#include <framewatch/gap_t.hpp>
+#include <framewatch/session_command_t.hpp>
+#include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
 
 #include "daemon/change_watch.h"
@@ -40,12 +43,16 @@ class LiveView {
   bool acknowledge(std::int64_t id);
   /// The stiffnesses of the next seconds are what later ones are compared with.
   void renew_baseline();
+  /// Goes to `framewatch record` with the next flush(). False when too many wait.
+  bool tell_recorder(const session_command_t& command);
 
  private:
   void keep(const SampleSet& set);
   void parameters(const void* data, std::size_t size);
   void estimate(const std::string& channel, const void* data, std::size_t size);
   void event(const void* data, std::size_t size);
+  void status(const std::string& name, std::string& kept, std::string json);
+  void send_commands();
   std::string status_json(const status_t& status) const;
   std::string event_json(const event_t& event) const;
   std::string baseline_json() const;
@@ -69,7 +76,8 @@ class LiveView {
   EventRing ring_;
   std::map<std::int64_t, event_t> events_;
   std::map<std::int64_t, bool> acknowledged_;
-  std::string status_, baseline_;
+  std::string status_, baseline_, session_, gap_;
+  std::vector<session_command_t> commands_;
   bool renew_ = false;
 };
 

@@ -35,7 +35,7 @@ int serve(const ServeArguments& a) {
   const std::optional<Config> config = load_config(a.config, problems_found);
   bool good = config.has_value();
   for (const ConfigProblem& p : problems_found) fmt::print(stderr, "{}: {}\n", p.where, p.message);
-  WebSettings settings{a.address, a.port, {}, a.hosts, a.files};
+  WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions};
   std::string error;
   if (!a.token_file.empty()) {
     const auto token = read_token(a.token_file, error);

@@ -53,7 +53,8 @@ Admission admit(const WebSettings& s, const WebRequest& r) {
       host == s.address || std::find(s.hosts.begin(), s.hosts.end(), host) != s.hosts.end();
   if (host.empty() || !(own || named)) return Admission::wrong_host;
   const bool reads = r.method == "GET" || r.method == "HEAD";
-  const bool verb = r.method == "POST" && (r.path == "/acknowledge" || r.path == "/baseline");
+  const bool verb = r.method == "POST" &&
+                    (r.path == "/acknowledge" || r.path == "/baseline" || r.path == "/session");
   if (!reads && !verb) return Admission::wrong_method;
   if (verb && !r.origin.empty() && r.origin != "http://" + r.host &&
       r.origin != "https://" + r.host)

@@ -13,6 +13,8 @@
 #include <fmt/core.h>
 
 #include "daemon/file_digest.h"
+#include "daemon/session_command.h"
+#include "daemon/web_sessions.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -20,6 +22,11 @@ namespace {
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' "
     "data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// Of a report: it brings its own styles and no script.
+constexpr const char* kReportPolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
+    "'none'; frame-ancestors 'none'; sandbox";
+constexpr const char* kSessionPath = "/session/";
 constexpr unsigned kIdle_s = 30;
 constexpr std::size_t kBlock = 32768;
 
@@ -28,9 +35,10 @@ std::string header(MHD_Connection* c, const char* name, MHD_ValueKind kind = MHD
   return value ? value : "";
 }
 
-MHD_Result answer(MHD_Connection* c, unsigned code, MHD_Response* response) {
+MHD_Result answer(MHD_Connection* c, unsigned code, MHD_Response* response,
+                  const char* policy = kPolicy) {
   for (const auto& [name, value] :
-       {std::pair{"Content-Security-Policy", kPolicy},
+       {std::pair{"Content-Security-Policy", policy},
         std::pair{"X-Content-Type-Options", "nosniff"}, std::pair{"Referrer-Policy", "no-referrer"},
         std::pair{"Cache-Control", "no-store"},
         std::pair{"Cross-Origin-Resource-Policy", "same-origin"}})
@@ -150,6 +158,14 @@ class WebServer::Implementation {
     if (path == "/events") return stream(c);
     if (path == "/building.json")
       return answer(c, MHD_HTTP_OK, body(view_.building_json(), "application/json"));
+    if (path == "/sessions.json")
+      return answer(c, MHD_HTTP_OK, body(sessions_json(settings_.sessions), "application/json"));
+    if (path.starts_with(kSessionPath)) {
+      const auto found =
+          session_document(settings_.sessions, path.substr(std::string(kSessionPath).size()));
+      if (!found) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
+      return answer(c, MHD_HTTP_OK, body(found->content, found->type.c_str()), kReportPolicy);
+    }
     if (path == "/healthz") return plain(c, MHD_HTTP_OK, "ok");
     return file(c, path == "/" ? "/index.html" : path);
   }
@@ -159,6 +175,7 @@ class WebServer::Implementation {
       view_.renew_baseline();
       return plain(c, MHD_HTTP_OK, "the next seconds are the new baseline");
     }
+    if (path == "/session") return tell_recorder(c);
     const std::string text = header(c, "id", MHD_GET_ARGUMENT_KIND);
     std::int64_t id = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
@@ -166,6 +183,27 @@ class WebServer::Implementation {
     if (!number || !view_.acknowledge(id)) return plain(c, MHD_HTTP_NOT_FOUND, "no such event");
     wake();
     return plain(c, MHD_HTTP_OK, "acknowledged");
+  }
+
+  /// The recorder's answer comes as an event, with the id that this one gives.
+  MHD_Result tell_recorder(MHD_Connection* c) {
+    const auto text = [c](const char* name) { return header(c, name, MHD_GET_ARGUMENT_KIND); };
+    SessionRequest request{text("test"), text("operator"), text("notes")};
+    for (const auto& [name, value] : {std::pair{"length_s", &request.length_s},
+                                      std::pair{"trigger_mps2", &request.trigger_mps2},
+                                      std::pair{"pre_trigger_s", &request.pre_trigger_s}}) {
+      const std::string given = text(name);
+      const char* const end = given.data() + given.size();
+      const auto [parsed, error] = std::from_chars(given.data(), end, *value);
+      if (!given.empty() && (error != std::errc() || parsed != end))
+        return plain(c, MHD_HTTP_BAD_REQUEST, std::string(name) + ": is no number");
+    }
+    for (const std::string& problem : problems(request))
+      return plain(c, MHD_HTTP_BAD_REQUEST, problem);
+    const session_command_t command = session_command(text("verb"), request);
+    if (!view_.tell_recorder(command))
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many commands at once");
+    return plain(c, MHD_HTTP_ACCEPTED, std::to_string(command.id));
   }
 
   /// The token leaves the address, for a cookie that scripts cannot read.

@@ -18,6 +18,7 @@ struct WebSettings {
   std::string token;
   std::vector<std::string> hosts;  ///< further names that requests may come under
   std::string files;               ///< folder to read the page from instead of the built-in one
+  std::string sessions;            ///< folder of `framewatch record`; empty: none is shown
 
   bool local() const { return address == "127.0.0.1" || address == "::1"; }
 };

@@ -84,7 +84,8 @@ function start(json) {
   strips.drift = new Strip(parent, 'story drift, mm', 'Displacement of the floor above less that below in the frame, by two leaky integrations for the eye; the estimator integrates nothing.', [{name: 'drift', color: 'purple'}], 10, rate);
   strips.k = new Strip(parent, 'stiffness', 'The newest window\'s value with one standard error to either side; baseline dashed.', [{name: 'value', color: 'blue', width: 2}, {name: '+ error', color: 'blue', width: 0.5}, {name: '- error', color: 'blue', width: 0.5, band: true}, {name: 'baseline', color: 'soft', dash: [5, 4]}], 60, 20);
   strips.excitation = new Strip(parent, 'excitation: rms of the base over a second, m/s²', 'Without excitation nothing can be identified.', [{name: 'base rms', color: 'green'}], 60, 20);
-  strips.residual = new Strip(parent, 'gap: residual over response', 'What the identified model leaves of the measured response in the newest window, rms over rms. 0: it explains everything.', [{name: 'gap', color: 'orange'}], 60, 20);
+  strips.residual = new Strip(parent, 'residual over response', 'What the identified model leaves of the measured response in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 60, 20);
+  startSession();
   choose(0);
   const bar = document.createElement('canvas');
   bar.id = 'bar'; bar.width = 160; bar.height = 14; bar.style.width = '160px';
@@ -123,6 +124,15 @@ function onMotion(m) {
   strips.excitation.push([seconds(lastRow), Math.sqrt(rms.reduce((a, b) => a + (b - mean) ** 2, 0) / (rms.length || 1))]);
   lastMotion = performance.now();
   pending = lastRow;
+}
+// Until a gap arrives there is no strip for it.
+function onGap(g) {
+  window.framewatch.gap = g;
+  if (!strips.gap) strips.gap = new Strip($('strips'), 'gap', 'What a simulation with the identified values does not explain of the measurement, rms over rms: of all channels, of the chosen one, and the least that sensor noise allows.', [{name: 'all channels', color: 'orange', width: 2}, {name: 'chosen channel', color: 'blue'}, {name: 'noise floor', color: 'soft', dash: [5, 4]}], 300, 4);
+  if (firstUs === null) return;
+  const i = g.name.indexOf(plan.axes[+$('channel').value].name);
+  strips.gap.name('gap between simulation and measurement' + (i < 0 ? '' : `, ${g.name[i]}`));
+  strips.gap.push([seconds(g.end_us), g.overall, i < 0 ? null : g.nrmse[i], g.noise_floor]);
 }
 let pending = null;
 const past = []; // estimates of the last minute: another element's history is there at once
@@ -211,6 +221,7 @@ function listen() {
   const source = new EventSource('events');
   const on = (name, f) => source.addEventListener(name, e => { lastAlive = performance.now(); f(JSON.parse(e.data)); });
   on('motion', onMotion); on('estimate', onEstimate); on('status', onStatus); on('alarm', onAlarm);
+  on('session', onSession); on('gap', onGap);
   on('boxes', b => { boxes = window.framewatch.boxes = b; });
   on('baseline', b => { baseline = b.value; });
   on('dropped', d => { window.framewatch.dropped = d.events; });
@@ -233,6 +244,7 @@ function draw() {
   requestAnimationFrame(draw);
 }
 function slow(now) {
+  sessionAge(now);
   for (const b of boxPlots) b.draw(boxes, estimate, baseline, chosen);
   $('chosen').textContent = elementText(chosen).split('\n').slice(0, 1).concat(elementText(chosen).split('\n').slice(2)).join('; ');
   if (now - lastAlive > 3000) say('no connection to the server', 'dead');
@@ -252,7 +264,7 @@ $('theme').onclick = () => {
 };
 $('baseline').onclick = () => post('baseline');
 $('element').onchange = e => choose(+e.target.value);
-$('channel').onchange = () => strips.accel.clear();
+$('channel').onchange = () => { strips.accel.clear(); if (strips.gap) strips.gap.clear(); };
 document.querySelectorAll('.why').forEach(b => {
   const show = () => { const r = b.getBoundingClientRect(); showTip(b.dataset.why, r.left, r.bottom); };
   b.onmouseenter = b.onfocus = b.onclick = show;

@@ -1,6 +1,7 @@
 'use strict';
-// The page of `framewatch serve` beside `framewatch run` and a virtual test over LCM: what it shows is
-// what LCM carried, a drop of stiffness is named in time, and silence is said.
+// The page of `framewatch serve` beside `framewatch run`, `framewatch record` and a virtual test over LCM:
+// what it shows is what LCM carried, a drop of stiffness is named in time, a session is recorded and its
+// report opened, and silence is said.
 const {chromium} = require('playwright-core');
 const {spawn, execFileSync} = require('child_process');
 const fs = require('fs'), os = require('os'), path = require('path');
@@ -9,7 +10,7 @@ const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
 const kDrop_s = 20, kTold_s = 5, kDrop_ratio = -0.15, kDropError = 0.02;
 const kLeastFrames = 20, kMostLatency_ms = 150; // frames/s on a busy machine; 50 on a quiet one
-const kCompared = 200;
+const kCompared = 200, kRecorded_s = 6, kReported_s = 15;
 
 const children = [], failures = [];
 const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
@@ -21,6 +22,35 @@ function start(command, ...args) {
 }
 const pause = ms => new Promise(done => setTimeout(done, ms));
 
+// A session from the page: the channels are checked, it starts, ends after its length, has a report.
+async function record(page) {
+  await page.waitForFunction(() => framewatch.session && framewatch.session.channels.length === 10);
+  await page.fill('#s-test', 'browser <test>');
+  await page.fill('#s-operator', 'nobody');
+  await page.fill('#s-length_s', String(kRecorded_s));
+  await page.click('[data-verb=start]');
+  await page.waitForFunction(() => framewatch.session.state === 3, null, {timeout: 3000});
+  await pause(3000);
+  await page.locator('#session-card').screenshot({path: 'session-recording.png'});
+  const told = await page.evaluate(async () => (await fetch('session?verb=start', {method: 'POST'})).text());
+  await page.waitForFunction(id => framewatch.session.answered === id.trim() && framewatch.session.refused !== '', told, {timeout: 3000});
+  expect(true, 'a second start is refused while it records');
+  await page.waitForSelector('#sessions a', {timeout: 1000 * (kRecorded_s + kReported_s)});
+  const session = await page.evaluate(() => framewatch.session);
+  expect(session.state === 0 && session.messages >= 1000 * kRecorded_s && session.estimates >= 90 * kRecorded_s && session.lost === 0 && session.dropped === 0,
+    `a session of ${kRecorded_s} s: ${session.messages} messages, ${session.estimates} estimates, none lost`);
+  const [report] = await Promise.all([page.context().waitForEvent('page'), page.click('#sessions a')]);
+  await report.waitForLoadState();
+  expect((await report.textContent('h1')) === 'browser <test>' && await report.locator('svg').count() > 10, 'its report opens');
+  await report.setViewportSize({width: 1100, height: 1400});
+  await report.screenshot({path: 'report.png'});
+  await report.close();
+  await page.locator('#session-card').screenshot({path: 'session-done.png'});
+  const status = async (at, method) => (await fetch(new URL(at, page.url()), {method})).status;
+  expect(await status('session?verb=stop', 'GET') === 404 && await status('session?verb=stop', 'POST') === 403, 'session verbs need POST and the token');
+  expect(await status('session/%2e%2e/%2e%2e/report.html', 'GET') === 404 && await status('session/x/raw.lcmlog', 'GET') === 404, 'nothing but reports is served from the folder');
+}
+
 async function main() {
   const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-browser-'));
   const url = `udpm://239.255.76.67:${7800 + process.pid % 1000}?ttl=0`;
@@ -31,7 +61,9 @@ async function main() {
   const log = path.join(work, 'estimates.lcmlog');
   const logger = start('lcm-logger', '--lcm-url', url, '--channel', 'FRAMEWATCH_(ESTIMATE|PARAMETERS)', '--quiet', log);
   start(program, 'run', config, '--url', url, '--quiet');
-  const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--quiet');
+  const sessions = path.join(work, 'sessions');
+  const recorder = start(program, 'record', config, '--url', url, '--standby', '--quiet', '--out', sessions);
+  const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--sessions', sessions, '--quiet');
   const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
 
   const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
@@ -47,7 +79,7 @@ async function main() {
     const e = window.framewatch.estimate;
     if (e && (!window.seen.length || window.seen.at(-1).end_us !== e.end_us)) window.seen.push(e);
   }, 20));
-  const simulation = start(program, 'simulate', scenario, '--lcm', url, '--seconds', '32', '--quiet');
+  const simulation = start(program, 'simulate', scenario, '--lcm', url, '--seconds', '38', '--quiet');
 
   await page.waitForFunction(() => window.framewatch.motion);
   const first_us = await page.evaluate(() => window.framewatch.motion.first_us);
@@ -68,6 +100,7 @@ async function main() {
   expect(alarm && alarm.time_us - first_us < 1e6 * (kDrop_s + kTold_s), `within ${kTold_s} s`);
   await pause(5000);
   expect(await page.evaluate(() => framewatch.alarms.size) === 1, 'no other alarm');
+  await record(page);
   await page.click('#theme');
   await pause(500);
   await page.screenshot({path: 'page-dark.png'});

@@ -1,4 +1,6 @@
 #include <cmath>
+#include <filesystem>
+#include <map>
 #include <string>
 
 #include <arpa/inet.h>
@@ -13,8 +15,10 @@
 #include "daemon/live_view.h"
 #include "daemon/serve_command.h"
 #include "daemon/web_server.h"
+#include "daemon/web_sessions.h"
 #include "drivers/message_check.h"
 #include "tests/daemon/config_fixture.h"
+#include "tests/support/temporary.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -134,17 +138,47 @@ TEST(WebAdmission, HostMethodTokenOrigin) {
     r.method = method;
     EXPECT_EQ(admit(s, r), Admission::wrong_method) << method;
   }
-  WebRequest verb = get("/acknowledge", "localhost:8080");
-  verb.method = "POST";
-  EXPECT_EQ(admit(s, verb), Admission::no_token);
-  verb.cookie = "0123456789abcdeF";
-  EXPECT_EQ(admit(s, verb), Admission::no_token);
-  verb.cookie = s.token;
-  EXPECT_EQ(admit(s, verb), Admission::served);
-  verb.origin = "http://localhost:8080";
-  EXPECT_EQ(admit(s, verb), Admission::served);
-  verb.origin = "http://evil.example";
-  EXPECT_EQ(admit(s, verb), Admission::wrong_origin);
+  for (const char* path : {"/acknowledge", "/baseline", "/session"}) {
+    WebRequest verb = get(path, "localhost:8080");
+    verb.method = "POST";
+    EXPECT_EQ(admit(s, verb), Admission::no_token);
+    verb.cookie = "0123456789abcdeF";
+    EXPECT_EQ(admit(s, verb), Admission::no_token);
+    verb.cookie = s.token;
+    EXPECT_EQ(admit(s, verb), Admission::served);
+    verb.origin = "http://localhost:8080";
+    EXPECT_EQ(admit(s, verb), Admission::served);
+    verb.origin = "http://evil.example";
+    EXPECT_EQ(admit(s, verb), Admission::wrong_origin);
+  }
+}
+
+TEST(WebSessions, GiveOutReportsAndNothingElse) {
+  const test::TemporaryDirectory directory;
+  for (const char* name : {"2026-11-21T14-03-10_a", "2026-11-21T15-00-00"}) {
+    std::filesystem::create_directory(directory.path(name));
+    SessionFile session;
+    session.request.test = name;
+    test::write_file(directory.path(name) + "/session.json", session_json(session));
+    test::write_file(directory.path(name) + "/raw.lcmlog", "raw");
+  }
+  test::write_file(directory.path("2026-11-21T15-00-00/report.html"), "<p>");
+  test::write_file(directory.path("report.html"), "outside");
+  const std::string folder = directory.path("");
+  const auto list = nlohmann::json::parse(sessions_json(folder));
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0]["session"], "2026-11-21T15-00-00");
+  EXPECT_EQ(list[0]["report"], true);
+  EXPECT_EQ(list[1]["report"], false);
+  EXPECT_EQ(sessions_json("/nonexistent"), "[]");
+  EXPECT_EQ(session_document(folder, "2026-11-21T15-00-00/report.html").value().content, "<p>");
+  EXPECT_TRUE(session_document(folder, "2026-11-21T14-03-10_a/session.json"));
+  for (const char* path :
+       {"2026-11-21T15-00-00/raw.lcmlog", "../report.html", "./report.html", "report.html",
+        "2026-11-21T15-00-00/../report.html", "2026-11-21T15-00-00/", "", "/report.html",
+        "2026-11-21T15-00-00/report.html/x", "2026-11-21T14-03-10_a/report.html"})
+    EXPECT_FALSE(session_document(folder, path)) << path;
+  EXPECT_FALSE(session_document("", "2026-11-21T15-00-00/report.html"));
 }
 
 TEST(WebAdmission, OtherAddressesNeedATokenForEverything) {
@@ -206,7 +240,11 @@ std::string request(const std::string& line, const std::string& more = "") {
 class Served : public ::testing::Test {
  protected:
   Served()
-      : config_(test::good(test::kGoodConfig)), view_(config_, {}), server_(settings(), view_) {
+      : config_(test::good(test::kGoodConfig)),
+        view_(config_,
+              [this](std::int64_t, const std::string& channel,
+                     const std::vector<std::uint8_t>& bytes) { published_[channel] = bytes; }),
+        server_(settings(), view_) {
     std::string error;
     const int socket = listen_on("127.0.0.1", 0, error);
     EXPECT_GE(socket, 0) << error;
@@ -225,9 +263,61 @@ class Served : public ::testing::Test {
   }
 
   Config config_;
+  std::map<std::string, std::vector<std::uint8_t>> published_;
   LiveView view_;
   WebServer server_;
 };
+
+TEST_F(Served, SessionVerbsGoToTheRecorderAndItsAnswersToThePage) {
+  const std::string query =
+      "POST /session?verb=arm&test=El%20Centro&operator=me&notes=&length_s=&trigger_mps2=0.2&"
+      "pre_trigger_s=5";
+  EXPECT_NE(ask(server_.port(), request(query)).find("403"), std::string::npos);
+  const std::string cookie = "Cookie: framewatch=0123456789abcdef\r\n";
+  for (const char* bad : {"&trigger_mps2=x", "&length_s=-1", "&length_s=1e99"})
+    EXPECT_NE(ask(server_.port(), request(std::string("POST /session?verb=start") + bad, cookie))
+                  .find("400"),
+              std::string::npos);
+  view_.flush();
+  EXPECT_TRUE(published_.empty());
+  const std::string answer = ask(server_.port(), request(query, cookie));
+  EXPECT_NE(answer.find("202"), std::string::npos) << answer;
+  view_.flush();
+  const auto command = drivers::decode_session_command(published_["FRAMEWATCH_SESSION_COMMAND"]);
+  ASSERT_TRUE(command);
+  EXPECT_EQ(command->verb, "arm");
+  EXPECT_EQ(command->test, "El Centro");
+  EXPECT_EQ(command->trigger_mps2, 0.2);
+  EXPECT_EQ(command->pre_trigger_s, 5);
+  EXPECT_NE(answer.find(std::to_string(command->id)), std::string::npos);
+
+  session_status_t s{};
+  s.answered = command->id;
+  s.refused = "not \"now\"";
+  s.channels = 1;
+  s.name = {"base-x"};
+  for (auto* values :
+       {&s.noise_mps2_per_rthz, &s.rms_mps2, &s.offset_mps2, &s.peak_mps2, &s.range_mps2})
+    *values = {NAN};
+  s.saturated = {2};
+  s.polarity = {-1};
+  s.problem = {"reversed"};
+  send("FRAMEWATCH_SESSION", s);
+  gap_t gap{};
+  gap.overall_nrmse = 0.25;
+  gap.noise_floor = NAN;
+  gap.channels = 1;
+  gap.name = {"base-x"};
+  gap.nrmse = {0.5};
+  gap.floor = {0.125};
+  send("FRAMEWATCH_GAP", gap);
+  // Both are there for a viewer that comes later.
+  const std::string events = ask(server_.port(), request("GET /events"), "\"floor\":[0.125]");
+  EXPECT_NE(events.find("\"answered\":\"" + std::to_string(command->id) + "\""), std::string::npos);
+  EXPECT_NE(events.find("\"refused\":\"not \\\"now\\\"\""), std::string::npos) << events;
+  EXPECT_NE(events.find("\"noise\":null"), std::string::npos);
+  EXPECT_NE(events.find("\"overall\":0.25,\"noise_floor\":null"), std::string::npos);
+}
 
 TEST_F(Served, PageBuildingAndRefusals) {
   const std::string page = ask(server_.port(), request("GET /"));
