@@ -1,0 +1,112 @@
+'use strict';
+// What the page must bear with the paper's building of 3x3 bays at 100 Hz: every row, 50 frames/s, 200
+// viewers, and an estimator that does not notice any of them.
+const {chromium} = require('playwright-core');
+const {spawn, spawnSync} = require('child_process');
+const fs = require('fs'), http = require('http'), os = require('os'), path = require('path');
+
+const [program, browserPath, configs] = process.argv.slice(2);
+// Limits.
+const kViewers = 200, kMostCpu = 0.10, kLeastFrames = 20, kQuietFrames = 50, kPlayed_s = 12;
+const kPageBytes = 150000;
+
+const children = [], failures = [];
+const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
+function start(command, ...args) {
+  const child = spawn(command, args, {stdio: ['ignore', 'pipe', 'inherit']});
+  children.push(child);
+  child.ended = new Promise(done => child.on('exit', done));
+  return child;
+}
+async function stop(child) { child.kill('SIGINT'); await child.ended; }
+const pause = ms => new Promise(done => setTimeout(done, ms));
+const config = path.join(configs, 'paper_table2.toml'), scenario = path.join(configs, 'scenario_paper_table2.toml');
+const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-limits-'));
+const url = `udpm://239.255.76.67:${8800 + process.pid % 1000}?ttl=0`;
+
+function cpuSeconds(pid) {
+  const f = fs.readFileSync(`/proc/${pid}/stat`, 'utf8').split(') ')[1].split(' ');
+  return (Number(f[11]) + Number(f[12])) / 100;
+}
+
+class Viewer {
+  constructor(address) {
+    this.bytes = this.dropped = this.rows = 0;
+    this.request = http.get(new URL('events', address), answer => answer.on('data', part => {
+      this.bytes += part.length;
+      if (part.includes('event: dropped')) ++this.dropped;
+    }));
+    this.request.on('error', () => {});
+  }
+  close() { this.request.destroy(); }
+}
+
+// Plays the same samples to an estimator with so many viewers beside it; its estimates as a log.
+async function played(raw, count) {
+  const sessions = path.join(work, `viewers-${count}`);
+  const recorder = start(program, 'record', config, '--url', url, '--no-check', '--no-report', '--quiet', '--out', sessions);
+  const estimator = start(program, 'run', config, '--url', url, '--quiet');
+  const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--quiet');
+  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+  const viewers = Array.from({length: count}, () => new Viewer(address));
+  await pause(1500);
+  const player = start('lcm-logplayer', '--lcm-url', url, raw);
+  await pause(2000);
+  const cpu = cpuSeconds(serve.pid), since = Date.now(), bytes = viewers.reduce((a, v) => a + v.bytes, 0);
+  await pause(1000 * (kPlayed_s - 4));
+  const seconds = (Date.now() - since) / 1000, share = (cpuSeconds(serve.pid) - cpu) / seconds;
+  const rate = (viewers.reduce((a, v) => a + v.bytes, 0) - bytes) / seconds / (count || 1);
+  await player.ended;
+  await pause(1500);
+  const dropped = viewers.reduce((a, v) => a + v.dropped, 0);
+  for (const v of viewers) v.close();
+  for (const child of [recorder, estimator, serve]) await stop(child);
+  const session = path.join(sessions, fs.readdirSync(sessions).find(name => name[0] === '2'));
+  const told = JSON.parse(fs.readFileSync(path.join(session, 'session.json')));
+  return {log: path.join(session, 'estimates.lcmlog'), share, rate, dropped, lost: told.lost + told.dropped};
+}
+
+async function main() {
+  const raw = path.join(work, 'raw.lcmlog');
+  if (spawnSync(program, ['simulate', scenario, '--out', raw, '--seconds', String(kPlayed_s), '--quiet']).status !== 0) throw new Error('no simulation');
+  const alone = await played(raw, 0), watched = await played(raw, kViewers);
+  console.log(`${kViewers} viewers: ${(100 * watched.share).toFixed(1)} % of a core, ${(watched.rate / 1e3).toFixed(1)} kB/s each, ${watched.dropped} told of lost events; none: ${(100 * alone.share).toFixed(1)} %`);
+  expect(watched.share < kMostCpu, `${kViewers} viewers cost less than ${100 * kMostCpu} % of a core`);
+  expect(watched.dropped === 0, 'none of them lost an event');
+  // The scenario itself loses a few.
+  expect(alone.lost === watched.lost && alone.lost < 10, 'no sample was lost on the way');
+  const size = fs.statSync(alone.log).size;
+  expect(spawnSync(program, ['diff', alone.log, watched.log], {stdio: 'inherit'}).status === 0 && size > 1e5, `the estimates are the same bytes with 0 and ${kViewers} viewers (${size} bytes of log)`);
+
+  start(program, 'run', config, '--url', url, '--quiet');
+  const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--quiet');
+  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+  const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
+  const page = await browser.newPage({viewport: {width: 1400, height: 1350}});
+  await page.goto(address);
+  await page.waitForFunction(() => document.getElementById('state').textContent === 'waiting for samples');
+  const simulation = start(program, 'simulate', scenario, '--lcm', url, '--seconds', '20', '--quiet');
+  await page.waitForFunction(() => window.framewatch.motion);
+  await pause(5000);
+  const fps = [], before = await page.evaluate(() => ({rows: framewatch.rows, us: framewatch.motion.first_us + framewatch.motion.rows.at(-1)[0]}));
+  for (let i = 0; i < 10; ++i) { await pause(1000); fps.push(await page.evaluate(() => framewatch.fps())); }
+  const now = await page.evaluate(() => ({rows: framewatch.rows, us: framewatch.motion.first_us + framewatch.motion.rows.at(-1)[0], lost: framewatch.lost, leftOut: framewatch.leftOut, dropped: framewatch.dropped, latency: [...framewatch.latency].sort((a, b) => a - b)[framewatch.latency.length >> 1]}));
+  await page.screenshot({path: 'page-3x3.png'});
+  const weight = await page.evaluate(() => [...performance.getEntriesByType('navigation'), ...performance.getEntriesByType('resource')]
+    .filter(e => !e.name.endsWith('/events')).reduce((sum, e) => sum + e.decodedBodySize, 0));
+  fps.sort((a, b) => a - b);
+  const rate = 1e6 * (now.rows - before.rows) / (now.us - before.us);
+  console.log(`3x3 bays: ${rate.toFixed(1)} rows/s, ${now.lost} lost, ${now.dropped} events dropped, ${fps[0]} to ${fps.at(-1)} frames/s (median ${fps[5]}), sample to screen ${now.latency.toFixed(0)} ms in the median, ${weight} bytes`);
+  expect(Math.abs(rate - 100) < 0.5 && now.lost === 0 && now.leftOut === 0 && now.dropped === 0, '100 rows a second, none lost');
+  expect(fps[5] >= kLeastFrames, `at least ${kLeastFrames} frames/s` + (fps[5] >= kQuietFrames ? ` (and ${kQuietFrames})` : ''));
+  expect(weight > 5e4 && weight < kPageBytes, `the page weighs less than ${kPageBytes / 1000} kB`);
+  await simulation.ended;
+  await browser.close();
+}
+
+main().catch(e => { failures.push(e.message); console.log(e); }).finally(() => {
+  for (const child of children) if (child.exitCode === null) child.kill();
+  fs.rmSync(work, {recursive: true, force: true});
+  console.log(failures.length ? `limits: ${failures.length} failed` : 'limits: all passed');
+  process.exit(failures.length ? 1 : 0);
+});
