@@ -59,11 +59,27 @@ std::string gap_json(const gap_t& g) {
       dumped(names), list(g.nrmse, "{:.4g}"), list(g.floor, "{:.4g}"));
 }
 
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::string can_json(const can_status_t& s) {
+  Json buses = Json::array();
+  for (std::size_t i = 0; i < s.interface.size(); ++i)
+    buses.push_back({{"interface", s.interface[i]},
+                     {"state", s.state[i]},
+                     {"frames_hz", number(s.frames_hz[i])},
+                     {"load", number(s.load[i])},
+                     {"expected_load", number(s.expected_load[i])},
+                     {"error_frames", s.error_frames[i]},
+                     {"bus_off", s.bus_off[i]},
+                     {"bus_errors", s.bus_errors[i]},
+                     {"overflow", s.overflow[i]}});
+  return dumped({{"time_us", s.time_us}, {"dropped", s.dropped}, {"buses", buses}});
+}
+
 std::string session_json(const session_status_t& s) {
   Json channels = Json::array();
-  const auto number = [](double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-  };
   for (std::size_t i = 0; i < s.name.size(); ++i)
     channels.push_back({{"name", s.name[i]},
                         {"noise", number(s.noise_mps2_per_rthz[i])},
@@ -122,7 +138,7 @@ std::vector<std::string> LiveView::channels() const {
   for (std::size_t i = 0, streams = out.size(); i < streams; ++i)
     out.push_back(out[i] + "_CHANNELS");
   const std::string& prefix = config_.lcm.prefix;
-  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "SESSION"})
+  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "CAN", "SESSION"})
     out.push_back(prefix + name);
   for (const double window_s : config_.pipeline.options.other_windows_s)
     if (std::abs(window_s - kWatched_s) < 1e-9)
@@ -151,6 +167,9 @@ void LiveView::message(const std::string& channel, const void* data, std::size_t
   } else if (channel == prefix + "SESSION") {
     if (const auto s = drivers::decode_session_status(bytes(data, size)))
       status("session", session_, session_json(*s));
+  } else if (channel == prefix + "CAN") {
+    if (const auto s = drivers::decode_can_status(bytes(data, size)))
+      status("can", can_, can_json(*s));
   } else if (channel == prefix + "GAP") {
     if (const auto gap = drivers::decode_gap(bytes(data, size)))
       status("gap", gap_, gap_json(*gap));
@@ -359,6 +378,7 @@ EventRing::Cursor LiveView::join() {
   if (!status_.empty()) first += EventRing::text("status", status_);
   if (!baseline_.empty()) first += EventRing::text("baseline", baseline_);
   if (!session_.empty()) first += EventRing::text("session", session_);
+  if (!can_.empty()) first += EventRing::text("can", can_);
   if (!gap_.empty()) first += EventRing::text("gap", gap_);
   for (const auto& [id, e] : events_) first += EventRing::text("alarm", event_json(e));
   return ring_.join(std::move(first));

@@ -76,7 +76,7 @@ class LiveView {
   EventRing ring_;
   std::map<std::int64_t, event_t> events_;
   std::map<std::int64_t, bool> acknowledged_;
-  std::string status_, baseline_, session_, gap_;
+  std::string status_, baseline_, session_, gap_, can_;
   std::vector<session_command_t> commands_;
   bool renew_ = false;
 };

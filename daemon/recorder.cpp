@@ -57,7 +57,7 @@ std::vector<std::string> Recorder::channels() const {
   std::vector<std::string> out = drivers::ChannelBinding(wanted_axes(config_)).streams();
   for (std::size_t i = 0, streams = out.size(); i < streams; ++i)
     out.push_back(out[i] + "_CHANNELS");
-  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP"})
+  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "CAN"})
     out.push_back(config_.lcm.prefix + name);
   for (const double window_s : config_.pipeline.options.other_windows_s)
     out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));

@@ -14,6 +14,7 @@
 
 #include "daemon/baseline_keeper.h"
 #include "daemon/can_complaints.h"
+#include "daemon/can_monitor.h"
 #include "daemon/log.h"
 #include "daemon/state_file.h"
 #include "daemon/stop_signal.h"
@@ -225,6 +226,7 @@ int run(const RunArguments& a) {
   StateKeeper keeper(a, *config);
   Complaints complaints;
   CanComplaints can_complaints(*config);
+  CanMonitor can_monitor(*config);
   BaselineKeeper baseline(*config);
   RateLimitedLog failures(LogLevel::error);
   if (!a.quiet)
@@ -240,6 +242,8 @@ int run(const RunArguments& a) {
     for (const std::string& news :
          can_complaints.look(live.estimation().can(), live.can(), host_clock_us()))
       log(LogLevel::warning, news);
+    if (const auto buses = can_monitor.look(live.estimation().can(), live.can(), host_clock_us()))
+      lcm->publish(config->lcm.prefix + "CAN", &*buses);
     keeper.look(live.estimation(), host_clock_us());
     baseline.look(live.estimation());
   }

@@ -96,6 +96,10 @@ std::optional<gap_t> decode_gap(std::span<const std::uint8_t> payload) {
   return decode<gap_t>(payload, "88888n[s88]");
 }
 
+std::optional<can_status_t> decode_can_status(std::span<const std::uint8_t> payload) {
+  return decode<can_status_t>(payload, "888n[s48888888]");
+}
+
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload) {
   return decode<session_command_t>(payload, "88ssss888");
 }

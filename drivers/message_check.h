@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
@@ -26,6 +27,7 @@ std::optional<window_estimate_t> decode_window_estimate(std::span<const std::uin
 std::optional<status_t> decode_status(std::span<const std::uint8_t> payload);
 std::optional<event_t> decode_event(std::span<const std::uint8_t> payload);
 std::optional<gap_t> decode_gap(std::span<const std::uint8_t> payload);
+std::optional<can_status_t> decode_can_status(std::span<const std::uint8_t> payload);
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload);
 std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload);
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <framewatch/accel_t.hpp>
+#include <framewatch/can_status_t.hpp>
 #include <framewatch/channel_table_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
@@ -21,8 +22,8 @@
 namespace framewatch::drivers {
 namespace {
 
-const std::array<std::pair<const char*, std::int64_t>, 9>& types() {
-  static const std::array<std::pair<const char*, std::int64_t>, 9> all{{
+const std::array<std::pair<const char*, std::int64_t>, 10>& types() {
+  static const std::array<std::pair<const char*, std::int64_t>, 10> all{{
       {"accel_t", accel_t::getHash()},
       {"channel_table_t", channel_table_t::getHash()},
       {"parameter_table_t", parameter_table_t::getHash()},
@@ -30,6 +31,7 @@ const std::array<std::pair<const char*, std::int64_t>, 9>& types() {
       {"status_t", status_t::getHash()},
       {"event_t", event_t::getHash()},
       {"gap_t", gap_t::getHash()},
+      {"can_status_t", can_status_t::getHash()},
       {"session_command_t", session_command_t::getHash()},
       {"session_status_t", session_status_t::getHash()},
   }};
@@ -54,6 +56,7 @@ const char* type_of_channel(const std::string& channel, const std::string& prefi
   if (rest == "STATUS") return "status_t";
   if (rest == "EVENT") return "event_t";
   if (rest == "GAP") return "gap_t";
+  if (rest == "CAN") return "can_status_t";
   if (rest == "SESSION") return "session_status_t";
   if (rest == "SESSION_COMMAND") return "session_command_t";
   return nullptr;

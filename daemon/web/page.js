@@ -174,6 +174,20 @@ function onStatus(s) {
   });
   before = s;
 }
+const busStates = ['not there', 'active', 'warning', 'passive', 'off'];
+function onCan(s) {
+  window.framewatch.can = s;
+  const table = $('buses'), percent = v => v === null ? '?' : (100 * v).toFixed(0) + ' %';
+  table.replaceChildren();
+  heads(table, ['bus', 'state', 'frames/s', 'load', 'error frames', 'bus errors', 'bus-off', 'overflow']);
+  const body = table.createTBody();
+  for (const b of s.buses) {
+    const row = body.insertRow();
+    cell(row, b.interface); cell(row, busStates[b.state + 1], b.state === 0 ? '' : 'bad'); cell(row, b.frames_hz === null ? '?' : b.frames_hz.toFixed(0));
+    cell(row, `${percent(b.load)} (${percent(b.expected_load)})`, b.load > 0.5 ? 'bad' : '');
+    for (const k of ['error_frames', 'bus_errors', 'bus_off', 'overflow']) cell(row, b[k], b[k] > 0 ? 'bad' : '');
+  }
+}
 function onAlarm(a) {
   const at = plan.parameters.findIndex(q => q.name === a.place);
   if (a.state !== 0 && !a.acknowledged && !alarms.has(a.id) && at >= 0) choose(at);
@@ -221,7 +235,7 @@ function listen() {
   const source = new EventSource('events');
   const on = (name, f) => source.addEventListener(name, e => { lastAlive = performance.now(); f(JSON.parse(e.data)); });
   on('motion', onMotion); on('estimate', onEstimate); on('status', onStatus); on('alarm', onAlarm);
-  on('session', onSession); on('gap', onGap);
+  on('session', onSession); on('gap', onGap); on('can', onCan);
   on('boxes', b => { boxes = window.framewatch.boxes = b; });
   on('baseline', b => { baseline = b.value; });
   on('dropped', d => { window.framewatch.dropped = d.events; });

@@ -163,6 +163,67 @@ gap_t gap() {
   return m;
 }
 
+can_status_t can_status() {
+  can_status_t m{};
+  m.time_us = 70;
+  m.dropped = 1;
+  m.buses = 1;
+  m.interface = {"can0"};
+  m.state = {2};
+  m.frames_hz = {800};
+  m.load = {0.25};
+  m.expected_load = {0.125};
+  m.error_frames = {3};
+  m.bus_off = {4};
+  m.bus_errors = {5};
+  m.overflow = {6};
+  return m;
+}
+
+session_status_t session_status() {
+  session_status_t m{};
+  m.time_us = 80;
+  m.state = 3;
+  m.test = "sweep";
+  m.session = "2026-11-21T14-03-10_sweep";
+  m.message = "triggered by base-x";
+  m.answered = 9;
+  m.refused = "no";
+  m.elapsed_s = 1.5;
+  m.length_s = 60;
+  m.trigger_mps2 = 0.25;
+  m.messages = 10;
+  m.estimates = 11;
+  m.lost = 12;
+  m.dropped = 13;
+  m.bytes = 14;
+  m.disk_free_bytes = -1;
+  m.channels = 1;
+  m.name = {"base-x"};
+  m.noise_mps2_per_rthz = {5e-4};
+  m.rms_mps2 = {0.5};
+  m.offset_mps2 = {-0.5};
+  m.peak_mps2 = {2};
+  m.range_mps2 = {20};
+  m.saturated = {7};
+  m.polarity = {-1};
+  m.problem = {"reversed"};
+  return m;
+}
+
+session_command_t session_command() {
+  session_command_t m{};
+  m.id = 9;
+  m.verb = "arm";
+  m.test = "sweep";
+  m.operator_name = "me";
+  m.notes = "none";
+  m.length_s = 60;
+  m.trigger_mps2 = 0.25;
+  m.pre_trigger_s = 5;
+  return m;
+}
+
 std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
   return {{"ACCEL", encoded(accel())},
           {"ACCEL_CHANNELS", encoded(channel_table())},
@@ -170,7 +231,10 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
           {"FRAMEWATCH_ESTIMATE", encoded(window_estimate())},
           {"FRAMEWATCH_STATUS", encoded(status())},
           {"FRAMEWATCH_EVENT", encoded(event())},
-          {"FRAMEWATCH_GAP", encoded(gap())}};
+          {"FRAMEWATCH_GAP", encoded(gap())},
+          {"FRAMEWATCH_CAN", encoded(can_status())},
+          {"FRAMEWATCH_SESSION", encoded(session_status())},
+          {"FRAMEWATCH_SESSION_COMMAND", encoded(session_command())}};
 }
 
 TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
@@ -209,6 +273,24 @@ TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
       ASSERT_TRUE(estimate);
       EXPECT_EQ(estimate->value, window_estimate().value);
       EXPECT_EQ(estimate->boxplot_count, window_estimate().boxplot_count);
+    }
+    if (e.channel == "FRAMEWATCH_GAP") {
+      EXPECT_EQ(decode_gap(e.data).value_or(gap_t{}).nrmse, gap().nrmse);
+    }
+    if (e.channel == "FRAMEWATCH_CAN") {
+      const auto decoded = decode_can_status(e.data);
+      ASSERT_TRUE(decoded);
+      EXPECT_EQ(decoded->load, can_status().load);
+      EXPECT_EQ(decoded->overflow, can_status().overflow);
+    }
+    if (e.channel == "FRAMEWATCH_SESSION") {
+      const auto decoded = decode_session_status(e.data);
+      ASSERT_TRUE(decoded);
+      EXPECT_EQ(decoded->refused, session_status().refused);
+      EXPECT_EQ(decoded->problem, session_status().problem);
+    }
+    if (e.channel == "FRAMEWATCH_SESSION_COMMAND") {
+      EXPECT_EQ(decode_session_command(e.data).value_or(session_command_t{}).notes, "none");
     }
     if (e.channel == "FRAMEWATCH_EVENT") {
       const auto decoded = decode_event(e.data);
