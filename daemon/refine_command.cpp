@@ -126,7 +126,7 @@ int refine(const RefineArguments& a) {
   };
   drivers::AccelIntake intake(wanted_axes(*config), sink);
   for (const ReplayInput& input : survey.inputs()) {
-    const std::string problem = push_stored_samples(input, intake, sink);
+    const std::string problem = push_stored_samples(*config, input, intake, sink);
     if (problem.empty()) continue;
     fmt::print(stderr, "{}\n", problem);
     return kBadInput;

@@ -115,7 +115,7 @@ std::optional<SessionMotion> read_session_motion(const Config& config,
                               [&](const AccelSample& sample) { collector.push(sample); });
   for (const ReplayInput& input : survey.inputs()) {
     const std::string problem = push_stored_samples(
-        input, intake, [&](const AccelSample& sample) { collector.push(sample); });
+        config, input, intake, [&](const AccelSample& sample) { collector.push(sample); });
     if (!problem.empty()) problems.push_back(problem);
   }
   collector.finish();

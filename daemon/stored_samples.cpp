@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "drivers/can/can_intake.h"
+#include "drivers/can/can_log.h"
 #include "drivers/lcm_log.h"
 
 namespace framewatch::daemon {
@@ -30,10 +32,29 @@ std::string push_log(const std::string& path, drivers::AccelIntake& intake) {
   return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
 }
 
+/// What is no frame was told by the survey.
+void push_candump(const Config& config, const std::string& path,
+                  const drivers::AccelIntake::Sink& sink) {
+  drivers::CanIntake can(config.can, sink);
+  std::vector<drivers::Problem> told;
+  drivers::read_candump(
+      path,
+      [&](const drivers::CanFrame& frame, std::string_view interface) {
+        if (const int bus = can.bus_of(interface); bus >= 0) can.frame(bus, frame);
+      },
+      told);
+  can.finish();
+}
+
 }  // namespace
 
-std::string push_stored_samples(const ReplayInput& input, drivers::AccelIntake& intake,
+std::string push_stored_samples(const Config& config, const ReplayInput& input,
+                                drivers::AccelIntake& intake,
                                 const drivers::AccelIntake::Sink& sink) {
+  if (!input.is_record && drivers::looks_like_candump(input.path)) {
+    push_candump(config, input.path, sink);
+    return {};
+  }
   if (!input.is_record) return push_log(input.path, intake);
   push_record(input, sink);
   return {};
