@@ -50,7 +50,9 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
             watch(estimate);
           }),
       intake_(wanted_axes(config), [this](const AccelSample& s) { sample(s); }),
-      can_(config.can, [this](const AccelSample& s) { sample(s); }) {
+      can_(config.can, [this](const AccelSample& s) { sample(s); }),
+      can_events_(config.can) {
+  can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   if (!config.watch) return;
   std::vector<double> windows_s{config.pipeline.options.window_s};
   windows_s.insert(windows_s.end(), config.pipeline.options.other_windows_s.begin(),
@@ -68,6 +70,10 @@ drivers::IntakeResult Estimation::message(const std::string& channel, const void
   return intake_.message(channel, data, size);
 }
 
+void Estimation::notice(const drivers::CanNotice& notice) {
+  if (const auto event = can_events_.of(notice)) publisher_.event(*event);
+}
+
 void Estimation::sample(const AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
   pipeline_.push(sample);
@@ -80,13 +86,13 @@ void Estimation::finish() {
 }
 
 void Estimation::save(StateWriter& state) {
-  state(seconds_, windows_, intake_, can_);
+  state(seconds_, windows_, intake_, can_, can_events_);
   if (watch_) state(*watch_);
   pipeline_.save(state);
 }
 
 bool Estimation::load(StateReader& state) {
-  state(seconds_, windows_, intake_, can_);
+  state(seconds_, windows_, intake_, can_, can_events_);
   if (watch_) state(*watch_);
   return state.good() && pipeline_.load(state);
 }

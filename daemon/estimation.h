@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "daemon/can_events.h"
 #include "daemon/config.h"
 #include "daemon/publisher.h"
 #include "drivers/accel_intake.h"
@@ -49,6 +50,8 @@ class Estimation {
   drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size);
   /// One CAN frame of the bus with this index in the configuration.
   void frame(int bus, const drivers::CanFrame& frame) { can_.frame(bus, frame); }
+  /// Something about CAN that is in no frame.
+  void notice(const drivers::CanNotice& notice);
   /// One value from a file that has names instead of messages.
   void sample(const AccelSample& sample);
   /// The input has ended: closes open instants, publishes the last table and status.
@@ -77,6 +80,7 @@ class Estimation {
   std::optional<Watch> watch_;
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
+  CanEvents can_events_;
   SensorSeconds seconds_;
   LiveState live_;
   std::int64_t windows_ = 0;

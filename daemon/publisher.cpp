@@ -145,6 +145,11 @@ void Publisher::alarm(const Alarm& alarm, const ParameterTable& table) {
   send(m.time_us, event_channel_, m);
 }
 
+void Publisher::event(const event_t& event) {
+  event_t m = event;
+  send(m.time_us, event_channel_, m);
+}
+
 void Publisher::status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live) {
   framewatch::status_t& m = status_;
   m.time_us = time_us;

@@ -51,6 +51,7 @@ class Publisher {
   void other(const WindowEstimate& estimate);
   /// News of an alarm; lasting until it is cleared.
   void alarm(const Alarm& alarm, const ParameterTable& table);
+  void event(const event_t& event);
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
 
  private:

@@ -170,6 +170,11 @@ bool LiveEstimation::poll(int timeout_ms) {
   can_.descriptors(waiting);
   ::poll(waiting.data(), waiting.size(), timeout_ms);
   can_.handle(steady_clock_us());
+  for (std::size_t b = 0; b < config_.can.buses.size(); ++b) {
+    const bool gone = !can_.state(static_cast<int>(b)).open;
+    estimation_.notice(
+        {drivers::CanNotice::Kind::interface_gone, static_cast<int>(b), !gone, 0, host_clock_us()});
+  }
   return source_.handle(0) && !can_log_failed_;
 }
 

@@ -79,9 +79,15 @@ void CanIntake::frame(int index, const CanFrame& frame) {
   CanBusCounters& counters = bus_counters_[static_cast<std::size_t>(index)];
   Bus& bus = buses_[static_cast<std::size_t>(index)];
   newest_stamp_us_ = std::max(newest_stamp_us_, frame.stamp_us);
-  if (frame.error) return count_error_frame(frame, counters);
+  const bool was_off = counters.state == CanBusState::off;
+  if (frame.error)
+    count_error_frame(frame, counters);
+  else if (was_off)
+    counters.state = CanBusState::active;
+  const bool is_off = counters.state == CanBusState::off;
+  if (is_off != was_off) notice({CanNotice::Kind::bus_off, index, was_off, 0, frame.stamp_us});
+  if (frame.error) return;
   ++counters.frames;
-  if (counters.state == CanBusState::off) counters.state = CanBusState::active;
   if (frame.remote) {
     ++counters.remote;
     return;
@@ -115,13 +121,20 @@ bool CanIntake::canopen(int bus, const CanFrame& frame) {
     CanNodeCounters& c = nodes_[n].counters;
     if (heartbeat && frame.data[0] == 0) {
       ++c.boot_ups;
+      notice({CanNotice::Kind::boot_up, static_cast<int>(n), false, 0, frame.stamp_us});
       if (nodes_[n].timer) nodes_[n].timer->restart();
     }
     if (!emergency) continue;
     c.last_emergency = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
     c.emergencies += c.last_emergency != 0;
+    notice({CanNotice::Kind::emergency, static_cast<int>(n), c.last_emergency == 0,
+            c.last_emergency, frame.stamp_us});
   }
   return ours;
+}
+
+void CanIntake::notice(const CanNotice& notice) const {
+  if (notice_) notice_(notice);
 }
 
 void CanIntake::message(int index, int at, const CanFrame& frame, double host_us) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/can/can_map.h"
+#include "drivers/can/can_notice.h"
 #include "drivers/can/can_status.h"
 #include "drivers/can/frame_lookup.h"
 #include "drivers/can/resampler.h"
@@ -35,6 +36,9 @@ class CanIntake {
   CanIntake(const CanMap& map, Sink sink, Observer observer = {});
   CanIntake(const CanIntake&) = delete;
   CanIntake& operator=(const CanIntake&) = delete;
+
+  /// Told what the frames say of buses and nodes. To be set before the first frame.
+  void on_notice(CanNoticeSink sink) { notice_ = std::move(sink); }
 
   void frame(int bus, const CanFrame& frame);
   /// The input has ended: gives out what waits for a next SYNC or for its time.
@@ -83,6 +87,7 @@ class CanIntake {
 
   void make_node(const CanNodeMap& node);
   bool canopen(int bus, const CanFrame& frame);
+  void notice(const CanNotice& notice) const;
   void message(int node, int message, const CanFrame& frame, double host_us);
   void place(Node& node, int message, const CanFrame& frame, TimedValues values, double host_us);
   /// `period_us` is between the node's frames now.
@@ -91,6 +96,7 @@ class CanIntake {
   const CanMap& map_;
   Sink sink_;
   Observer observer_;
+  CanNoticeSink notice_;
   HostSteps steps_;
   std::vector<Node> nodes_;
   std::vector<Bus> buses_;
