@@ -18,6 +18,7 @@ constexpr double kCheck_s = 3, kMostBefore_s = 62;  // the longest pre-trigger a
 constexpr std::size_t kMostBeforeBytes = std::size_t{64} << 20;
 constexpr std::int64_t kAfter_us = 500'000;       // estimates of the last samples are on their way
 constexpr std::int64_t kSilence_us = 10'000'000;  // over its length, of a session without samples
+constexpr std::int64_t kTroubleEvery_us = 10'000'000;
 constexpr double kSlack_s = 0.1;
 constexpr double kTapOverRest = 8, kLeastTap_mps2 = 0.05;
 
@@ -244,7 +245,8 @@ std::string Recorder::open(std::int64_t now_us, const std::string& triggered_by)
   session_.triggered_by = triggered_by;
   session_.check = channel_results();
   state_ = RecorderState::recording;
-  close_at_us_ = 0;
+  close_at_us_ = trouble_said_us_ = 0;
+  disk_failing_ = false;
   lost_before_ = lost();
   check_.begin(acquisition_.counters());
   news_ = before ? fmt::format("triggered by {}", triggered_by) : "";
@@ -284,12 +286,22 @@ void Recorder::tick(std::int64_t now_us) {
   if (length_s > 0 && close_at_us_ == 0 &&
       now_us > session_.began_us + static_cast<std::int64_t>(1e6 * length_s) + kSilence_us)
     (void)stop("no samples", now_us);
-  if (const std::string why = log_->trouble(); !why.empty() && now_us >= trouble_said_us_) {
-    trouble_said_us_ = now_us + 1'000'000;
+  look_at_disk(now_us);
+  if (close_at_us_ != 0 && now_us >= close_at_us_) close();
+}
+
+void Recorder::look_at_disk(std::int64_t now_us) {
+  const std::string why = log_->trouble();
+  if (why.empty() && disk_failing_) {
+    disk_failing_ = false;
+    news_ = fmt::format("the disk takes what is recorded again: {} messages were dropped",
+                        log_->dropped());
+  } else if (!why.empty() && now_us >= trouble_said_us_) {
+    disk_failing_ = true;
+    trouble_said_us_ = now_us + kTroubleEvery_us;
     news_ = "the disk does not take what is recorded: " + why;
     log(LogLevel::error, news_);
   }
-  if (close_at_us_ != 0 && now_us >= close_at_us_) close();
 }
 
 std::vector<ChannelResult> Recorder::channel_results() const {

@@ -70,6 +70,7 @@ class Recorder {
   void look_for_trigger(const std::vector<double>& distance);
   std::string open(std::int64_t now_us, const std::string& triggered_by);
   void close();
+  void look_at_disk(std::int64_t now_us);
   void write_session_file();
   std::int64_t lost() const { return intake_.lost(); }
 
@@ -96,6 +97,7 @@ class Recorder {
   SessionFile session_;
   std::unique_ptr<SessionLog> log_;
   std::int64_t lost_before_ = 0, close_at_us_ = 0, trouble_said_us_ = 0;
+  bool disk_failing_ = false;
 };
 
 }  // namespace framewatch::daemon

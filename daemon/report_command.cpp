@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include "daemon/file_digest.h"
-#include "daemon/session_report.h"
 #include "drivers/text_output.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -34,6 +33,14 @@ bool fits(const Config& config, const SessionEstimates& estimates) {
 }
 
 }  // namespace
+
+std::string write_report(SessionReport r,
+                         const std::vector<std::pair<std::string, std::string>>& files,
+                         const std::string& path) {
+  for (const auto& [use, file] : files) r.files.push_back({use, file, sha256_of_file(file)});
+  evaluate(r);
+  return drivers::write_text_file(path, session_report_html(r));
+}
 
 int report(const ReportArguments& a) {
   if (!a.raw.empty() && a.config.empty())
@@ -78,14 +85,11 @@ int report(const ReportArguments& a) {
   }
   if (!good || !estimates) return kBadInput;
   r.estimates = *std::move(estimates);
-  r.files.push_back({"estimates", a.estimates, sha256_of_file(a.estimates)});
-  if (!a.config.empty()) r.files.push_back({"configuration", a.config, r.config->sha256});
-  for (const std::string& raw : a.raw) r.files.push_back({"raw samples", raw, sha256_of_file(raw)});
-
-  evaluate(r);
-  drivers::TextOutput out;
-  if (!out.open(path) || !out.write(session_report_html(r)) || !out.close())
-    return refuse(fmt::format("{}: {}", path, out.error()));
+  std::vector<std::pair<std::string, std::string>> files{{"estimates", a.estimates}};
+  if (!a.config.empty()) files.push_back({"configuration", a.config});
+  for (const std::string& raw : a.raw) files.push_back({"raw samples", raw});
+  const std::string problem = write_report(std::move(r), files, path);
+  if (!problem.empty()) return refuse(problem);
   if (!a.quiet) fmt::print("{}\n", path);
   return 0;
 }

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "daemon/session_report.h"
 
 namespace framewatch::daemon {
 
@@ -14,6 +17,12 @@ struct ReportArguments {
   std::string session;  ///< session.json of `framewatch record`; empty: none
   bool quiet = false;
 };
+
+/// Evaluates a session and writes its page; `files` (use, path) are said with their SHA-256. Empty,
+/// or why not; then no page is there.
+std::string write_report(SessionReport session,
+                         const std::vector<std::pair<std::string, std::string>>& files,
+                         const std::string& path);
 
 /// framewatch report: one self-contained HTML page of a session. Exit code.
 int report(const ReportArguments& arguments);

@@ -110,6 +110,7 @@ SessionFile session_of(const Json& j) {
   j.at("files").get_to(s.files);
   j.at("report").get_to(s.report);
   j.at("problems").get_to(s.problems);
+  j.at("finishing").get_to(s.finishing);
   return s;
 }
 
@@ -140,6 +141,7 @@ std::string session_json(const SessionFile& s) {
                   {"files", s.files},
                   {"report", s.report},
                   {"problems", s.problems},
+                  {"finishing", s.finishing},
                   {"check", channels_json(s.check)},
                   {"run", channels_json(s.run)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -32,7 +32,8 @@ struct SessionFile {
   std::vector<Stage> stages;              ///< finished
   std::vector<std::string> files;         ///< beside session.json
   std::string report;                     ///< path; empty: there is none
-  std::vector<std::string> problems;      ///< one sentence each
+  std::vector<std::string> problems;      ///< of the recording, one sentence each
+  std::vector<std::string> finishing;     ///< what is to be known of what came after it
 };
 
 std::string session_json(const SessionFile& session);

@@ -71,7 +71,7 @@ class Finishing {
 
   /// The estimates that came, or new ones when they do not cover the samples.
   void choose_estimates() {
-    estimates_ = kEstimatesLog;
+    read_estimates(kEstimatesLog);
     if (!motion_) return;
     const std::string lack = what_is_missing();
     if (lack.empty()) return;
@@ -81,34 +81,37 @@ class Finishing {
     again.out = a_.folder + "/" + kReplayed;
     again.salvage = again.quiet = true;
     if (replay(again) != 0) return problem(lack + ", and they cannot be made again");
-    estimates_ = kReplayed;
+    read_estimates(kReplayed);
     session_.files.push_back(kReplayed);
     note(lack + fmt::format(": made again from the raw samples, {}", kReplayed));
   }
 
   void write_report() {
     if (!a_.report) return;
-    ReportArguments r;
-    r.estimates = a_.folder + "/" + estimates_;
-    r.config = a_.config;
-    r.raw = raw_;
-    r.test = session_.request.test;
+    if (!estimates_) return problem("without estimates there is no report");
+    SessionReport r;
+    r.test = r.title = session_.request.test;
     r.operator_name = session_.request.operator_name;
     r.notes = session_.request.notes;
-    r.title = r.test;
-    r.session = a_.folder + "/" + kSessionJson;
-    r.out = a_.reports.empty()
-                ? a_.folder + "/" + kReportPage
-                : a_.reports + "/" + fs::path(a_.folder).filename().string() + ".html";
-    r.quiet = true;
-    if (daemon::report(r) != 0) return problem(r.out + ": there is no report");
-    session_.report = r.out;
+    r.session = session_;
+    r.config = config_;
+    r.estimates = *std::move(estimates_);
+    r.motion = std::move(motion_);
+    std::vector<std::pair<std::string, std::string>> files{
+        {"estimates", a_.folder + "/" + estimates_log_}, {"configuration", a_.config}};
+    for (const std::string& raw : raw_) files.push_back({"raw samples", raw});
+    const std::string page =
+        a_.reports.empty() ? a_.folder + "/" + kReportPage
+                           : a_.reports + "/" + fs::path(a_.folder).filename().string() + ".html";
+    const std::string why = daemon::write_report(std::move(r), files, page);
+    if (!why.empty()) return problem(why + ": there is no report");
+    session_.report = page;
   }
 
   void export_others() {
     std::vector<std::string> found;
     export_raw(a_.folder, a_.csv, a_.mat, session_.files, found);
-    export_estimates(config_, a_.folder, estimates_, a_.csv, a_.mat, session_.files, found);
+    export_estimates(config_, a_.folder, estimates_log_, a_.csv, a_.mat, session_.files, found);
     if (a_.split) export_stages(a_.folder, session_.stages, session_.files, found);
     for (std::string& p : found) problem(std::move(p));
   }
@@ -129,11 +132,15 @@ class Finishing {
   /// For the person, but nothing has failed.
   void note(std::string text) {
     fmt::print(stderr, "framewatch record: {}\n", text);
-    session_.problems.push_back(std::move(text));
+    session_.finishing.push_back(std::move(text));
+  }
+  void read_estimates(const char* log) {
+    std::vector<drivers::Problem> found;
+    estimates_log_ = log;
+    estimates_ = read_session_estimates(a_.folder + "/" + log, found);
   }
   std::string what_is_missing() const {
-    std::vector<drivers::Problem> found;
-    const auto e = read_session_estimates(a_.folder + "/" + kEstimatesLog, found);
+    const auto& e = estimates_;
     if (!e) return "there are no estimates";
     const double most_s = kMissing_s + 2 * config_.pipeline.options.hop_s;
     const auto seconds = [](std::int64_t from_us, std::int64_t to_us) {
@@ -153,7 +160,8 @@ class Finishing {
   SessionFile& session_;
   std::vector<std::string> raw_;
   std::optional<SessionMotion> motion_;
-  std::string estimates_;
+  std::string estimates_log_;
+  std::optional<SessionEstimates> estimates_;
   bool good_ = true;
 };
 
@@ -173,7 +181,8 @@ int finish_session(const FinishArguments& a) {
       return kBadInput;
     }
   // The recorder may be at the next session.
-  (void)!::nice(10);
+  (void)!::nice(5);
+  session->finishing.clear();  // of an earlier try
   Finishing finishing(a, *config, *session);
   if (config->sha256 != session->config_sha256)
     finishing.problem(a.config + ": is not what the session was recorded with");
@@ -184,6 +193,9 @@ int finish_session(const FinishArguments& a) {
   finishing.write_report();
   finishing.export_others();
   session->state = "finished";
+  std::sort(session->files.begin(), session->files.end());
+  session->files.erase(std::unique(session->files.begin(), session->files.end()),
+                       session->files.end());
   finishing.save();
   if (!a.quiet && !session->report.empty()) fmt::print("{}\n", session->report);
   return finishing.good() ? 0 : 1;

@@ -159,7 +159,9 @@ class WebServer::Implementation {
     if (path == "/building.json")
       return answer(c, MHD_HTTP_OK, body(view_.building_json(), "application/json"));
     if (path == "/sessions.json")
-      return answer(c, MHD_HTTP_OK, body(sessions_json(settings_.sessions), "application/json"));
+      return answer(c, MHD_HTTP_OK,
+                    body(settings_.sessions.empty() ? "null" : sessions_json(settings_.sessions),
+                         "application/json"));
     if (path.starts_with(kSessionPath)) {
       const auto found =
           session_document(settings_.sessions, path.substr(std::string(kSessionPath).size()));

@@ -42,13 +42,15 @@ std::string sessions_json(const std::string& folder) {
     const auto s = read_session_file((at / kSessionJson).string(), why);
     if (!s) continue;
     const std::int64_t length_us = s->end_us > 0 ? s->end_us - s->trigger_us : 0;
+    std::vector<std::string> said = s->problems;
+    said.insert(said.end(), s->finishing.begin(), s->finishing.end());
     out.push_back({{"session", name},
                    {"test", s->request.test},
                    {"operator", s->request.operator_name},
                    {"state", s->state},
                    {"began_us", s->began_us},
                    {"seconds", 1e-6 * static_cast<double>(length_us)},
-                   {"problems", s->problems},
+                   {"problems", said},
                    {"report", fs::exists(at / kReportPage, error)}});
   }
   return out.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -61,6 +61,8 @@ async function loadSessions() {
   if (text === sessionList) return;
   sessionList = text;
   const list = JSON.parse(text), table = $('sessions');
+  $('session-card').hidden = list === null; // nobody records here
+  if (list === null) return;
   table.replaceChildren();
   if (!list.length) return;
   heads(table, ['session', 'test', 'operator', 'length, s', 'state', '']);

@@ -205,7 +205,7 @@ TEST(FinishSession, StagesReportAndOtherFormats) {
   const auto session = read_session_file(folder + "/session.json", error);
   ASSERT_TRUE(session) << error;
   EXPECT_EQ(session->state, "finished");
-  EXPECT_TRUE(session->problems.empty()) << session->problems.front();
+  EXPECT_TRUE(session->finishing.empty()) << session->finishing.front();
   ASSERT_FALSE(session->stages.empty());
   const std::string page = test::read_file(folder + "/report.html");
   for (const char* text : {"Kobe 10 %", "a &lt;note&gt;", "polarity (tap test)", "<svg"})
@@ -243,11 +243,15 @@ TEST(FinishSession, AReportThatCannotBeWrittenCostsNoLog) {
   std::string error;
   const auto session = read_session_file(folder + "/session.json", error);
   ASSERT_TRUE(session) << error;
-  EXPECT_FALSE(session->problems.empty());
+  EXPECT_FALSE(session->finishing.empty());
   EXPECT_EQ(session->report, "");
   // Later, with a disk.
   EXPECT_EQ(finish_session({test::table_config(), folder, "", false, false, false, true, true}), 0);
   EXPECT_TRUE(fs::exists(folder + "/report.html"));
+  const auto again = read_session_file(folder + "/session.json", error);
+  ASSERT_TRUE(again) << error;
+  EXPECT_TRUE(again->finishing.empty());
+  EXPECT_EQ(again->files, (std::vector<std::string>{"estimates.lcmlog", "raw.lcmlog"}));
 }
 
 TEST(SessionFile, ReadsWhatItWritesAndRefusesWhatIsNone) {
