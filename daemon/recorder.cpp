@@ -290,6 +290,13 @@ void Recorder::tick(std::int64_t now_us) {
   if (close_at_us_ != 0 && now_us >= close_at_us_) close();
 }
 
+/// Numbers never seen, of messages and of CAN frames.
+std::int64_t Recorder::lost() const {
+  std::int64_t sum = intake_.lost();
+  for (std::size_t n = 0; n < config_.can.nodes.size(); ++n) sum += can_.node(n).lost;
+  return sum;
+}
+
 void Recorder::look_at_disk(std::int64_t now_us) {
   const std::string why = log_->trouble();
   if (why.empty() && disk_failing_) {

@@ -72,7 +72,7 @@ class Recorder {
   void close();
   void look_at_disk(std::int64_t now_us);
   void write_session_file();
-  std::int64_t lost() const { return intake_.lost(); }
+  std::int64_t lost() const;
 
   const Config& config_;
   std::string sessions_;

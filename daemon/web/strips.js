@@ -27,7 +27,7 @@ class Strip {
     this.plot = new uPlot({
       title: this.title, width: Math.max(200, this.box.clientWidth || 400), height: 150, legend: {show: this.series.length > 1, live: false},
       cursor: {drag: {x: false, y: false}}, scales: {x: {time: false}, y: {range: (u, a, b) => a === null || b === null ? [0, 1] : uPlot.rangeNum(a, b, 0.12, true)}},
-      axes: [{...axis, size: 26, values: (u, v) => v.map(x => x + ' s')}, {...axis, size: 56, values: (u, v, i, room, step) => v.map(x => Math.abs(x) >= 1e5 || step < 1e-5 ? x.toExponential(1) : x.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))))}],
+      axes: [{...axis, size: 26, values: (u, v) => v.map(x => x + ' s')}, {...axis, size: 56, values: (u, v, i, room, step) => v.map(x => Math.abs(x) >= 1e5 || step < 1e-4 ? x.toExponential(1) : x.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))))}],
       series: [{}, ...this.series.map(s => ({label: s.name, stroke: style[s.color], width: s.width || 1.4, dash: s.dash, points: {show: false}, spanGaps: false}))],
       bands: this.series.some(s => s.band) ? [{series: [3, 2], fill: style.blue + '33'}] : [],
     }, [[], ...this.series.map(() => [])], this.box);
