@@ -2,6 +2,7 @@
 
 #include <time.h>
 
+#include <cstdint>
 #include <cstdlib>
 
 namespace framewatch::drivers {
@@ -27,10 +28,23 @@ std::int64_t ContinuousStamps::continuous(std::int64_t stamp_us) {
 }
 
 std::int64_t host_clock_offset_us() {
-  timespec day{}, steady{};
-  ::clock_gettime(CLOCK_REALTIME, &day);
-  ::clock_gettime(CLOCK_MONOTONIC, &steady);
-  return 1'000'000 * (day.tv_sec - steady.tv_sec) + (day.tv_nsec - steady.tv_nsec) / 1000;
+  constexpr int kTries = 20;
+  constexpr std::int64_t kClose_us = 20;
+  const auto read = [](clockid_t clock) {
+    timespec time{};
+    ::clock_gettime(clock, &time);
+    return 1'000'000 * std::int64_t{time.tv_sec} + time.tv_nsec / 1000;
+  };
+  // The process may lose its processor between two readings, which must not look like a step.
+  std::int64_t offset_us = 0, closest_us = INT64_MAX;
+  for (int i = 0; i < kTries && closest_us > kClose_us; ++i) {
+    const std::int64_t before = read(CLOCK_MONOTONIC), day = read(CLOCK_REALTIME);
+    const std::int64_t apart = read(CLOCK_MONOTONIC) - before;
+    if (apart >= closest_us) continue;
+    closest_us = apart;
+    offset_us = day - before - apart / 2;
+  }
+  return offset_us;
 }
 
 }  // namespace framewatch::drivers

@@ -3,11 +3,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+
+#include "daemon/scenario.h"
+#include "daemon/simulation.h"
+#include "drivers/accel_messages.h"
+#include "drivers/can/can_encoder.h"
 
 namespace framewatch::test {
 
@@ -46,6 +53,56 @@ bool Process::ended() {
 
 Process::~Process() {
   if (!ended_) ::waitpid(pid_, nullptr, 0);
+}
+
+std::vector<WindowEstimate> estimates_over_lcm(const std::string& path, double seconds) {
+  std::vector<daemon::ConfigProblem> problems;
+  auto scenario = daemon::load_scenario(path, problems);
+  EXPECT_TRUE(scenario);
+  scenario->duration_s = seconds;
+  const drivers::CanMap map = scenario->config.can;
+  const drivers::CanEncoder encoder(map);
+  daemon::Config config = scenario->config;
+  config.can = {};
+  std::vector<std::string> names;
+  std::vector<drivers::ChannelAddress> addresses;
+  for (std::size_t a = 0; a < config.sources.size(); ++a) {
+    config.sources[a] = {"ACCEL", static_cast<int>(a), 0};
+    names.push_back(config.pipeline.axes[a].name);
+    addresses.push_back({"ACCEL", static_cast<int>(a), 0});
+  }
+  std::vector<WindowEstimate> estimates;
+  daemon::Estimation estimation(
+      config, [](std::int64_t, const std::string&, const std::vector<std::uint8_t>&) {},
+      [&](const WindowEstimate& e) { estimates.push_back(e); });
+  drivers::AccelMessages messages(names, addresses, 100);
+  daemon::Simulation simulation(*scenario);
+  for (std::int64_t k = 0; k < daemon::instants(*scenario); ++k) {
+    std::vector<double> values = simulation.next();
+    for (std::size_t a = 0; a < values.size(); ++a)
+      values[a] = encoder.quantised(static_cast<int>(a), values[a]);
+    for (const drivers::Message& m : messages.samples(10'000 * k, values))
+      estimation.message(m.channel, m.bytes.data(), m.bytes.size());
+  }
+  estimation.finish();
+  return estimates;
+}
+
+namespace {
+
+bool same_bytes(const std::vector<double>& a, const std::vector<double>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+}  // namespace
+
+std::size_t different(const std::vector<WindowEstimate>& a, const std::vector<WindowEstimate>& b) {
+  if (a.size() != b.size()) return std::max(a.size(), b.size());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    count += !same_bytes(a[i].value, b[i].value) || !same_bytes(a[i].std_error, b[i].std_error) ||
+             a[i].reason != b[i].reason;
+  return count;
 }
 
 LiveBuses::LiveBuses(const daemon::Config& config)

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/config.h"
@@ -17,6 +18,28 @@ daemon::Config example_on(const std::string& name, const std::string& interface)
 
 /// Runs a command of a shell that must succeed.
 void shell(const std::string& command);
+
+/// A virtual bus of its own while it lives.
+struct Vcan {
+  explicit Vcan(std::string name_) : name(std::move(name_)) { up(); }
+  ~Vcan() { down(); }
+  Vcan(const Vcan&) = delete;
+  Vcan& operator=(const Vcan&) = delete;
+  void up() const { shell("ip link add " + name + " type vcan && ip link set " + name + " up"); }
+  void down() const { shell("ip link del " + name); }
+  std::string name;
+};
+
+/// configs/can/scenario_tower.toml
+inline constexpr const char* kTowerScenario =
+    FRAMEWATCH_SOURCE_DIR "/configs/can/scenario_tower.toml";
+
+/// Estimates of a scenario's samples, quantised as its CAN nodes do, over LCM messages.
+std::vector<WindowEstimate> estimates_over_lcm(const std::string& scenario, double seconds);
+
+/// Windows whose values, errors or reasons are not byte for byte the same; all when their numbers
+/// differ.
+std::size_t different(const std::vector<WindowEstimate>& a, const std::vector<WindowEstimate>& b);
 
 /// A process; waited for at the end.
 class Process {
