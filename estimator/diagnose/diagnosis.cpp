@@ -34,7 +34,8 @@ constexpr double kOnePlace = 1.6;      ///< ratio above which one place does not
 constexpr double kPairShare = 0.4;     ///< of the excess that two places must leave at most
 constexpr double kOwnPrice = 0.1;      ///< of the excess: what an arbitrary force must be better by
 constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
-constexpr int kPolishSteps = 6, kTrainSteps = 8;
+constexpr double kExact = 1e-9;        ///< tolerance of what is declared
+constexpr int kPolishSteps = 6, kTrainSteps = 8, kDeclaredSteps = 15;
 
 double sum(const std::vector<double>& values) {
   double out = 0;
@@ -66,6 +67,16 @@ std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
     if (system.good) out.push_back(gap_of(fitter.plant(), model, s, system));
   }
   return out;
+}
+
+/// Exponents that a name stands for are what it says.
+void fix_exponent(EffectKind kind, ModelEffect& effect) {
+  const bool power = effect.form == LawForm::power || effect.form == LawForm::power_damping;
+  if (!power) return;
+  Knob& exponent = effect.knobs[1];
+  const double value = kind == EffectKind::cubic_stiffness ? 3 : 2;
+  exponent.value = exponent.logarithmic ? std::log(value) : value;
+  exponent.free = false;
 }
 
 /// A force on the lowest story of a frame is one at its floor.
@@ -106,6 +117,7 @@ class Search {
     tell("what stays", 0.92);
     if (!out_.effects.empty()) polish(now);
     out_.model = now.model;
+    out_.declared = declared(now.model);
     out_.ratio_after = ratio(now);
     set_errors(fitter_, now.model, now.motion, out_.effects);
     set_errors(fitter_, now.model, now.motion, out_.known);
@@ -150,6 +162,27 @@ class Search {
     free_shapes(start);
     const FitResult better = fit(start, now.motion, kPolishSteps);
     if (better.good && better.cost < now.cost) now = better;
+  }
+
+  Model declared(const Model& fitted) const {
+    Model start = fitted;
+    start.mass_change.setZero();
+    const auto reset = [](Eigen::VectorXd& errors, const std::vector<int>& free) {
+      for (Index a = 0; a < errors.size(); ++a)
+        if (std::find(free.begin(), free.end(), static_cast<int>(a)) == free.end()) errors[a] = 0;
+    };
+    reset(start.gain, start.free_gain);
+    reset(start.clock_s, start.free_clock);
+    for (const auto* list : {&out_.known, &out_.effects})
+      for (const FoundEffect& found : *list)
+        if (found.index >= 0)
+          fix_exponent(found.chosen.kind, start.effects[static_cast<std::size_t>(found.index)]);
+    const Fitter exact(plant_, stretches_, {kExact, kExact, kExact});
+    FitOptions options;
+    options.forcing = forcing_of(start);
+    options.max_steps = kDeclaredSteps;
+    const FitResult out = exact.fit(start, {}, options);
+    return out.good ? out.model : start;
   }
 
   std::vector<Trial> trials_of(const FitResult& now, const Located& located, double begin,
@@ -435,6 +468,12 @@ const char* verdict_word(Verdict verdict) {
       break;
   }
   return "unexplained";
+}
+
+Eigen::VectorXd fitted_linear(const Plant& plant, const std::vector<Stretch>& stretches,
+                              const Tolerances& tolerances) {
+  const FitResult fit = Fitter(plant, stretches, tolerances).fit(initial_model(plant), {}, {});
+  return fit.good ? fit.model.theta : Eigen::VectorXd();
 }
 
 Diagnosis diagnose(const Plant& plant, const std::vector<Stretch>& stretches,

@@ -54,7 +54,10 @@ struct WhereEntry {
 struct Diagnosis {
   Verdict verdict = Verdict::unexplained;
   std::string reason;
-  Model linear, model;             ///< fitted to all stretches
+  Model linear, model;  ///< fitted to all stretches
+  /// The same with masses, gains and clocks as they are declared, but for those that are effects:
+  /// what a file can say, and what simulates the declared building.
+  Model declared;
   std::vector<Gap> before, after;  ///< of each stretch, models fitted to the training ones alone
   /// The training stretches alone do not determine the effects: `after` is of `model`.
   bool after_of_all = false;
@@ -75,6 +78,10 @@ struct DiagnosisOptions {
   /// Told what is going on, and a share of the whole between 0 and 1.
   std::function<void(const std::string&, double)> progress;
 };
+
+/// Stiffness and damping of the linear model that fits best, theta order; empty when none does.
+Eigen::VectorXd fitted_linear(const Plant& plant, const std::vector<Stretch>& stretches,
+                              const Tolerances& tolerances);
 
 /// The whole method of docs/diagnosis.md on stretches of one building. Deterministic.
 Diagnosis diagnose(const Plant& plant, const std::vector<Stretch>& stretches,

@@ -16,6 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double kStepsPerPeriod = 30;
 constexpr int kSincHalf = 12;
+constexpr double kRunAway_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
 
 struct System {
@@ -178,10 +179,12 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
   ModalSystem system(parts.mass, parts.damping, parts.stiffness, parts.inputs, step);
   if (!system.good()) return out;
 
-  const Index steps = stretch.intervals() * ratio;
-  MatrixXd ground(static_cast<Index>(base.size()), steps);
+  const Index steps = stretch.intervals() * ratio, lead = stretch.lead.rows() * ratio;
+  MatrixXd ground(static_cast<Index>(base.size()), lead + steps);
   for (std::size_t i = 0; i < base.size(); ++i) {
-    VectorXd signal = stretch.accel.col(base[i]).head(stretch.intervals());
+    VectorXd signal(stretch.lead.rows() + stretch.intervals());
+    signal.head(stretch.lead.rows()) = stretch.lead.col(base[i]);
+    signal.tail(stretch.intervals()) = stretch.accel.col(base[i]).head(stretch.intervals());
     signal /= 1 + model.gain[base[i]];
     ground.row(static_cast<Index>(i)) = upsampled(signal, ratio).transpose();
   }
@@ -191,6 +194,9 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
     ModalSystem::Observer seen;
     Index input;
     double force = 0;
+  };
+  struct Step {
+    double d, v;
   };
   std::vector<Active> laws;
   std::vector<std::pair<const ModelEffect*, Index>> harmonics;
@@ -208,9 +214,10 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
 
   VectorXd now = VectorXd::Zero(parts.inputs.cols());
   VectorXd corrected = now;
-  for (Index i = 0; i < steps; ++i) {
+  std::vector<Step> at_step(laws.size());
+  for (Index i = -lead; i < steps; ++i) {
     const double t = step * static_cast<double>(i);
-    now.head(ground.rows()) = ground.col(i);
+    now.head(ground.rows()) = ground.col(lead + i);
     for (const auto& [e, at] : harmonics) {
       const double phase = 2 * M_PI * e->knobs[0].plain() * t;
       const std::vector<Knob>& r = e->record_knobs[record];
@@ -267,16 +274,19 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
         law.force = at_low == 0 ? low : at_high == 0 ? high : (low == high ? low : f);
         corrected[law.input] = law.force;
         if (sweep + 1 == (laws.size() > 1 ? kSweeps : 1)) {
-          out.tracks[l].d[i] = d + gd * law.force;
-          out.tracks[l].v[i] = v + gv * law.force;
-          out.tracks[l].force[i] = law.force;
+          at_step[l] = {d + gd * law.force, v + gv * law.force};
         }
       }
     }
-    for (std::size_t l = 0; l < laws.size(); ++l)
-      laws[l].motion.accept(out.tracks[l].d[i], out.tracks[l].v[i], t);
     system.correct(corrected);
-    if (!laws.empty() && !(std::abs(out.tracks[0].d[i]) < 1e6)) return out;
+    for (std::size_t l = 0; l < laws.size(); ++l) {
+      laws[l].motion.accept(at_step[l].d, at_step[l].v, t);
+      if (!(std::abs(at_step[l].d) < kRunAway_m)) return out;
+      if (i < 0) continue;
+      out.tracks[l].d[i] = at_step[l].d;
+      out.tracks[l].v[i] = at_step[l].v;
+      out.tracks[l].force[i] = laws[l].force;
+    }
   }
   out.good = true;
   return out;

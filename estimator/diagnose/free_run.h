@@ -20,8 +20,9 @@ struct FreeRun {
   std::vector<LawTrack> tracks;  ///< of the model's element laws, in their order
 };
 
-/// The model's motion from rest under the measured motion of the base alone. Integrates the linear
-/// part exactly in its complex modes; the laws act at the end of each step, implicitly.
+/// The model's motion under the measured motion of the base alone, from rest before the stretch's
+/// lead. Integrates the linear part exactly in its complex modes; the laws act at the end of each
+/// step, implicitly.
 FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
                  int ratio);
 

@@ -13,6 +13,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
+constexpr double kFollows = 0.3;  ///< share of a force beyond noise that laws of a motion explain
+constexpr double kSlow = 0.3;     ///< of the rate: where friction has turned
 constexpr Complex kJ{0, 1};
 
 constexpr double kStationary = 0.25;  ///< share of the mean power that is there at rest, at least
@@ -204,6 +206,23 @@ bool is_stationary(const Plant& plant, const Stretch& s, const Needed& needed) {
   return all > kStandsOut * noise && rest - noise > kStationary * (all - noise);
 }
 
+/// Whether a force goes with the deformation of the element it may as well be of, otherwise than
+/// linearly: then it is a law of the element, whatever that law is called.
+bool follows_motion(const Stretch& s, const Needed& needed, int ratio) {
+  if (needed.d_t.size() == 0) return false;
+  std::vector<VectorXcd> columns{needed.d, needed.d.array() * s.w.array() * kJ};
+  const double linear = scalar_fit({needed}, {columns}).misfit;
+  const auto d = needed.d_t.array(), v = needed.v_t.array();
+  const double slow = kSlow * std::sqrt(v.square().mean());
+  for (const VectorXd& law :
+       {VectorXd(d.cube()), VectorXd(d * d.abs()), VectorXd(v * v.abs()),
+        VectorXd((v / std::max(slow, 1e-300)).tanh()), VectorXd(d.square() * v)})
+    columns.push_back(band_of(law, s, ratio));
+  const double curved = scalar_fit({needed}, {columns}).misfit;
+  const auto noise = static_cast<double>(s.bins());
+  return linear - curved > kFollows * std::max(linear - noise, 0.0) + noise;
+}
+
 }  // namespace
 
 void add_node_proposals(const Fitter& fitter, const Localisation& place,
@@ -211,8 +230,12 @@ void add_node_proposals(const Fitter& fitter, const Localisation& place,
                         std::vector<Proposal>& out) {
   add_resonator(fitter, place, needed, node, out);
   add_harmonic(fitter, place, needed, node, out);
-  for (std::size_t r = 0; r < needed.size(); ++r)
-    if (!is_stationary(fitter.plant(), fitter.stretches()[r], needed[r])) return;
+  for (std::size_t r = 0; r < needed.size(); ++r) {
+    const Stretch& s = fitter.stretches()[r];
+    if (!is_stationary(fitter.plant(), s, needed[r]) ||
+        follows_motion(s, needed[r], fitter.ratio(r)))
+      return;
+  }
   ModelEffect e;
   e.form = LawForm::broadband;
   e.place = node;

@@ -61,14 +61,17 @@ double quiet_noise_variance(const VectorXd& accel, double rate_hz, double low) {
   return std::max(kLeastVariance, mean / std::max(0.5, 1 - 1.40 / std::sqrt(averaged)));
 }
 
-Stretch make_stretch(const Eigen::MatrixXd& accel, double rate_hz, const VectorXd& noise,
-                     const Band& band, const std::vector<char>& displaced) {
+Stretch make_stretch(const Eigen::MatrixXd& record, double rate_hz, const VectorXd& noise,
+                     const Band& band, const std::vector<char>& displaced, Index lead) {
   Stretch out;
+  const Eigen::MatrixXd accel = record.bottomRows(record.rows() - lead);
   out.displaced = displaced;
   out.rate_hz = rate_hz;
   const Index intervals = smooth_size(std::max<Index>(accel.rows() - 1, 0));
   out.accel = accel.topRows(intervals + 1);
-  out.accel.rowwise() -= out.accel.colwise().mean().eval();
+  const Eigen::RowVectorXd mean = out.accel.colwise().mean();
+  out.accel.rowwise() -= mean;
+  out.lead = record.topRows(lead).rowwise() - mean;
   out.variance.resize(accel.cols());
   for (Index a = 0; a < accel.cols(); ++a)
     out.variance[a] =

@@ -12,6 +12,8 @@ namespace framewatch {
 struct Stretch {
   double rate_hz = 0;
   Eigen::MatrixXd accel;  ///< instants x axes, without their means
+  /// The same of the instants before, of a record that begins in motion: a simulation starts there.
+  Eigen::MatrixXd lead;
   /// Axes that measure displacement relative to the ground, m: their spectra are of acceleration.
   std::vector<char> displaced;
   Eigen::VectorXd variance;  ///< of one sample's white noise, per axis
@@ -28,10 +30,12 @@ struct Stretch {
   double seconds() const { return static_cast<double>(intervals()) / rate_hz; }
 };
 
-/// accel: instants x axes, finite; cut to a length that transforms fast. noise: sd per axis of one
-/// sample, 0 where it is to be taken from the record itself.
+/// accel: instants x axes, finite; cut to a length that transforms fast, the first `lead` of them
+/// are Stretch::lead. noise: sd per axis of one sample, 0 where it is to be taken from the record
+/// itself.
 Stretch make_stretch(const Eigen::MatrixXd& accel, double rate_hz, const Eigen::VectorXd& noise,
-                     const Band& band, const std::vector<char>& displaced = {});
+                     const Band& band, const std::vector<char>& displaced = {},
+                     Eigen::Index lead = 0);
 
 /// Variance of one sample's white noise, from what lies between 20 and 46 % of the sampling rate in
 /// the quietest fifth of the seconds; low: another share than 20 %.
