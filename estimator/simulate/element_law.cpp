@@ -80,6 +80,8 @@ class Bilinear : public ElementLaw {
   }
   void begin_step(double, double d) override { slider_ = d - std::clamp(d - slider_, -dy_, dy_); }
   double stiffness_bound() const override { return kh_; }
+  double remembered() const override { return slider_; }
+  void remember(double slider) override { slider_ = slider; }
 
  private:
   double kh_, dy_;

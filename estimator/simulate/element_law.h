@@ -19,6 +19,9 @@ class ElementLaw {
   virtual void rates(double d, double v, std::span<const double> z, std::span<double> z_rate) const;
   /// Before every step from time_s, where the deformation is d: what is remembered of the past.
   virtual void begin_step(double time_s, double d);
+  /// That, as a number; 0 when there is nothing but the states.
+  virtual double remembered() const { return 0; }
+  virtual void remember(double) {}
   /// Bounds of abs(df/dd), N/m, and abs(df/dv), N*s/m, while abs(d) and abs(v) stay moderate: they
   /// choose the step.
   virtual double stiffness_bound() const { return 0; }

@@ -1,5 +1,6 @@
 #include "estimator/simulate/linear_building.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -91,6 +92,13 @@ void LinearBuilding::advance(const Eigen::Vector2d& ground_before,
   multiply(transition_.data(), state_.data(), next_.data(), transition_.rows(), state_.size());
   state_.swap(next_);
   update_accel();
+}
+
+bool LinearBuilding::resume(const std::vector<double>& motion) {
+  if (motion.size() != static_cast<std::size_t>(state_.size())) return false;
+  std::copy(motion.begin(), motion.end(), state_.begin());
+  update_accel();
+  return true;
 }
 
 void LinearBuilding::update_accel() {

@@ -31,6 +31,8 @@ class LinearBuilding : public SimulatedBuilding {
   Eigen::VectorXd vel_rel() const override;
   /// m/s^2 per degree of freedom (Structure::dof), positive toward +x or +y.
   const Eigen::VectorXd& accel_abs() const override { return accel_abs_; }
+  std::vector<double> motion() const override { return {state_.begin(), state_.end()}; }
+  [[nodiscard]] bool resume(const std::vector<double>& motion) override;
 
  private:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -161,6 +161,24 @@ void NonlinearBuilding::set_state(const Eigen::VectorXd& disp_rel, const Eigen::
   update_accel();
 }
 
+std::vector<double> NonlinearBuilding::motion() const {
+  std::vector<double> out(state_.begin(), state_.end());
+  out.insert(out.end(), z_.begin(), z_.end());
+  for (const PlacedLaw& p : laws_) out.push_back(p.law->remembered());
+  return out;
+}
+
+bool NonlinearBuilding::resume(const std::vector<double>& motion) {
+  const auto states = static_cast<std::size_t>(state_.size());
+  const auto inner = static_cast<std::size_t>(z_.size());
+  if (motion.size() != states + inner + laws_.size()) return false;
+  std::copy_n(motion.begin(), states, state_.begin());
+  std::copy_n(motion.begin() + static_cast<std::ptrdiff_t>(states), inner, z_.begin());
+  for (std::size_t i = 0; i < laws_.size(); ++i) laws_[i].law->remember(motion[states + inner + i]);
+  update_accel();
+  return true;
+}
+
 void NonlinearBuilding::advance(const Eigen::Vector2d& ground_before,
                                 const Eigen::Vector2d& ground_after) {
   const double part_s = step_s_ / parts_;

@@ -35,6 +35,8 @@ class NonlinearBuilding : public SimulatedBuilding {
   Eigen::VectorXd disp_rel() const override;
   Eigen::VectorXd vel_rel() const override;
   const Eigen::VectorXd& accel_abs() const override { return accel_abs_; }
+  std::vector<double> motion() const override;
+  [[nodiscard]] bool resume(const std::vector<double>& motion) override;
 
  private:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 namespace framewatch {
@@ -21,6 +23,12 @@ class SimulatedBuilding {
   virtual Eigen::VectorXd vel_rel() const = 0;
   /// m/s^2, positive toward +x or +y.
   virtual const Eigen::VectorXd& accel_abs() const = 0;
+
+  /// Everything that the motion to come depends on, the time apart.
+  virtual std::vector<double> motion() const = 0;
+  /// Goes on from what motion() gave of the same building. False, and nothing changes, when it is
+  /// of another size.
+  [[nodiscard]] virtual bool resume(const std::vector<double>& motion) = 0;
 };
 
 }  // namespace framewatch
