@@ -8,6 +8,7 @@
 #include "drivers/can/can_map.h"
 #include "estimator/pipeline.h"
 #include "estimator/structure/effect.h"
+#include "estimator/watch/gap.h"
 #include "estimator/watch/watch.h"
 
 namespace framewatch::daemon {
@@ -37,6 +38,14 @@ struct WatchSettings {
   std::optional<Baseline> baseline;  ///< of that file, if there is one yet
 };
 
+struct GapSettings {
+  GapOptions options;
+  std::string model_path;         ///< empty: the model is learned
+  std::optional<GapModel> model;  ///< of that file, if there is one yet
+  std::string store;              ///< directory of the segments; empty: none are stored
+  double before_s = 30, after_s = 60;
+};
+
 /// One configuration file, defaults filled in.
 struct Config {
   std::string path;
@@ -46,6 +55,7 @@ struct Config {
   LcmSettings lcm;
   drivers::CanMap can;                 ///< axes as in pipeline.axes
   std::optional<WatchSettings> watch;  ///< none: nothing is watched
+  std::optional<GapSettings> gap;      ///< none: nothing is simulated beside the measurement
   std::vector<Effect> effects;         ///< that the building has beyond the linear model
 };
 

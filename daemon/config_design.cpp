@@ -18,6 +18,18 @@ std::vector<double> frame_stiffness(ConfigSection& section, const char* key, int
   return frames > 0 ? section.grid(key, {stories, frames}) : std::vector<double>{};
 }
 
+/// A grid of damping that may be missing.
+std::vector<double> damping(ConfigSection& section, const char* key,
+                            const std::vector<int>& sizes) {
+  if (!section.given(key)) return {};
+  for (const int size : sizes)
+    if (size < 1) {
+      section.problem(key, "the structure has nothing of this kind");
+      return {};
+    }
+  return section.grid(key, sizes);
+}
+
 /// Of the frames of one story.
 double mean_frame_stiffness(const Eigen::VectorXd& theta, const ParameterTable& table,
                             const Structure& s, int story) {
@@ -40,9 +52,13 @@ Eigen::VectorXd read_design(const TomlValue* design, const Structure& s, bool sh
     section.problem("gk", "a plane building or a single frame has no floor panel");
   std::vector<double> gk;
   if (section.given("gk")) gk = section.grid("gk", {s.stories, s.n() - 1, s.m() - 1});
+  const std::vector<double> cx = damping(section, "cx_nspm", {s.stories, s.n()});
+  const std::vector<double> cy = damping(section, "cy_nspm", {s.stories, s.m()});
+  const std::vector<double> gc = damping(section, "gc", {s.stories, s.n() - 1, s.m() - 1});
   const bool complete = find_problems(s).empty() && section.good("kx_npm") &&
                         section.good("ky_npm") && section.good("gk") &&
-                        section.good("damping_ratio");
+                        section.good("damping_ratio") && section.good("cx_nspm") &&
+                        section.good("cy_nspm") && section.good("gc");
   if (!complete) return {};
 
   const ParameterTable table(s);
@@ -59,7 +75,17 @@ Eigen::VectorXd read_design(const TomlValue* design, const Structure& s, bool sh
           gk.empty() ? mean_frame_stiffness(theta, table, s, story)
                      : gk[static_cast<std::size_t>((story - 1) * s.panels() + p)];
   }
-  return with_proportional_damping(s, table, theta, section.number("damping_ratio"));
+  theta = with_proportional_damping(s, table, theta, section.number("damping_ratio"));
+  for (int story = 1; story <= s.stories; ++story) {
+    const auto at = [&](int row, int column) { return static_cast<std::size_t>(row + column); };
+    for (int f = 0; f < s.n() && !cx.empty(); ++f)
+      theta[table.frame_damping(story, f)] = cx[at((story - 1) * s.n(), f)];
+    for (int f = 0; f < s.m() && !cy.empty(); ++f)
+      theta[table.frame_damping(story, s.n() + f)] = cy[at((story - 1) * s.m(), f)];
+    for (int p = 0; p < s.panels() && !gc.empty(); ++p)
+      theta[table.panel_damping(story, p)] = gc[at((story - 1) * s.panels(), p)];
+  }
+  return theta;
 }
 
 }  // namespace framewatch::daemon

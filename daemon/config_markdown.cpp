@@ -37,6 +37,9 @@ constexpr SectionText kSections[] = {
     {"watch", "[watch]",
      "Optional: stiffness is watched for lasting changes, and event_t messages say which element, "
      "how much, how sure and since when."},
+    {"gap", "[gap]",
+     "Optional: the building is simulated beside its measurement, and what differs is told "
+     "([the gap](gap.md))."},
     {"scenario", "Scenario files: at the top",
      "`framewatch simulate` reads a scenario: the building as above or `config`, and what happens "
      "to it."},

@@ -122,7 +122,35 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1,
      .above_min = true,
-     .meaning = "Damping ratio of the first mode; design damping is proportional to stiffness."},
+     .meaning = "Damping ratio of the first mode; design damping is proportional to stiffness, "
+                "but for what the next keys say."},
+    {.section = "structure.design",
+     .key = "cx_nspm",
+     .type = grid,
+     .unit = "N*s/m",
+     .shape = "[story][frame]",
+     .min = 0,
+     .max = 1e13,
+     .above_min = true,
+     .meaning = "Design damping of the x-parallel frames."},
+    {.section = "structure.design",
+     .key = "cy_nspm",
+     .type = grid,
+     .unit = "N*s/m",
+     .shape = "[story][frame]",
+     .min = 0,
+     .max = 1e13,
+     .above_min = true,
+     .meaning = "Design damping of the y-parallel frames."},
+    {.section = "structure.design",
+     .key = "gc",
+     .type = grid,
+     .unit = "N*s/(rad*m)",
+     .shape = "[story][y span][x span]",
+     .min = 0,
+     .max = 1e13,
+     .above_min = true,
+     .meaning = "Design damping of the floor panels. Unused when the floors are rigid."},
 
     {.section = "channel",
      .key = "name",
@@ -425,6 +453,8 @@ std::span<const Option> options() {
     all.insert(all.end(), can.begin(), can.end());
     const std::span<const Option> watch = watch_options();
     all.insert(all.end(), watch.begin(), watch.end());
+    const std::span<const Option> gap = gap_options();
+    all.insert(all.end(), gap.begin(), gap.end());
     const std::span<const Option> scenario = scenario_options();
     all.insert(all.end(), scenario.begin(), scenario.end());
     const std::span<const Option> effect = effect_options();

@@ -40,4 +40,8 @@ std::optional<WatchSettings> read_watch(const TomlValue& document,
 /// Resolves the baseline's path beside the configuration file and reads it if it exists.
 void load_watch_baseline(Config& config, std::vector<ConfigProblem>& problems);
 
+std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems);
+/// Resolves model and store beside the configuration file and reads the model if it exists.
+void load_gap_model(Config& config, std::vector<ConfigProblem>& problems);
+
 }  // namespace framewatch::daemon

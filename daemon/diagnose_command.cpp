@@ -25,7 +25,9 @@ constexpr double kComponentBandLow = 0.1;          ///< displacement is known fa
 constexpr double kHighest = 0.4;                   ///< of the sampling rate
 constexpr Eigen::Index kLeastBins = 30;
 constexpr double kComponentMass = 0.1;  ///< tolerance
-constexpr double kLeastSignal = 5;      ///< rms of a floor's motion in the band over its noise
+constexpr int kLooks = 2;               ///< at a building that has no design
+constexpr double kLeastOfGuess = 0.01;
+constexpr double kLeastSignal = 5;  ///< rms of a floor's motion in the band over its noise
 
 bool write_file(const std::string& path, const std::string& text) {
   drivers::TextOutput out;
@@ -44,6 +46,43 @@ double signal_ratio(const Plant& plant, const Stretch& s) {
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<long>(ratios.size() / 2),
                    ratios.end());
   return ratios[ratios.size() / 2];
+}
+
+/// The records in the band of the design's natural frequencies.
+std::vector<Stretch> stretches_of(const Config& config, const DiagnoseArguments& a,
+                                  const Plant& plant, const Eigen::VectorXd& design,
+                                  const std::vector<char>& displaced,
+                                  const std::vector<DiagnoseRecord>& records) {
+  const PipelineConfig& pc = config.pipeline;
+  const std::vector<double> hz =
+      natural_frequencies_hz(pc.structure, ParameterTable(pc.structure), design);
+  std::vector<Stretch> out;
+  for (const DiagnoseRecord& record : records) {
+    Eigen::VectorXd noise = Eigen::VectorXd::Zero(plant.axis_count());
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(pc.axes.size()); ++i)
+      noise[i] = pc.axes[static_cast<std::size_t>(i)].noise_density * std::sqrt(record.rate_hz / 2);
+    const Band band{(a.component.any() ? kComponentBandLow : kBandLow) * hz.front(),
+                    std::min(kHighest * record.rate_hz, kBandHigh * hz.back())};
+    out.push_back(make_stretch(record.accel, record.rate_hz, noise, band, displaced, record.lead));
+  }
+  return out;
+}
+
+void check_stretches(const std::vector<DiagnoseRecord>& records,
+                     const std::vector<Stretch>& stretches, const Plant& plant, bool component,
+                     std::vector<std::string>& problems) {
+  for (std::size_t r = 0; r < stretches.size(); ++r) {
+    const Stretch& s = stretches[r];
+    if (s.bins() < kLeastBins)
+      problems.push_back(
+          fmt::format("{}: too short: {} frequencies lie in the building's band, at least {} are "
+                      "needed",
+                      records[r].path, s.bins(), kLeastBins));
+    else if (!component && !(signal_ratio(plant, s) > kLeastSignal))
+      problems.push_back(records[r].path +
+                         ": no excitation: the floors' motion does not stand out of "
+                         "the sensors' noise");
+  }
 }
 
 }  // namespace
@@ -65,22 +104,27 @@ int diagnose_command(const DiagnoseArguments& a) {
     else
       problems.push_back(fmt::format("--without {}: no effect has this name", name));
   }
+  const bool records_given = !a.train.empty() && !a.holdout.empty();
+  const bool any_given = !a.train.empty() || !a.holdout.empty();
+  if (a.event.empty() ? !records_given : any_given)
+    problems.push_back("needs --train and --holdout, or --event alone");
   std::vector<DiagnoseRecord> records;
+  if (!a.event.empty() && !any_given) records = read_event_records(*config, a.event, problems);
+  const std::size_t train = a.event.empty() ? a.train.size() : 1;
   for (const auto* list : {&a.train, &a.holdout})
     for (const std::string& path : *list)
       if (auto record = read_diagnose_record(*config, path, a.component, problems))
         records.push_back(std::move(*record));
   for (std::size_t i = 0; i < records.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (records[i].sha256 == records[j].sha256)
+      if (a.event.empty() && records[i].sha256 == records[j].sha256)
         problems.push_back(records[i].path + ": is the same file as " + records[j].path);
   for (const std::string& p : problems) fmt::print(stderr, "{}\n", p);
   if (!problems.empty()) return kBadInput;
 
   const PipelineConfig& pc = config->pipeline;
   const ParameterTable table(pc.structure);
-  const Eigen::VectorXd design =
-      pc.design.size() > 0 ? pc.design : guessed_design(pc.structure, table);
+  Eigen::VectorXd design = pc.design.size() > 0 ? pc.design : guessed_design(pc.structure, table);
   auto plant = make_plant(pc.structure, pc.axes, design, records.front().rate_hz);
   if (!plant) {
     fmt::print(stderr, "{}: the channels do not measure every motion that diagnose needs\n",
@@ -99,30 +143,26 @@ int diagnose_command(const DiagnoseArguments& a) {
   for (std::size_t i = 0; i < plant->axes.size(); ++i)
     displaced[i] = a.component.displacement && plant->axes[i].story == 1 &&
                    !plant->is_force(static_cast<Eigen::Index>(i));
-  const std::vector<double> hz = natural_frequencies_hz(pc.structure, table, design);
-  std::vector<Stretch> stretches;
-  for (const DiagnoseRecord& record : records) {
-    Eigen::VectorXd noise = Eigen::VectorXd::Zero(plant->axis_count());
-    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(pc.axes.size()); ++i)
-      noise[i] = pc.axes[static_cast<std::size_t>(i)].noise_density * std::sqrt(record.rate_hz / 2);
-    const Band band{(a.component.any() ? kComponentBandLow : kBandLow) * hz.front(),
-                    std::min(kHighest * record.rate_hz, kBandHigh * hz.back())};
-    stretches.push_back(make_stretch(record.accel, record.rate_hz, noise, band, displaced));
-    if (stretches.back().bins() < kLeastBins)
-      problems.push_back(fmt::format(
-          "{}: too short: {} frequencies lie between {:.2f} and {:.2f} Hz, at least {} are needed",
-          record.path, stretches.back().bins(), band.low_hz, band.high_hz, kLeastBins));
-    else if (!a.component.any() && !(signal_ratio(*plant, stretches.back()) > kLeastSignal))
-      problems.push_back(record.path +
-                         ": no excitation: the floors' motion does not stand out of "
-                         "the sensors' noise");
+  std::vector<Stretch> stretches = stretches_of(*config, a, *plant, design, displaced, records);
+  if (pc.design.size() == 0 && !a.component.any()) {
+    const Tolerances tolerances;
+    for (int look = 0; look < kLooks; ++look) {
+      const Eigen::VectorXd theta = fitted_linear(*plant, stretches, tolerances);
+      if (theta.size() == 0) break;
+      for (int p = 0; p < table.size(); ++p)
+        if (const auto at = plant->table.find(table[p].name))
+          design[p] = std::max(theta[*at], kLeastOfGuess * design[p]);
+      plant = make_plant(pc.structure, pc.axes, design, records.front().rate_hz);
+      stretches = stretches_of(*config, a, *plant, design, displaced, records);
+    }
   }
+  check_stretches(records, stretches, *plant, a.component.any(), problems);
   for (const std::string& p : problems) fmt::print(stderr, "{}\n", p);
   if (!problems.empty()) return kBadInput;
 
   DiagnosisOptions options;
   if (a.component.any()) options.tolerances.mass = kComponentMass;
-  options.holdout_from = a.train.size();
+  options.holdout_from = train;
   options.known = config->effects;
   options.without = without;
   const Workers workers(a.threads > 0 ? a.threads
@@ -139,7 +179,7 @@ int diagnose_command(const DiagnoseArguments& a) {
   const Diagnosis diagnosis = diagnose(*plant, stretches, options);
   if (terminal) fmt::print(stderr, "\r\033[K");
 
-  const DiagnoseOutput output{*config, *plant, records, stretches, a.train.size(), diagnosis};
+  const DiagnoseOutput output{*config, *plant, records, stretches, train, diagnosis};
   std::error_code failure;
   std::filesystem::create_directories(a.out, failure);
   if (failure) {

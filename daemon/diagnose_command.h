@@ -18,6 +18,7 @@ struct ComponentTest {
 struct DiagnoseArguments {
   std::string config;
   std::vector<std::string> train, holdout;  ///< record files and LCM event logs
+  std::string event;                 ///< id of a gap event: its stored samples instead of those
   std::string out;                   ///< directory of diagnosis.json, report.html, model.toml
   std::vector<std::string> without;  ///< names of effects that are not looked for
   ComponentTest component;

@@ -21,6 +21,27 @@ constexpr Eigen::Index kLeastInstants = 400;
 constexpr int kLongestGap = 3;  ///< samples that are bridged
 constexpr double kEverything_s = 1e9;
 
+constexpr double kMoving = 0.1;      ///< rms of the first second over that of all
+constexpr double kLead_s = 40;       ///< at most; half of the record at most
+constexpr double kTrainShare = 0.6;  ///< of a gap event's samples, its lead among them
+
+Eigen::Index lead_of(Eigen::Index instants, double rate_hz) {
+  return std::min(static_cast<Eigen::Index>(kLead_s * rate_hz), instants / 2);
+}
+
+bool begins_in_motion(const Config& config, const DiagnoseRecord& record) {
+  const auto second = std::min(static_cast<Eigen::Index>(record.rate_hz), record.accel.rows());
+  double first = 0, all = 0;
+  for (std::size_t a = 0; a < config.pipeline.axes.size(); ++a) {
+    if (config.pipeline.axes[a].story == 0) continue;
+    const auto column = record.accel.col(static_cast<Eigen::Index>(a)).array();
+    const double mean = column.mean();
+    first += (column.head(second) - mean).square().mean();
+    all += (column - mean).square().mean();
+  }
+  return first > kMoving * kMoving * all;
+}
+
 std::string digest(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   return sha256({std::istreambuf_iterator<char>(in), {}});
@@ -146,6 +167,29 @@ std::optional<DiagnoseRecord> read_diagnose_record(const Config& config, const s
   bridge(config, component, out, problems);
   out.sha256 = digest(path);
   if (problems.size() > before) return std::nullopt;
+  if (!component.any() && begins_in_motion(config, out))
+    out.lead = lead_of(out.accel.rows(), out.rate_hz);
+  return out;
+}
+
+std::vector<DiagnoseRecord> read_event_records(const Config& config, const std::string& event,
+                                               std::vector<std::string>& problems) {
+  if (!config.gap || config.gap->store.empty()) {
+    problems.push_back(config.path + ": --event needs [gap] store: nothing is stored");
+    return {};
+  }
+  const std::string path = config.gap->store + "/gap-" + event + ".lcmlog";
+  const auto whole = read_diagnose_record(config, path, {}, problems);
+  if (!whole) return {};
+  const Eigen::Index rows = whole->accel.rows();
+  const auto train = static_cast<Eigen::Index>(kTrainShare * static_cast<double>(rows));
+  std::vector<DiagnoseRecord> out(2, *whole);
+  out[0].accel = whole->accel.topRows(train);
+  out[0].lead = std::min(whole->lead, train / 2);
+  out[1].lead = lead_of(2 * train, whole->rate_hz);
+  out[1].accel = whole->accel.bottomRows(rows - train + out[1].lead);
+  out[0].path += ", first part";
+  out[1].path += ", second part";
   return out;
 }
 

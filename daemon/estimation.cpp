@@ -38,26 +38,47 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
     : observer_(std::move(observer)),
       publisher_(config, std::move(sink)),
       pipeline_(
-          config.pipeline,
-          [this](const WindowEstimate& estimate) {
-            if (observer_) observer_(estimate);
-            publisher_.estimate(estimate);
-            ++windows_;
-            watch(estimate);
-          },
+          config.pipeline, [this](const WindowEstimate& estimate) { main_window(estimate); },
           [this](const WindowEstimate& estimate) {
             publisher_.other(estimate);
             watch(estimate);
-          }),
+          },
+          [this](const SampleSet& instant) { look_for_gap(instant); }),
       intake_(wanted_axes(config), [this](const AccelSample& s) { sample(s); }),
       can_(config.can, [this](const AccelSample& s) { sample(s); }),
       can_events_(config.can) {
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
+  if (config.gap)
+    gap_.emplace(config.pipeline.structure, pipeline_.axes(), config.pipeline.options,
+                 config.gap->options, config.gap->model);
   if (!config.watch) return;
   std::vector<double> windows_s{config.pipeline.options.window_s};
   windows_s.insert(windows_s.end(), config.pipeline.options.other_windows_s.begin(),
                    config.pipeline.options.other_windows_s.end());
   watch_.emplace(pipeline_.parameters(), config.watch->options, windows_s, config.watch->baseline);
+}
+
+void Estimation::main_window(const WindowEstimate& estimate) {
+  if (observer_) observer_(estimate);
+  publisher_.estimate(estimate);
+  ++windows_;
+  watch(estimate);
+  if (gap_) gap_->learn(estimate, pipeline_.design());
+}
+
+void Estimation::look_for_gap(const SampleSet& instant) {
+  if (!gap_) return;
+  const GapWindow* window = gap_->push(instant, noise_density_);
+  if (window == nullptr) return;
+  publisher_.gap(*window);
+  const GapNews* news = gap_->news();
+  if (news == nullptr) return;
+  publisher_.gap_news(*news);
+  if (gap_tap_) gap_tap_(*news);
+}
+
+void Estimation::adopt(const GapModel& model) {
+  if (gap_) gap_->adopt(model);
 }
 
 void Estimation::watch(const WindowEstimate& estimate) {
@@ -76,6 +97,7 @@ void Estimation::notice(const drivers::CanNotice& notice) {
 
 void Estimation::sample(const AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
+  if (raw_tap_) raw_tap_(sample);
   pipeline_.push(sample);
 }
 
@@ -88,12 +110,14 @@ void Estimation::finish() {
 void Estimation::save(StateWriter& state) {
   state(seconds_, windows_, intake_, can_, can_events_);
   if (watch_) state(*watch_);
+  if (gap_) state(*gap_, noise_density_);
   pipeline_.save(state);
 }
 
 bool Estimation::load(StateReader& state) {
   state(seconds_, windows_, intake_, can_, can_events_);
   if (watch_) state(*watch_);
+  if (gap_) state(*gap_, noise_density_);
   return state.good() && pipeline_.load(state);
 }
 
@@ -110,14 +134,14 @@ void Estimation::publish_state() {
     counts.rejected_messages +=
         node.wrong_length + node.wrong_kind + node.unplaced + node.duplicates + node.late;
   }
-  const std::vector<double> noise = pipeline_.noise_density();
+  noise_density_ = pipeline_.noise_density();
   for (std::size_t i = 0; i < pipeline.axes.size(); ++i) {
     const AxisCounters& axis = pipeline.axes[i];
     const drivers::SequenceCounter* node = intake_.sequence_of(i);
     counts.axes.push_back({axis.received, node == nullptr ? can_.lost_of(i) : node->lost, axis.late,
                            axis.repaired, axis.rejected + (node == nullptr ? 0 : node->duplicates),
                            axis.stuck, axis.clipped});
-    if (!noise.empty()) counts.axes.back().noise_density = noise[i];
+    if (!noise_density_.empty()) counts.axes.back().noise_density = noise_density_[i];
   }
   publisher_.parameters(seconds_.newest_us(), pipeline_);
   publisher_.status(seconds_.newest_us(), counts, live_);

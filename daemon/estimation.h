@@ -4,12 +4,14 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "daemon/can_events.h"
 #include "daemon/config.h"
 #include "daemon/publisher.h"
 #include "drivers/accel_intake.h"
 #include "drivers/can/can_intake.h"
+#include "estimator/watch/gap_monitor.h"
 
 namespace framewatch::daemon {
 
@@ -57,12 +59,20 @@ class Estimation {
   /// The input has ended: closes open instants, publishes the last table and status.
   void finish();
 
+  /// Who sees every raw sample, and what news there is of gaps, besides.
+  void tap(std::function<void(const AccelSample&)> raw, std::function<void(const GapNews&)> gap) {
+    raw_tap_ = std::move(raw);
+    gap_tap_ = std::move(gap);
+  }
+
   /// Goes out with the next status.
   void set_live(const LiveState& live) { live_ = live; }
   const drivers::AccelIntake& intake() const { return intake_; }
   const drivers::CanIntake& can() const { return can_; }
   const Pipeline& pipeline() const { return pipeline_; }
   std::int64_t windows() const { return windows_; }  ///< published
+  /// From now on the gap monitor simulates this; nothing without [gap].
+  void adopt(const GapModel& model);
   /// What changes are judged against; null while it is learned, or when nothing is watched.
   const Baseline* baseline() const { return watch_ ? watch_->baseline() : nullptr; }
 
@@ -72,12 +82,18 @@ class Estimation {
 
  private:
   void publish_state();
+  void main_window(const WindowEstimate& estimate);
   void watch(const WindowEstimate& estimate);
+  void look_for_gap(const SampleSet& instant);
 
   Observer observer_;
+  std::function<void(const AccelSample&)> raw_tap_;
+  std::function<void(const GapNews&)> gap_tap_;
   Publisher publisher_;
   Pipeline pipeline_;
   std::optional<Watch> watch_;
+  std::optional<GapMonitor> gap_;
+  std::vector<double> noise_density_;  ///< as of the last second
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   CanEvents can_events_;

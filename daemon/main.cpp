@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
+#include "daemon/adopt_command.h"
 #include "daemon/check_command.h"
 #include "daemon/convert_command.h"
 #include "daemon/demo_command.h"
@@ -299,12 +300,15 @@ void add_diagnose(CLI::App& app, Action& action, DiagnoseArguments& arguments) {
       "Writes diagnosis.json, report.html and model.toml. Exit status: 0 adequate or explained, 1 "
       "a\n"
       "gap remains, 2 bad usage, configuration or input.\n"
-      "Example: framewatch diagnose building.toml --train monday.csv --holdout tuesday.csv --out "
-      "d");
+      "Examples:\n"
+      "  framewatch diagnose building.toml --train monday.csv --holdout tuesday.csv --out d\n"
+      "  framewatch diagnose building.toml --event 1795291200000000 --out d");
   command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
-  command->add_option("--train", arguments.train, "record files and LCM event logs")->required();
-  command->add_option("--holdout", arguments.holdout, "records of other motions, to judge by")
-      ->required();
+  command->add_option("--train", arguments.train, "record files and LCM event logs");
+  command->add_option("--holdout", arguments.holdout, "records of other motions, to judge by");
+  command->add_option("--event", arguments.event,
+                      "id of a gap event: the samples stored of it, first half and second half, "
+                      "instead of --train and --holdout");
   command->add_option("--out", arguments.out, "directory to write to")->required();
   command->add_option("--without", arguments.without, "effects that are not looked for, by name");
   command->add_option("--force", arguments.component.force,
@@ -320,6 +324,17 @@ void add_diagnose(CLI::App& app, Action& action, DiagnoseArguments& arguments) {
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
   command->callback(
       [&action, &arguments] { action = [&arguments] { return diagnose_command(arguments); }; });
+}
+
+void add_adopt(CLI::App& app, Action& action, AdoptArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "adopt", "puts a model where the gap monitor of a running daemon takes it");
+  command->footer("Example: framewatch adopt building.toml d/model.toml");
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML) with [gap] model")
+      ->required();
+  command->add_option("MODEL", arguments.model, "model.toml of framewatch diagnose")->required();
+  command->add_flag("--quiet", arguments.quiet, "do not say what it has");
+  command->callback([&action, &arguments] { action = [&arguments] { return adopt(arguments); }; });
 }
 
 void add_report(CLI::App& app, Action& action, ReportArguments& arguments) {
@@ -433,6 +448,7 @@ struct Arguments {
   RepairArguments repair;
   RefineArguments refine;
   DiagnoseArguments diagnose;
+  AdoptArguments adopt;
   CheckArguments check;
   ConvertArguments convert;
   SimulateArguments simulate;
@@ -461,6 +477,7 @@ int main(int argc, char** argv) {
   add_repair(app, action, arguments.repair);
   add_refine(app, action, arguments.refine);
   add_diagnose(app, action, arguments.diagnose);
+  add_adopt(app, action, arguments.adopt);
   add_check(app, action, arguments.check);
   add_convert(app, action, arguments.convert);
   add_simulate(app, action, arguments.simulate);

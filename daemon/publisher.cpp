@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/core.h>
+
+#include "daemon/gap_model.h"
 
 namespace framewatch::daemon {
 
@@ -14,7 +17,8 @@ Publisher::Publisher(const Config& config, MessageSink sink)
       parameters_channel_(config.lcm.prefix + "PARAMETERS"),
       estimate_channel_(config.lcm.prefix + "ESTIMATE"),
       status_channel_(config.lcm.prefix + "STATUS"),
-      event_channel_(config.lcm.prefix + "EVENT") {
+      event_channel_(config.lcm.prefix + "EVENT"),
+      gap_channel_(config.lcm.prefix + "GAP") {
   for (const double window_s : config.pipeline.options.other_windows_s)
     other_channels_.push_back(fmt::format("{}_{:g}S", estimate_channel_, window_s));
 }
@@ -147,6 +151,52 @@ void Publisher::alarm(const Alarm& alarm, const ParameterTable& table) {
 
 void Publisher::event(const event_t& event) {
   event_t m = event;
+  send(m.time_us, event_channel_, m);
+}
+
+void Publisher::gap(const GapWindow& window) {
+  framewatch::gap_t& m = gap_;
+  m.window_start_us = to_microseconds(window.start);
+  m.window_end_us = to_microseconds(window.end);
+  m.overall_nrmse = window.nrmse;
+  m.noise_floor = window.floor;
+  m.name.clear();
+  m.nrmse.clear();
+  m.floor.clear();
+  const std::vector<SensorAxis>& axes = config_.pipeline.axes;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    if (axes[a].story == 0) continue;
+    m.name.push_back(axes[a].name);
+    m.nrmse.push_back(window.channel_nrmse[a]);
+    m.floor.push_back(window.channel_floor[a]);
+  }
+  m.channels = static_cast<std::int32_t>(m.name.size());
+  send(m.window_end_us, gap_channel_, m);
+}
+
+void Publisher::gap_news(const GapNews& news) {
+  constexpr int kInformation = 0, kWarning = 1;
+  const bool raised = news.state != AlarmState::cleared;
+  const std::string name =
+      news.worst_axis >= 0 ? config_.pipeline.axes[static_cast<std::size_t>(news.worst_axis)].name
+                           : "";
+  framewatch::event_t m{};
+  m.time_us = to_microseconds(news.found);
+  m.since_us = to_microseconds(news.since);
+  m.id = news.id;
+  m.state = static_cast<std::int32_t>(news.state);
+  m.severity = raised ? kWarning : kInformation;
+  m.kind = "gap";
+  m.place = name;
+  m.value = 100 * news.excess;
+  m.std_error = std::numeric_limits<double>::quiet_NaN();
+  m.unit = "%";
+  m.segment = segment_name(config_, news.id);
+  m.message =
+      raised
+          ? fmt::format("simulation and measurement differ by {:.0f} % beyond noise, most at {}",
+                        m.value, name)
+          : fmt::format("simulation and measurement agree again: {:.0f} % beyond noise", m.value);
   send(m.time_us, event_channel_, m);
 }
 

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config.h"
+#include "estimator/watch/gap_alarm.h"
 
 namespace framewatch::daemon {
 
@@ -52,6 +54,8 @@ class Publisher {
   /// News of an alarm; lasting until it is cleared.
   void alarm(const Alarm& alarm, const ParameterTable& table);
   void event(const event_t& event);
+  void gap(const GapWindow& window);
+  void gap_news(const GapNews& news);
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
 
  private:
@@ -61,11 +65,12 @@ class Publisher {
 
   const Config& config_;
   MessageSink sink_;
-  std::string parameters_channel_, estimate_channel_, status_channel_, event_channel_;
+  std::string parameters_channel_, estimate_channel_, status_channel_, event_channel_, gap_channel_;
   std::vector<std::string> other_channels_;
   framewatch::parameter_table_t parameters_{};
   framewatch::window_estimate_t estimate_{};
   framewatch::status_t status_{};
+  framewatch::gap_t gap_{};
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -15,6 +15,7 @@
 #include "daemon/baseline_keeper.h"
 #include "daemon/can_complaints.h"
 #include "daemon/can_monitor.h"
+#include "daemon/gap_keeper.h"
 #include "daemon/log.h"
 #include "daemon/state_file.h"
 #include "daemon/stop_signal.h"
@@ -153,6 +154,7 @@ LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::Can
     : config_(config),
       lcm_(lcm),
       can_log_(can_log),
+      segments_(config),
       estimation_(
           config,
           [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
@@ -162,7 +164,13 @@ LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::Can
               [this](const std::string& channel, const void* data, std::size_t size,
                      std::int64_t received_us) { on_message(channel, data, size, received_us); }),
       can_(config.can, can_log != nullptr,
-           [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {}
+           [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {
+  if (!config.gap || config.gap->store.empty()) return;
+  estimation_.tap([this](const AccelSample& sample) { segments_.sample(sample); },
+                  [this](const GapNews& news) {
+                    if (news.state == AlarmState::raised) segments_.raised(news.id);
+                  });
+}
 
 bool LiveEstimation::poll(int timeout_ms) {
   if (config_.can.empty()) return source_.handle(timeout_ms);
@@ -233,6 +241,7 @@ int run(const RunArguments& a) {
   CanComplaints can_complaints(*config);
   CanMonitor can_monitor(*config);
   BaselineKeeper baseline(*config);
+  GapKeeper gap(*config);
   RateLimitedLog failures(LogLevel::error);
   if (!a.quiet)
     log(LogLevel::info, fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name,
@@ -251,6 +260,7 @@ int run(const RunArguments& a) {
       lcm->publish(config->lcm.prefix + "CAN", &*buses);
     keeper.look(live.estimation(), host_clock_us());
     baseline.look(live.estimation());
+    gap.look(live.estimation(), host_clock_us());
   }
   // With a state the instants still open are given out by the next start.
   if (a.state.empty())

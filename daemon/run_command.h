@@ -6,6 +6,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "daemon/estimation.h"
+#include "daemon/gap_segments.h"
 #include "drivers/can/can_log.h"
 #include "drivers/can/can_source.h"
 #include "drivers/lcm_source.h"
@@ -43,6 +44,7 @@ class LiveEstimation {
   bool can_log_failed_ = false;
   std::int64_t can_dropped_ = 0;
   LiveState state_;
+  GapSegments segments_;
   Estimation estimation_;
   drivers::LcmSource source_;
   drivers::CanSource can_;

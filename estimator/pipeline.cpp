@@ -37,12 +37,13 @@ std::vector<std::string> problems(const PipelineConfig& config) {
 
 class Pipeline::Implementation {
  public:
-  Implementation(const PipelineConfig& config, Sink sink, Sink others)
+  Implementation(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants)
       : table_(config.structure),
         acquisition_(config.axes, config.options, [this](const SampleSet& set) { estimate(set); }),
         estimator_(config, table_),
         sink_(std::move(sink)),
-        others_(std::move(others)) {}
+        others_(std::move(others)),
+        instants_(std::move(instants)) {}
 
   void push(const AccelSample& raw) { acquisition_.push(raw); }
   void finish() { acquisition_.finish(); }
@@ -57,11 +58,13 @@ class Pipeline::Implementation {
   }
 
   const ParameterTable& table() const { return table_; }
+  const std::vector<SensorAxis>& axes() const { return acquisition_.axes(); }
   const WindowEstimator& estimator() const { return estimator_; }
 
  private:
   void estimate(const SampleSet& set) {
     ++sets_;
+    if (instants_) instants_(set);
     if (const WindowEstimate* estimate = estimator_.push(set)) {
       ++windows_;
       sink_(*estimate);
@@ -74,12 +77,13 @@ class Pipeline::Implementation {
   Acquisition acquisition_;
   WindowEstimator estimator_;
   Sink sink_, others_;
+  InstantSink instants_;
   std::int64_t sets_ = 0, windows_ = 0;
 };
 
-Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others)
-    : implementation_(
-          std::make_unique<Implementation>(config, std::move(sink), std::move(others))) {}
+Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants)
+    : implementation_(std::make_unique<Implementation>(config, std::move(sink), std::move(others),
+                                                       std::move(instants))) {}
 Pipeline::~Pipeline() = default;
 void Pipeline::push(const AccelSample& sample) {
   implementation_->push(sample);
@@ -89,6 +93,9 @@ void Pipeline::finish() {
 }
 const ParameterTable& Pipeline::parameters() const {
   return implementation_->table();
+}
+const std::vector<SensorAxis>& Pipeline::axes() const {
+  return implementation_->axes();
 }
 const Eigen::VectorXd& Pipeline::design() const {
   return implementation_->estimator().design();

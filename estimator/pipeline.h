@@ -42,10 +42,11 @@ std::vector<std::string> problems(const PipelineConfig& config);
 class Pipeline {
  public:
   using Sink = std::function<void(const WindowEstimate&)>;
+  using InstantSink = std::function<void(const SampleSet&)>;
 
   /// Precondition: problems(config) is empty. others: gets the estimates of the other windows, if
-  /// anybody wants them.
-  Pipeline(const PipelineConfig& config, Sink sink, Sink others = {});
+  /// anybody wants them; instants: the calibrated instants, each before the estimate it completes.
+  Pipeline(const PipelineConfig& config, Sink sink, Sink others = {}, InstantSink instants = {});
   ~Pipeline();
 
   /// One axis at one instant. Any order within options.lateness_s.
@@ -54,6 +55,8 @@ class Pipeline {
   void finish();
 
   const ParameterTable& parameters() const;
+  /// The configured axes with what is left of their delays in calibrated instants.
+  const std::vector<SensorAxis>& axes() const;
   /// Design the filters are tuned to now, theta order.
   const Eigen::VectorXd& design() const;
   /// Noise the channels' rows are weighted by now, m/s^2/sqrt(Hz), configured or measured; empty

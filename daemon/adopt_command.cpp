@@ -1,0 +1,43 @@
+#include "daemon/adopt_command.h"
+
+#include <fmt/core.h>
+
+#include "daemon/config.h"
+#include "daemon/file_digest.h"
+#include "daemon/gap_model.h"
+#include "drivers/text_output.h"
+#include "estimator/structure/effect.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kBadInput = 2;
+
+}  // namespace
+
+int adopt(const AdoptArguments& a) {
+  std::vector<ConfigProblem> problems;
+  const std::optional<Config> config = load_config(a.config, problems);
+  std::optional<GapModel> model;
+  if (config && (!config->gap || config->gap->model_path.empty()))
+    problems.push_back({a.config, "has no [gap] model: no place to put one"});
+  else if (config)
+    model = load_gap_model_file(*config, a.model, problems);
+  std::string error;
+  const std::optional<std::string> text = read_text_file(a.model, error);
+  if (problems.empty() && !text) problems.push_back({a.model, error});
+  if (problems.empty()) {
+    error = drivers::write_text_file(config->gap->model_path, *text);
+    if (!error.empty()) fmt::print(stderr, "{}\n", error);
+  }
+  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  if (!problems.empty() || !error.empty()) return kBadInput;
+  if (a.quiet) return 0;
+  fmt::print("{} is now {}\n", config->gap->model_path, a.model);
+  for (const Effect& e : model->effects)
+    fmt::print("  {}: {}\n", name_of(e.kind),
+               place_text(e.place, config->pipeline.structure, config->pipeline.axes));
+  return 0;
+}
+
+}  // namespace framewatch::daemon

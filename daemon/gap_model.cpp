@@ -1,0 +1,59 @@
+#include "daemon/gap_model.h"
+
+#include <fmt/core.h>
+
+#include "daemon/config_parts.h"
+#include "daemon/file_digest.h"
+#include "daemon/toml_document.h"
+
+namespace framewatch::daemon {
+namespace {
+
+std::vector<std::string> channel_names(const Config& config) {
+  std::vector<std::string> out;
+  for (const SensorAxis& axis : config.pipeline.axes) out.push_back(axis.name);
+  return out;
+}
+
+/// What keeps a model from being of this building; empty when nothing does.
+std::string difference(const Config& config, const Config& model) {
+  const Structure &a = config.pipeline.structure, &b = model.pipeline.structure;
+  if (a.stories != b.stories || a.frames_x != b.frames_x || a.frames_y != b.frames_y ||
+      a.floor != b.floor)
+    return "has other stories, frames or floors";
+  if (channel_names(config) != channel_names(model)) return "has other channels";
+  return {};
+}
+
+}  // namespace
+
+std::optional<GapModel> load_gap_model_file(const Config& config, const std::string& path,
+                                            std::vector<ConfigProblem>& problems) {
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  if (!text) {
+    problems.push_back({path, error});
+    return std::nullopt;
+  }
+  std::vector<TextProblem> found;
+  Config model;
+  if (const std::optional<TomlValue> document = parse_toml(*text, found))
+    read_config(*document, model, found);
+  if (found.empty()) {
+    const std::string other = difference(config, model);
+    if (!other.empty())
+      found.push_back({{}, fmt::format("is no model of {}: it {}", config.path, other)});
+    else if (model.pipeline.design.size() == 0)
+      found.push_back({{}, "is no model: it has no [structure.design]"});
+  }
+  if (found.empty()) return GapModel{model.pipeline.design, model.effects};
+  for (ConfigProblem& p : with_file(path, std::move(found))) problems.push_back(std::move(p));
+  return std::nullopt;
+}
+
+std::string segment_name(const Config& config, std::int64_t gap_id) {
+  const bool stored = config.gap && !config.gap->store.empty();
+  return stored ? fmt::format("gap-{}.lcmlog", gap_id) : "";
+}
+
+}  // namespace framewatch::daemon
