@@ -191,6 +191,8 @@ function onCan(s) {
 function onAlarm(a) {
   const at = plan.parameters.findIndex(q => q.name === a.place);
   if (a.state !== 0 && !a.acknowledged && !alarms.has(a.id) && at >= 0) choose(at);
+  if (a.unit === '%' && a.value !== null) Object.assign(a, {value: a.value / 100, error: a.error === null ? null : a.error / 100, unit: 'ratio'});
+  a.told = a.unit !== 'ratio' || a.value === null || a.error === null;  // by its message alone
   alarms.set(a.id, a);
   const list = [...alarms.values()].sort((x, y) => y.time_us - x.time_us);
   $('no-alarms').hidden = list.length > 0;
@@ -201,7 +203,7 @@ function onAlarm(a) {
   for (const x of list.slice(0, 100)) {
     const row = body.insertRow();
     cell(row, clock(x.since_us)); cell(row, x.place).title = x.message;
-    cell(row, x.value === null ? '' : (100 * x.value).toFixed(1) + ' %'); cell(row, x.error === null ? '' : (100 * x.error).toFixed(2) + ' %');
+    cell(row, x.told ? x.message : (100 * x.value).toFixed(1) + ' %'); cell(row, x.told ? '' : (100 * x.error).toFixed(2) + ' %');
     cell(row, x.state === 0 ? 'cleared' : x.acknowledged ? 'acknowledged' : 'raised');
     const last = row.insertCell();
     if (!x.acknowledged && x.state !== 0) last.append(acknowledgeButton(x.id));
@@ -209,15 +211,16 @@ function onAlarm(a) {
   banner(list);
 }
 const sure = n => n > 100 ? 'more than 100 standard errors' : `${Math.round(n)} standard errors`;
+const size = a => a.told ? 0 : Math.abs(a.value);
 function banner(list) {
-  const open = list.filter(x => x.state !== 0 && !x.acknowledged).sort((x, y) => Math.abs(y.value) - Math.abs(x.value)), box = $('alarm');
+  const open = list.filter(x => x.state !== 0 && !x.acknowledged).sort((x, y) => size(y) - size(x)), box = $('alarm');
   box.hidden = open.length === 0;
   if (!open.length) return;
   const a = open[0], q = plan.parameters.find(p => p.name === a.place);
   const what = document.createElement('strong');
-  what.textContent = a.value === null ? a.message : `${q ? place(q) : a.place}: ${a.value < 0 ? 'softer' : 'stiffer'} by ${Math.abs(100 * a.value).toFixed(1)} %`;
+  what.textContent = a.told ? a.message : `${q ? place(q) : a.place}: ${a.value < 0 ? 'softer' : 'stiffer'} by ${Math.abs(100 * a.value).toFixed(1)} %`;
   const error = document.createElement('span');
-  error.textContent = a.value === null ? '' : `± ${(100 * a.error).toPrecision(2)} % (${sure(Math.abs(a.value / a.error))}), ${a.place}, since ${clock(a.since_us)}` + (open.length > 1 ? `; ${open.length - 1} more` : '');
+  error.textContent = a.told ? `since ${clock(a.since_us)}` : `± ${(100 * a.error).toPrecision(2)} % (${sure(Math.abs(a.value / a.error))}), ${a.place}, since ${clock(a.since_us)}` + (open.length > 1 ? `; ${open.length - 1} more` : '');
   box.replaceChildren(what, error, acknowledgeButton(a.id));
 }
 function acknowledgeButton(id) {
