@@ -7,9 +7,11 @@ function(framewatch_options target)
     $<$<BOOL:${FRAMEWATCH_WERROR}>:-Werror>)
   if(FRAMEWATCH_SANITIZE)
     # vptr: g++ 12 miscompiles its own check where lcm-cpp.hpp calls a handler by member pointer.
-    # g1: line tables are all a report needs, and the build takes a third less time.
+    # null, alignment, object-size: instrument every access, and the address sanitizer sees most of
+    # it; without them, at -O1 and with line tables only, the build takes less than half the time.
     target_compile_options(${target} PUBLIC -fsanitize=${FRAMEWATCH_SANITIZE}
-      -fno-sanitize=vptr -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
+      -fno-sanitize=vptr,null,alignment,object-size -fno-sanitize-recover=all
+      -fno-omit-frame-pointer -O1 -g1)
     target_compile_definitions(${target} PUBLIC _GLIBCXX_ASSERTIONS)
     target_link_options(${target} PUBLIC -fsanitize=${FRAMEWATCH_SANITIZE})
   endif()
