@@ -170,8 +170,6 @@ void CanSource::read(std::size_t b) {
         bus.look_again_us = 0;
         return lose(bus);
     }
-    // After they were received: the clock may have been set between the last look and a stamp.
-    stamps_.now(host_clock_offset_us());
     for (CanFrame& frame : batch_) {
       frame.stamp_us = stamps_.continuous(frame.stamp_us);
       const bool boot_up = !frame.extended && !frame.error && (frame.id & 0x780u) == 0x700u &&
@@ -184,6 +182,7 @@ void CanSource::read(std::size_t b) {
 }
 
 void CanSource::handle(std::int64_t now_us) {
+  stamps_.now(host_clock_offset_us());
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     look(b, now_us);
     if (buses_[b].timer >= 0) send_sync(b);
