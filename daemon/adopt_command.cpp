@@ -18,14 +18,15 @@ constexpr int kBadInput = 2;
 int adopt(const AdoptArguments& a) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(a.config, problems);
+  std::string error;
+  const std::optional<std::string> text = read_text_file(a.model, error);
   std::optional<GapModel> model;
   if (config && (!config->gap || config->gap->model_path.empty()))
     problems.push_back({a.config, "has no [gap] model: no place to put one"});
+  else if (!text)
+    problems.push_back({a.model, error});
   else if (config)
-    model = load_gap_model_file(*config, a.model, problems);
-  std::string error;
-  const std::optional<std::string> text = read_text_file(a.model, error);
-  if (problems.empty() && !text) problems.push_back({a.model, error});
+    model = parse_gap_model(*config, a.model, *text, problems);
   if (problems.empty()) {
     error = drivers::write_text_file(config->gap->model_path, *text);
     if (!error.empty()) fmt::print(stderr, "{}\n", error);

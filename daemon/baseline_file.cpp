@@ -6,8 +6,8 @@
 
 #include "daemon/config_section.h"
 #include "daemon/config_suggest.h"
-#include "daemon/file_digest.h"
 #include "daemon/toml_document.h"
+#include "daemon/toml_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -54,23 +54,18 @@ std::string baseline_text(const Baseline& baseline, const ParameterTable& table)
 
 std::optional<Baseline> load_baseline(const std::string& path, const ParameterTable& table,
                                       std::vector<ConfigProblem>& problems) {
-  std::string error;
-  const std::optional<std::string> text = read_text_file(path, error);
-  if (!text) {
-    problems.push_back({path, error});
-    return std::nullopt;
-  }
-  std::vector<TextProblem> found;
   Baseline out(static_cast<std::size_t>(table.size()));
-  if (const std::optional<TomlValue> document = parse_toml(*text, found)) {
-    const ConfigSection top("baseline", "baseline", &*document, {}, found);
-    const std::vector<const TomlValue*> parameters = tables_of(*document, "parameter", found);
-    for (const TomlValue* value : parameters) read_parameter(*value, table, out, found);
-    if (parameters.empty() && found.empty())
-      found.push_back({{}, "has no [[parameter]]: nothing could be watched"});
-  }
-  for (ConfigProblem& p : with_file(path, std::move(found))) problems.push_back(std::move(p));
-  if (!problems.empty()) return std::nullopt;
+  const bool good = read_toml_file(
+      path,
+      [&](const TomlValue& document, std::vector<TextProblem>& found) {
+        const ConfigSection top("baseline", "baseline", &document, {}, found);
+        const std::vector<const TomlValue*> parameters = tables_of(document, "parameter", found);
+        for (const TomlValue* value : parameters) read_parameter(*value, table, out, found);
+        if (parameters.empty() && found.empty())
+          found.push_back({{}, "has no [[parameter]]: nothing could be watched"});
+      },
+      problems);
+  if (!good) return std::nullopt;
   return out;
 }
 

@@ -7,8 +7,8 @@
 
 #include "daemon/config_section.h"
 #include "daemon/config_suggest.h"
-#include "daemon/file_digest.h"
 #include "daemon/toml_document.h"
+#include "daemon/toml_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -139,20 +139,16 @@ class ExpectationReader {
 
 std::optional<Expectations> load_expectations(const std::string& path, const ParameterTable& table,
                                               std::vector<ConfigProblem>& problems) {
-  std::string error;
-  const std::optional<std::string> text = read_text_file(path, error);
-  if (!text) {
-    problems.push_back({path, error});
-    return std::nullopt;
-  }
-  std::vector<TextProblem> found;
   Expectations expectations;
-  if (const std::optional<TomlValue> document = parse_toml(*text, found))
-    expectations = ExpectationReader(table, found).read(*document);
+  const bool good = read_toml_file(
+      path,
+      [&](const TomlValue& document, std::vector<TextProblem>& found) {
+        expectations = ExpectationReader(table, found).read(document);
+      },
+      problems);
+  if (!good) return std::nullopt;
   expectations.path = path;
-  if (found.empty()) return expectations;
-  for (ConfigProblem& p : with_file(path, std::move(found))) problems.push_back(std::move(p));
-  return std::nullopt;
+  return expectations;
 }
 
 }  // namespace framewatch::daemon

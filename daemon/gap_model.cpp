@@ -5,6 +5,7 @@
 #include "daemon/config_parts.h"
 #include "daemon/file_digest.h"
 #include "daemon/toml_document.h"
+#include "daemon/toml_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -27,27 +28,31 @@ std::string difference(const Config& config, const Config& model) {
 
 }  // namespace
 
+std::optional<GapModel> parse_gap_model(const Config& config, const std::string& path,
+                                        const std::string& text,
+                                        std::vector<ConfigProblem>& problems) {
+  Config model;
+  const bool good = read_toml(
+      path, text,
+      [&](const TomlValue& document, std::vector<TextProblem>& found) {
+        if (!read_config(document, model, found)) return;
+        const std::string other = difference(config, model);
+        if (!other.empty())
+          found.push_back({{}, fmt::format("is no model of {}: it {}", config.path, other)});
+        else if (model.pipeline.design.size() == 0)
+          found.push_back({{}, "is no model: it has no [structure.design]"});
+      },
+      problems);
+  if (!good) return std::nullopt;
+  return GapModel{model.pipeline.design, model.effects};
+}
+
 std::optional<GapModel> load_gap_model_file(const Config& config, const std::string& path,
                                             std::vector<ConfigProblem>& problems) {
   std::string error;
   const std::optional<std::string> text = read_text_file(path, error);
-  if (!text) {
-    problems.push_back({path, error});
-    return std::nullopt;
-  }
-  std::vector<TextProblem> found;
-  Config model;
-  if (const std::optional<TomlValue> document = parse_toml(*text, found))
-    read_config(*document, model, found);
-  if (found.empty()) {
-    const std::string other = difference(config, model);
-    if (!other.empty())
-      found.push_back({{}, fmt::format("is no model of {}: it {}", config.path, other)});
-    else if (model.pipeline.design.size() == 0)
-      found.push_back({{}, "is no model: it has no [structure.design]"});
-  }
-  if (found.empty()) return GapModel{model.pipeline.design, model.effects};
-  for (ConfigProblem& p : with_file(path, std::move(found))) problems.push_back(std::move(p));
+  if (text) return parse_gap_model(config, path, *text, problems);
+  problems.push_back({path, error});
   return std::nullopt;
 }
 

@@ -14,6 +14,11 @@ namespace framewatch::daemon {
 std::optional<GapModel> load_gap_model_file(const Config& config, const std::string& path,
                                             std::vector<ConfigProblem>& problems);
 
+/// The same of a text; `path` is what messages call it.
+std::optional<GapModel> parse_gap_model(const Config& config, const std::string& path,
+                                        const std::string& text,
+                                        std::vector<ConfigProblem>& problems);
+
 /// File name of the segment that shows a gap, in GapSettings::store; empty when none is stored.
 std::string segment_name(const Config& config, std::int64_t gap_id);
 

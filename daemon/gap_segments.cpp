@@ -22,12 +22,6 @@ std::int64_t microseconds(double seconds) {
   return std::llround(1e6 * seconds);
 }
 
-drivers::AccelMessages messages_of(const Config& config) {
-  std::vector<std::string> names;
-  for (const SensorAxis& axis : config.pipeline.axes) names.push_back(axis.name);
-  return {names, addresses(config.sources), config.pipeline.options.rate_hz};
-}
-
 /// Samples in order of time, those of one time together.
 std::string write_log(drivers::AccelMessages messages, std::size_t axes, const std::string& path,
                       const std::vector<AccelSample>& samples) {
@@ -91,7 +85,8 @@ void GapSegments::write() {
     if (to_microseconds(s.time) >= from_us) samples.push_back(s);
   }
   const std::int64_t id = std::exchange(waiting_, 0);
-  writing_ = std::async(std::launch::async, [messages = messages_of(config_),
+  writing_ = std::async(std::launch::async, [messages = accel_messages(
+                                                 config_, config_.pipeline.options.rate_hz),
                                              axes = config_.pipeline.axes.size(),
                                              store = config_.gap->store,
                                              name = segment_name(config_, id),

@@ -14,6 +14,7 @@
 #include <fmt/core.h>
 
 #include "daemon/child_process.h"
+#include "daemon/clocks.h"
 #include "daemon/log.h"
 #include "daemon/recorder.h"
 #include "daemon/session_command.h"
@@ -29,18 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr int kBadInput = 2, kFailed = 1, kPoll_ms = 50;
 constexpr std::int64_t kStatus_us = 1'000'000, kNoSamples_us = 10'000'000;
-
-std::int64_t host_clock_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-std::int64_t steady_clock_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 /// A listener: it starts no node and sends no SYNC, which is the estimator's business.
 drivers::CanMap listening(drivers::CanMap map) {

@@ -15,6 +15,7 @@
 #include "daemon/baseline_keeper.h"
 #include "daemon/can_complaints.h"
 #include "daemon/can_monitor.h"
+#include "daemon/clocks.h"
 #include "daemon/gap_keeper.h"
 #include "daemon/log.h"
 #include "daemon/state_file.h"
@@ -26,18 +27,6 @@ namespace {
 constexpr int kBadInput = 2;
 constexpr int kPoll_ms = 100;
 constexpr std::int64_t kReport_us = 1'000'000;
-
-std::int64_t host_clock_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-std::int64_t steady_clock_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 std::vector<std::string> channels_of(const Config& config) {
   std::vector<std::string> channels = drivers::ChannelBinding(wanted_axes(config)).streams();

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "daemon/clocks.h"
 #include "drivers/lcm_log.h"
 #include "drivers/record_csv_writer.h"
 
@@ -16,15 +17,17 @@ std::int64_t microseconds(double time_s) {
   return std::llround(time_s * 1e6);
 }
 
-std::vector<std::string> names(const Scenario& s) {
+std::vector<std::string> names(const Config& config) {
   std::vector<std::string> out;
-  for (const SensorAxis& axis : s.config.pipeline.axes) out.push_back(axis.name);
+  for (const SensorAxis& axis : config.pipeline.axes) out.push_back(axis.name);
   return out;
 }
 
 class CsvOutput : public SimulationOutput {
  public:
-  bool open(const Scenario& s, const std::string& path) { return writer_.open(path, names(s)); }
+  bool open(const Scenario& s, const std::string& path) {
+    return writer_.open(path, names(s.config));
+  }
   bool put(double time_s, const std::vector<double>& raw) override {
     return writer_.write(time_s, raw);
   }
@@ -37,7 +40,7 @@ class CsvOutput : public SimulationOutput {
 
 class LogOutput : public SimulationOutput {
  public:
-  explicit LogOutput(const Scenario& s) : messages_(accel_messages(s)) {}
+  explicit LogOutput(const Scenario& s) : messages_(accel_messages(s.config, s.rate_hz)) {}
   bool open(const std::string& path) { return writer_.open(path) && write(0, messages_.tables(0)); }
   bool put(double time_s, const std::vector<double>& raw) override {
     const std::int64_t time_us = microseconds(time_s);
@@ -61,7 +64,7 @@ class LiveOutput : public SimulationOutput {
  public:
   LiveOutput(const Scenario& s, lcm::LCM& lcm, double speed)
       : lcm_(lcm),
-        messages_(accel_messages(s)),
+        messages_(accel_messages(s.config, s.rate_hz)),
         speed_(speed),
         table_every_(std::llround(s.rate_hz)) {}
 
@@ -82,9 +85,7 @@ class LiveOutput : public SimulationOutput {
 
   void start() {
     start_ = Clock::now();
-    start_us_ = std::chrono::duration_cast<std::chrono::microseconds>(
-                    std::chrono::system_clock::now().time_since_epoch())
-                    .count();
+    start_us_ = host_clock_us();
   }
 
   bool publish(const std::vector<drivers::Message>& all) {
@@ -137,8 +138,8 @@ std::vector<drivers::ChannelAddress> addresses(const std::vector<AxisSource>& so
   return out;
 }
 
-drivers::AccelMessages accel_messages(const Scenario& s) {
-  return {names(s), addresses(s.config.sources), s.rate_hz};
+drivers::AccelMessages accel_messages(const Config& config, double rate_hz) {
+  return {names(config), addresses(config.sources), rate_hz};
 }
 
 }  // namespace framewatch::daemon

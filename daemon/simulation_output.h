@@ -35,7 +35,7 @@ std::unique_ptr<SimulationOutput> live_output(const Scenario& scenario, lcm::LCM
 /// ACCEL, after the highest one in use.
 std::vector<drivers::ChannelAddress> addresses(const std::vector<AxisSource>& sources);
 
-/// The messages of a scenario's axes.
-drivers::AccelMessages accel_messages(const Scenario& scenario);
+/// The messages of a configuration's axes.
+drivers::AccelMessages accel_messages(const Config& config, double rate_hz);
 
 }  // namespace framewatch::daemon

@@ -35,7 +35,10 @@ void GapMeter::add(std::size_t axis, double measured, double simulated) {
 }
 
 bool GapMeter::close(Time time, const std::vector<double>& noise_variance) {
-  if (++instants_ < per_second_) return false;
+  if (!ends_second()) {
+    ++instants_;
+    return false;
+  }
   instants_ = 0;
   full_ = std::min(full_ + 1, window_s_);
   const bool whole = full_ == window_s_;

@@ -16,6 +16,8 @@ class GapMeter {
   void restart();
   /// One axis at the present instant, m/s^2; not called for an axis without a value.
   void add(std::size_t axis, double measured, double simulated);
+  /// The present instant is the last of a second: close() will look at the noise.
+  bool ends_second() const { return instants_ + 1 >= per_second_; }
   /// The instant is over. True when a second is, and the window is full; then gap() is of it.
   bool close(Time time, const std::vector<double>& noise_variance);
   const GapWindow& gap() const { return gap_; }

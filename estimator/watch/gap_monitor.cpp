@@ -144,7 +144,7 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   c.settled_s += 1 / rate_hz_;
   if (c.settled_s < c.running.settle_s()) return nullptr;
   compare(c);
-  noise_variances(c, noise_density);
+  if (c.meter.ends_second()) noise_variances(c, noise_density);
   if (!c.meter.close(set.time - c.delay, noise_variance_)) return nullptr;
   news_ = alarm_.push(c.meter.gap());
   return &c.meter.gap();
