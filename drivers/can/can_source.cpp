@@ -55,7 +55,7 @@ CanSource::CanSource(const CanMap& map, bool everything, Handler handler)
   for (std::size_t b = 0; b < buses_.size(); ++b)
     if (map.buses[b].send_sync && is_latched(map, b))
       buses_[b].timer = make_timer(map.buses[b].sync_period_us);
-  stamps_.now(host_clock_offset_us());
+  for (Bus& bus : buses_) bus.stamps.now(read_host_clock());
 }
 
 CanSource::~CanSource() {
@@ -155,12 +155,14 @@ void CanSource::send_sync(std::size_t b) {
 
 void CanSource::read(std::size_t b) {
   Bus& bus = buses_[b];
+  bus.stamps.now(read_host_clock());
   for (int i = 0; i < kBatches && bus.socket.is_open(); ++i) {
     switch (bus.socket.read(batch_)) {
       case CanSocket::Read::frames:
+        bus.stamps.now(read_host_clock());
         break;
       case CanSocket::Read::idle:
-        return;
+        return bus.stamps.drained();
       case CanSocket::Read::down:
         bus.look_again_us = 0;
         return lose(bus);
@@ -171,7 +173,7 @@ void CanSource::read(std::size_t b) {
         return lose(bus);
     }
     for (CanFrame& frame : batch_) {
-      frame.stamp_us = stamps_.continuous(frame.stamp_us);
+      frame.stamp_us = bus.stamps.continuous(frame.stamp_us);
       const bool boot_up = !frame.extended && !frame.error && (frame.id & 0x780u) == 0x700u &&
                            frame.length == 1 && frame.data[0] == 0;
       if (boot_up && map_.buses[b].nmt_start)
@@ -182,12 +184,17 @@ void CanSource::read(std::size_t b) {
 }
 
 void CanSource::handle(std::int64_t now_us) {
-  stamps_.now(host_clock_offset_us());
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     look(b, now_us);
     if (buses_[b].timer >= 0) send_sync(b);
     if (buses_[b].socket.is_open()) read(b);
   }
+}
+
+std::int64_t CanSource::clock_steps() const {
+  std::int64_t most = 0;
+  for (const Bus& bus : buses_) most = std::max(most, bus.stamps.steps());
+  return most;
 }
 
 std::int64_t CanSource::dropped() const {

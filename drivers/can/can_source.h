@@ -42,11 +42,12 @@ class CanSource {
     std::int64_t downs = 0;
   };
   BusState state(int bus) const { return buses_[static_cast<std::size_t>(bus)].state; }
-  std::int64_t clock_steps() const { return stamps_.steps(); }
+  std::int64_t clock_steps() const;  ///< of the host's clock, taken out
 
  private:
   struct Bus {
     CanSocket socket;
+    ContinuousStamps stamps;
     bool attached = false;
     int timer = -1;  ///< of the SYNC; -1: none
     std::int64_t syncs = 0;
@@ -66,7 +67,6 @@ class CanSource {
   Handler handler_;
   std::vector<Bus> buses_;
   std::vector<CanFrame> batch_;
-  ContinuousStamps stamps_;
 };
 
 /// The ids that the nodes of a bus use, their SYNC and CANopen's services.

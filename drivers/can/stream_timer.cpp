@@ -205,6 +205,22 @@ void StreamTimer::attach(TimedValues values) {
   deliver_(values, time_of(opened_.device_us));
 }
 
+bool StreamTimer::attach_earlier(TimedValues values) {
+  if (!unnumbered_.empty()) return false;
+  const auto opened = std::find_if(held_.begin(), held_.end(), [&](const Held& h) {
+    return h.timed && h.values.number == values.number;
+  });
+  if (opened != held_.end()) {
+    const Held more{opened->device_us, opened->host_us, false, std::move(values)};
+    held_.insert(opened + 1, more);
+    return true;
+  }
+  if (starting_) return false;
+  const auto before = static_cast<double>(opened_.values.number - values.number);
+  deliver_(values, time_of(opened_.device_us - before * settings_.period_us));
+  return true;
+}
+
 void StreamTimer::hold(Held held) {
   const double late = late_us(held);
   if (!held_.empty() && std::abs(late_us(held_.front()) - late) > kSame_us) give_out_held();

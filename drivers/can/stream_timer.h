@@ -80,6 +80,8 @@ class StreamTimer {
   bool confirm(std::int64_t number);
   /// More of the sample opened last.
   void attach(TimedValues values);
+  /// More of the sample `values.number`, opened before. False: it is not known when that was.
+  bool attach_earlier(TimedValues values);
   /// The node said that it starts anew (CANopen boot-up).
   void restart();
   /// Gives out what is still held.

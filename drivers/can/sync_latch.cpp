@@ -12,6 +12,7 @@ constexpr double kWindow = 0.95;
 /// Who sends the SYNC may be held up, and nobody else tells the time.
 constexpr double kPatience_us = 30e6;
 constexpr int kSure = 5;  ///< frames in a row that make a node's new count
+constexpr std::size_t kUnsureMost = 8;
 
 StreamTimer::Settings settings_of(const CanBusMap& bus) {
   return {bus.sync_overflow > 0 ? CanTiming::counter : CanTiming::period, bus.sync_period_us,
@@ -118,11 +119,36 @@ bool SyncLatch::belongs(Waiting& w, const Arrived& arrived) {
   if (!arrived.in_window || (w.counter_at_sync >= 0 && ++w.disagreements < kSure)) return false;
   w.counter_at_sync = at_sync;
   w.disagreements = 0;
+  place_unsure(w);
   return true;
+}
+
+/// So long after a SYNC they may be of the next one, lost: the node's first frame in time will
+/// tell.
+void SyncLatch::keep_unsure(Waiting& w) {
+  for (auto* arrived : {&w.first, &w.second}) {
+    if (!*arrived) continue;
+    if (w.unsure.size() == kUnsureMost) {
+      w.unsure.erase(w.unsure.begin());
+      ++w.late;
+    }
+    (*arrived)->values.number = timer_.opened_number();
+    w.unsure.push_back(*std::move(*arrived));
+  }
+}
+
+void SyncLatch::place_unsure(Waiting& w) {
+  for (Arrived& a : std::exchange(w.unsure, {})) {
+    const bool its = wrapped(a.counter - a.values.number, *w.counter) == w.counter_at_sync;
+    w.late += !(its && timer_.attach_earlier(std::move(a.values)));
+  }
 }
 
 /// Of two frames without counter that came after none at all the first was late.
 void SyncLatch::give(Waiting& w) {
+  const auto in_window = [](const std::optional<Arrived>& a) { return a && a->in_window; };
+  if (w.counter && w.counter_at_sync < 0 && !in_window(w.first) && !in_window(w.second))
+    return keep_unsure(w);
   const bool late_first = !w.counter && w.second && !w.came_last_time;
   std::optional<Arrived>* taken = nullptr;
   if (!late_first && belongs(w, *w.first)) taken = &w.first;
@@ -137,6 +163,8 @@ void SyncLatch::give(Waiting& w) {
 
 void SyncLatch::finish() {
   flush();
+  for (Waiting& w : waiting_)
+    w.late += static_cast<std::int64_t>(std::exchange(w.unsure, {}).size());
   timer_.finish();
 }
 

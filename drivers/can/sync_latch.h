@@ -52,6 +52,7 @@ class SyncLatch {
     int count = 0;
     bool came_last_time = true;
     std::int64_t counter_at_sync = -1;  ///< counter minus the SYNC's number; -1: not known
+    std::vector<Arrived> unsure;        ///< numbered; long after their SYNC, before that is known
     int disagreements = 0;              ///< in a row, of the counter with the SYNC
     std::int64_t late = 0, duplicates = 0, unplaced = 0;
 
@@ -59,6 +60,7 @@ class SyncLatch {
     void archive(Archive& a) {
       archive_optional(a, first);
       archive_optional(a, second);
+      archive_list(a, unsure);
       a(count, came_last_time, counter_at_sync, disagreements, late, duplicates, unplaced);
     }
   };
@@ -67,6 +69,8 @@ class SyncLatch {
   void agree_on_number();
   void give(Waiting& waiting);
   bool belongs(Waiting& waiting, const Arrived& arrived);
+  void keep_unsure(Waiting& waiting);
+  void place_unsure(Waiting& waiting);
 
   const CanBusMap& bus_;
   StreamTimer timer_;

@@ -173,6 +173,46 @@ TEST(CanIntake, LateSyncsThatDoNotCountShiftNothing) {
   }
 }
 
+/// The sender loses its processor at random, also within its first instant.
+Traffic starved(Traffic t, unsigned seed) {
+  constexpr double kStall_us = 40'000, kApart_us = 200'000, kFrame_us = 35;
+  std::mt19937 random(seed);
+  std::exponential_distribution<double> stall(1 / kStall_us), apart(1 / kApart_us);
+  double now_us = 0, next_us = seed % 2 == 0 ? 0.02 * apart(random) : apart(random);
+  for (BusFrame& f : t) {
+    now_us = std::max(static_cast<double>(f.frame.stamp_us - kStart_us), now_us + kFrame_us);
+    if (now_us >= next_us) {
+      now_us += stall(random);
+      next_us = now_us + apart(random);
+    }
+    f.frame.stamp_us = kStart_us + std::llround(now_us);
+  }
+  return t;
+}
+
+TEST(CanIntake, AStarvedSenderLosesNoSample) {
+  constexpr int kInstants = 500;
+  const daemon::Config config = can_example("tower");
+  const Traffic good = test::can_traffic(config, kInstants);
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const Result result = run(config.can, starved(good, seed));
+    for (const CanNodeCounters& c : result.nodes) {
+      EXPECT_EQ(c.received, kInstants) << seed;
+      EXPECT_EQ(c.lost + c.late + c.duplicates + c.unplaced, 0) << seed;
+    }
+    std::map<std::int64_t, int> instants;
+    for (const auto& [at, value] : result.samples) {
+      ++instants[at.second];
+      const auto k = std::llround(
+          1e-4 * static_cast<double>(at.second - result.samples.begin()->first.second));
+      EXPECT_NEAR(value, test::can_wave(static_cast<std::size_t>(at.first), 0.01 * k),
+                  kWaveError_mps2)
+          << seed;
+    }
+    EXPECT_EQ(instants.size(), static_cast<std::size_t>(kInstants)) << seed;
+  }
+}
+
 TEST(CanIntake, TheNodesCountersTellWhichSyncWasLost) {
   daemon::Config config = can_example("tower");
   config.can.buses[0].sync_overflow = 0;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "drivers/can/can_encoder.h"
+#include "tests/can/can_traffic.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -117,22 +118,58 @@ TEST(CanSource, AsksTheKernelForItsIdsOnly) {
   EXPECT_EQ(ids, (std::vector<std::uint32_t>{0x183, 0x083, 0x703, 0x080}));
 }
 
+constexpr std::int64_t kPeriod_us = 10'000;
+const std::vector<std::int64_t> kSteps_us{1'000'000, -1'000'000, 3'600'000'000};
+
+HostClockReading reading_at(std::int64_t true_us, std::int64_t step_us) {
+  return {true_us + step_us, 500 + step_us, 1};
+}
+
 TEST(ContinuousStamps, TakeStepsOut) {
-  const std::vector<std::int64_t> steps_us{1'000'000, -1'000'000, 3'600'000'000};
-  for (const std::int64_t step_us : steps_us) {
+  for (const std::int64_t step_us : kSteps_us) {
     ContinuousStamps stamps;
-    stamps.now(500);
-    std::int64_t day_us = 1'700'000'000'000'000;
-    for (int i = 0; i < 1000; ++i, day_us += 10'000) {
+    std::int64_t day_us = test::kTrafficStart_us;
+    for (int i = 0; i < 1000; ++i, day_us += kPeriod_us) {
       const bool stepped = i >= 500;
-      const bool told = stamps.now(500 + (stepped ? step_us : 0) + (i >= 700 ? 900 : 0));
-      EXPECT_EQ(told, i == 500) << i;  // 900 us more are slewing
+      HostClockReading reading = reading_at(day_us, stepped ? step_us : 0);
+      reading.offset_us += i >= 700 ? 900 : 0;  // 900 us more are slewing
+      stamps.now(reading);
+      EXPECT_EQ(stamps.steps(), stepped) << i;
       // A frame stamped before the step is read after it.
       const bool old = i == 500;
       EXPECT_EQ(stamps.continuous(day_us + (stepped && !old ? step_us : 0)), day_us) << i;
     }
-    EXPECT_EQ(stamps.steps(), 1);
   }
+}
+
+TEST(ContinuousStamps, AStepInALongPauseIsTakenOut) {
+  for (const std::int64_t step_us : kSteps_us) {
+    ContinuousStamps stamps;
+    std::int64_t day_us = test::kTrafficStart_us;
+    stamps.now(reading_at(day_us, 0));
+    EXPECT_EQ(stamps.continuous(day_us), day_us);
+    for (int i = 0; i < 30; ++i) {
+      day_us += 5 * kPeriod_us;
+      stamps.now(reading_at(day_us, 0));
+      stamps.drained();
+    }
+    day_us += 5 * kPeriod_us;
+    stamps.now(reading_at(day_us, step_us));
+    EXPECT_EQ(stamps.continuous(day_us - 100 + step_us), day_us - 100) << step_us;
+    EXPECT_EQ(stamps.continuous(day_us - 50 + step_us), day_us - 50) << step_us;
+  }
+}
+
+TEST(ContinuousStamps, ADoubtfulReadingIsNoStep) {
+  ContinuousStamps stamps;
+  std::int64_t day_us = test::kTrafficStart_us;
+  for (int i = 0; i < 100; ++i, day_us += kPeriod_us) {
+    HostClockReading reading = reading_at(day_us, 0);
+    if (i % 7 == 3) reading.offset_us += reading.doubtful_us = 40'000;
+    stamps.now(reading);
+    EXPECT_EQ(stamps.continuous(day_us), day_us);
+  }
+  EXPECT_EQ(stamps.steps(), 0);
 }
 
 }  // namespace

@@ -33,7 +33,9 @@ TEST(Tower, EighteenNodesLoseNothingAndEstimateAsOverLcm) {
   for (std::size_t n = 0; n < config.can.nodes.size(); ++n) {
     const drivers::CanNodeCounters c = live.estimation.can().node(n);
     EXPECT_EQ(c.received, instants) << config.can.nodes[n].name;
-    EXPECT_EQ(c.lost + c.late + c.duplicates + c.unplaced, 0) << config.can.nodes[n].name;
+    EXPECT_EQ(c.lost + c.late + c.duplicates + c.unplaced, 0)
+        << fmt::format("{}: {} lost, {} late, {} duplicate, {} without place",
+                       config.can.nodes[n].name, c.lost, c.late, c.duplicates, c.unplaced);
   }
   EXPECT_EQ(live.source.dropped(), 0);
   const std::vector<WindowEstimate> expected = estimates_over_lcm(kTowerScenario, seconds);
