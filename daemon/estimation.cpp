@@ -108,14 +108,14 @@ void Estimation::finish() {
 }
 
 void Estimation::save(StateWriter& state) {
-  state(seconds_, windows_, intake_, can_, can_events_);
+  state(seconds_, windows_, intake_, can_, can_events_, publisher_);
   if (watch_) state(*watch_);
   if (gap_) state(*gap_, noise_density_);
   pipeline_.save(state);
 }
 
 bool Estimation::load(StateReader& state) {
-  state(seconds_, windows_, intake_, can_, can_events_);
+  state(seconds_, windows_, intake_, can_, can_events_, publisher_);
   if (watch_) state(*watch_);
   if (gap_) state(*gap_, noise_density_);
   return state.good() && pipeline_.load(state);

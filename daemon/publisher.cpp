@@ -146,12 +146,12 @@ void Publisher::alarm(const Alarm& alarm, const ParameterTable& table) {
                   ? fmt::format("{} is at its baseline again", name)
                   : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {:.2f} s", name,
                                 std::abs(change), error, change < 0 ? "below" : "above", since_s);
-  send(m.time_us, event_channel_, m);
+  event(m);
 }
 
 void Publisher::event(const event_t& event) {
-  event_t m = event;
-  send(m.time_us, event_channel_, m);
+  raised_.note(event);
+  send(event.time_us, event_channel_, event);
 }
 
 void Publisher::gap(const GapWindow& window) {
@@ -197,7 +197,7 @@ void Publisher::gap_news(const GapNews& news) {
           ? fmt::format("simulation and measurement differ by {:.0f} % beyond noise, most at {}",
                         m.value, name)
           : fmt::format("simulation and measurement agree again: {:.0f} % beyond noise", m.value);
-  send(m.time_us, event_channel_, m);
+  event(m);
 }
 
 void Publisher::status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live) {

@@ -13,6 +13,7 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config.h"
+#include "daemon/raised_events.h"
 #include "estimator/watch/gap_alarm.h"
 
 namespace framewatch::daemon {
@@ -56,7 +57,14 @@ class Publisher {
   void event(const event_t& event);
   void gap(const GapWindow& window);
   void gap_news(const GapNews& news);
+  const RaisedEvents& raised() const { return raised_; }
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
+
+  /// State (estimator/state/archive.h): the events that are raised.
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(raised_);
+  }
 
  private:
   void fill_values(const WindowEstimate& estimate);
@@ -72,6 +80,7 @@ class Publisher {
   framewatch::status_t status_{};
   framewatch::gap_t gap_{};
   std::vector<std::uint8_t> bytes_;
+  RaisedEvents raised_;
 };
 
 }  // namespace framewatch::daemon

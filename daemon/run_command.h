@@ -1,54 +1,10 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include <lcm/lcm-cpp.hpp>
-
-#include "daemon/estimation.h"
-#include "daemon/gap_segments.h"
-#include "drivers/can/can_log.h"
-#include "drivers/can/can_source.h"
-#include "drivers/lcm_source.h"
+#include "daemon/live_estimation.h"
 
 namespace framewatch::daemon {
-
-/// Live estimation: samples from one LCM instance and from CAN, estimates to LCM. poll() until
-/// satisfied.
-class LiveEstimation {
- public:
-  /// `config` and `lcm` must outlive this. For memq:// everybody shares `lcm`.
-  /// `can_log`, if any, gets every frame of the buses.
-  LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::CanLogWriter* can_log = nullptr);
-
-  /// Opens the buses of the configuration; what is not as it should be, one line each.
-  std::vector<std::string> open_buses() { return can_.open(); }
-
-  /// Waits for messages at most `timeout_ms` and handles those that are there. False when LCM
-  /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
-  [[nodiscard]] bool poll(int timeout_ms);
-  void finish() { estimation_.finish(); }
-  const Estimation& estimation() const { return estimation_; }
-  Estimation& estimation() { return estimation_; }
-  const LiveState& state() const { return state_; }
-  drivers::CanSource& can() { return can_; }
-
- private:
-  void on_message(const std::string& channel, const void* data, std::size_t size,
-                  std::int64_t received_us);
-  void on_frame(int bus, const drivers::CanFrame& frame);
-
-  const Config& config_;
-  lcm::LCM& lcm_;
-  drivers::CanLogWriter* can_log_;
-  bool can_log_failed_ = false;
-  std::int64_t can_dropped_ = 0;
-  LiveState state_;
-  GapSegments segments_;
-  Estimation estimation_;
-  drivers::LcmSource source_;
-  drivers::CanSource can_;
-};
 
 struct RunArguments {
   std::string config;

@@ -6,9 +6,11 @@
 
 #include <fmt/core.h>
 
+#include "daemon/clocks.h"
 #include "daemon/file_digest.h"
 #include "daemon/live_view.h"
 #include "daemon/log.h"
+#include "daemon/metrics.h"
 #include "daemon/stop_signal.h"
 #include "daemon/web_server.h"
 #include "drivers/lcm_source.h"
@@ -35,7 +37,7 @@ int serve(const ServeArguments& a) {
   const std::optional<Config> config = load_config(a.config, problems_found);
   bool good = config.has_value();
   for (const ConfigProblem& p : problems_found) fmt::print(stderr, "{}: {}\n", p.where, p.message);
-  WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions};
+  WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions, {}};
   std::string error;
   if (!a.token_file.empty()) {
     const auto token = read_token(a.token_file, error);
@@ -63,9 +65,16 @@ int serve(const ServeArguments& a) {
                              const std::vector<std::uint8_t>& bytes) {
     lcm->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
   });
-  drivers::LcmSource source(*lcm, view.channels(), config->lcm.queue_capacity,
-                            [&](const std::string& channel, const void* data, std::size_t size,
-                                std::int64_t) { view.message(channel, data, size); });
+  Metrics metrics(*config);
+  settings.metrics = [&metrics](int viewers) { return metrics.text(steady_clock_us(), viewers); };
+  std::vector<std::string> channels = view.channels();
+  channels.push_back(metrics.channel());
+  drivers::LcmSource source(
+      *lcm, channels, config->lcm.queue_capacity,
+      [&](const std::string& channel, const void* data, std::size_t size, std::int64_t) {
+        view.message(channel, data, size);
+        metrics.message(channel, data, size, steady_clock_us());
+      });
   WebServer server(settings, view);
   const int socket = listen_on(settings.address, settings.port, error);
   if (socket < 0 || !server.start(socket, error)) {

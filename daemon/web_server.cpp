@@ -26,6 +26,7 @@ constexpr const char* kPolicy =
 constexpr const char* kReportPolicy =
     "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
     "'none'; frame-ancestors 'none'; sandbox";
+constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 constexpr const char* kSessionPath = "/session/";
 constexpr unsigned kIdle_s = 30;
 constexpr std::size_t kBlock = 32768;
@@ -168,6 +169,8 @@ class WebServer::Implementation {
       if (!found) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
       return answer(c, MHD_HTTP_OK, body(found->content, found->type.c_str()), kReportPolicy);
     }
+    if (path == "/metrics" && settings_.metrics)
+      return answer(c, MHD_HTTP_OK, body(settings_.metrics(viewers_), kMetricsType));
     if (path == "/healthz") return plain(c, MHD_HTTP_OK, "ok");
     return file(c, path == "/" ? "/index.html" : path);
   }

@@ -19,6 +19,8 @@ struct WebSettings {
   std::vector<std::string> hosts;  ///< further names that requests may come under
   std::string files;               ///< folder to read the page from instead of the built-in one
   std::string sessions;            ///< folder of `framewatch record`; empty: none is shown
+  /// Text of /metrics, given the number of viewers; none: there is none.
+  std::function<std::string(int viewers)> metrics;
 
   bool local() const { return address == "127.0.0.1" || address == "::1"; }
 };

@@ -108,4 +108,8 @@ std::optional<session_status_t> decode_session_status(std::span<const std::uint8
   return decode<session_status_t>(payload, "884ssss8s888888888n[s8888884s]");
 }
 
+std::optional<service_t> decode_service(std::span<const std::uint8_t> payload) {
+  return decode<service_t>(payload, "888884sss88s8s8888888n[888]n[s8]n[884sss]");
+}
+
 }  // namespace framewatch::drivers

@@ -10,6 +10,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
+#include <framewatch/service_t.hpp>
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
@@ -30,5 +31,6 @@ std::optional<gap_t> decode_gap(std::span<const std::uint8_t> payload);
 std::optional<can_status_t> decode_can_status(std::span<const std::uint8_t> payload);
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload);
 std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload);
+std::optional<service_t> decode_service(std::span<const std::uint8_t> payload);
 
 }  // namespace framewatch::drivers

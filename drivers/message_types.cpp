@@ -9,6 +9,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
+#include <framewatch/service_t.hpp>
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
@@ -22,8 +23,8 @@
 namespace framewatch::drivers {
 namespace {
 
-const std::array<std::pair<const char*, std::int64_t>, 10>& types() {
-  static const std::array<std::pair<const char*, std::int64_t>, 10> all{{
+const std::array<std::pair<const char*, std::int64_t>, 11>& types() {
+  static const std::array<std::pair<const char*, std::int64_t>, 11> all{{
       {"accel_t", accel_t::getHash()},
       {"channel_table_t", channel_table_t::getHash()},
       {"parameter_table_t", parameter_table_t::getHash()},
@@ -34,6 +35,7 @@ const std::array<std::pair<const char*, std::int64_t>, 10>& types() {
       {"can_status_t", can_status_t::getHash()},
       {"session_command_t", session_command_t::getHash()},
       {"session_status_t", session_status_t::getHash()},
+      {"service_t", service_t::getHash()},
   }};
   return all;
 }
@@ -57,6 +59,7 @@ const char* type_of_channel(const std::string& channel, const std::string& prefi
   if (rest == "EVENT") return "event_t";
   if (rest == "GAP") return "gap_t";
   if (rest == "CAN") return "can_status_t";
+  if (rest == "SERVICE") return "service_t";
   if (rest == "SESSION") return "session_status_t";
   if (rest == "SESSION_COMMAND") return "session_command_t";
   return nullptr;

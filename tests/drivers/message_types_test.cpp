@@ -224,6 +224,45 @@ session_command_t session_command() {
   return m;
 }
 
+service_t service() {
+  service_t m{};
+  m.time_us = 90;
+  m.started_us = 1;
+  m.starts = 2;
+  m.unclean_starts = 3;
+  m.resumed = 1;
+  m.config = "b.toml";
+  m.config_sha256 = "00ff";
+  m.version = "0.1.0";
+  m.reloads = 4;
+  m.reloads_refused = 5;
+  m.reload_problem = "b.toml:3";
+  m.state_written_us = 6;
+  m.state_problem = "No space left on device";
+  m.disk_free_bytes = 7;
+  m.resident_bytes = 8;
+  m.cpu_s = 0.5;
+  m.received_us = 9;
+  m.deadline_missed = 10;
+  m.step_sum_s = 0.25;
+  m.latency_sum_s = 0.125;
+  m.buckets = 2;
+  m.limit_s = {0.001, 1e300};
+  m.steps = {11, 12};
+  m.latencies = {13, 14};
+  m.channels = 1;
+  m.name = {"base-x"};
+  m.newest_us = {15};
+  m.raised = 1;
+  m.event_id = {16};
+  m.event_since_us = {17};
+  m.event_severity = {2};
+  m.event_kind = {"gap"};
+  m.event_place = {"F1-Y1"};
+  m.event_message = {"differ"};
+  return m;
+}
+
 std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
   return {{"ACCEL", encoded(accel())},
           {"ACCEL_CHANNELS", encoded(channel_table())},
@@ -234,7 +273,8 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
           {"FRAMEWATCH_GAP", encoded(gap())},
           {"FRAMEWATCH_CAN", encoded(can_status())},
           {"FRAMEWATCH_SESSION", encoded(session_status())},
-          {"FRAMEWATCH_SESSION_COMMAND", encoded(session_command())}};
+          {"FRAMEWATCH_SESSION_COMMAND", encoded(session_command())},
+          {"FRAMEWATCH_SERVICE", encoded(service())}};
 }
 
 TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
@@ -291,6 +331,13 @@ TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
     }
     if (e.channel == "FRAMEWATCH_SESSION_COMMAND") {
       EXPECT_EQ(decode_session_command(e.data).value_or(session_command_t{}).notes, "none");
+    }
+    if (e.channel == "FRAMEWATCH_SERVICE") {
+      const auto decoded = decode_service(e.data);
+      ASSERT_TRUE(decoded);
+      EXPECT_EQ(decoded->latencies, service().latencies);
+      EXPECT_EQ(decoded->newest_us, service().newest_us);
+      EXPECT_EQ(decoded->event_message, service().event_message);
     }
     if (e.channel == "FRAMEWATCH_EVENT") {
       const auto decoded = decode_event(e.data);

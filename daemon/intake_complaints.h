@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "daemon/estimation.h"
+
+namespace framewatch::daemon {
+
+/// Says once a second at most what went wrong with messages and samples since it last said so.
+class IntakeComplaints {
+ public:
+  void look(const Estimation& estimation, const LiveState& state, std::int64_t now_us);
+
+ private:
+  static void add(std::string& news, std::int64_t& seen, std::int64_t now, const char* what);
+
+  std::int64_t next_us_ = 0;
+  std::int64_t seen_[8] = {};
+  bool said_unbound_ = false;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <prometheus/metric_family.h>
+
+#include <framewatch/can_status_t.hpp>
+#include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/service_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+namespace framewatch::daemon {
+
+/// Collects metrics by name, in the order they come.
+class MetricFamilies {
+ public:
+  using Labels = std::vector<std::pair<std::string, std::string>>;
+
+  /// What the next values are of.
+  MetricFamilies& gauge(const char* name, const char* help);
+  MetricFamilies& counter(const char* name, const char* help);
+  MetricFamilies& value(double value, const Labels& labels = {});
+  /// limit_s: upper limits, the last one infinite; counts: between them.
+  void histogram(const char* name, const char* help, const std::vector<double>& limit_s,
+                 const std::vector<std::int64_t>& counts, double sum_s);
+
+  std::string text() const;
+
+ private:
+  MetricFamilies& family(const char* name, const char* help, prometheus::MetricType type);
+
+  std::vector<prometheus::MetricFamily> families_;
+};
+
+// What each message says, as metrics.
+void add_service(MetricFamilies& out, const service_t& service);
+void add_status(MetricFamilies& out, const status_t& status);
+void add_estimate(MetricFamilies& out, const parameter_table_t& table,
+                  const window_estimate_t& estimate);
+void add_gap(MetricFamilies& out, const gap_t& gap);
+void add_can(MetricFamilies& out, const can_status_t& can);
+void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,109 @@
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "daemon/metric_families.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kValid = 1;
+
+/// Of parameter_table_t::kind.
+constexpr std::array<std::pair<const char*, const char*>, 4> kKinds = {{
+    {"frame_stiffness_newtons_per_meter", "Stiffness of a frame in a story."},
+    {"panel_stiffness_newtons_per_radian_meter", "Shear stiffness of a floor panel."},
+    {"frame_damping_newton_seconds_per_meter", "Damping of a frame in a story."},
+    {"panel_damping_newton_seconds_per_radian_meter", "Damping of a floor panel."},
+}};
+
+}  // namespace
+
+void add_estimate(MetricFamilies& out, const parameter_table_t& table, const window_estimate_t& e) {
+  if (table.name.size() != e.value.size()) return;
+  const auto labels = [&](std::size_t p) -> MetricFamilies::Labels {
+    return {{"parameter", table.name[p]}, {"story", std::to_string(table.story[p])}};
+  };
+  const auto valid = [&](std::size_t p) { return e.reason[p] == 0 && std::isfinite(e.value[p]); };
+  out.gauge("window_valid", "1: the newest window has values; 0: it is warming up or quiet.")
+      .value(e.status == kValid ? 1 : 0);
+  if (std::isfinite(e.residual_ratio))
+    out.gauge("window_residual_ratio", "What the model leaves of the response, over the response.")
+        .value(e.residual_ratio);
+  for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+    out.gauge(kKinds[kind].first, kKinds[kind].second);
+    for (std::size_t p = 0; p < e.value.size(); ++p)
+      if (valid(p) && table.kind[p] == static_cast<int>(kind)) out.value(e.value[p], labels(p));
+  }
+  out.gauge("parameter_valid", "1: the newest window shows it; without, there is no value above.");
+  for (std::size_t p = 0; p < e.value.size(); ++p) out.value(valid(p) ? 1 : 0, labels(p));
+  out.gauge("parameter_standard_error_ratio", "Standard error over the value.");
+  for (std::size_t p = 0; p < e.value.size(); ++p)
+    if (valid(p)) out.value(e.std_error[p] / e.value[p], labels(p));
+  out.gauge("parameter_design_ratio", "Value over the design value the filters are tuned to.");
+  for (std::size_t p = 0; p < e.value.size(); ++p)
+    if (valid(p) && table.design[p] > 0) out.value(e.value[p] / table.design[p], labels(p));
+  out.gauge("parameter_excitation_ratio", "Energy of the regressor over its noise energy.");
+  for (std::size_t p = 0; p < e.value.size(); ++p)
+    if (std::isfinite(e.snr[p])) out.value(static_cast<double>(e.snr[p]), labels(p));
+}
+
+void add_gap(MetricFamilies& out, const gap_t& g) {
+  out.gauge("gap_ratio", "Simulation against measurement, NRMSE over the last window.")
+      .value(g.overall_nrmse);
+  if (std::isfinite(g.noise_floor))
+    out.gauge("gap_noise_floor_ratio", "The least it can be with these sensors.")
+        .value(g.noise_floor);
+  out.gauge("channel_gap_ratio", "The same of one channel.");
+  for (std::size_t i = 0; i < g.name.size(); ++i)
+    if (std::isfinite(g.nrmse[i])) out.value(g.nrmse[i], {{"channel", g.name[i]}});
+}
+
+void add_can(MetricFamilies& out, const can_status_t& s) {
+  const auto per_bus = [&](const auto& values) {
+    for (std::size_t b = 0; b < s.interface.size(); ++b)
+      if (const auto value = static_cast<double>(values[b]); std::isfinite(value))
+        out.value(value, {{"interface", s.interface[b]}});
+  };
+  out.gauge("can_bus_state", "1 for the state the bus is in, 0 for the others.");
+  constexpr std::array kStates = {"gone", "active", "warning", "passive", "off"};  // from -1
+  for (std::size_t b = 0; b < s.interface.size(); ++b)
+    for (std::size_t state = 0; state < kStates.size(); ++state)
+      out.value(s.state[b] + 1 == static_cast<int>(state) ? 1 : 0,
+                {{"interface", s.interface[b]}, {"state", kStates[state]}});
+  out.gauge("can_frames_per_second", "All frames on the bus.");
+  per_bus(s.frames_hz);
+  out.gauge("can_load_ratio", "Share of the time the bus is taken, at most.");
+  per_bus(s.load);
+  out.gauge("can_expected_load_ratio", "The same, of the configured nodes.");
+  per_bus(s.expected_load);
+  out.counter("can_error_frames_total", "Error frames.");
+  per_bus(s.error_frames);
+  out.counter("can_bus_off_total", "Times the bus was off.");
+  per_bus(s.bus_off);
+  out.counter("can_bus_errors_total", "Protocol, acknowledgement and transceiver errors.");
+  per_bus(s.bus_errors);
+  out.counter("can_overflow_total", "Overflows of the controller's receive buffer.");
+  per_bus(s.overflow);
+  out.counter("can_dropped_frames_total", "Frames lost to full receive queues of the host.")
+      .value(static_cast<double>(s.dropped));
+}
+
+void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
+  constexpr std::array kSeverities = {"information", "warning", "alarm"};
+  std::map<std::pair<std::string, std::string>, int> counts;
+  // Always there, so that an alert sees it rise from nothing.
+  for (const char* severity : kSeverities) {
+    counts[{"stiffness_change", severity}] = 0;
+    counts[{"gap", severity}] = 0;
+  }
+  for (const event_t& e : raised)
+    if (e.severity >= 0 && e.severity < static_cast<int>(kSeverities.size()))
+      ++counts[{e.kind, kSeverities[static_cast<std::size_t>(e.severity)]}];
+  out.gauge("events_raised", "Events raised and not cleared.");
+  for (const auto& [of, count] : counts)
+    out.value(count, {{"kind", of.first}, {"severity", of.second}});
+}
+
+}  // namespace framewatch::daemon

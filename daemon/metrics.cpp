@@ -1,0 +1,79 @@
+#include "daemon/metrics.h"
+
+#include "daemon/metric_families.h"
+#include "daemon/process_usage.h"
+#include "drivers/message_check.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr const char* kStiffnessChange = "stiffness_change";
+
+}  // namespace
+
+void Metrics::message(const std::string& channel, const void* data, std::size_t size,
+                      std::int64_t now_us) {
+  const std::string& prefix = config_.lcm.prefix;
+  if (!channel.starts_with(prefix)) return;
+  const std::string name = channel.substr(prefix.size());
+  const auto* bytes = static_cast<const std::uint8_t*>(data);
+  if (name == "EVENT") {
+    const auto e = drivers::decode_event({bytes, size});
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (e && !config_.watch && e->kind == kStiffnessChange) found_here_.note(*e);
+    return;
+  }
+  for (const char* wanted : {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "CAN"}) {
+    if (name != wanted) continue;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    Newest& newest = newest_[name];
+    newest.bytes.assign(bytes, bytes + size);
+    newest.received_us = now_us;
+  }
+}
+
+std::string Metrics::text(std::int64_t now_us, int viewers) const {
+  std::map<std::string, std::vector<std::uint8_t>> fresh;
+  RaisedEvents raised;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto service = newest_.find("SERVICE");
+    const bool up = service != newest_.end() && now_us - service->second.received_us <= kFresh_us;
+    for (const auto& [name, newest] : newest_)
+      if (now_us - newest.received_us <= kFresh_us || (up && name != "ESTIMATE"))
+        fresh[name] = newest.bytes;
+    raised = found_here_;
+  }
+  const auto service = drivers::decode_service(fresh["SERVICE"]);
+  const auto status = drivers::decode_status(fresh["STATUS"]);
+  const auto table = drivers::decode_parameter_table(fresh["PARAMETERS"]);
+  const auto estimate = drivers::decode_window_estimate(fresh["ESTIMATE"]);
+  const auto gap = drivers::decode_gap(fresh["GAP"]);
+  const auto can = drivers::decode_can_status(fresh["CAN"]);
+  MetricFamilies out;
+  out.gauge("up", "1: framewatch run has been heard of in the last 5 s.").value(service ? 1 : 0);
+  if (service) {
+    add_service(out, *service);
+    for (std::size_t i = 0; i < service->event_id.size(); ++i) {
+      event_t e{};
+      e.id = service->event_id[i];
+      e.state = 1;
+      e.severity = service->event_severity[i];
+      e.kind = service->event_kind[i];
+      raised.note(e);
+    }
+  }
+  if (status) add_status(out, *status);
+  if (table && estimate) add_estimate(out, *table, *estimate);
+  if (gap) add_gap(out, *gap);
+  if (can) add_can(out, *can);
+  add_events(out, raised.all());
+  const ProcessUsage usage = process_usage();
+  out.gauge("serve_viewers", "Open pages of framewatch serve.").value(viewers);
+  out.gauge("serve_resident_memory_bytes", "Memory of framewatch serve.")
+      .value(static_cast<double>(usage.resident_bytes));
+  out.counter("serve_cpu_seconds_total", "Processor time of framewatch serve.").value(usage.cpu_s);
+  return out.text();
+}
+
+}  // namespace framewatch::daemon

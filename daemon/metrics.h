@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "daemon/config.h"
+#include "daemon/raised_events.h"
+
+namespace framewatch::daemon {
+
+/// What Prometheus is told (docs/metrics.md), made of the newest LCM messages. Times are the
+/// caller's: microseconds of a clock that is never set.
+class Metrics {
+ public:
+  /// No message for so long: what it said is not told any more. A process that is gone must not go
+  /// on looking well.
+  static constexpr std::int64_t kFresh_us = 5'000'000;
+
+  /// `config` must outlive this.
+  explicit Metrics(const Config& config) : config_(config) {}
+
+  /// The channel that nobody but this wants of `framewatch serve`.
+  std::string channel() const { return config_.lcm.prefix + "SERVICE"; }
+  void message(const std::string& channel, const void* data, std::size_t size, std::int64_t now_us);
+
+  /// Text format 0.0.4. viewers: of the page.
+  std::string text(std::int64_t now_us, int viewers) const;
+
+ private:
+  struct Newest {
+    std::vector<std::uint8_t> bytes;
+    std::int64_t received_us = 0;
+  };
+  const Config& config_;
+  mutable std::mutex mutex_;              ///< guards what is below
+  std::map<std::string, Newest> newest_;  ///< by channel without prefix
+  RaisedEvents found_here_;  ///< by `framewatch serve`, when the configuration has no [watch]
+};
+
+}  // namespace framewatch::daemon

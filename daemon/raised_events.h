@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include <framewatch/event_t.hpp>
+
+namespace framewatch::daemon {
+
+/// The events that are raised and not cleared, in the order they were raised.
+class RaisedEvents {
+ public:
+  static constexpr std::size_t kMost = 1000;  ///< beyond, the oldest one is forgotten
+
+  void note(const event_t& e) {
+    const auto same = std::find_if(events_.begin(), events_.end(),
+                                   [&](const event_t& r) { return r.id == e.id; });
+    if (e.state == 0) {
+      if (same != events_.end()) events_.erase(same);
+    } else if (same != events_.end()) {
+      *same = e;
+    } else {
+      if (events_.size() == kMost) events_.erase(events_.begin());
+      events_.push_back(e);
+    }
+  }
+  const std::vector<event_t>& all() const { return events_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    events_.resize(a.count(events_.size()));
+    for (event_t& e : events_)
+      a(e.time_us, e.since_us, e.id, e.state, e.severity, e.kind, e.place, e.value, e.std_error,
+        e.unit, e.message, e.segment);
+  }
+
+ private:
+  std::vector<event_t> events_;
+};
+
+}  // namespace framewatch::daemon
