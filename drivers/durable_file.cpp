@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 namespace framewatch::drivers {
 namespace {
@@ -33,18 +34,29 @@ DurableFile::~DurableFile() {
   if (file_ >= 0) ::close(file_);
 }
 
-bool DurableFile::open(const std::string& path, std::string& error) {
-  path_ = path;
-  file_ = ::open((path + ".partial").c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+bool DurableFile::make(std::string& error) {
+  file_ = ::open((path_ + ".partial").c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
   if (file_ < 0) {
-    error = path + ".partial: " + std::strerror(errno);
+    error = path_ + ".partial: " + std::strerror(errno);
     return false;
   }
   ::flock(file_, LOCK_EX | LOCK_NB);
-  sync_folder_of(path);
+  sync_folder_of(path_);
+  return true;
+}
+
+bool DurableFile::open(const std::string& path, std::string& error) {
+  path_ = path;
+  if (!make(error)) return false;
   closing_ = false;
   thread_ = std::thread([this] { work(); });
   return true;
+}
+
+void DurableFile::open_when_needed(std::function<std::string()> path) {
+  path_when_needed_ = std::move(path);
+  closing_ = false;
+  thread_ = std::thread([this] { work(); });
 }
 
 bool DurableFile::in_use(const std::string& path) {
@@ -71,7 +83,9 @@ bool DurableFile::append(std::string_view bytes) {
 
 DurableFile::Counters DurableFile::counters() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return counters_;
+  Counters counters = counters_;
+  counters.queued = filling_.size() + waiting_;
+  return counters;
 }
 
 std::string DurableFile::trouble() const {
@@ -80,6 +94,15 @@ std::string DurableFile::trouble() const {
 }
 
 bool DurableFile::write_some() {
+  if (file_ < 0 && !writing_.empty()) {
+    std::string why;
+    path_ = path_when_needed_();
+    if (!make(why)) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      trouble_ = std::move(why);
+      return false;
+    }
+  }
   while (written_ < writing_.size()) {
     const ssize_t n = ::write(file_, writing_.data() + written_, writing_.size() - written_);
     if (n < 0 && errno == EINTR) continue;
@@ -141,6 +164,10 @@ bool DurableFile::close(std::string& error, std::chrono::milliseconds patience) 
   if (!is_open()) return false;
   finish(patience);
   error = trouble_;
+  if (file_ < 0) {
+    if (error.empty() && waiting_ > 0) error = "not everything was written";
+    return error.empty();
+  }
   if (error.empty() && waiting_ > 0) error = "not everything was written";
   if (error.empty() && std::rename((path_ + ".partial").c_str(), path_.c_str()) != 0)
     error = std::strerror(errno);

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -23,7 +24,8 @@ class DurableFile {
   struct Counters {
     std::int64_t appended = 0, dropped = 0;  ///< calls of append()
     std::int64_t bytes = 0;                  ///< given to the operating system
-    std::size_t queue_high_water = 0;        ///< bytes
+    std::size_t queued = 0;                  ///< bytes that wait
+    std::size_t queue_high_water = 0;        ///< the most there ever were
   };
 
   explicit DurableFile(std::size_t queue_bytes = kQueueBytes) : queue_bytes_(queue_bytes) {}
@@ -34,6 +36,10 @@ class DurableFile {
 
   /// False, with the reason, when the file cannot be made or another process appends to it.
   [[nodiscard]] bool open(const std::string& path, std::string& error);
+  /// The same, but the thread makes the file when there is something to write, and tries again four
+  /// times a second while the disk refuses. `path` is asked for each time, in the thread, and
+  /// should name a file that is not there.
+  void open_when_needed(std::function<std::string()> path);
   bool is_open() const { return thread_.joinable(); }
   /// Never waits for the disk. False: dropped.
   bool append(std::string_view bytes);
@@ -41,7 +47,8 @@ class DurableFile {
   /// Why the disk does not take what waits; empty: it does.
   std::string trouble() const;
   /// Writes the rest, for `patience` at most while the disk refuses it, and renames. False, with
-  /// the reason, when something is missing: then the file stays PATH.partial.
+  /// the reason, when something is missing: then the file stays PATH.partial. A file that was never
+  /// needed is not made.
   [[nodiscard]] bool close(std::string& error,
                            std::chrono::milliseconds patience = std::chrono::seconds(5));
 
@@ -49,11 +56,13 @@ class DurableFile {
   static bool in_use(const std::string& path);
 
  private:
+  bool make(std::string& error);
   void work();
   bool write_some();
   void finish(std::chrono::milliseconds patience);
 
   std::size_t queue_bytes_;
+  std::function<std::string()> path_when_needed_;
   std::string path_;
   int file_ = -1;
   std::thread thread_;

@@ -39,7 +39,8 @@ class Walk {
   std::span<const std::uint8_t> rest_;
 };
 
-/// Whether `payload` has the layout: per field 8 or 4 bytes ('8', '4'), a string ('s'), a count
+/// Whether `payload` has the layout: per field 8, 4 or 2 bytes ('8', '4', '2'), a string ('s'), a
+/// count
 /// ('n'); between brackets the arrays of the last count.
 bool laid_out(std::span<const std::uint8_t> payload, std::string_view layout) {
   Walk walk(payload);
@@ -52,6 +53,7 @@ bool laid_out(std::span<const std::uint8_t> payload, std::string_view layout) {
     if (field == 'n') sound = walk.count(count);
     if (field == '8') sound = walk.skip(8 * times);
     if (field == '4') sound = walk.skip(4 * times);
+    if (field == '2') sound = walk.skip(2 * times);
     if (field == 's')
       for (std::size_t i = 0; i < times && sound; ++i) sound = walk.string();
     if (!sound) return false;
@@ -98,6 +100,14 @@ std::optional<gap_t> decode_gap(std::span<const std::uint8_t> payload) {
 
 std::optional<can_status_t> decode_can_status(std::span<const std::uint8_t> payload) {
   return decode<can_status_t>(payload, "888n[s48888888]");
+}
+
+std::optional<accel_counts_t> decode_accel_counts(std::span<const std::uint8_t> payload) {
+  return decode<accel_counts_t>(payload, "888n[424]");
+}
+
+std::optional<history_status_t> decode_history_status(std::span<const std::uint8_t> payload) {
+  return decode<history_status_t>(payload, "88s8888s888s88");
 }
 
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload) {

@@ -6,9 +6,11 @@
 #include <span>
 #include <vector>
 
+#include <framewatch/accel_counts_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/session_command_t.hpp>
@@ -29,6 +31,8 @@ std::optional<status_t> decode_status(std::span<const std::uint8_t> payload);
 std::optional<event_t> decode_event(std::span<const std::uint8_t> payload);
 std::optional<gap_t> decode_gap(std::span<const std::uint8_t> payload);
 std::optional<can_status_t> decode_can_status(std::span<const std::uint8_t> payload);
+std::optional<accel_counts_t> decode_accel_counts(std::span<const std::uint8_t> payload);
+std::optional<history_status_t> decode_history_status(std::span<const std::uint8_t> payload);
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload);
 std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload);
 std::optional<service_t> decode_service(std::span<const std::uint8_t> payload);

@@ -3,11 +3,13 @@
 #include <array>
 #include <utility>
 
+#include <framewatch/accel_counts_t.hpp>
 #include <framewatch/accel_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/channel_table_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/session_command_t.hpp>
@@ -23,8 +25,8 @@
 namespace framewatch::drivers {
 namespace {
 
-const std::array<std::pair<const char*, std::int64_t>, 11>& types() {
-  static const std::array<std::pair<const char*, std::int64_t>, 11> all{{
+const std::array<std::pair<const char*, std::int64_t>, 13>& types() {
+  static const std::array<std::pair<const char*, std::int64_t>, 13> all{{
       {"accel_t", accel_t::getHash()},
       {"channel_table_t", channel_table_t::getHash()},
       {"parameter_table_t", parameter_table_t::getHash()},
@@ -36,6 +38,8 @@ const std::array<std::pair<const char*, std::int64_t>, 11>& types() {
       {"session_command_t", session_command_t::getHash()},
       {"session_status_t", session_status_t::getHash()},
       {"service_t", service_t::getHash()},
+      {"accel_counts_t", accel_counts_t::getHash()},
+      {"history_status_t", history_status_t::getHash()},
   }};
   return all;
 }
@@ -51,6 +55,7 @@ const char* known_type(std::int64_t fingerprint) {
 const char* type_of_channel(const std::string& channel, const std::string& prefix) {
   if (!stream_of_table(channel).empty()) return "channel_table_t";
   if (channel.starts_with("ACCEL")) return "accel_t";
+  if (channel == "COUNTS") return "accel_counts_t";
   if (!channel.starts_with(prefix)) return nullptr;
   const std::string rest = channel.substr(prefix.size());
   if (rest.starts_with("ESTIMATE")) return "window_estimate_t";
@@ -60,6 +65,7 @@ const char* type_of_channel(const std::string& channel, const std::string& prefi
   if (rest == "GAP") return "gap_t";
   if (rest == "CAN") return "can_status_t";
   if (rest == "SERVICE") return "service_t";
+  if (rest == "HISTORY") return "history_status_t";
   if (rest == "SESSION") return "session_status_t";
   if (rest == "SESSION_COMMAND") return "session_command_t";
   return nullptr;

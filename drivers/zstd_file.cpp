@@ -47,7 +47,62 @@ UnpackedFile failed(UnpackedFile out, const char* what) {
   return out;
 }
 
+/// A descriptor that is closed.
+class OpenFile {
+ public:
+  OpenFile(const std::string& path, int flags) : file_(::open(path.c_str(), flags, 0644)) {}
+  ~OpenFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  operator int() const { return file_; }
+
+ private:
+  int file_;
+};
+
+/// False, with errno, when something of `in` could not be read or written.
+bool pack(int in, int out) {
+  constexpr int kLevel = 3;  // -19 buys a tenth for forty times the time
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
+                                                                     &ZSTD_freeCCtx);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+  std::vector<std::uint8_t> plain(ZSTD_CStreamInSize()), packed(ZSTD_CStreamOutSize());
+  for (bool last = false; !last;) {
+    const ssize_t got = ::read(in, plain.data(), plain.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return false;
+    last = got == 0;
+    ZSTD_inBuffer input{plain.data(), static_cast<std::size_t>(got), 0};
+    for (bool done = false; !done;) {
+      ZSTD_outBuffer output{packed.data(), packed.size(), 0};
+      const std::size_t left =
+          ZSTD_compressStream2(context.get(), &output, &input, last ? ZSTD_e_end : ZSTD_e_continue);
+      if (ZSTD_isError(left) != 0) {
+        errno = ENOMEM;
+        return false;
+      }
+      if (!write_all(out, packed.data(), output.pos)) return false;
+      done = last ? left == 0 : input.pos == input.size;
+    }
+  }
+  return ::fsync(out) == 0;
+}
+
 }  // namespace
+
+std::string pack_zstd(const std::string& from, const std::string& to) {
+  const std::string partial = to + ".partial";
+  const OpenFile in(from, O_RDONLY | O_CLOEXEC);
+  if (in < 0) return fmt::format("{}: {}", from, std::strerror(errno));
+  const OpenFile out(partial, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+  if (out >= 0 && pack(in, out) && std::rename(partial.c_str(), to.c_str()) == 0) return {};
+  std::string why = fmt::format("{}: {}", to, std::strerror(errno));
+  ::unlink(partial.c_str());
+  return why;
+}
 
 UnpackedFile unpack_zstd(int file) {
   UnpackedFile out;

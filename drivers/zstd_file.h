@@ -19,4 +19,8 @@ struct UnpackedFile {
 /// Unpacks `file` from its start, in bounded memory, into the folder for temporary files (TMPDIR).
 UnpackedFile unpack_zstd(int file);
 
+/// Writes what `from` holds into `to`, as `to`.partial renamed when it is on the disk. Empty, or
+/// why not; then nothing of `to` stays.
+std::string pack_zstd(const std::string& from, const std::string& to);
+
 }  // namespace framewatch::drivers

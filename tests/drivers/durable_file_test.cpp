@@ -115,5 +115,30 @@ TEST(DurableFile, NeverWritesOverWhatIsThere) {
   EXPECT_EQ(test::read_file(directory.path("log.partial")), "of a crash");
 }
 
+TEST(DurableFile, IsMadeWhenThereIsSomethingToWriteAndTheDiskTakesIt) {
+  const test::TemporaryDirectory directory;
+  const std::string folder = directory.path("not there yet"), path = folder + "/log";
+  DurableFile file;
+  file.open_when_needed([&] { return path; });
+  EXPECT_TRUE(file.append("kept"));
+  EXPECT_TRUE(comes_true([&] { return !file.trouble().empty(); }));
+  EXPECT_EQ(file.counters().queued, 4u);
+  std::filesystem::create_directory(folder);
+  EXPECT_TRUE(comes_true([&] { return test::read_file(path + ".partial") == "kept"; }));
+  EXPECT_EQ(file.trouble(), "");
+  std::string error;
+  EXPECT_TRUE(file.close(error)) << error;
+  EXPECT_EQ(test::read_file(path), "kept");
+}
+
+TEST(DurableFile, OneThatWasNeverNeededIsNotMade) {
+  const test::TemporaryDirectory directory;
+  DurableFile file;
+  file.open_when_needed([&] { return directory.path("log"); });
+  std::string error;
+  EXPECT_TRUE(file.close(error)) << error;
+  EXPECT_TRUE(directory.names().empty());
+}
+
 }  // namespace
 }  // namespace framewatch::drivers

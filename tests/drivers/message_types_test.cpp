@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <framewatch/accel_counts_t.hpp>
 #include <framewatch/accel_t.hpp>
 #include <framewatch/channel_table_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
@@ -263,6 +265,35 @@ service_t service() {
   return m;
 }
 
+accel_counts_t accel_counts() {
+  accel_counts_t m{};
+  m.time_us = 90;
+  m.resolution_mps2 = 1e-6;
+  m.samples = 3;
+  m.offset_us = {0, -5, 10'000};
+  m.channel = {0, 1, 0};
+  m.count = {9'806'650, INT32_MIN, -1};
+  return m;
+}
+
+history_status_t history_status() {
+  history_status_t m{};
+  m.time_us = 100;
+  m.directory = "history";
+  m.raw_samples = 1;
+  m.raw_dropped = 2;
+  m.raw_bytes = 3;
+  m.raw_queue_bytes = 4;
+  m.raw_trouble = "No space left on device";
+  m.summary_commits = 5;
+  m.summary_until_us = 6;
+  m.summary_dropped = 7;
+  m.summary_trouble = "disk I/O error";
+  m.stored_bytes = 8;
+  m.disk_free_bytes = -1;
+  return m;
+}
+
 std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
   return {{"ACCEL", encoded(accel())},
           {"ACCEL_CHANNELS", encoded(channel_table())},
@@ -274,7 +305,9 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
           {"FRAMEWATCH_CAN", encoded(can_status())},
           {"FRAMEWATCH_SESSION", encoded(session_status())},
           {"FRAMEWATCH_SESSION_COMMAND", encoded(session_command())},
-          {"FRAMEWATCH_SERVICE", encoded(service())}};
+          {"FRAMEWATCH_SERVICE", encoded(service())},
+          {"COUNTS", encoded(accel_counts())},
+          {"FRAMEWATCH_HISTORY", encoded(history_status())}};
 }
 
 TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
@@ -338,6 +371,16 @@ TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
       EXPECT_EQ(decoded->latencies, service().latencies);
       EXPECT_EQ(decoded->newest_us, service().newest_us);
       EXPECT_EQ(decoded->event_message, service().event_message);
+    }
+    if (e.channel == "COUNTS") {
+      const auto decoded = decode_accel_counts(e.data);
+      ASSERT_TRUE(decoded);
+      EXPECT_EQ(decoded->count, accel_counts().count);
+      EXPECT_EQ(decoded->channel, accel_counts().channel);
+    }
+    if (e.channel == "FRAMEWATCH_HISTORY") {
+      EXPECT_EQ(decode_history_status(e.data).value_or(history_status_t{}).summary_trouble,
+                "disk I/O error");
     }
     if (e.channel == "FRAMEWATCH_EVENT") {
       const auto decoded = decode_event(e.data);

@@ -1,0 +1,84 @@
+#include "drivers/count_block.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "drivers/channel_table.h"
+#include "drivers/message_check.h"
+
+namespace framewatch::drivers {
+namespace {
+
+constexpr double kStep = 1e-6;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+AccelSample sample(std::int64_t time_us, int axis, double accel) {
+  return {from_microseconds(time_us), axis, accel};
+}
+
+TEST(CountBlock, HoldsWhatWasAddedInItsOrder) {
+  CountBlock block(kStep);
+  block.add(sample(1'000'000, 3, 9.806651));
+  block.add(sample(999'000, 0, -0.25));  // a node that is late
+  block.add(sample(1'010'000, 3, kNaN));
+  EXPECT_EQ(block.size(), 3u);
+  const auto decoded = decode_accel_counts(block.encode());
+  ASSERT_TRUE(decoded);
+  EXPECT_TRUE(block.empty());
+  EXPECT_EQ(decoded->time_us, 1'000'000);
+  EXPECT_EQ(decoded->resolution_mps2, kStep);
+  EXPECT_EQ(decoded->offset_us, (std::vector<std::int32_t>{0, -1000, 10'000}));
+  EXPECT_EQ(decoded->channel, (std::vector<std::int16_t>{3, 0, 3}));
+  EXPECT_EQ(decoded->count, (std::vector<std::int32_t>{9'806'651, -250'000, kNoCount}));
+}
+
+TEST(CountBlock, ValuesBeyondTheRangeAreNotTakenForOthers) {
+  EXPECT_EQ(count_of(1e9, kStep), kMostCount);
+  EXPECT_EQ(count_of(-1e9, kStep), -kMostCount);
+  EXPECT_EQ(count_of(std::numeric_limits<double>::infinity(), kStep), kMostCount);
+  EXPECT_EQ(count_of(2147.483646, kStep), kMostCount - 1);
+  EXPECT_EQ(count_of(kNaN, kStep), kNoCount);
+}
+
+TEST(CountBlock, TheStepOfAConverterKeepsItsIntegers) {
+  constexpr double kConverter = 3.9e-6 * 9.80665;
+  for (std::int32_t count = -524288; count < 524288; count += 997)
+    EXPECT_EQ(count_of(count * kConverter, kConverter), count);
+}
+
+TEST(CountBlock, DoesNotTakeATimeThatItCannotSay) {
+  CountBlock block(kStep);
+  EXPECT_TRUE(block.takes(sample(INT64_MIN, 0, 0)));
+  block.add(sample(0, 0, 0));
+  EXPECT_TRUE(block.takes(sample(INT32_MAX, 0, 0)));
+  EXPECT_FALSE(block.takes(sample(std::int64_t{INT32_MAX} + 1, 0, 0)));
+  EXPECT_FALSE(block.takes(sample(INT64_MIN, 0, 0)));
+}
+
+TEST(CountBlock, DamagedMessagesAreNone) {
+  CountBlock block(kStep);
+  block.add(sample(0, 0, 1));
+  block.add(sample(0, 1, 1));
+  const std::vector<std::uint8_t> good = block.encode();
+  ASSERT_TRUE(decode_accel_counts(good));
+  auto longer = good, shorter = good, many = good, foreign = good;
+  longer.push_back(0);
+  shorter.pop_back();
+  many[24] = 0x7f;  // two thousand million samples
+  foreign[0] ^= 1;
+  for (const auto& bytes : {longer, shorter, many, foreign, std::vector<std::uint8_t>{}})
+    EXPECT_FALSE(decode_accel_counts(bytes));
+}
+
+TEST(CountBlock, TheTableNamesTheChannels) {
+  const auto bytes = count_table({"base-x", "F1-Y1"}, 100, 5);
+  const auto table = decode_channel_table(bytes.data(), bytes.size());
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->rate_hz, 100);
+  EXPECT_EQ(table->entries[1], (ChannelTable::Entry{"F1-Y1", 1, 0}));
+}
+
+}  // namespace
+}  // namespace framewatch::drivers
