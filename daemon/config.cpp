@@ -15,8 +15,8 @@ namespace framewatch::daemon {
 namespace {
 
 void check_sections(const TomlValue& document, std::vector<TextProblem>& problems) {
-  const std::vector<std::string> known{"structure", "channel", "estimator", "lcm",   "can",
-                                       "can_node",  "watch",   "gap",       "effect"};
+  const std::vector<std::string> known{"structure", "channel", "estimator", "lcm",     "can",
+                                       "can_node",  "watch",   "gap",       "history", "effect"};
   for (const TomlEntry& entry : document.entries) {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
     const std::string meant = nearest(entry.key, known);
@@ -25,7 +25,7 @@ void check_sections(const TomlValue& document, std::vector<TextProblem>& problem
          fmt::format("unknown section or key {}: {}", entry.key,
                      meant.empty() ? "the sections are [structure], [structure.design], "
                                      "[[channel]], [estimator], [lcm], [[can]], "
-                                     "[[can_node]], [watch], [gap], [[effect]]"
+                                     "[[can_node]], [watch], [gap], [history], [[effect]]"
                                    : fmt::format("did you mean {}?", meant))});
   }
 }
@@ -57,6 +57,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   read_can(document, config, problems);
   config.watch = read_watch(document, problems);
   config.gap = read_gap(document, problems);
+  config.history = read_history(document, problems);
   if (problems.size() == before)
     for (const std::string& rule : framewatch::problems(config.pipeline))
       problems.push_back({{}, rule});
@@ -78,6 +79,7 @@ std::optional<Config> parse_config(const std::string& path, const std::string& t
   if (found.empty()) {
     load_watch_baseline(config, problems);
     load_gap_model(config, problems);
+    place_history(config);
     if (problems.empty()) return config;
     return std::nullopt;
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/history_options.h"
 #include "daemon/toml_document.h"
 #include "drivers/can/can_map.h"
 #include "estimator/pipeline.h"
@@ -53,10 +54,11 @@ struct Config {
   PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
   LcmSettings lcm;
-  drivers::CanMap can;                 ///< axes as in pipeline.axes
-  std::optional<WatchSettings> watch;  ///< none: nothing is watched
-  std::optional<GapSettings> gap;      ///< none: nothing is simulated beside the measurement
-  std::vector<Effect> effects;         ///< that the building has beyond the linear model
+  drivers::CanMap can;                     ///< axes as in pipeline.axes
+  std::optional<WatchSettings> watch;      ///< none: nothing is watched
+  std::optional<GapSettings> gap;          ///< none: nothing is simulated beside the measurement
+  std::optional<HistorySettings> history;  ///< none: nothing is kept
+  std::vector<Effect> effects;             ///< that the building has beyond the linear model
 };
 
 struct ConfigProblem {

@@ -40,6 +40,9 @@ constexpr SectionText kSections[] = {
     {"gap", "[gap]",
      "Optional: the building is simulated beside its measurement, and what differs is told "
      "([the gap](gap.md))."},
+    {"history", "[history]",
+     "Optional: `framewatch run` keeps raw samples, summaries and events on disk "
+     "([history](history.md))."},
     {"scenario", "Scenario files: at the top",
      "`framewatch simulate` reads a scenario: the building as above or `config`, and what happens "
      "to it."},

@@ -44,4 +44,9 @@ std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextP
 /// Resolves model and store beside the configuration file and reads the model if it exists.
 void load_gap_model(Config& config, std::vector<ConfigProblem>& problems);
 
+std::optional<HistorySettings> read_history(const TomlValue& document,
+                                            std::vector<TextProblem>& problems);
+/// Resolves the directory beside the configuration file.
+void place_history(Config& config);
+
 }  // namespace framewatch::daemon

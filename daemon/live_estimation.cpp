@@ -28,6 +28,7 @@ LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::Can
           config,
           [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
             lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+            if (history_ != nullptr) history_->message(channel, bytes);
           }),
       source_(lcm, channels_of(config), config.lcm.queue_capacity,
               [this](const std::string& channel, const void* data, std::size_t size,
@@ -50,6 +51,7 @@ void LiveEstimation::on_sample(const AccelSample& sample) {
   times_.received_us = host_clock_us();
   times_.newest_us[static_cast<std::size_t>(sample.axis)] = to_microseconds(sample.time);
   if (stores_segments()) segments_.sample(sample);
+  if (history_ != nullptr) history_->sample(sample);
 }
 
 void LiveEstimation::step_done(std::int64_t began_us, std::int64_t windows_before,

@@ -7,6 +7,7 @@
 
 #include "daemon/estimation.h"
 #include "daemon/gap_segments.h"
+#include "daemon/history.h"
 #include "daemon/live_times.h"
 #include "drivers/can/can_log.h"
 #include "drivers/can/can_source.h"
@@ -29,6 +30,8 @@ class LiveEstimation {
   /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
   [[nodiscard]] bool poll(int timeout_ms);
   void finish() { estimation_.finish(); }
+  /// From now on raw samples and everything that is published go there too; null: no more.
+  void record_to(History* history) { history_ = history; }
   const Estimation& estimation() const { return estimation_; }
   Estimation& estimation() { return estimation_; }
   const LiveState& state() const { return state_; }
@@ -51,6 +54,7 @@ class LiveEstimation {
   LiveState state_;
   LiveTimes times_;
   GapSegments segments_;
+  History* history_ = nullptr;
   Estimation estimation_;
   drivers::LcmSource source_;
   drivers::CanSource can_;

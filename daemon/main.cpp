@@ -11,6 +11,7 @@
 #include "daemon/demo_command.h"
 #include "daemon/diagnose_command.h"
 #include "daemon/diff_command.h"
+#include "daemon/history_command.h"
 #include "daemon/record_command.h"
 #include "daemon/refine_command.h"
 #include "daemon/repair_command.h"
@@ -439,6 +440,42 @@ void add_serve(CLI::App& app, Action& action, ServeArguments& arguments) {
   command->callback([&action, &arguments] { action = [&arguments] { return serve(arguments); }; });
 }
 
+void add_history(CLI::App& app, Action& action, HistoryArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "history", "what `run` keeps on disk: an overview, summaries, events, raw samples as files");
+  command->footer(
+      "Times are UTC (2026-11-21T23:15:00Z) or seconds since 1970. Exit status: 0 done, 2 bad\n"
+      "usage or input, and nothing written.\n"
+      "Examples:\n"
+      "  framewatch history building.toml\n"
+      "  framewatch history building.toml --last 2d --parameter 'kx_1_*'\n"
+      "  framewatch history building.toml --period 3600 --out year.csv.gz\n"
+      "  framewatch history building.toml --from 2026-11-21T17:00Z --to 2026-11-21T17:05Z \\\n"
+      "    --raw quake.mseed");
+  command
+      ->add_option("CONFIG_OR_DIR", arguments.place,
+                   "configuration file (TOML) with [history], or the directory it names")
+      ->required();
+  command->add_option("--from", arguments.from, "leave out what is earlier");
+  command->add_option("--to", arguments.to, "leave out what is this late or later");
+  command->add_option("--last", arguments.last, "only so long before the newest: 90m, 2h, 3d");
+  command->add_option("--period", arguments.period_s,
+                      "seconds that a summary is of (default: the shortest that fits a screen,\n"
+                      "of a file the shortest)");
+  command->add_option("--parameter", arguments.parameters, "names, * and ? allowed (default: all)");
+  command->add_option("--out", arguments.out,
+                      "file for the summaries: .csv, .csv.gz or .mat (MATLAB 5)");
+  command->add_option("--raw", arguments.raw,
+                      "file for raw samples: .lcmlog, .csv, .csv.gz or .mseed (miniSEED)");
+  command->add_option("--channel", arguments.channels, "of the raw samples (default: all)");
+  command->add_option("--network", arguments.network, "SEED network code")->capture_default_str();
+  command->add_option("--station", arguments.station, "SEED station code")->capture_default_str();
+  command->add_flag("--events", arguments.events, "every event instead of summaries");
+  command->add_flag("--json", arguments.json, "the overview as a program would read it");
+  command->callback(
+      [&action, &arguments] { action = [&arguments] { return history(arguments); }; });
+}
+
 /// What every command can be told, as far as the command line tells it.
 struct Arguments {
   DemoArguments demo;
@@ -456,6 +493,7 @@ struct Arguments {
   ReportArguments report;
   ServeArguments serve;
   RecordArguments record;
+  HistoryArguments history;
 };
 
 }  // namespace
@@ -485,6 +523,7 @@ int main(int argc, char** argv) {
   add_report(app, action, arguments.report);
   add_serve(app, action, arguments.serve);
   add_record(app, action, arguments.record);
+  add_history(app, action, arguments.history);
 
   try {
     app.parse(argc, argv);

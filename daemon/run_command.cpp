@@ -13,6 +13,7 @@
 #include "daemon/can_monitor.h"
 #include "daemon/clocks.h"
 #include "daemon/gap_keeper.h"
+#include "daemon/history_report.h"
 #include "daemon/intake_complaints.h"
 #include "daemon/log.h"
 #include "daemon/service_report.h"
@@ -80,6 +81,8 @@ int run(const RunArguments& a) {
     resumed = resume(a.state, *config, *lcm, recorder, estimation);
   }
   LiveEstimation& live = *estimation;
+  HistoryReport history(*config, *lcm);
+  live.record_to(history.history());
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
   StateKeeper keeper(a.state, a.state_every_s, *config);
   IntakeComplaints complaints;
@@ -108,6 +111,7 @@ int run(const RunArguments& a) {
     keeper.look(live.estimation(), host_clock_us());
     baseline.look(live.estimation());
     gap.look(live.estimation(), host_clock_us());
+    history.look(host_clock_us());
     if (const auto report = service.look(live, keeper, reloads, host_clock_us()))
       lcm->publish(config->lcm.prefix + "SERVICE", &*report);
   }

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "daemon/history_options.h"
+#include "drivers/durable_file.h"
+
+namespace framewatch::daemon {
+
+/// Everything about raw logs that takes time, in a thread that runs when nothing else wants to
+/// (SCHED_IDLE): closes them, repairs those that a killed program left, compresses, removes what is
+/// too old or too much. What shows a gap or a change of stiffness is kept for ever.
+class HistoryKeeper {
+ public:
+  struct Room {
+    std::int64_t stored_bytes = 0;
+    std::int64_t free_bytes = -1;  ///< on the disk; -1: not known
+  };
+
+  explicit HistoryKeeper(HistorySettings settings);
+  /// Closes what waits for it.
+  ~HistoryKeeper();
+  HistoryKeeper(const HistoryKeeper&) = delete;
+  HistoryKeeper& operator=(const HistoryKeeper&) = delete;
+
+  void retire(std::unique_ptr<drivers::DurableFile> log);
+  /// Sensor time, which the age of a log is counted from.
+  void newest(std::int64_t time_us);
+  Room room() const;
+
+ private:
+  void work();
+  void close_retired();
+  void look();
+  bool stopping() const;
+
+  HistorySettings settings_;
+  mutable std::mutex mutex_;  ///< guards what is below
+  std::condition_variable wake_;
+  std::vector<std::unique_ptr<drivers::DurableFile>> retired_;
+  std::int64_t newest_us_ = INT64_MIN;
+  Room room_;
+  bool stop_ = false;
+  std::thread thread_;  ///< last: it sees everything above
+};
+
+}  // namespace framewatch::daemon

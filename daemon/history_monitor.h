@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <framewatch/event_t.hpp>
+#include <framewatch/history_status_t.hpp>
+
+namespace framewatch::daemon {
+
+/// Turns what becomes of the history into alarms: one when the disk stops to take samples or
+/// summaries, one when it takes them again, with what was lost.
+class HistoryMonitor {
+ public:
+  /// now_us: of the host's clock. Once a second the events since the last time; empty in between.
+  std::optional<std::vector<event_t>> look(std::int64_t now_us, const history_status_t& status);
+
+ private:
+  struct Part {
+    std::int64_t since_us = 0, id = 0, lost_before = 0, lost_seen = 0, well_since_us = 0;
+    bool raised = false;
+  };
+  std::optional<event_t> news(Part& part, const char* place, const std::string& trouble,
+                              std::int64_t lost, const history_status_t& status,
+                              std::int64_t now_us);
+
+  std::int64_t next_us_ = INT64_MIN;
+  Part raw_, summaries_;
+};
+
+}  // namespace framewatch::daemon

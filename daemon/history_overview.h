@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/summary_query.h"
+
+namespace framewatch::daemon {
+
+/// What a history holds, on one screen: raw logs, summaries, the last period's boxplots, losses,
+/// events.
+std::string history_overview(const std::string& directory, SummaryQuery& summaries);
+
+/// The same for a program: `framewatch.history/1`.
+std::string history_json(const std::string& directory, SummaryQuery& summaries);
+
+/// One line per event.
+std::string event_line(const event_t& event);
+
+/// "4.2 MB".
+std::string size_text(std::int64_t bytes);
+
+}  // namespace framewatch::daemon

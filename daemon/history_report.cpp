@@ -1,0 +1,35 @@
+#include "daemon/history_report.h"
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include "daemon/clocks.h"
+#include "daemon/log.h"
+
+namespace framewatch::daemon {
+
+HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(config), lcm_(lcm) {
+  if (!config.history) return;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a disk that is full
+  history_.emplace(config);
+}
+
+void HistoryReport::look(std::int64_t now_us) {
+  if (!history_) return;
+  history_->tick(steady_clock_us());
+  const history_status_t status = history_->status();
+  const auto events = monitor_.look(now_us, status);
+  if (!events) return;
+  lcm_.publish(config_.lcm.prefix + "HISTORY", &status);
+  const std::string channel = config_.lcm.prefix + "EVENT";
+  for (const event_t& event : *events) {
+    log(event.state != 0 ? LogLevel::error : LogLevel::notice, "history: " + event.message);
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(event.getEncodedSize()));
+    event.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+    history_->message(channel, bytes);
+  }
+}
+
+}  // namespace framewatch::daemon

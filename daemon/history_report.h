@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <lcm/lcm-cpp.hpp>
+
+#include "daemon/config.h"
+#include "daemon/history.h"
+#include "daemon/history_monitor.h"
+
+namespace framewatch::daemon {
+
+/// The history of a running estimation, where one is configured, and what is to be said about it:
+/// history_status_t every second, events and log lines when the disk stops or begins to take it.
+class HistoryReport {
+ public:
+  /// Both must outlive this.
+  HistoryReport(const Config& config, lcm::LCM& lcm);
+
+  /// Null when none is configured.
+  History* history() { return history_ ? &*history_ : nullptr; }
+  /// Several times a second; now_us: of the host's clock.
+  void look(std::int64_t now_us);
+
+ private:
+  const Config& config_;
+  lcm::LCM& lcm_;
+  HistoryMonitor monitor_;
+  std::optional<History> history_;
+};
+
+}  // namespace framewatch::daemon

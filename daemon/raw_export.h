@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "drivers/accel_messages.h"
+
+namespace framewatch::daemon {
+
+/// One channel of an export.
+struct RawChannel {
+  std::string name;
+  drivers::ChannelAddress address;  ///< on LCM
+};
+
+/// Takes a history's raw samples in the order they were received, m/s^2 before calibration.
+class RawExport {
+ public:
+  virtual ~RawExport() = default;
+  /// NaN: there was no valid value. False when it cannot be written; error() says why, here and
+  /// below.
+  [[nodiscard]] virtual bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) = 0;
+  /// The file appears under its name only now.
+  [[nodiscard]] virtual bool close() = 0;
+  virtual std::string error() const = 0;
+  /// What a person should know about the file, one line each.
+  virtual std::vector<std::string> notes() const { return {}; }
+};
+
+struct SeedNames {
+  std::string network, station;
+};
+
+/// By the name's end: .lcmlog (accel_t, as `framewatch replay` reads), .csv and .csv.gz (a record)
+/// or .mseed (Steim-2 counts of `resolution_mps2`). Null, and the reason, when it cannot be made.
+std::unique_ptr<RawExport> raw_export(const std::string& path,
+                                      const std::vector<RawChannel>& channels, double rate_hz,
+                                      double resolution_mps2, const SeedNames& names,
+                                      std::string& error);
+
+/// Rule that the name of an export breaks; empty when it is good.
+std::string problem_of_raw_name(const std::string& path);
+
+}  // namespace framewatch::daemon

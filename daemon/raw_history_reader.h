@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "daemon/history_files.h"
+
+namespace framewatch::daemon {
+
+struct RawCount {
+  std::int64_t time_us;
+  std::size_t channel;  ///< of the newest table
+  std::int32_t count;   ///< as in accel_counts_t
+  double resolution_mps2;
+};
+
+/// Who gets what a history's raw logs hold.
+struct RawVisitor {
+  /// Before the first sample, and whenever the channels become others.
+  std::function<void(const std::vector<std::string>& names, double rate_hz)> channels;
+  std::function<void(const RawCount&)> sample;
+};
+
+/// The raw logs of a directory that may hold samples from `from_us` on and before `to_us`, those
+/// kept for events too, in order of time.
+std::vector<RawLog> raw_logs_between(const std::string& directory, std::int64_t from_us,
+                                     std::int64_t to_us);
+
+/// Their samples, as they were received. A log that is still written, was cut off or is damaged
+/// gives what is intact of it, with a note. False, with the problem, when one cannot be read.
+bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std::int64_t to_us,
+                      const RawVisitor& visitor, std::vector<std::string>& notes,
+                      std::string& problem);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace framewatch::daemon {
+
+/// Gives the .partial logs in a folder that no program writes any more their names: the event that
+/// was being written is cut off, nothing else is touched. One in which there is no whole event is
+/// put aside as .damaged; an empty one is removed. Says so in the log.
+void repair_raw_logs(const std::string& folder);
+
+/// PATH becomes PATH.zst. What goes wrong is a line in the log, and PATH stays.
+void compress_raw_log(const std::string& path);
+
+struct TimeSpan {
+  std::int64_t from_us, to_us;
+};
+/// Writes those blocks of a raw log that have samples within a span, into a log of the same name in
+/// `folder`; none when there is no such block. Empty, or why not; then nothing was written.
+std::string excerpt_raw_log(const std::string& path, const std::vector<TimeSpan>& spans,
+                            const std::string& folder);
+
+}  // namespace framewatch::daemon
