@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "drivers/can/can_log.h"
+#include "drivers/count_block.h"
 #include "drivers/message_types.h"
 
 namespace framewatch::daemon {
@@ -258,6 +259,12 @@ void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
 }
 
 void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed) {
+  if (seen.samples == 0 && seen.channels.contains(drivers::kCountsChannel)) {
+    problems_.push_back(path +
+                        ": is a raw log of a history; `framewatch history CONFIG --raw OUT.lcmlog` "
+                        "makes one to replay");
+    return;
+  }
   const std::string malformed_text = fmt::format(
       "{}: byte {}: {} messages on our channels are no accel_t or channel_table_t, the first: {}",
       path, seen.first_malformed_offset, malformed, seen.malformed);

@@ -41,6 +41,7 @@ constexpr const char* kPutSummary =
 std::string SummaryStore::open() {
   std::error_code none;
   std::filesystem::create_directories(settings_.directory, none);
+  if (std::string problem = lock_.take(settings_.directory); !problem.empty()) return problem;
   if (!file_.open(summary_file(settings_.directory))) return file_.error();
   std::string problem = upgrade(file_, history_schema());
   if (!problem.empty()) file_.close();

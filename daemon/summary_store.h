@@ -9,6 +9,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 
+#include "daemon/history_lock.h"
 #include "daemon/history_options.h"
 #include "daemon/period_data.h"
 #include "daemon/sqlite_file.h"
@@ -30,7 +31,8 @@ class SummaryStore {
  public:
   explicit SummaryStore(const HistorySettings& settings) : settings_(settings) {}
 
-  /// Opens, or makes, the database and brings it to this program's schema. Empty, or why not.
+  /// Opens, or makes, the database and brings it to this program's schema. Empty, or why not:
+  /// another program may be writing it.
   std::string open();
   bool is_open() const { return file_.is_open(); }
   void close() { file_.close(); }
@@ -53,6 +55,7 @@ class SummaryStore {
   bool add_event(const event_t& event);
 
   HistorySettings settings_;
+  HistoryLock lock_;
   SqliteFile file_;
   std::vector<std::int64_t> parameter_ids_, channel_ids_;
   std::int64_t repeated_ = 0;

@@ -8,6 +8,7 @@
 #include "daemon/history_files.h"
 #include "daemon/history_monitor.h"
 #include "daemon/run_command.h"
+#include "daemon/sqlite_file.h"
 #include "drivers/lcm_log.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/recorded_table_test.h"
@@ -45,7 +46,9 @@ class FullDisk {
 
 struct Collected {
   std::vector<std::vector<std::uint8_t>> estimates;
-  void on_message(const lcm::ReceiveBuffer* buffer, const std::string&) {
+  std::size_t main_windows = 0;
+  void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    main_windows += channel == "FRAMEWATCH_ESTIMATE";
     const auto* bytes = static_cast<const std::uint8_t*>(buffer->data);
     estimates.emplace_back(bytes, bytes + buffer->data_size);
   }
@@ -71,6 +74,7 @@ class Live {
     }
   }
   const auto& estimates() const { return collected_.estimates; }
+  std::size_t main_windows() const { return collected_.main_windows; }
 
  private:
   lcm::LCM lcm_;
@@ -87,11 +91,13 @@ class HistoryFailure : public testing::Test {
     Live without(config_, nullptr);
     without.play(log_);
     expected_ = without.estimates();
+    main_windows_ = without.main_windows();
   }
   const test::TemporaryDirectory directory_;
   const std::string log_;
   Config config_;
   std::vector<std::vector<std::uint8_t>> expected_;
+  std::size_t main_windows_ = 0;
 };
 
 TEST_F(HistoryFailure, AHistoryChangesNoByteOfTheEstimates) {
@@ -193,6 +199,33 @@ TEST_F(HistoryFailure, AFolderThatMayNotBeWrittenIsWaitedFor) {
   EXPECT_TRUE(comes_true([&] { return !history.status().raw_trouble.empty(); }, kSoon));
   fs::remove(config_.history->directory);
   EXPECT_TRUE(comes_true([&] { return history.status().raw_trouble.empty(); }, kSoon));
+}
+
+TEST_F(HistoryFailure, ADatabaseThatIsSlowOrBusyDelaysNobody) {
+  {
+    History history(config_);
+    ASSERT_TRUE(
+        comes_true([&] { return fs::exists(summary_file(config_.history->directory)); }, kSoon));
+    SqliteFile other;
+    ASSERT_TRUE(other.open(summary_file(config_.history->directory)));
+    ASSERT_TRUE(comes_true([&] { return other.execute("BEGIN IMMEDIATE"); }, kSoon));
+    {
+      Live live(config_, &history);
+      live.play(log_);
+      EXPECT_TRUE(live.estimates() == expected_);
+    }
+    EXPECT_EQ(history.status().summary_until_us, 0);
+    ASSERT_TRUE(comes_true([&] { return !history.status().summary_trouble.empty(); }, kSoon));
+    ASSERT_TRUE(other.execute("ROLLBACK"));
+    EXPECT_TRUE(comes_true([&] { return history.status().summary_until_us > 0; }, kSoon));
+    EXPECT_EQ(history.status().summary_trouble, "");
+    EXPECT_EQ(history.status().summary_dropped, 0);
+  }
+  SqliteFile file;
+  ASSERT_TRUE(file.open_to_read(summary_file(config_.history->directory)));
+  SqliteStatement windows = file.prepare("SELECT sum(windows) FROM period WHERE period_s = 1");
+  ASSERT_TRUE(windows.row());
+  EXPECT_EQ(windows.integer(0), static_cast<std::int64_t>(main_windows_));
 }
 
 TEST(HistoryMonitor, ASlowDiskThatLosesSamplesIsAnAlarmToo) {

@@ -229,6 +229,17 @@ TEST(SummaryStore, AnotherProgramCommitsNothingIntoClosedPeriods) {
   expect_summary(rows(s, "kx_1_y1", 1).at(1), 0, 100, 200);
 }
 
+TEST(SummaryStore, TwoProgramsDoNotWriteOneHistory) {
+  const test::TemporaryDirectory directory;
+  const HistorySettings s = settings(directory);
+  SummaryStore other(s);
+  {
+    Program program(s);
+    EXPECT_EQ(other.open(), "another program writes this history");
+  }
+  EXPECT_EQ(other.open(), "");
+}
+
 TEST(SummaryStore, ValuesOfPeriodsThatAreOverDoNotPileUp) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);

@@ -15,6 +15,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
+  pid_t pid() const { return pid_; }
   void signal(int number) const;
   /// Its exit code, 128 and its signal when one ended it.
   int wait();
