@@ -18,6 +18,9 @@ namespace {
 
 constexpr int kSmallBuffer_bytes = 4096;
 constexpr auto kWorthSleeping = std::chrono::milliseconds(1);
+/// Making and closing a CAN socket takes the kernel milliseconds, and the nodes must not fall
+/// behind.
+constexpr auto kLookAgain = std::chrono::milliseconds(50);
 /// An id nobody has: the sender reads nothing.
 const std::vector<drivers::CanFilter> kNothing{{0x1FFFFFFF, 0x1FFFFFFF, true}};
 
@@ -28,6 +31,7 @@ class CanOutput : public SimulationOutput {
     for (const drivers::CanBusMap& bus : map_.buses)
       interfaces_.push_back(interface.empty() ? bus.interface : interface);
     sockets_.resize(interfaces_.size());
+    look_again_.resize(interfaces_.size());
   }
 
   bool open(std::string& error) {
@@ -76,7 +80,12 @@ class CanOutput : public SimulationOutput {
     constexpr int kTries = 2000;
     constexpr auto kPause = std::chrono::microseconds(500);
     std::string error;
-    if (!sockets_[b].is_open() && !open_bus(b, error)) return false;
+    if (!sockets_[b].is_open()) {
+      const Clock::time_point now = Clock::now();
+      if (now < look_again_[b]) return false;
+      look_again_[b] = now + kLookAgain;
+      if (!open_bus(b, error)) return false;
+    }
     for (int i = 0; i < kTries; ++i) {
       if (sockets_[b].write(frame)) return true;
       if (errno != ENOBUFS && errno != EAGAIN) break;
@@ -91,6 +100,7 @@ class CanOutput : public SimulationOutput {
   double speed_;
   std::vector<std::string> interfaces_;
   std::vector<drivers::CanSocket> sockets_;
+  std::vector<Clock::time_point> look_again_;  ///< for an interface that is not there
   bool started_ = false;
   Clock::time_point start_;
   std::int64_t unsent_ = 0;

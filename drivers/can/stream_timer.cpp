@@ -14,7 +14,7 @@ constexpr std::size_t kSure = 5;         ///< frames that agree make a step
 constexpr double kEarliest_us = -5'000;  ///< before the line: nothing is received before it is sent
 constexpr double kLatest_us = 30'000;    ///< a busy bus
 constexpr double kSame_us = 20'000;      ///< what two frames of one step may differ by
-constexpr double kAbsurd_us = 2e6;       ///< nobody delivers so late
+constexpr double kAbsurd_us = 2e6;       ///< nobody delivers so late whose patience is not longer
 constexpr std::int64_t kNoJump = 3;      ///< numbers
 constexpr double kStall_us = 1e6;        ///< frames may be late by after an outage, and
 constexpr double kStallOfWrap = 0.125;   ///< not more of the counter: a restart would look like it
@@ -58,7 +58,7 @@ double StreamTimer::device_of(double reading, double host_us) const {
     if (!any_) return last_device_us_ + period_us;
     return last_device_us_ + period_us * std::round((host_us - last_host_us_) / period_us);
   }
-  const double device_us = reading * settings_.tick_us;
+  const double device_us = reading * settings_.tick_us + origin_us_;
   const double wrap_us = settings_.modulus * settings_.tick_us;
   if (wrap_us <= 0 || !any_) return device_us;
   const double expected_us = last_device_us_ + (host_us - last_host_us_) / line_.rate();
@@ -70,13 +70,17 @@ bool StreamTimer::believable(double late_us) const {
          late_us <= std::max(kLatest_us, 1.5 * settings_.period_us);
 }
 
+double StreamTimer::absurd_us() const {
+  return std::max(kAbsurd_us, settings_.patience_us);
+}
+
 /// Nothing restarted: a starved sender or adapter, a line begun with late frames, or an outage that
 /// ends with a burst.
 bool StreamTimer::goes_on(const Held& held) const {
   const std::int64_t jump = held.values.number - delivered_;
   const double late = late_us(held);
   if (jump <= 0) return false;
-  if (jump <= kNoJump) return late > -kLatest_us && late < kAbsurd_us;
+  if (jump <= kNoJump) return late > -kLatest_us && late < absurd_us();
   const double wrap_us = settings_.modulus * settings_.tick_us;
   return late >= 0 && late < kStall_us && (wrap_us <= 0 || late < kStallOfWrap * wrap_us);
 }
@@ -132,9 +136,43 @@ void StreamTimer::see_arrival(double host_us, TimedValues values) {
 }
 
 bool StreamTimer::confirm(std::int64_t number) {
+  if (settings_.kind != CanTiming::period) return decide(number - opened_.values.number);
   if (number == opened_.values.number && !arrivals_.waiting()) return true;
   if (!arrivals_.confirm(number - last_number_)) return false;
   give_numbers();
+  return true;
+}
+
+/// The numbers of the frames held are larger by `shift`.
+bool StreamTimer::decide(std::int64_t shift) {
+  const double shift_us = settings_.period_us * static_cast<double>(shift);
+  if (starting_ || (shift == 0 && !opened_is_held_)) return shift == 0;
+  if (!opened_is_held_) return unwrap(shift_us / settings_.tick_us);
+  const double late = opened_.host_us - line_.host_us(opened_.device_us + shift_us);
+  if (held_.front().values.number + shift <= delivered_ || late <= -kLatest_us ||
+      late >= absurd_us())
+    return shift == 0;
+  origin_us_ += shift_us;
+  opened_.device_us += shift_us;
+  opened_.values.number += shift;
+  for (Held& h : held_) {
+    h.device_us += shift_us;
+    h.values.number += shift;
+  }
+  late_ = true;
+  patience_ = static_cast<int>(settings_.patience_us / settings_.period_us);
+  give_out_held();
+  return true;
+}
+
+/// The frame seen last was late by whole wraps of its reading, which made it look in time.
+bool StreamTimer::unwrap(double units) {
+  if (units >= 0 || settings_.modulus <= 0 || std::remainder(units, settings_.modulus) != 0)
+    return false;
+  opened_.device_us += units * settings_.tick_us;
+  opened_.values.number += std::llround(units * settings_.tick_us / settings_.period_us);
+  last_device_us_ = opened_.device_us;
+  last_number_ = delivered_ = opened_.values.number;
   return true;
 }
 
@@ -250,7 +288,7 @@ void StreamTimer::hold(Held held) {
 void StreamTimer::give_out_held() {
   std::vector<Held> held = std::exchange(held_, {});
   for (Held& h : held) {
-    if (std::abs(late_us(h)) > kAbsurd_us) {
+    if (std::abs(late_us(h)) > absurd_us()) {
       unplaced_ += h.timed;
       continue;
     }

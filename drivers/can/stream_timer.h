@@ -76,7 +76,8 @@ class StreamTimer {
   void see(double reading, double host_us, TimedValues values);
   /// Number of the frame seen last, as far as is known.
   std::int64_t opened_number() const { return opened_.values.number; }
-  /// Others know the number of the frame seen last. False when it cannot be that one.
+  /// Others know the number of the frame seen last. False when it cannot be that one. A frame that
+  /// was held because of its stamp is no more in doubt: it is late, or its reading began anew.
   bool confirm(std::int64_t number);
   /// More of the sample opened last.
   void attach(TimedValues values);
@@ -98,7 +99,7 @@ class StreamTimer {
     a(line_, arrivals_, opened_, starting_, any_, renumber_, last_device_us_, last_host_us_);
     a(last_number_, opened_is_held_, seen_, told_any_, told_device_us_, told_us_, delivered_,
       late_);
-    a(patience_, restarts_, unplaced_);
+    a(patience_, restarts_, unplaced_, origin_us_);
   }
 
  private:
@@ -116,10 +117,13 @@ class StreamTimer {
 
   double device_of(double reading, double host_us) const;
   void see_arrival(double host_us, TimedValues values);
+  bool decide(std::int64_t shift);
+  bool unwrap(double units);
   void give_numbers();
   double time_of(double device_us);
   double late_us(const Held& held) const { return held.host_us - line_.host_us(held.device_us); }
   bool believable(double late_us) const;
+  double absurd_us() const;
   bool goes_on(const Held& held) const;
   std::size_t timed_held() const;
   void remember(const Held& held);
@@ -149,8 +153,9 @@ class StreamTimer {
   bool told_any_ = false;                    ///< of this start
   double told_device_us_ = 0, told_us_ = 0;  ///< newest time that was given out
   std::int64_t delivered_ = -1;              ///< largest number
-  bool late_ = false;  ///< the stream goes on without a jump, only later than a bus explains
-  int patience_ = 0;   ///< frames it may go on so
+  bool late_ = false;     ///< the stream goes on without a jump, only later than a bus explains
+  int patience_ = 0;      ///< frames it may go on so
+  double origin_us_ = 0;  ///< device time of the reading 0
   std::int64_t restarts_ = 0, unplaced_ = 0;
 };
 

@@ -213,6 +213,34 @@ TEST(CanIntake, AStarvedSenderLosesNoSample) {
   }
 }
 
+TEST(CanIntake, AnOutageThatEndsLateLosesWhatItLost) {
+  constexpr int kInstants = 1000;
+  constexpr std::int64_t kLost = 8, kFrame_us = 35;
+  const daemon::Config config = can_example("tower");
+  const Traffic good = test::can_traffic(config, kInstants);
+  // More than half of what the SYNC counts to, 2.4 s: its own count is ambiguous.
+  for (const std::int64_t late_us : {350'000, 1'270'000, 1'900'000, 2'400'000, 4'700'000}) {
+    const std::int64_t end_us = kStart_us + 4'080'000 + late_us;
+    Traffic left;
+    for (BusFrame f : good) {
+      const std::int64_t instant = (f.frame.stamp_us - kStart_us) / 10'000;
+      if (instant >= 400 && instant < 400 + kLost) continue;
+      if (instant >= 400 + kLost)
+        f.frame.stamp_us =
+            std::max({f.frame.stamp_us, end_us, left.back().frame.stamp_us + kFrame_us});
+      left.push_back(f);
+    }
+    const Result result = run(config.can, left);
+    for (const CanNodeCounters& c : result.nodes) {
+      EXPECT_EQ(c.received, kInstants - kLost) << late_us;
+      EXPECT_EQ(c.lost, kLost) << late_us;
+      EXPECT_EQ(c.late + c.duplicates + c.unplaced, 0) << late_us;
+    }
+    const auto whole = by_period(run(config.can, good));
+    for (const auto& [at, value] : by_period(result)) EXPECT_EQ(value, whole.at(at)) << late_us;
+  }
+}
+
 TEST(CanIntake, TheNodesCountersTellWhichSyncWasLost) {
   daemon::Config config = can_example("tower");
   config.can.buses[0].sync_overflow = 0;
