@@ -5,6 +5,7 @@
 #include "daemon/diagnose_output.h"
 #include "daemon/html_page.h"
 #include "daemon/svg_plot.h"
+#include "daemon/where_map.h"
 #include "estimator/diagnose/catalogue_form.h"
 
 namespace framewatch::daemon {
@@ -157,6 +158,10 @@ std::string where_section(const DiagnoseOutput& o) {
              "building "
              "fits again when it is the right one: the misfit falls to 1, from {:.3g}.</p>\n",
              o.diagnosis.ratio_before) +
+         html_figure(
+             where_map(o.plant.structure, o.plant.axes, o.diagnosis.map, o.diagnosis.ratio_before),
+             "Plans of the stories. The stronger a frame, panel, mass or sensor is drawn, "
+             "the less is left when it may do anything; the three best are numbered.") +
          html_table({"place", "misfit left, 1 is noise", "when", "frequencies", "largest"}, rows);
 }
 

@@ -29,10 +29,12 @@ constexpr double kNearFloor = 2.5;  ///< NRMSE over its floor
 constexpr double kAtFloor = 1.15;
 constexpr double kSame = 8;  ///< difference of misfits that decides nothing
 constexpr double kLeastGain = 50;
-constexpr double kSignificant = 4;     ///< standard deviations of the misfit under noise
-constexpr double kOnePlace = 1.6;      ///< ratio above which one place does not do
-constexpr double kPairShare = 0.4;     ///< of the excess that two places must leave at most
-constexpr double kOwnPrice = 0.1;      ///< of the excess: what an arbitrary force must be better by
+constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
+constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
+constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
+constexpr double kOwnPrice = 0.1;   ///< of the excess: what an arbitrary force must be better by
+constexpr double kApart =
+    0.25;  ///< of the excess that records leave at most if each may be another building
 constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
 constexpr double kExact = 1e-9;        ///< tolerance of what is declared
 constexpr int kPolishSteps = 6, kTrainSteps = 8, kDeclaredSteps = 15;
@@ -223,7 +225,10 @@ class Search {
     const double expected_now = expected(now.model);
     const double noise = std::clamp(located.places.front().ratio, 0.5, 1.0);
     const double excess = sum(now.misfit) - noise * expected_now;
-    if (out_.where.empty()) out_.where = where_of(fitter_, located.places);
+    if (out_.where.empty()) {
+      out_.where = where_of(fitter_, located.places);
+      out_.map = map_of(located);
+    }
     const double needed = std::max(kLeastGain, kSignificant * std::sqrt(expected_now));
     if (excess < needed) return false;
 
@@ -368,6 +373,10 @@ class Search {
     if (out_.effects.empty()) {
       const bool adequate = fits && (before < kAdequateGap || out_.rejected.empty());
       out_.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
+      if (!adequate && out_.reason.empty() && fit_apart())
+        out_.reason =
+            "each record alone fits a linear building, all of them together do not: they are of "
+            "different buildings, or the building changed between them";
       return;
     }
     const double fraction =
@@ -375,6 +384,20 @@ class Search {
     out_.verdict = fits || (fraction > kTakesAll && gap < kNearFloor * floor)
                        ? Verdict::explained
                        : Verdict::partly_explained;
+  }
+
+  /// Whether most of the misfit is gone when every stretch may be of a building of its own.
+  bool fit_apart() const {
+    double misfit = 0, noise = 0;
+    for (const Stretch& s : stretches_) {
+      const std::vector<Stretch> one{s};
+      const Fitter alone(plant_, one, options_.tolerances);
+      const FitResult fitted = alone.fit(initial_model(plant_), {}, {});
+      if (!fitted.good) return false;
+      misfit += sum(fitted.misfit);
+      noise += alone.expected(0, fitted.model);
+    }
+    return misfit / noise - 1 < kApart * (out_.ratio_before - 1);
   }
 
   const Plant& plant_;

@@ -61,9 +61,10 @@ struct Diagnosis {
   std::vector<Gap> before, after;  ///< of each stretch, models fitted to the training ones alone
   /// The training stretches alone do not determine the effects: `after` is of `model`.
   bool after_of_all = false;
-  std::vector<FoundEffect> known;    ///< that the configuration has, fitted again
-  std::vector<FoundEffect> effects;  ///< that were found, in their order
-  std::vector<WhereEntry> where;
+  std::vector<FoundEffect> known;            ///< that the configuration has, fitted again
+  std::vector<FoundEffect> effects;          ///< that were found, in their order
+  std::vector<WhereEntry> where;             ///< the likeliest places, best first
+  std::vector<WhereEntry> map;               ///< what is left of every place, without the signal
   std::vector<Trial> rejected;               ///< best of what did not earn its place
   double ratio_before = 0, ratio_after = 0;  ///< misfit over what noise explains
 };

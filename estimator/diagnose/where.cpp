@@ -64,4 +64,20 @@ std::vector<WhereEntry> where_of(const Fitter& fitter, const std::vector<Localis
   return out;
 }
 
+std::vector<WhereEntry> map_of(const Located& located) {
+  std::vector<WhereEntry> out;
+  const auto add = [&](const Localisation& place) {
+    WhereEntry entry;
+    entry.place = place.suspects.front().place;
+    entry.ratio = place.ratio;
+    const auto same = [&](const WhereEntry& e) { return e.place == entry.place; };
+    if (std::none_of(out.begin(), out.end(), same)) out.push_back(entry);
+  };
+  for (const Localisation& place : located.places) add(place);
+  for (const Localisation& place : located.once) add(place);
+  std::stable_sort(out.begin(), out.end(),
+                   [](const WhereEntry& a, const WhereEntry& b) { return a.ratio < b.ratio; });
+  return out;
+}
+
 }  // namespace framewatch

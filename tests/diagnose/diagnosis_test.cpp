@@ -1,6 +1,7 @@
 #include "estimator/diagnose/diagnosis.h"
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -110,6 +111,35 @@ TEST(Diagnose, GainOfOneChannelIsNotPhysics) {
   EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::gain_error);
   EXPECT_EQ(d.effects[0].chosen.place.channel, 1);
   EXPECT_NEAR(d.model.gain[1], 0.08, 0.01);
+}
+
+TEST(Diagnose, RecordsOfDifferentBuildingsAreSaidToBe) {
+  const Small small;
+  Small other;
+  for (int f = 0; f < 4; ++f)
+    other.truth[other.table.frame_stiffness(1, f)] *= f % 2 == 0 ? 1.4 : 0.75;
+  const Diagnosis d = small.diagnosis_of({small.record({}, 1), other.record({}, 2)});
+  EXPECT_EQ(d.verdict, Verdict::unexplained);
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_NE(d.reason.find("different buildings"), std::string::npos) << d.reason;
+}
+
+TEST(Diagnose, ARecordWithoutCommonTimeIsNotNamedAsPhysics) {
+  constexpr int kLate = 40;  // 0.8 s
+  const Small small;
+  std::vector<Eigen::MatrixXd> records{small.record({}, 1), small.record({}, 2)};
+  // One recorder has two of the floor's channels, another the rest.
+  const Eigen::Index rows = records[1].rows();
+  for (Eigen::MatrixXd& record : records) {
+    const Eigen::MatrixXd late = record.block(0, 0, rows - kLate, 2);
+    record.block(kLate, 0, rows - kLate, 2) = late;
+  }
+  const Diagnosis d = small.diagnosis_of(records);
+  for (const FoundEffect& f : d.effects) EXPECT_EQ(f.chosen.kind, EffectKind::time_shift);
+  if (d.effects.size() < 2) {
+    EXPECT_NE(d.verdict, Verdict::explained);
+    EXPECT_NE(d.verdict, Verdict::adequate);
+  }
 }
 
 TEST(LawMotion, HysteresisClosesItsLoopAtTheYieldForce) {
