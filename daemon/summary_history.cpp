@@ -63,6 +63,7 @@ SummaryHistory::Counters SummaryHistory::counters() const {
 }
 
 void SummaryHistory::work() {
+  commit();  // what was taken already is known before the first window comes
   for (bool last = false; !last;) {
     std::vector<Message> messages;
     {
@@ -132,7 +133,11 @@ void SummaryHistory::commit() {
          problem.empty() ? store_.open_periods() : decltype(store_.open_periods())())
       collector_.taken(start_us, last_us);
   }
-  if (waiting_.periods.empty() && waiting_.events.empty() && problem.empty()) return;
+  if (waiting_.periods.empty() && waiting_.events.empty() && problem.empty()) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    counters_.trouble.clear();
+    return;
+  }
   if (problem.empty()) problem = store_.add(waiting_);
   std::int64_t until_us = INT64_MIN;
   if (problem.empty()) {
@@ -146,7 +151,8 @@ void SummaryHistory::commit() {
   }
   if (store_.repeated() > std::exchange(repeated_said_, store_.repeated()))
     log(LogLevel::notice, "windows of a time that was summarised before are not summarised again");
-  if (problem.empty() && Clock::now() >= next_prune_) {
+  const bool time_known = newest_us_ != INT64_MIN;
+  if (problem.empty() && time_known && Clock::now() >= next_prune_) {
     next_prune_ = Clock::now() + kPrune;
     problem = store_.prune(std::min(newest_us_, host_clock_us()));
   }

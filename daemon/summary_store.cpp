@@ -251,8 +251,9 @@ bool SummaryStore::add_event(const event_t& e) {
 
 std::string SummaryStore::prune(std::int64_t newest_us) {
   const std::int64_t period_s = settings_.summary_s.front();
-  const std::int64_t before_us =
-      newest_us - static_cast<std::int64_t>(kDay_us * settings_.keep_summary_days);
+  const auto keep_us = static_cast<std::int64_t>(kDay_us * settings_.keep_summary_days);
+  if (newest_us < keep_us) return {};
+  const std::int64_t before_us = newest_us - keep_us;
   const bool done = file_.transaction([&] {
     for (const char* sql : {"DELETE FROM summary WHERE parameter IN (SELECT id FROM parameter)"
                             " AND period_s = ? AND start_us < ?",

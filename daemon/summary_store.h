@@ -43,7 +43,8 @@ class SummaryStore {
   std::string add(const SummaryBatch& batch);
   /// Periods that were left out, by add(), because their time had been summarised before.
   std::int64_t repeated() const { return repeated_; }
-  /// Removes summaries of the shortest period older than keep_summary_days before `newest_us`.
+  /// Removes summaries of the shortest period older than keep_summary_days before `newest_us`; none
+  /// while that is before 1970.
   std::string prune(std::int64_t newest_us);
 
  private:

@@ -7,6 +7,7 @@
 #include "daemon/history_files.h"
 #include "daemon/history_schema.h"
 #include "daemon/session_estimates.h"
+#include "daemon/summary_history.h"
 #include "daemon/summary_store.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/temporary.h"
@@ -318,6 +319,43 @@ TEST(SummaryStore, PrunesTheShortestPeriodOnly) {
   ASSERT_EQ(program.store().prune(kStart_us + day_us + 5 * kSecond_us), "");
   EXPECT_EQ(rows(s, "kx_1_y1", 1).size(), 5u);
   EXPECT_EQ(rows(s, "kx_1_y1", 2).size(), 5u);
+}
+
+std::vector<std::uint8_t> encoded(const event_t& event) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(event.getEncodedSize()));
+  event.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+TEST(SummaryHistory, AnEventBeforeTheFirstWindowPrunesNothing) {
+  const test::TemporaryDirectory directory;
+  const Config config = test::table_with_history(directory.path("h"));
+  {
+    Program program(*config.history);
+    program.windows(0, 1000);
+    program.commit();
+  }
+  {
+    SummaryHistory history(config);
+    event_t event{};
+    event.kind = "history";
+    history.message("FRAMEWATCH_EVENT", encoded(event));
+    EXPECT_TRUE(
+        test::comes_true([&] { return history.counters().commits > 0; }, std::chrono::seconds(5)));
+  }
+  EXPECT_EQ(rows(*config.history, "kx_1_y1", 1).size(), 10u);
+}
+
+TEST(SummaryStore, WithoutATimeNothingIsPruned) {
+  const test::TemporaryDirectory directory;
+  const HistorySettings s = settings(directory);
+  Program program(s);
+  program.windows(0, 1000);
+  program.commit();
+  for (const std::int64_t newest_us : {INT64_MIN, std::int64_t{0}, kSecond_us}) {
+    ASSERT_EQ(program.store().prune(newest_us), "");
+    EXPECT_EQ(rows(s, "kx_1_y1", 1).size(), 10u);
+  }
 }
 
 // The schema's versions.
