@@ -35,7 +35,8 @@ std::vector<drivers::WantedAxis> wanted_axes(const Config& config) {
 }
 
 Estimation::Estimation(const Config& config, MessageSink sink, Observer observer)
-    : observer_(std::move(observer)),
+    : config_(config),
+      observer_(std::move(observer)),
       publisher_(config, std::move(sink)),
       pipeline_(
           config.pipeline, [this](const WindowEstimate& estimate) { main_window(estimate); },
@@ -48,14 +49,25 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
       can_(config.can, [this](const AccelSample& s) { sample(s); }),
       can_events_(config.can) {
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
-  if (config.gap)
-    gap_.emplace(config.pipeline.structure, pipeline_.axes(), config.pipeline.options,
-                 config.gap->options, config.gap->model);
-  if (!config.watch) return;
-  std::vector<double> windows_s{config.pipeline.options.window_s};
-  windows_s.insert(windows_s.end(), config.pipeline.options.other_windows_s.begin(),
-                   config.pipeline.options.other_windows_s.end());
-  watch_.emplace(pipeline_.parameters(), config.watch->options, windows_s, config.watch->baseline);
+  begin_watch();
+  begin_gap();
+}
+
+void Estimation::begin_watch() {
+  watch_.reset();
+  if (!config_.watch) return;
+  std::vector<double> windows_s{config_.pipeline.options.window_s};
+  windows_s.insert(windows_s.end(), config_.pipeline.options.other_windows_s.begin(),
+                   config_.pipeline.options.other_windows_s.end());
+  watch_.emplace(pipeline_.parameters(), config_.watch->options, windows_s,
+                 config_.watch->baseline);
+}
+
+void Estimation::begin_gap() {
+  gap_.reset();
+  if (!config_.gap) return;
+  gap_.emplace(config_.pipeline.structure, pipeline_.axes(), config_.pipeline.options,
+               config_.gap->options, config_.gap->model);
 }
 
 void Estimation::main_window(const WindowEstimate& estimate) {
@@ -119,6 +131,45 @@ bool Estimation::load(StateReader& state) {
   if (watch_) state(*watch_);
   if (gap_) state(*gap_, noise_density_);
   return state.good() && pipeline_.load(state);
+}
+
+void Estimation::take_over(Estimation& before, bool keep_window) {
+  // Both have the same structure, so only settings can keep a part from fitting.
+  const auto copy = [](auto& from, auto& to) {
+    StateWriter writer;
+    writer(from);
+    StateReader reader(writer.bytes());
+    reader(to);
+    return reader.whole();
+  };
+  copy(before.seconds_, seconds_);
+  copy(before.intake_, intake_);
+  copy(before.can_, can_);
+  copy(before.can_events_, can_events_);
+  copy(before.publisher_, publisher_);
+  windows_ = before.windows_;
+  live_ = before.live_;
+  if (keep_window) {
+    StateWriter writer;
+    before.pipeline_.save(writer);
+    StateReader reader(writer.bytes());
+    (void)pipeline_.load(reader);
+    noise_density_ = before.noise_density_;
+  }
+  const Baseline* learned = before.baseline();
+  const bool same_baseline = !watch_ || watch_->baseline() == nullptr ||
+                             (learned != nullptr && learned->value == watch_->baseline()->value);
+  const bool watch_goes_on =
+      watch_ && before.watch_ && same_baseline && copy(*before.watch_, *watch_);
+  if (!watch_goes_on) {
+    begin_watch();
+    publisher_.withdraw("stiffness_change");
+  }
+  const bool gap_goes_on = gap_ && before.gap_ && copy(*before.gap_, *gap_);
+  if (!gap_goes_on) {
+    begin_gap();
+    publisher_.withdraw("gap");
+  }
 }
 
 void Estimation::publish_state() {

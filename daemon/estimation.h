@@ -78,6 +78,12 @@ class Estimation {
   /// What changes are judged against; null while it is learned, or when nothing is watched.
   const Baseline* baseline() const { return watch_ ? watch_->baseline() : nullptr; }
 
+  /// Goes on where `before` is, which has the same structure, channels and grid and other settings.
+  /// keep_window: its rows are weighted alike. Not called after the first sample. What other
+  /// settings do not fit begins anew: the gap's window of another length, a change watched against
+  /// another baseline.
+  void take_over(Estimation& before, bool keep_window);
+
   /// Everything that what is still to come depends on, and back; see Pipeline.
   void save(StateWriter& state);
   [[nodiscard]] bool load(StateReader& state);
@@ -87,7 +93,10 @@ class Estimation {
   void main_window(const WindowEstimate& estimate);
   void watch(const WindowEstimate& estimate);
   void look_for_gap(const SampleSet& instant);
+  void begin_watch();
+  void begin_gap();
 
+  const Config& config_;
   Observer observer_;
   std::function<void(const AccelSample&)> raw_tap_;
   std::function<void(const GapNews&)> gap_tap_;

@@ -23,41 +23,48 @@ LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::Can
     : config_(config),
       lcm_(lcm),
       can_log_(can_log),
-      segments_(config),
-      estimation_(
-          config,
-          [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
-            lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
-            if (history_ != nullptr) history_->message(channel, bytes);
-          }),
       source_(lcm, channels_of(config), config.lcm.queue_capacity,
               [this](const std::string& channel, const void* data, std::size_t size,
                      std::int64_t received_us) { on_message(channel, data, size, received_us); }),
       can_(config.can, can_log != nullptr,
            [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {
   times_.newest_us.resize(config.pipeline.axes.size());
-  estimation_.tap([this](const AccelSample& sample) { on_sample(sample); },
-                  [this](const GapNews& news) {
-                    if (stores_segments() && news.state == AlarmState::raised)
-                      segments_.raised(news.id);
-                  });
+  begin_estimation();
 }
 
-bool LiveEstimation::stores_segments() const {
-  return config_.gap && !config_.gap->store.empty();
+void LiveEstimation::begin_estimation() {
+  estimation_ = std::make_unique<Estimation>(
+      config_,
+      [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+        lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+        if (history_ != nullptr) history_->message(channel, bytes);
+      });
+  if (!segments_ && config_.gap && !config_.gap->store.empty()) segments_.emplace(config_);
+  estimation_->tap([this](const AccelSample& sample) { on_sample(sample); },
+                   [this](const GapNews& news) {
+                     if (segments_ && news.state == AlarmState::raised) segments_->raised(news.id);
+                   });
+}
+
+void LiveEstimation::reconfigure(Config& running, const Config& fresh, Reach reach) {
+  segments_.reset();  // writes what it still has under the old settings
+  take_settings(running, fresh);
+  const std::unique_ptr<Estimation> before = std::move(estimation_);
+  begin_estimation();
+  estimation_->take_over(*before, reach == Reach::settings);
 }
 
 void LiveEstimation::on_sample(const AccelSample& sample) {
   times_.received_us = host_clock_us();
   times_.newest_us[static_cast<std::size_t>(sample.axis)] = to_microseconds(sample.time);
-  if (stores_segments()) segments_.sample(sample);
+  if (segments_) segments_->sample(sample);
   if (history_ != nullptr) history_->sample(sample);
 }
 
 void LiveEstimation::step_done(std::int64_t began_us, std::int64_t windows_before,
                                std::int64_t received_us) {
   times_.steps.add(1e-6 * static_cast<double>(steady_clock_us() - began_us));
-  if (estimation_.windows() == windows_before) return;
+  if (estimation_->windows() == windows_before) return;
   state_.latency_s = 1e-6 * static_cast<double>(host_clock_us() - received_us);
   times_.latencies.add(state_.latency_s);
   if (state_.latency_s > config_.pipeline.options.hop_s) ++times_.deadline_missed;
@@ -71,7 +78,7 @@ bool LiveEstimation::poll(int timeout_ms) {
   can_.handle(steady_clock_us());
   for (std::size_t b = 0; b < config_.can.buses.size(); ++b) {
     const bool gone = !can_.state(static_cast<int>(b)).open;
-    estimation_.notice(
+    estimation_->notice(
         {drivers::CanNotice::Kind::interface_gone, static_cast<int>(b), !gone, 0, host_clock_us()});
   }
   return source_.handle(0) && !can_log_failed_;
@@ -80,24 +87,24 @@ bool LiveEstimation::poll(int timeout_ms) {
 void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
   const std::string& interface = config_.can.buses[static_cast<std::size_t>(bus)].interface;
   if (can_log_ != nullptr && !can_log_->write(frame, interface)) can_log_failed_ = true;
-  const std::int64_t began_us = steady_clock_us(), windows = estimation_.windows();
-  estimation_.frame(bus, frame);
+  const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
+  estimation_->frame(bus, frame);
   const std::int64_t dropped = can_.dropped();
   state_.queue_dropped += dropped - std::exchange(can_dropped_, dropped);
   step_done(began_us, windows, frame.stamp_us);
-  estimation_.set_live(state_);
+  estimation_->set_live(state_);
 }
 
 void LiveEstimation::on_message(const std::string& channel, const void* data, std::size_t size,
                                 std::int64_t received_us) {
-  const std::int64_t lost = estimation_.intake().lost();
-  const std::int64_t began_us = steady_clock_us(), windows = estimation_.windows();
-  estimation_.message(channel, data, size);
+  const std::int64_t lost = estimation_->intake().lost();
+  const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
+  estimation_->message(channel, data, size);
   if (source_.queue_was_full())
-    state_.queue_dropped += std::max<std::int64_t>(0, estimation_.intake().lost() - lost);
+    state_.queue_dropped += std::max<std::int64_t>(0, estimation_->intake().lost() - lost);
   state_.queue_high_water = static_cast<std::int32_t>(source_.backlog_high_water());
   step_done(began_us, windows, received_us);
-  estimation_.set_live(state_);
+  estimation_->set_live(state_);
 }
 
 }  // namespace framewatch::daemon

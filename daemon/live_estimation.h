@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <lcm/lcm-cpp.hpp>
 
+#include "daemon/config_changes.h"
 #include "daemon/estimation.h"
 #include "daemon/gap_segments.h"
 #include "daemon/history.h"
@@ -29,11 +32,14 @@ class LiveEstimation {
   /// Waits for messages at most `timeout_ms` and handles those that are there. False when LCM
   /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
   [[nodiscard]] bool poll(int timeout_ms);
-  void finish() { estimation_.finish(); }
+  void finish() { estimation_->finish(); }
   /// From now on raw samples and everything that is published go there too; null: no more.
   void record_to(History* history) { history_ = history; }
-  const Estimation& estimation() const { return estimation_; }
-  Estimation& estimation() { return estimation_; }
+  const Estimation& estimation() const { return *estimation_; }
+  Estimation& estimation() { return *estimation_; }
+  /// Goes on under the settings of another configuration, which `running`, the one this was made
+  /// with, takes over. No message is lost.
+  void reconfigure(Config& running, const Config& fresh, Reach reach);
   const LiveState& state() const { return state_; }
   const LiveTimes& times() const { return times_; }
   drivers::CanSource& can() { return can_; }
@@ -43,7 +49,7 @@ class LiveEstimation {
                   std::int64_t received_us);
   void on_frame(int bus, const drivers::CanFrame& frame);
   void on_sample(const AccelSample& sample);
-  bool stores_segments() const;
+  void begin_estimation();
   void step_done(std::int64_t began_us, std::int64_t windows_before, std::int64_t received_us);
 
   const Config& config_;
@@ -53,9 +59,9 @@ class LiveEstimation {
   std::int64_t can_dropped_ = 0;
   LiveState state_;
   LiveTimes times_;
-  GapSegments segments_;
+  std::optional<GapSegments> segments_;  ///< none: none are stored
   History* history_ = nullptr;
-  Estimation estimation_;
+  std::unique_ptr<Estimation> estimation_;
   drivers::LcmSource source_;
   drivers::CanSource can_;
 };

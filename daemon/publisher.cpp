@@ -154,6 +154,15 @@ void Publisher::event(const event_t& event) {
   send(event.time_us, event_channel_, event);
 }
 
+void Publisher::withdraw(const std::string& kind) {
+  for (event_t e : raised_.take(kind)) {
+    e.state = static_cast<std::int32_t>(AlarmState::cleared);
+    e.severity = 0;
+    e.message = "is not looked for any more: the configuration was changed";
+    event(e);
+  }
+}
+
 void Publisher::gap(const GapWindow& window) {
   framewatch::gap_t& m = gap_;
   m.window_start_us = to_microseconds(window.start);

@@ -57,6 +57,8 @@ class Publisher {
   void event(const event_t& event);
   void gap(const GapWindow& window);
   void gap_news(const GapNews& news);
+  /// Clears what is raised of a kind: nobody looks for it any more.
+  void withdraw(const std::string& kind);
   const RaisedEvents& raised() const { return raised_; }
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
 

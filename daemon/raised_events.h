@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include <framewatch/event_t.hpp>
@@ -24,6 +25,14 @@ class RaisedEvents {
       if (events_.size() == kMost) events_.erase(events_.begin());
       events_.push_back(e);
     }
+  }
+  /// Those of a kind, no longer raised.
+  std::vector<event_t> take(const std::string& kind) {
+    const auto others = std::stable_partition(events_.begin(), events_.end(),
+                                              [&](const event_t& e) { return e.kind != kind; });
+    const std::vector<event_t> taken(others, events_.end());
+    events_.erase(others, events_.end());
+    return taken;
   }
   const std::vector<event_t>& all() const { return events_; }
 

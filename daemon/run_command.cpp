@@ -12,10 +12,16 @@
 #include "daemon/can_complaints.h"
 #include "daemon/can_monitor.h"
 #include "daemon/clocks.h"
+#include "daemon/file_digest.h"
 #include "daemon/gap_keeper.h"
 #include "daemon/history_report.h"
 #include "daemon/intake_complaints.h"
 #include "daemon/log.h"
+#include "daemon/patient_lcm.h"
+#include "daemon/progress_watch.h"
+#include "daemon/reload_signal.h"
+#include "daemon/reloader.h"
+#include "daemon/service_manager.h"
 #include "daemon/service_report.h"
 #include "daemon/start_count.h"
 #include "daemon/state_file.h"
@@ -27,6 +33,7 @@ namespace {
 
 constexpr int kBadInput = 2;
 constexpr int kPoll_ms = 100;
+constexpr std::int64_t kSilent_s = 2;
 
 /// Goes on from a state file that is there; one that does not fit is put aside, and said. Whether
 /// it goes on.
@@ -49,22 +56,98 @@ bool resume(const std::string& path, const Config& config, lcm::LCM& lcm,
   return false;
 }
 
+/// What `systemctl status` shows.
+std::string status_line(const LiveEstimation& live, const Config& config, std::int64_t now_us) {
+  const LiveTimes& times = live.times();
+  const std::size_t raised = live.estimation().raised().all().size();
+  const std::string events = raised > 0 ? fmt::format("{} events raised; ", raised) : "";
+  if (times.received_us == 0) return events + "waits for the first sample";
+  const std::int64_t silent_s = (now_us - times.received_us) / 1'000'000;
+  if (silent_s > kSilent_s) return fmt::format("{}no samples for {} s", events, silent_s);
+  return fmt::format("{}estimates {} from {} channels, {} windows so far", events,
+                     config.pipeline.structure.name, config.pipeline.axes.size(),
+                     live.estimation().windows());
+}
+
+/// Everything beside the estimation that is to be looked after while it runs.
+class Watchman {
+ public:
+  Watchman(const RunArguments& a, const Config& config, const std::string& text,
+           const StartCount& starts, bool resumed)
+      : state_(a.state, a.state_every_s, config),
+        can_complaints_(config),
+        can_monitor_(config),
+        baseline_(config),
+        gap_(config),
+        reloader_(config, text),
+        report_(config, starts, resumed),
+        config_(config) {}
+
+  void look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager) {
+    const std::int64_t now_us = host_clock_us();
+    Estimation& estimation = live.estimation();
+    complaints_.look(estimation, live.state(), now_us);
+    for (const std::string& news : can_complaints_.look(estimation.can(), live.can(), now_us))
+      log(LogLevel::warning, news);
+    if (const auto buses = can_monitor_.look(estimation.can(), live.can(), now_us))
+      lcm.publish(config_.lcm.prefix + "CAN", &*buses);
+    state_.look(estimation, now_us);
+    baseline_.look(estimation);
+    gap_.look(estimation, now_us);
+    if (const auto report = report_.look(live, state_, reloader_.count(), now_us)) {
+      lcm.publish(config_.lcm.prefix + "SERVICE", &*report);
+      manager.status(status_line(live, config_, now_us));
+    }
+    const std::int64_t steady_us = steady_clock_us();
+    if (progress_.well(estimation.pipeline().counters(), steady_us)) manager.alive(steady_us);
+  }
+
+  void reload(LiveEstimation& live, Config& config, ServiceManager& manager) {
+    manager.reloading();
+    if (const auto fresh = reloader_.read()) {
+      live.reconfigure(config, fresh->config, fresh->reach);
+      baseline_ = BaselineKeeper(config);
+      state_.soon();
+    }
+    manager.ready();
+  }
+
+  void keep(Estimation& estimation) { state_.keep(estimation); }
+
+ private:
+  StateKeeper state_;
+  IntakeComplaints complaints_;
+  CanComplaints can_complaints_;
+  CanMonitor can_monitor_;
+  BaselineKeeper baseline_;
+  GapKeeper gap_;
+  Reloader reloader_;
+  ServiceReport report_;
+  ProgressWatch progress_;
+  const Config& config_;
+};
+
 }  // namespace
 
 int run(const RunArguments& a) {
   std::vector<ConfigProblem> problems;
-  const std::optional<Config> config = load_config(a.config, problems);
+  std::string error;
+  const std::optional<std::string> text = read_text_file(a.config, error);
+  if (!text) problems.push_back({a.config, error});
+  std::optional<Config> config;
+  if (text) config = parse_config(a.config, *text, problems);
   for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
   if (!config) return kBadInput;
 
-  const std::string& url = a.url.empty() ? config->lcm.url : a.url;
-  std::string error;
-  const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
+  catch_stop_signals();
+  catch_reload_signal();
+  ServiceManager manager;
+  const auto lcm = open_lcm_patiently(*config, a.url, manager, error);
   if (!lcm) {
+    if (stop_requested()) return 0;
     fmt::print(stderr, "framewatch run: {}\n", error);
     return kBadInput;
   }
-  catch_stop_signals();
 
   drivers::CanLogWriter can_log;
   if (!a.can_log.empty() && !can_log.open(a.can_log)) {
@@ -84,42 +167,29 @@ int run(const RunArguments& a) {
   HistoryReport history(*config, *lcm);
   live.record_to(history.history());
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
-  StateKeeper keeper(a.state, a.state_every_s, *config);
-  IntakeComplaints complaints;
-  CanComplaints can_complaints(*config);
-  CanMonitor can_monitor(*config);
-  BaselineKeeper baseline(*config);
-  GapKeeper gap(*config);
-  ServiceReport service(*config, starts, resumed);
-  const ReloadCount reloads;
+  Watchman watchman(a, *config, *text, starts, resumed);
   RateLimitedLog failures(LogLevel::error);
   if (!a.quiet)
-    log(LogLevel::info, fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name,
-                                    config->path, config->pipeline.axes.size(), url));
+    log(LogLevel::info,
+        fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name, config->path,
+                    config->pipeline.axes.size(), a.url.empty() ? config->lcm.url : a.url));
+  manager.ready();
   while (!stop_requested()) {
     if (!live.poll(kPoll_ms) && !stop_requested()) {
       failures(host_clock_us(),
                can_log.error().empty() ? "LCM failed to deliver" : "CAN log: " + can_log.error());
       ::usleep(1000 * kPoll_ms);
     }
-    complaints.look(live.estimation(), live.state(), host_clock_us());
-    for (const std::string& news :
-         can_complaints.look(live.estimation().can(), live.can(), host_clock_us()))
-      log(LogLevel::warning, news);
-    if (const auto buses = can_monitor.look(live.estimation().can(), live.can(), host_clock_us()))
-      lcm->publish(config->lcm.prefix + "CAN", &*buses);
-    keeper.look(live.estimation(), host_clock_us());
-    baseline.look(live.estimation());
-    gap.look(live.estimation(), host_clock_us());
+    watchman.look(live, *lcm, manager);
     history.look(host_clock_us());
-    if (const auto report = service.look(live, keeper, reloads, host_clock_us()))
-      lcm->publish(config->lcm.prefix + "SERVICE", &*report);
+    if (reload_requested()) watchman.reload(live, *config, manager);
   }
+  manager.stopping();
   // With a state the instants still open are given out by the next start.
   if (a.state.empty()) {
     live.finish();
   } else {
-    keeper.keep(live.estimation());
+    watchman.keep(live.estimation());
     error = count_clean_stop(a.state, starts);
     if (!error.empty()) log(LogLevel::error, fmt::format("the stop is not counted: {}", error));
   }

@@ -11,6 +11,8 @@
 #include "daemon/live_view.h"
 #include "daemon/log.h"
 #include "daemon/metrics.h"
+#include "daemon/patient_lcm.h"
+#include "daemon/service_manager.h"
 #include "daemon/stop_signal.h"
 #include "daemon/web_server.h"
 #include "drivers/lcm_source.h"
@@ -55,8 +57,11 @@ int serve(const ServeArguments& a) {
   // At home nobody need choose one, and acknowledging still takes it.
   if (settings.token.empty()) settings.token = random_token();
 
+  catch_stop_signals();
+  ServiceManager manager;
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
-  const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
+  const auto lcm = open_lcm_patiently(*config, a.url, manager, error);
+  if (!lcm && stop_requested()) return 0;
   if (!lcm) {
     fmt::print(stderr, "framewatch serve: {}\n", error);
     return kBadInput;
@@ -81,13 +86,13 @@ int serve(const ServeArguments& a) {
     fmt::print(stderr, "framewatch serve: {}\n", error);
     return kBadInput;
   }
-  catch_stop_signals();
   // A token of one's own does not go into logs.
   fmt::print("{}\n", page_address(settings, server.port(),
                                   a.token_file.empty() ? settings.token : std::string()));
   std::fflush(stdout);
   if (!a.quiet) log(LogLevel::info, fmt::format("{} on {}", config->pipeline.structure.name, url));
 
+  manager.ready();
   RateLimitedLog failures(LogLevel::error);
   for (Clock::time_point next = Clock::now(); !stop_requested();) {
     if (!source.handle(kPoll_ms) && !stop_requested())
@@ -99,7 +104,10 @@ int serve(const ServeArguments& a) {
     next = std::max(next + kFlush, Clock::now());
     view.flush();
     server.wake();
+    manager.alive(steady_clock_us());
+    manager.status(fmt::format("port {}, {} viewers", server.port(), server.viewers()));
   }
+  manager.stopping();
   return 0;
 }
 

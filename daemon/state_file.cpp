@@ -38,7 +38,8 @@ struct Head {
 };
 
 std::string problem_of(const Head& head, const Config& config) {
-  if (head.format != kFormat || head.version != FRAMEWATCH_VERSION)
+  // Another version may go on with it: an upgrade need not cost the window.
+  if (head.format != kFormat)
     return fmt::format("was written by framewatch {} (format {}), this is {} (format {})",
                        head.version, head.format, FRAMEWATCH_VERSION, kFormat);
   if (head.config_sha256 != config.sha256)

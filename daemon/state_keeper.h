@@ -20,6 +20,8 @@ class StateKeeper {
   StateKeeper& operator=(const StateKeeper&) = delete;
 
   void look(Estimation& estimation, std::int64_t now_us);
+  /// As soon as the disk takes it: what is there belongs to another configuration.
+  void soon() { next_us_ = 1; }
   /// Now, and waits for it.
   void keep(Estimation& estimation);
 
