@@ -19,8 +19,10 @@
 #include "daemon/report_command.h"
 #include "daemon/reproduce_command.h"
 #include "daemon/run_command.h"
+#include "daemon/selftest_command.h"
 #include "daemon/serve_command.h"
 #include "daemon/simulate_command.h"
+#include "daemon/status_command.h"
 
 // The one translation unit that sees CLI11 (it costs seconds to compile): it turns the command line
 // into plain argument structs; every command lives in its own file.
@@ -61,12 +63,15 @@ void add_demo(CLI::App& app, Action& action, DemoArguments& arguments) {
 void add_run(CLI::App& app, Action& action, RunArguments& arguments) {
   CLI::App* command =
       app.add_subcommand("run", "the daemon: live samples in (LCM, CAN), estimates out (LCM)");
-  command->footer("Example: framewatch run configs/table_two_story.toml");
+  command->footer(
+      "SIGHUP reads CONFIG anew: what can change while it runs does, anything else is refused.\n"
+      "Exit status: 0 stopped, 2 bad usage, configuration or input.\n"
+      "Example: framewatch run configs/table_two_story.toml");
   command->add_option("CONFIG", arguments.config, "configuration file (TOML)")->required();
   command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");
   command->add_option("--state", arguments.state,
                       "file that carries what was learned over a restart: read at the start,\n"
-                      "written every minute and at the end");
+                      "written every --state-every seconds and at the end");
   command->add_option("--state-every", arguments.state_every_s, "seconds between two writes of it")
       ->check(CLI::Range(1, 86400))
       ->capture_default_str();
@@ -476,6 +481,39 @@ void add_history(CLI::App& app, Action& action, HistoryArguments& arguments) {
       [&action, &arguments] { action = [&arguments] { return history(arguments); }; });
 }
 
+void add_status(CLI::App& app, Action& action, StatusArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "status", "whether the running daemon is well, since when, and what is odd, on one screen");
+  command->footer(
+      "Listens to the daemon's messages for 2 to 4 s.\n"
+      "Exit status: 0 well, 1 not well, 2 nothing is heard of it, or bad usage or configuration.\n"
+      "Example: framewatch status building.toml");
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")
+      ->capture_default_str();
+  command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");
+  command->add_flag("--json", arguments.json, "print what a program would read");
+  command->callback(
+      [&action, &arguments] { action = [&arguments] { return status_command(arguments); }; });
+}
+
+void add_selftest(CLI::App& app, Action& action, SelftestArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "selftest",
+      "whether this machine can carry the daemon: network, buffers, clock, disk, and\n"
+      "an estimate whose answer is known");
+  command->footer(
+      "Exit status: 0 all good, 1 not all, 2 bad usage or configuration.\n"
+      "Example: framewatch selftest building.toml --dir /var/lib/framewatch");
+  command->add_option("CONFIG", arguments.config,
+                      "configuration file (TOML), for its LCM settings");
+  command->add_option("--dir", arguments.directory, "where state and records go")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_flag("--json", arguments.json, "print what a program would read");
+  command->callback(
+      [&action, &arguments] { action = [&arguments] { return selftest(arguments); }; });
+}
+
 /// What every command can be told, as far as the command line tells it.
 struct Arguments {
   DemoArguments demo;
@@ -494,6 +532,8 @@ struct Arguments {
   ServeArguments serve;
   RecordArguments record;
   HistoryArguments history;
+  StatusArguments status;
+  SelftestArguments selftest;
 };
 
 }  // namespace
@@ -524,6 +564,8 @@ int main(int argc, char** argv) {
   add_serve(app, action, arguments.serve);
   add_record(app, action, arguments.record);
   add_history(app, action, arguments.history);
+  add_status(app, action, arguments.status);
+  add_selftest(app, action, arguments.selftest);
 
   try {
     app.parse(argc, argv);

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <framewatch/can_status_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/service_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+#include "daemon/config.h"
+
+namespace framewatch::daemon {
+
+/// What was heard of a daemon while somebody listened to it for a few seconds.
+class Heard {
+ public:
+  explicit Heard(const Config& config) : prefix_(config.lcm.prefix) {}
+
+  std::vector<std::string> channels() const;
+  void message(const std::string& channel, const void* data, std::size_t size);
+
+  /// Two reports of the process, and two of the samples unless none come: more would not say more.
+  bool enough() const;
+
+  std::optional<service_t> first_service, service;
+  std::optional<status_t> first_status, status;
+  std::optional<window_estimate_t> estimate;
+  std::optional<gap_t> gap;
+  std::optional<can_status_t> can;
+
+ private:
+  std::string prefix_;
+};
+
+/// Everything that is not as it should be, a sentence each; nothing when it is well. heard.service
+/// is there. now_us: host clock.
+std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us);
+
+/// Since the newest sample came; none has come: since the start.
+double silent_s(const service_t& service, std::int64_t now_us);
+
+/// "3 d 4 h", "5 min 10 s", "2 s".
+std::string span_text(double seconds);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,184 @@
+#include "daemon/status_command.h"
+
+#include <algorithm>
+#include <ctime>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/clocks.h"
+#include "daemon/config.h"
+#include "daemon/health.h"
+#include "drivers/lcm_source.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kNotWell = 1, kUnreachable = 2;
+constexpr std::int64_t kListen_us = 4'000'000;
+constexpr int kPoll_ms = 100;
+
+std::string utc(std::int64_t us) {
+  const std::time_t seconds = us / 1'000'000;
+  std::tm when{};
+  ::gmtime_r(&seconds, &when);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &when);
+  return text;
+}
+
+/// Per second of sensor time while somebody listened; empty when nothing came twice.
+std::optional<double> rate(const Heard& h, std::int64_t first, std::int64_t last) {
+  const double seconds =
+      h.first_status ? 1e-6 * static_cast<double>(h.status->time_us - h.first_status->time_us) : 0;
+  if (!(seconds > 0)) return std::nullopt;
+  return static_cast<double>(last - first) / seconds;
+}
+
+std::int64_t total(const std::vector<std::int64_t>& values) {
+  return std::accumulate(values.begin(), values.end(), std::int64_t{0});
+}
+
+void line(const char* what, const std::string& text) {
+  fmt::print("  {:<11} {}\n", what, text);
+}
+
+void print_process(const service_t& s, std::int64_t now_us) {
+  std::string running =
+      fmt::format("for {}, since {}", span_text(1e-6 * static_cast<double>(now_us - s.started_us)),
+                  utc(s.started_us));
+  if (s.starts > 0)
+    running += fmt::format("; {}; {} starts, {} unasked",
+                           s.resumed != 0 ? "went on from its state" : "began anew", s.starts,
+                           s.unclean_starts);
+  line("running", running);
+  if (s.state_written_us > 0)
+    line("state", fmt::format("written {} ago, {:.1f} GB of disk free",
+                              span_text(1e-6 * static_cast<double>(now_us - s.state_written_us)),
+                              1e-9 * static_cast<double>(s.disk_free_bytes)));
+  line("machine", fmt::format("{:.0f} MB of memory, {:.1f} % of a core since the start",
+                              1e-6 * static_cast<double>(s.resident_bytes),
+                              100e6 * s.cpu_s / static_cast<double>(now_us - s.started_us)));
+}
+
+void print_samples(const Heard& h) {
+  if (!h.status) return;
+  std::string samples = fmt::format("{} channels", h.status->name.size());
+  if (h.first_status) {
+    const auto per_s = rate(h, total(h.first_status->received), total(h.status->received));
+    if (per_s) samples += fmt::format(", {:.0f} a second", *per_s);
+  }
+  const std::int64_t lost = total(h.status->lost);
+  line("samples", samples + fmt::format("; {} lost of {} since the state began", lost,
+                                        total(h.status->received) + lost));
+}
+
+void print_estimates(const Heard& h) {
+  if (!h.status) return;
+  std::string text = fmt::format("{} windows", h.status->windows);
+  if (h.first_status)
+    if (const auto per_s = rate(h, h.first_status->windows, h.status->windows))
+      text += fmt::format(", {:.0f} a second, {:.1f} ms after their sample", *per_s,
+                          1e3 * h.status->latency_s);
+  if (h.estimate)
+    text += fmt::format("; {} of {} values now",
+                        std::count(h.estimate->reason.begin(), h.estimate->reason.end(), 0),
+                        h.estimate->reason.size());
+  line("estimates", text);
+  if (h.gap)
+    line("gap", fmt::format("simulation and measurement differ by {:.1f} %, noise alone {:.1f} %",
+                            100 * h.gap->overall_nrmse, 100 * h.gap->noise_floor));
+}
+
+void print_can(const Heard& h) {
+  if (!h.can) return;
+  for (std::size_t b = 0; b < h.can->interface.size(); ++b)
+    line("can", fmt::format("{}: {:.0f} frames a second, {:.0f} % load", h.can->interface[b],
+                            h.can->frames_hz[b], 100 * h.can->load[b]));
+}
+
+void print_text(const Heard& h, const Config& config, const std::vector<std::string>& odd,
+                std::int64_t now_us) {
+  fmt::print("{}: {} (framewatch {}, {})\n", config.pipeline.structure.name,
+             odd.empty() ? "well" : "not well", h.service->version, h.service->config);
+  print_process(*h.service, now_us);
+  print_samples(h);
+  print_estimates(h);
+  print_can(h);
+  for (const std::string& sentence : odd) line("odd", sentence);
+}
+
+void print_json(const Heard& h, const std::vector<std::string>& odd, std::int64_t now_us) {
+  const service_t& s = *h.service;
+  nlohmann::json out{{"well", odd.empty()},
+                     {"odd", odd},
+                     {"version", s.version},
+                     {"config", s.config},
+                     {"config_sha256", s.config_sha256},
+                     {"started_us", s.started_us},
+                     {"starts", s.starts},
+                     {"unclean_starts", s.unclean_starts},
+                     {"resumed", s.resumed != 0},
+                     {"silent_s", silent_s(s, now_us)},
+                     {"state_written_us", s.state_written_us},
+                     {"disk_free_bytes", s.disk_free_bytes},
+                     {"resident_bytes", s.resident_bytes},
+                     {"reloads", s.reloads},
+                     {"reloads_refused", s.reloads_refused}};
+  if (h.status) {
+    out["windows"] = h.status->windows;
+    out["latency_s"] = h.status->latency_s;
+    out["lost"] = total(h.status->lost);
+  }
+  out["events"] = nlohmann::json::array();
+  for (std::size_t i = 0; i < s.event_id.size(); ++i)
+    out["events"].push_back({{"id", s.event_id[i]},
+                             {"since_us", s.event_since_us[i]},
+                             {"severity", s.event_severity[i]},
+                             {"kind", s.event_kind[i]},
+                             {"place", s.event_place[i]},
+                             {"message", s.event_message[i]}});
+  fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+}  // namespace
+
+int status_command(const StatusArguments& a) {
+  std::vector<ConfigProblem> problems;
+  const std::optional<Config> config = load_config(a.config, problems);
+  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  if (!config) return kUnreachable;
+  const std::string& url = a.url.empty() ? config->lcm.url : a.url;
+  std::string error;
+  const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
+  if (!lcm) {
+    fmt::print(stderr, "framewatch status: {}\n", error);
+    return kUnreachable;
+  }
+  Heard heard(*config);
+  drivers::LcmSource source(*lcm, heard.channels(), config->lcm.queue_capacity,
+                            [&](const std::string& channel, const void* data, std::size_t size,
+                                std::int64_t) { heard.message(channel, data, size); });
+  for (const std::int64_t end_us = steady_clock_us() + kListen_us;
+       !heard.enough() && steady_clock_us() < end_us;)
+    if (!source.handle(kPoll_ms)) break;
+  if (!heard.service) {
+    fmt::print(stderr,
+               "framewatch status: nothing is heard of framewatch run on {} with prefix {}: "
+               "systemctl status framewatch\n",
+               url, config->lcm.prefix);
+    return kUnreachable;
+  }
+  const std::int64_t now_us = host_clock_us();
+  const std::vector<std::string> odd = oddities(heard, *config, now_us);
+  if (a.json)
+    print_json(heard, odd, now_us);
+  else
+    print_text(heard, *config, odd, now_us);
+  return odd.empty() ? 0 : kNotWell;
+}
+
+}  // namespace framewatch::daemon
