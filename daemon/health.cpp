@@ -94,6 +94,11 @@ void of_punctuality(const Heard& heard, std::vector<std::string>& out) {
     out.push_back(fmt::format("{:.0f} % of the estimates come late", 100 * late / estimates));
 }
 
+void of_history(const history_status_t& s, std::vector<std::string>& out) {
+  if (!s.raw_trouble.empty()) out.push_back("raw samples are not stored: " + s.raw_trouble);
+  if (!s.summary_trouble.empty()) out.push_back("summaries are not stored: " + s.summary_trouble);
+}
+
 void of_can(const can_status_t& can, std::vector<std::string>& out) {
   constexpr const char* kStates[] = {"gone", "active", "full of errors", "error-passive",
                                      "bus-off"};
@@ -107,7 +112,7 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
 
 std::vector<std::string> Heard::channels() const {
   std::vector<std::string> out;
-  for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "CAN"})
+  for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "CAN", "HISTORY"})
     out.push_back(prefix_ + name);
   return out;
 }
@@ -131,6 +136,8 @@ void Heard::message(const std::string& channel, const void* data, std::size_t si
     if (auto found = drivers::decode_gap(bytes)) gap = std::move(found);
   } else if (name == "CAN") {
     if (auto found = drivers::decode_can_status(bytes)) can = std::move(found);
+  } else if (name == "HISTORY") {
+    if (auto found = drivers::decode_history_status(bytes)) history = std::move(found);
   }
 }
 
@@ -162,6 +169,7 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   of_samples(heard, now_us, out);
   of_punctuality(heard, out);
   if (heard.can) of_can(*heard.can, out);
+  if (heard.history) of_history(*heard.history, out);
   of_process(s, config, now_us, out);
   return out;
 }

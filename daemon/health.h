@@ -7,6 +7,7 @@
 
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
@@ -31,6 +32,7 @@ class Heard {
   std::optional<window_estimate_t> estimate;
   std::optional<gap_t> gap;
   std::optional<can_status_t> can;
+  std::optional<history_status_t> history;
 
  private:
   std::string prefix_;

@@ -10,6 +10,7 @@
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
@@ -45,6 +46,7 @@ void add_estimate(MetricFamilies& out, const parameter_table_t& table,
                   const window_estimate_t& estimate);
 void add_gap(MetricFamilies& out, const gap_t& gap);
 void add_can(MetricFamilies& out, const can_status_t& can);
+void add_history(MetricFamilies& out, const history_status_t& history);
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
 
 }  // namespace framewatch::daemon

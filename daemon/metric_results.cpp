@@ -90,6 +90,30 @@ void add_can(MetricFamilies& out, const can_status_t& s) {
       .value(static_cast<double>(s.dropped));
 }
 
+void add_history(MetricFamilies& out, const history_status_t& s) {
+  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
+  out.counter("history_samples_total", "Raw samples given to the history.")
+      .value(number(s.raw_samples));
+  out.counter("history_dropped_total", "What the disk did not take, by kind.")
+      .value(number(s.raw_dropped), {{"kind", "raw"}})
+      .value(number(s.summary_dropped), {{"kind", "summary"}});
+  out.counter("history_written_bytes_total", "Raw samples written, before compression.")
+      .value(number(s.raw_bytes));
+  out.gauge("history_queue_bytes", "Raw samples that wait for the disk.")
+      .value(number(s.raw_queue_bytes));
+  out.gauge("history_trouble", "1: the disk does not take it.")
+      .value(s.raw_trouble.empty() ? 0 : 1, {{"kind", "raw"}})
+      .value(s.summary_trouble.empty() ? 0 : 1, {{"kind", "summary"}});
+  out.gauge("history_stored_until_timestamp_seconds",
+            "Windows that end before this sensor time are in the database.")
+      .value(1e-6 * number(s.summary_until_us));
+  out.gauge("history_stored_bytes", "Everything in the history's directory.")
+      .value(number(s.stored_bytes));
+  if (s.disk_free_bytes >= 0)
+    out.gauge("history_disk_free_bytes", "Free where the history goes.")
+        .value(number(s.disk_free_bytes));
+}
+
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
   constexpr std::array kSeverities = {"information", "warning", "alarm"};
   std::map<std::pair<std::string, std::string>, int> counts;

@@ -23,7 +23,8 @@ void Metrics::message(const std::string& channel, const void* data, std::size_t 
     if (e && !config_.watch && e->kind == kStiffnessChange) found_here_.note(*e);
     return;
   }
-  for (const char* wanted : {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "CAN"}) {
+  for (const char* wanted :
+       {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "CAN", "HISTORY"}) {
     if (name != wanted) continue;
     const std::lock_guard<std::mutex> lock(mutex_);
     Newest& newest = newest_[name];
@@ -50,6 +51,7 @@ std::string Metrics::text(std::int64_t now_us, int viewers) const {
   const auto estimate = drivers::decode_window_estimate(fresh["ESTIMATE"]);
   const auto gap = drivers::decode_gap(fresh["GAP"]);
   const auto can = drivers::decode_can_status(fresh["CAN"]);
+  const auto history = drivers::decode_history_status(fresh["HISTORY"]);
   MetricFamilies out;
   out.gauge("up", "1: framewatch run has been heard of in the last 5 s.").value(service ? 1 : 0);
   if (service) {
@@ -67,6 +69,7 @@ std::string Metrics::text(std::int64_t now_us, int viewers) const {
   if (table && estimate) add_estimate(out, *table, *estimate);
   if (gap) add_gap(out, *gap);
   if (can) add_can(out, *can);
+  if (history) add_history(out, *history);
   add_events(out, raised.all());
   const ProcessUsage usage = process_usage();
   out.gauge("serve_viewers", "Open pages of framewatch serve.").value(viewers);

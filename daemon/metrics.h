@@ -22,8 +22,10 @@ class Metrics {
   /// `config` must outlive this.
   explicit Metrics(const Config& config) : config_(config) {}
 
-  /// The channel that nobody but this wants of `framewatch serve`.
-  std::string channel() const { return config_.lcm.prefix + "SERVICE"; }
+  /// The channels that nobody but this wants of `framewatch serve`.
+  std::vector<std::string> channels() const {
+    return {config_.lcm.prefix + "SERVICE", config_.lcm.prefix + "HISTORY"};
+  }
   void message(const std::string& channel, const void* data, std::size_t size, std::int64_t now_us);
 
   /// Text format 0.0.4. viewers: of the page.

@@ -73,7 +73,7 @@ int serve(const ServeArguments& a) {
   Metrics metrics(*config);
   settings.metrics = [&metrics](int viewers) { return metrics.text(steady_clock_us(), viewers); };
   std::vector<std::string> channels = view.channels();
-  channels.push_back(metrics.channel());
+  for (const std::string& channel : metrics.channels()) channels.push_back(channel);
   drivers::LcmSource source(
       *lcm, channels, config->lcm.queue_capacity,
       [&](const std::string& channel, const void* data, std::size_t size, std::int64_t) {

@@ -93,6 +93,16 @@ void print_estimates(const Heard& h) {
                             100 * h.gap->overall_nrmse, 100 * h.gap->noise_floor));
 }
 
+void print_history(const Heard& h) {
+  if (!h.history) return;
+  std::string text = fmt::format("{:.1f} GB in {}, {} samples lost to the disk",
+                                 1e-9 * static_cast<double>(h.history->stored_bytes),
+                                 h.history->directory, h.history->raw_dropped);
+  if (h.history->disk_free_bytes >= 0)
+    text += fmt::format(", {:.1f} GB free", 1e-9 * static_cast<double>(h.history->disk_free_bytes));
+  line("history", text);
+}
+
 void print_can(const Heard& h) {
   if (!h.can) return;
   for (std::size_t b = 0; b < h.can->interface.size(); ++b)
@@ -108,6 +118,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   print_samples(h);
   print_estimates(h);
   print_can(h);
+  print_history(h);
   for (const std::string& sentence : odd) line("odd", sentence);
 }
 

@@ -100,6 +100,11 @@ TEST(Health, SaysWhatIsOdd) {
   h.service->disk_free_bytes = 200'000'000;
   EXPECT_EQ(odd(h, config), "0.2 GB of disk are left where its state goes");
   h = well(config);
+  h.history.emplace();
+  EXPECT_EQ(odd(h, config), "0 oddities");
+  h.history->raw_trouble = "No space left on device";
+  EXPECT_EQ(odd(h, config), "raw samples are not stored: No space left on device");
+  h = well(config);
   h.can.emplace();
   h.can->interface = {"can0", "can1"};
   h.can->state = {0, 3};

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
@@ -123,6 +124,21 @@ TEST(Metrics, AValueThatTheWindowDoesNotShowIsLeftOutAndSaidToBe) {
   // A quiet estimator's last window is not told for ever.
   give(metrics, "FRAMEWATCH_SERVICE", service(), 9 * kSecond_us);
   EXPECT_EQ(metrics.text(9 * kSecond_us, 0).find("framewatch_window_valid"), std::string::npos);
+}
+
+TEST(Metrics, SayWhatTheDiskDoesNotTake) {
+  const Config config{};
+  Metrics metrics(config);
+  history_status_t history{};
+  history.summary_dropped = 4;
+  history.summary_trouble = "disk I/O error";
+  history.disk_free_bytes = -1;
+  give(metrics, "FRAMEWATCH_HISTORY", history, 0);
+  const std::string text = metrics.text(0, 0);
+  expect_line(text, R"(framewatch_history_dropped_total{kind="summary"} 4)");
+  expect_line(text, R"(framewatch_history_trouble{kind="summary"} 1)");
+  expect_line(text, R"(framewatch_history_trouble{kind="raw"} 0)");
+  EXPECT_EQ(text.find("history_disk_free_bytes"), std::string::npos);
 }
 
 TEST(Metrics, ForeignAndDamagedMessagesChangeNothing) {
