@@ -45,6 +45,22 @@ window_estimate_t estimate() {
   return e;
 }
 
+service_t service() {
+  service_t s{};
+  s.config = "b.toml";
+  s.buckets = 2;
+  s.limit_s = {0.1, 1};
+  s.steps = s.latencies = {1, 2};
+  s.channels = 1;
+  s.name = {"base"};
+  s.newest_us = {3};
+  s.raised = 1;
+  s.event_id = s.event_since_us = {4};
+  s.event_severity = {2};
+  s.event_kind = s.event_place = s.event_message = {"gap"};
+  return s;
+}
+
 /// Truncations, extensions, every 32-bit word made huge, negative or zero, random bytes: nothing
 /// may be read outside the payload, and what is decoded is no larger than it.
 template <typename Decode>
@@ -81,6 +97,7 @@ TEST(MessageCheck, DecodesOnlyWhatItsLengthsAllow) {
   attack(encoded(parameter_table()),
          [](const auto& b) { return decode_parameter_table(b).has_value(); });
   attack(encoded(estimate()), [](const auto& b) { return decode_window_estimate(b).has_value(); });
+  attack(encoded(service()), [](const auto& b) { return decode_service(b).has_value(); });
 }
 
 TEST(MessageCheck, GivesTheValuesBack) {
