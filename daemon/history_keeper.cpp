@@ -65,21 +65,18 @@ HistoryKeeper::Room HistoryKeeper::room() const {
   return room_;
 }
 
-bool HistoryKeeper::stopping() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return stop_;
-}
-
 void HistoryKeeper::work() {
   repair_raw_logs(raw_folder(settings_.directory));
+  remove_unfinished_compressions(raw_folder(settings_.directory));
+  remove_unfinished_compressions(event_folder(settings_.directory));
   // Not by nice: the sandbox of a service does not allow it.
   const sched_param idle{};
   ::pthread_setschedparam(::pthread_self(), SCHED_IDLE, &idle);
-  while (!stopping()) {
+  while (!stop_) {
     close_retired();
     look();
     std::unique_lock<std::mutex> lock(mutex_);
-    wake_.wait_for(lock, kLook, [this] { return stop_ || !retired_.empty(); });
+    wake_.wait_for(lock, kLook, [this] { return stop_.load() || !retired_.empty(); });
   }
 }
 
@@ -99,8 +96,8 @@ void HistoryKeeper::look() {
   repair_raw_logs(folder);
   for (const std::string& where : {folder, event_folder(settings_.directory)})
     for (const RawLog& raw : raw_logs(where)) {
-      if (stopping()) return;
-      if (settings_.compress && !raw.partial && !raw.compressed) compress_raw_log(raw.path);
+      if (stop_) return;
+      if (settings_.compress && !raw.partial && !raw.compressed) compress_raw_log(raw.path, stop_);
     }
   std::int64_t newest_us = 0;
   {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
@@ -38,15 +39,14 @@ class HistoryKeeper {
   void work();
   void close_retired();
   void look();
-  bool stopping() const;
 
   HistorySettings settings_;
+  std::atomic<bool> stop_ = false;
   mutable std::mutex mutex_;  ///< guards what is below
   std::condition_variable wake_;
   std::vector<std::unique_ptr<drivers::DurableFile>> retired_;
   std::int64_t newest_us_ = INT64_MIN;
   Room room_;
-  bool stop_ = false;
   std::thread thread_;  ///< last: it sees everything above
 };
 

@@ -8,17 +8,13 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kLook_us = 1'000'000;
 constexpr std::int64_t kCalm_us = 5'000'000;  // so long all is well before it is said
 enum State : std::int32_t { kCleared, kRaised };
 enum Severity : std::int32_t { kInformation, kWarning, kAlarm };
 
 }  // namespace
 
-std::optional<std::vector<event_t>> HistoryMonitor::look(std::int64_t now_us,
-                                                         const history_status_t& status) {
-  if (now_us < next_us_) return std::nullopt;
-  next_us_ = now_us + kLook_us;
+std::vector<event_t> HistoryMonitor::look(std::int64_t now_us, const history_status_t& status) {
   std::vector<event_t> out;
   if (auto e = news(raw_, "raw", status.raw_trouble, status.raw_dropped, status, now_us))
     out.push_back(std::move(*e));

@@ -13,8 +13,8 @@ namespace framewatch::daemon {
 /// summaries, one when it takes them again, with what was lost.
 class HistoryMonitor {
  public:
-  /// now_us: of the host's clock. Once a second the events since the last time; empty in between.
-  std::optional<std::vector<event_t>> look(std::int64_t now_us, const history_status_t& status);
+  /// now_us: of the host's clock. The events since the last call.
+  std::vector<event_t> look(std::int64_t now_us, const history_status_t& status);
 
  private:
   struct Part {
@@ -25,7 +25,6 @@ class HistoryMonitor {
                               std::int64_t lost, const history_status_t& status,
                               std::int64_t now_us);
 
-  std::int64_t next_us_ = INT64_MIN;
   Part raw_, summaries_;
 };
 

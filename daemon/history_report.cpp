@@ -8,6 +8,11 @@
 #include "daemon/log.h"
 
 namespace framewatch::daemon {
+namespace {
+
+constexpr std::int64_t kStatus_us = 1'000'000;
+
+}  // namespace
 
 HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(config), lcm_(lcm) {
   if (!config.history) return;
@@ -18,12 +23,12 @@ HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(conf
 void HistoryReport::look(std::int64_t now_us) {
   if (!history_) return;
   history_->tick(steady_clock_us());
+  if (now_us < next_us_) return;
+  next_us_ = now_us + kStatus_us;
   const history_status_t status = history_->status();
-  const auto events = monitor_.look(now_us, status);
-  if (!events) return;
   lcm_.publish(config_.lcm.prefix + "HISTORY", &status);
   const std::string channel = config_.lcm.prefix + "EVENT";
-  for (const event_t& event : *events) {
+  for (const event_t& event : monitor_.look(now_us, status)) {
     log(event.state != 0 ? LogLevel::error : LogLevel::notice, "history: " + event.message);
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(event.getEncodedSize()));
     event.encode(bytes.data(), 0, static_cast<int>(bytes.size()));

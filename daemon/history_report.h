@@ -26,6 +26,7 @@ class HistoryReport {
  private:
   const Config& config_;
   lcm::LCM& lcm_;
+  std::int64_t next_us_ = INT64_MIN;
   HistoryMonitor monitor_;
   std::optional<History> history_;
 };

@@ -85,12 +85,20 @@ void repair_raw_logs(const std::string& folder) {
       repair(raw.path);
 }
 
-void compress_raw_log(const std::string& path) {
-  const std::string problem = drivers::pack_zstd(path, path + ".zst");
+void remove_unfinished_compressions(const std::string& folder) {
+  std::error_code none;
+  std::vector<fs::path> found;
+  for (fs::directory_iterator at(folder, none), end; !none && at != end; at.increment(none))
+    if (at->path().string().ends_with(".lcmlog.zst.partial")) found.push_back(at->path());
+  for (const fs::path& path : found) fs::remove(path, none);
+}
+
+void compress_raw_log(const std::string& path, const std::atomic<bool>& stop) {
+  const std::string problem = drivers::pack_zstd(path, path + ".zst", stop);
   std::error_code none;
   if (problem.empty())
     fs::remove(path, none);
-  else
+  else if (!stop)
     log(LogLevel::warning, "history: not compressed: " + problem);
 }
 

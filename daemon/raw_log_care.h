@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -11,8 +12,12 @@ namespace framewatch::daemon {
 /// put aside as .damaged; an empty one is removed. Says so in the log.
 void repair_raw_logs(const std::string& folder);
 
-/// PATH becomes PATH.zst. What goes wrong is a line in the log, and PATH stays.
-void compress_raw_log(const std::string& path);
+/// Removes what a killed program left of a compression in a folder.
+void remove_unfinished_compressions(const std::string& folder);
+
+/// PATH becomes PATH.zst. What goes wrong is a line in the log, and PATH stays; as it does when
+/// `stop` becomes true.
+void compress_raw_log(const std::string& path, const std::atomic<bool>& stop);
 
 struct TimeSpan {
   std::int64_t from_us, to_us;

@@ -10,7 +10,12 @@ namespace framewatch::daemon {
 
 std::string SummaryQuery::open(const std::string& directory) {
   const std::string path = summary_file(directory);
-  if (std::error_code none; !std::filesystem::exists(path, none)) return "there is none";
+  if (std::error_code none; !std::filesystem::exists(path, none)) {
+    if (raw_logs(raw_folder(directory)).empty() && raw_logs(event_folder(directory)).empty())
+      return "there is none";
+    if (!file_.open(":memory:")) return file_.error();  // raw logs alone
+    return upgrade(file_, history_schema());
+  }
   if (!file_.open_to_read(path)) return file_.error();
   return version_problem(file_, history_schema());
 }

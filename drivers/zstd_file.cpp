@@ -63,7 +63,7 @@ class OpenFile {
 };
 
 /// False, with errno, when something of `in` could not be read or written.
-bool pack(int in, int out) {
+bool pack(int in, int out, const std::atomic<bool>& stop) {
   constexpr int kLevel = 3;  // -19 buys a tenth for forty times the time
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
                                                                      &ZSTD_freeCCtx);
@@ -71,6 +71,10 @@ bool pack(int in, int out) {
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
   std::vector<std::uint8_t> plain(ZSTD_CStreamInSize()), packed(ZSTD_CStreamOutSize());
   for (bool last = false; !last;) {
+    if (stop) {
+      errno = ECANCELED;
+      return false;
+    }
     const ssize_t got = ::read(in, plain.data(), plain.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return false;
@@ -93,12 +97,13 @@ bool pack(int in, int out) {
 
 }  // namespace
 
-std::string pack_zstd(const std::string& from, const std::string& to) {
+std::string pack_zstd(const std::string& from, const std::string& to,
+                      const std::atomic<bool>& stop) {
   const std::string partial = to + ".partial";
   const OpenFile in(from, O_RDONLY | O_CLOEXEC);
   if (in < 0) return fmt::format("{}: {}", from, std::strerror(errno));
   const OpenFile out(partial, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
-  if (out >= 0 && pack(in, out) && std::rename(partial.c_str(), to.c_str()) == 0) return {};
+  if (out >= 0 && pack(in, out, stop) && std::rename(partial.c_str(), to.c_str()) == 0) return {};
   std::string why = fmt::format("{}: {}", to, std::strerror(errno));
   ::unlink(partial.c_str());
   return why;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <string>
 
@@ -20,7 +21,8 @@ struct UnpackedFile {
 UnpackedFile unpack_zstd(int file);
 
 /// Writes what `from` holds into `to`, as `to`.partial renamed when it is on the disk. Empty, or
-/// why not; then nothing of `to` stays.
-std::string pack_zstd(const std::string& from, const std::string& to);
+/// why not; then nothing of `to` stays. It gives up soon after `stop` has become true.
+std::string pack_zstd(const std::string& from, const std::string& to,
+                      const std::atomic<bool>& stop);
 
 }  // namespace framewatch::drivers

@@ -263,6 +263,18 @@ TEST_F(HistoryCommand, ATimeWithoutSamplesIsTold) {
   EXPECT_FALSE(std::filesystem::exists(a.raw));
 }
 
+TEST_F(HistoryCommand, RawLogsAloneAreAHistoryToo) {
+  for (const char* ending : {"", "-wal", "-shm"})
+    std::filesystem::remove(summary_file(config_.history->directory) + ending);
+  HistoryArguments a;
+  a.place = config_.history->directory;
+  const Ran ran = run(a);
+  EXPECT_EQ(ran.code, 0) << ran.problems;
+  EXPECT_NE(ran.out.find("3 logs"), std::string::npos) << ran.out;
+  a.raw = directory_.path("r.csv.gz");
+  EXPECT_EQ(run(a).code, 0);
+}
+
 TEST_F(HistoryCommand, NoHistoryIsTold) {
   HistoryArguments a;
   a.place = test::table_config();

@@ -189,6 +189,28 @@ TEST(RawLogCare, PutsAsideWhatHoldsNothing) {
   EXPECT_EQ(test::read_file(folder + "/20261122T000001Z.lcmlog.damaged"), std::string(100, 'x'));
 }
 
+TEST(RawLogCare, ACompressionThatIsStoppedLeavesTheLogAndNothingElse) {
+  const test::TemporaryDirectory directory;
+  Config config = test::table_with_history(directory.path("h"));
+  config.history->compress = false;
+  record(config, 0, 2);
+  const std::string folder = raw_folder(config.history->directory);
+  const std::string path = raw_logs(folder).at(0).path;
+  const std::string before = test::read_file(path);
+  compress_raw_log(path, true);
+  EXPECT_EQ(names_in(folder), (std::vector<std::string>{"20261122T000000Z.lcmlog"}));
+  EXPECT_FALSE(fs::exists(path + ".zst.partial"));
+  EXPECT_EQ(test::read_file(path), before);
+}
+
+TEST(RawLogCare, WhatAKilledCompressionLeftIsRemoved) {
+  const test::TemporaryDirectory directory;
+  test::write_file(directory.path("20261122T000000Z.lcmlog.zst.partial"), "half");
+  test::write_file(directory.path("20261122T000000Z.lcmlog"), "whole");
+  remove_unfinished_compressions(directory.path(""));
+  EXPECT_EQ(directory.names(), (std::vector<std::string>{"20261122T000000Z.lcmlog"}));
+}
+
 /// Ten logs of a second each, the first on the hour.
 Config ten_logs(const std::string& directory) {
   Config config = test::table_with_history(directory);
