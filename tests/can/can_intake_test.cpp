@@ -205,7 +205,8 @@ TEST(CanIntake, AStarvedSenderLosesNoSample) {
       ++instants[at.second];
       const auto k = std::llround(
           1e-4 * static_cast<double>(at.second - result.samples.begin()->first.second));
-      EXPECT_NEAR(value, test::can_wave(static_cast<std::size_t>(at.first), 0.01 * k),
+      EXPECT_NEAR(value,
+                  test::can_wave(static_cast<std::size_t>(at.first), 0.01 * static_cast<double>(k)),
                   kWaveError_mps2)
           << seed;
     }
