@@ -70,10 +70,19 @@ double dissipation(const ModelEffect& effect) {
   return work / std::max(4 * peak * effect.deformation, 1e-300);
 }
 
-/// Whether its names may be given. A slip zone in what hardly yields is another elastic law.
+double highest_hz(const Fitter& fitter) {
+  double out = 0;
+  for (const Stretch& s : fitter.stretches()) out = std::max(out, s.w.maxCoeff() / (2 * M_PI));
+  return out;
+}
+
+/// Whether its names may be given. A slip zone in what hardly yields is another elastic law; a mass
+/// on a spring so stiff that it resonates above the band is a mass.
 bool is_named(const TrialContext& c, const Trial& t) {
   for (std::size_t e = c.now.model.effects.size(); e < t.model.effects.size(); ++e) {
     const ModelEffect& effect = t.model.effects[e];
+    if (effect.form == LawForm::resonator && effect.knobs[1].plain() > highest_hz(c.fitter))
+      return false;
     if (effect.form == LawForm::pinched &&
         (dissipation(effect) < kDissipates || effect.knobs[5].plain() < kNarrowestSlip))
       return false;
@@ -230,6 +239,13 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
   }
   for (const Proposal& p : first)
     for (const Proposal& q : second) candidates.push_back(joined(pair, p, q));
+  // One of the two may do alone, though alone its place was not found.
+  std::size_t from = 0;
+  for (const std::vector<Proposal>* list : {&first, &second}) {
+    ++from;
+    for (const Proposal& p : *list)
+      candidates.push_back({p.model, pair.motion, p.kind, p.place, {}, from, kPairSteps});
+  }
   return fit_all(c, candidates);
 }
 

@@ -1,4 +1,6 @@
 // diagnose_study: seeded cases for `framewatch diagnose`, and what it makes of them.
+#include <sys/wait.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -159,16 +161,23 @@ int run(const Arguments& a) {
         "'{1}/holdout.csv.gz' --out '{1}/out' --quiet >'{1}/log.txt' 2>&1",
         program, directory);
     const int status = std::system(command.c_str());
-    fmt::print(stderr, "{}: {}\n", directory, status == 0 ? "done" : "not done, see log.txt");
+    const bool done = WIFEXITED(status) && WEXITSTATUS(status) <= 1;  // 1: a gap remains
+    fmt::print(stderr, "{}: {}\n", directory, done ? "done" : "not done, see log.txt");
   }
   return 0;
 }
 
 int table(const Arguments& a) {
   std::vector<Outcome> outcomes;
-  for (const std::string& directory : cases(a.directory))
-    if (const auto outcome = score(directory)) outcomes.push_back(*outcome);
+  int waiting = 0;
+  for (const std::string& directory : cases(a.directory)) {
+    if (!std::filesystem::exists(directory + "/log.txt"))
+      ++waiting;
+    else if (const auto outcome = score(directory))
+      outcomes.push_back(*outcome);
+  }
   fmt::print("{}", tables(outcomes));
+  if (waiting > 0) fmt::print("\n{} cases have not been run.\n", waiting);
   return outcomes.empty() ? 1 : 0;
 }
 
