@@ -1,6 +1,3 @@
-#include <sys/resource.h>
-
-#include <csignal>
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -10,6 +7,7 @@
 #include "daemon/run_command.h"
 #include "daemon/sqlite_file.h"
 #include "drivers/lcm_log.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
@@ -24,25 +22,6 @@ using test::comes_true;
 constexpr std::chrono::milliseconds kSoon{8000};
 constexpr double kRecord_s = 8;
 constexpr std::size_t kSamples = 8010;  // of its ten channels
-
-/// A disk that is full: files of this process cannot grow beyond some bytes.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    before_ = std::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &limit_);
-    const rlimit low{bytes, limit_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &low);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &limit_);
-    std::signal(SIGXFSZ, before_);
-  }
-
- private:
-  rlimit limit_{};
-  void (*before_)(int);
-};
 
 struct Collected {
   std::vector<std::vector<std::uint8_t>> estimates;
@@ -127,7 +106,8 @@ TEST_F(HistoryFailure, AFullDiskHarmsNothingAndIsGoneWhenThereIsRoomAgain) {
     HistoryMonitor monitor;
     EXPECT_TRUE(monitor.look(0, history.status()).empty());
     {
-      const FullDisk full(fs::file_size(raw_logs(raw_folder(config_.history->directory))[0].path));
+      const test::FullDisk full(
+          fs::file_size(raw_logs(raw_folder(config_.history->directory))[0].path));
       Live live(config_, &history);
       live.play(log_);
       EXPECT_TRUE(live.estimates() == expected_);

@@ -1,12 +1,12 @@
 #include "drivers/durable_file.h"
 
-#include <sys/resource.h>
-
-#include <csignal>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include <gtest/gtest.h>
 
+#include "tests/support/full_disk.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::drivers {
@@ -16,25 +16,6 @@ using namespace std::chrono_literals;
 
 // Limits.
 constexpr auto kSoon = 3s;  // for what should take a quarter of a second
-
-/// A disk that is full: files of this process cannot grow beyond some bytes.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    before_ = std::signal(SIGXFSZ, SIG_IGN);
-    ::getrlimit(RLIMIT_FSIZE, &limit_);
-    const rlimit low{bytes, limit_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &low);
-  }
-  ~FullDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &limit_);
-    std::signal(SIGXFSZ, before_);
-  }
-
- private:
-  rlimit limit_{};
-  void (*before_)(int);
-};
 
 template <typename Condition>
 bool comes_true(Condition condition) {
@@ -70,7 +51,7 @@ TEST(DurableFile, AFullDiskDelaysAndTearsNothing) {
   DurableFile file;
   ASSERT_TRUE(file.open(directory.path("log"), error)) << error;
   {
-    const FullDisk full(1000);
+    const test::FullDisk full(1000);
     for (int i = 0; i < 300; ++i) {
       expected += "0123456789";
       EXPECT_TRUE(file.append("0123456789"));
@@ -90,7 +71,7 @@ TEST(DurableFile, WhatDoesNotFitIsCountedAndWhatWasWrittenStays) {
   std::string error;
   DurableFile file(100);
   ASSERT_TRUE(file.open(directory.path("log"), error)) << error;
-  const FullDisk full(30);
+  const test::FullDisk full(30);
   int taken = 0;
   for (int i = 0; i < 50; ++i) taken += file.append("0123456789");
   EXPECT_TRUE(comes_true([&] { return !file.trouble().empty(); }));
