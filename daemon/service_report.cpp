@@ -15,7 +15,7 @@ ServiceReport::ServiceReport(const Config& config, const StartCount& starts, boo
 
 std::optional<service_t> ServiceReport::look(const LiveEstimation& live, const StateKeeper& state,
                                              const ReloadCount& reloads, std::int64_t now_us) {
-  const bool clock_stepped_back = next_us_ - now_us > kEvery_us;
+  const bool clock_stepped_back = next_us_ > now_us + kEvery_us;
   if (now_us < next_us_ && !clock_stepped_back) return std::nullopt;
   next_us_ = now_us + kEvery_us;
   const LiveTimes& times = live.times();
