@@ -9,10 +9,10 @@
 namespace framewatch::drivers {
 
 void ContinuousStamps::now(const HostClockReading& reading) {
-  const std::int64_t change_us = reading.offset_us - offset_us_;
-  const bool step = started_ && std::abs(change_us) >= kStep_us;
   // A doubtful reading would make a step of nothing, and another one back.
   if (started_ && reading.doubtful_us > kStep_us / 4) return;
+  const std::int64_t change_us = reading.offset_us - offset_us_;
+  const bool step = started_ && std::abs(change_us) >= kStep_us;
   started_ = true;
   offset_us_ = reading.offset_us;
   if (step) {

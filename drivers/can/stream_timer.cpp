@@ -145,9 +145,9 @@ bool StreamTimer::confirm(std::int64_t number) {
 
 /// The numbers of the frames held are larger by `shift`.
 bool StreamTimer::decide(std::int64_t shift) {
+  if (starting_) return shift == 0;
+  if (!opened_is_held_) return shift == 0 || unwrap(shift);
   const double shift_us = settings_.period_us * static_cast<double>(shift);
-  if (starting_ || (shift == 0 && !opened_is_held_)) return shift == 0;
-  if (!opened_is_held_) return unwrap(shift_us / settings_.tick_us);
   const double late = opened_.host_us - line_.host_us(opened_.device_us + shift_us);
   if (held_.front().values.number + shift <= delivered_ || late <= -kLatest_us ||
       late >= absurd_us())
@@ -159,18 +159,18 @@ bool StreamTimer::decide(std::int64_t shift) {
     h.device_us += shift_us;
     h.values.number += shift;
   }
-  late_ = true;
-  patience_ = static_cast<int>(settings_.patience_us / settings_.period_us);
-  give_out_held();
+  go_on_late();
   return true;
 }
 
 /// The frame seen last was late by whole wraps of its reading, which made it look in time.
-bool StreamTimer::unwrap(double units) {
-  if (units >= 0 || settings_.modulus <= 0 || std::remainder(units, settings_.modulus) != 0)
+bool StreamTimer::unwrap(std::int64_t shift) {
+  const double shift_us = settings_.period_us * static_cast<double>(shift);
+  if (shift >= 0 || settings_.modulus <= 0 ||
+      std::remainder(shift_us / settings_.tick_us, settings_.modulus) != 0)
     return false;
-  opened_.device_us += units * settings_.tick_us;
-  opened_.values.number += std::llround(units * settings_.tick_us / settings_.period_us);
+  opened_.device_us += shift_us;
+  opened_.values.number += shift;
   last_device_us_ = opened_.device_us;
   last_number_ = delivered_ = opened_.values.number;
   return true;
@@ -274,14 +274,17 @@ void StreamTimer::hold(Held held) {
     if (h.timed) step_us = std::min(step_us, late_us(h));
   const double now_us = held_.back().host_us;
   if (steps_.resolve(step_us, now_us)) return;
-  if (!late_ && goes_on(held_.front())) {
-    late_ = true;
-    patience_ = static_cast<int>(settings_.patience_us / settings_.period_us);
-    return give_out_held();
-  }
+  if (!late_ && goes_on(held_.front())) return go_on_late();
   late_ = false;
   ++restarts_;
   start_anew();
+}
+
+/// The frames held are not a new start, only late, and those after them may be so for a while.
+void StreamTimer::go_on_late() {
+  late_ = true;
+  patience_ = static_cast<int>(settings_.patience_us / settings_.period_us);
+  give_out_held();
 }
 
 /// The frames held are late, or nonsense.

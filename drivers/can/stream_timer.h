@@ -118,7 +118,7 @@ class StreamTimer {
   double device_of(double reading, double host_us) const;
   void see_arrival(double host_us, TimedValues values);
   bool decide(std::int64_t shift);
-  bool unwrap(double units);
+  bool unwrap(std::int64_t shift);
   void give_numbers();
   double time_of(double device_us);
   double late_us(const Held& held) const { return held.host_us - line_.host_us(held.device_us); }
@@ -130,6 +130,7 @@ class StreamTimer {
   void take(Held held);
   void hold(Held held);
   void settle();
+  void go_on_late();
   void give_out_held();
   void start_anew();
   void number_first();
