@@ -48,13 +48,16 @@ bool DurableFile::make(std::string& error) {
 bool DurableFile::open(const std::string& path, std::string& error) {
   path_ = path;
   if (!make(error)) return false;
-  closing_ = false;
-  thread_ = std::thread([this] { work(); });
+  start();
   return true;
 }
 
 void DurableFile::open_when_needed(std::function<std::string()> path) {
   path_when_needed_ = std::move(path);
+  start();
+}
+
+void DurableFile::start() {
   closing_ = false;
   thread_ = std::thread([this] { work(); });
 }
@@ -139,7 +142,7 @@ void DurableFile::work() {
     if (!done && !last) std::this_thread::sleep_for(kWrite / 5);
     if (!last && Clock::now() < next_sync) continue;
     next_sync = Clock::now() + kSync;
-    if (!dirty) continue;
+    if (!dirty || file_ < 0) continue;
     const bool synced = ::fsync(file_) == 0;
     dirty = !synced;
     if (synced) continue;
@@ -164,11 +167,8 @@ bool DurableFile::close(std::string& error, std::chrono::milliseconds patience) 
   if (!is_open()) return false;
   finish(patience);
   error = trouble_;
-  if (file_ < 0) {
-    if (error.empty() && waiting_ > 0) error = "not everything was written";
-    return error.empty();
-  }
   if (error.empty() && waiting_ > 0) error = "not everything was written";
+  if (file_ < 0) return error.empty();
   if (error.empty() && std::rename((path_ + ".partial").c_str(), path_.c_str()) != 0)
     error = std::strerror(errno);
   ::close(file_);

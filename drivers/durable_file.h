@@ -57,6 +57,7 @@ class DurableFile {
 
  private:
   bool make(std::string& error);
+  void start();
   void work();
   bool write_some();
   void finish(std::chrono::milliseconds patience);

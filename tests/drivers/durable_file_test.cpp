@@ -15,7 +15,8 @@ namespace {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 3s;  // for what should take a quarter of a second
+constexpr auto kSoon = 3s;          // for what should take a quarter of a second
+constexpr auto kPastSync = 2500ms;  // it is forced onto the disk every second
 
 template <typename Condition>
 bool comes_true(Condition condition) {
@@ -110,6 +111,22 @@ TEST(DurableFile, IsMadeWhenThereIsSomethingToWriteAndTheDiskTakesIt) {
   std::string error;
   EXPECT_TRUE(file.close(error)) << error;
   EXPECT_EQ(test::read_file(path), "kept");
+}
+
+TEST(DurableFile, SaysWhyItCannotBeMadeForAsLongAsItCannot) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.path("none/log");
+  DurableFile file;
+  file.open_when_needed([&] { return path; });
+  EXPECT_TRUE(file.append("waits"));
+  ASSERT_TRUE(comes_true([&] { return !file.trouble().empty(); }));
+  for (const auto until = std::chrono::steady_clock::now() + kPastSync;
+       std::chrono::steady_clock::now() < until; std::this_thread::sleep_for(10ms))
+    ASSERT_NE(file.trouble().find("none/log.partial: No such file"), std::string::npos)
+        << file.trouble();
+  std::string error;
+  EXPECT_FALSE(file.close(error, 0ms));
+  EXPECT_NE(error.find("No such file"), std::string::npos) << error;
 }
 
 TEST(DurableFile, OneThatWasNeverNeededIsNotMade) {
