@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "daemon/event_words.h"
+
 namespace framewatch::daemon {
 namespace {
 
@@ -12,8 +14,6 @@ using Kind = drivers::CanNotice::Kind;
 
 constexpr std::int64_t kFirstId = std::int64_t{1} << 40;
 constexpr std::size_t kKinds = 4;
-enum State : std::int32_t { kCleared, kRaised, kChanged };
-enum Severity : std::int32_t { kInformation, kWarning, kAlarm };
 
 const char* name_of(Kind kind) {
   switch (kind) {
@@ -60,13 +60,15 @@ std::optional<event_t> CanEvents::of(const drivers::CanNotice& n) {
   if (!momentary && begun.on == !n.over && (n.over || begun.code == n.code)) return std::nullopt;
   event_t m{};
   m.time_us = n.time_us;
-  m.state = momentary || n.over ? kCleared : begun.on ? kChanged : kRaised;
+  m.state = momentary || n.over ? event_state::cleared
+            : begun.on          ? event_state::changed
+                                : event_state::raised;
   if (!begun.on) begun.since_us = n.time_us;
   begun.on = !momentary && !n.over;
   begun.code = n.code;
   m.since_us = begun.since_us;
   m.id = kFirstId + static_cast<std::int64_t>(at);
-  m.severity = momentary ? kInformation : n.over ? kWarning : kAlarm;
+  m.severity = momentary ? severity::information : n.over ? severity::warning : severity::alarm;
   m.kind = name_of(n.kind);
   m.place = place;
   m.value = n.code;

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/channel_names.h"
 #include "daemon/config_parts.h"
 #include "daemon/file_digest.h"
 #include "daemon/toml_document.h"
@@ -9,12 +10,6 @@
 
 namespace framewatch::daemon {
 namespace {
-
-std::vector<std::string> channel_names(const Config& config) {
-  std::vector<std::string> out;
-  for (const SensorAxis& axis : config.pipeline.axes) out.push_back(axis.name);
-  return out;
-}
 
 /// What keeps a model from being of this building; empty when nothing does.
 std::string difference(const Config& config, const Config& model) {

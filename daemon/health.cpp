@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/event_words.h"
 #include "drivers/message_check.h"
 
 namespace framewatch::daemon {
@@ -20,7 +21,7 @@ constexpr double kLoss_ratio = 1e-3;
 constexpr double kLate_ratio = 1e-2;
 constexpr std::int64_t kLittleDisk_bytes = 1'000'000'000;
 constexpr double kYoung_s = 600;
-constexpr int kWarning = 1, kCanActive = 0;
+constexpr int kCanActive = 0;
 
 double seconds_between(std::int64_t from_us, std::int64_t to_us) {
   return 1e-6 * static_cast<double>(to_us - from_us);
@@ -163,7 +164,7 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   std::vector<std::string> out;
   const service_t& s = *heard.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i)
-    if (s.event_severity[i] >= kWarning)
+    if (s.event_severity[i] >= severity::warning)
       out.push_back(
           fmt::format("{} {}: {}", s.event_kind[i], s.event_place[i], s.event_message[i]));
   of_samples(heard, now_us, out);

@@ -11,6 +11,7 @@
 #include "daemon/history_files.h"
 #include "daemon/history_retention.h"
 #include "daemon/log.h"
+#include "daemon/process_usage.h"
 #include "daemon/raw_log_care.h"
 
 namespace framewatch::daemon {
@@ -27,8 +28,7 @@ HistoryKeeper::Room room_in(const std::string& directory) {
     const auto bytes = at->is_regular_file(gone) ? at->file_size(gone) : 0;
     if (!gone) room.stored_bytes += static_cast<std::int64_t>(bytes);
   }
-  const auto space = std::filesystem::space(directory, none);
-  if (!none) room.free_bytes = static_cast<std::int64_t>(space.available);
+  room.free_bytes = disk_free_bytes(directory);
   return room;
 }
 

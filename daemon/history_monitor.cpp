@@ -5,12 +5,12 @@
 
 #include <fmt/core.h>
 
+#include "daemon/event_words.h"
+
 namespace framewatch::daemon {
 namespace {
 
 constexpr std::int64_t kCalm_us = 5'000'000;  // so long all is well before it is said
-enum State : std::int32_t { kCleared, kRaised };
-enum Severity : std::int32_t { kInformation, kWarning, kAlarm };
 
 }  // namespace
 
@@ -40,8 +40,8 @@ std::optional<event_t> HistoryMonitor::news(Part& part, const char* place,
   e.time_us = status.time_us;
   e.since_us = part.since_us;
   e.id = part.id;
-  e.state = bad ? kRaised : kCleared;
-  e.severity = bad ? kAlarm : kInformation;
+  e.state = bad ? event_state::raised : event_state::cleared;
+  e.severity = bad ? severity::alarm : severity::information;
   e.kind = "history";
   e.place = place;
   e.value = static_cast<double>(lost - part.lost_before);

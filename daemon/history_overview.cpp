@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/event_words.h"
 #include "daemon/history_files.h"
 
 namespace framewatch::daemon {
@@ -100,9 +101,8 @@ std::string size_text(std::int64_t bytes) {
 }
 
 std::string event_line(const event_t& e) {
-  const char* state = e.state == 0 ? "cleared" : e.state == 1 ? "raised" : "changed";
-  return fmt::format("{}  {:<8} {:<17} {:<10} {}", utc_text(e.time_us), state, e.kind, e.place,
-                     e.message);
+  return fmt::format("{}  {:<8} {:<17} {:<10} {}", utc_text(e.time_us), word(kEventStates, e.state),
+                     e.kind, e.place, e.message);
 }
 
 std::string history_overview(const std::string& directory, SummaryQuery& summaries) {

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "daemon/clocks.h"
+#include "daemon/event_words.h"
 #include "daemon/log.h"
+#include "drivers/encoded.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -29,9 +31,9 @@ void HistoryReport::look(std::int64_t now_us) {
   lcm_.publish(config_.lcm.prefix + "HISTORY", &status);
   const std::string channel = config_.lcm.prefix + "EVENT";
   for (const event_t& event : monitor_.look(now_us, status)) {
-    log(event.state != 0 ? LogLevel::error : LogLevel::notice, "history: " + event.message);
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(event.getEncodedSize()));
-    event.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    log(event.state != event_state::cleared ? LogLevel::error : LogLevel::notice,
+        "history: " + event.message);
+    const std::vector<std::uint8_t> bytes = drivers::encoded(event);
     lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
     history_->message(channel, bytes);
   }

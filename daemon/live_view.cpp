@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/estimation.h"
-#include "daemon/session_command.h"
+#include "drivers/encoded.h"
 #include "drivers/message_check.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -197,7 +197,7 @@ void LiveView::send_commands() {
     commands.swap(commands_);
   }
   for (const session_command_t& command : commands)
-    publish_(0, config_.lcm.prefix + "SESSION_COMMAND", encoded(command));
+    publish_(0, config_.lcm.prefix + "SESSION_COMMAND", drivers::encoded(command));
 }
 
 void LiveView::keep(const SampleSet& set) {
@@ -243,9 +243,7 @@ void LiveView::estimate(const std::string& channel, const void* data, std::size_
     if (renew) watch_->renew();
     for (const event_t& e : watch_->observe(*found)) {
       if (config_.watch) continue;  // the estimator's own alarms come over LCM
-      std::vector<std::uint8_t> out(static_cast<std::size_t>(e.getEncodedSize()));
-      e.encode(out.data(), 0, static_cast<int>(out.size()));
-      publish_(e.time_us, config_.lcm.prefix + "EVENT", out);
+      publish_(e.time_us, config_.lcm.prefix + "EVENT", drivers::encoded(e));
     }
   }
   if (!main) return;

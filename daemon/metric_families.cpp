@@ -1,8 +1,6 @@
 #include "daemon/metric_families.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 #include <prometheus/text_serializer.h>
 
@@ -103,10 +101,6 @@ void add_service(MetricFamilies& out, const service_t& s) {
 
 void add_status(MetricFamilies& out, const status_t& s) {
   const auto number = [](std::int64_t n) { return static_cast<double>(n); };
-  const auto per_channel = [&](const std::vector<std::int64_t>& values) {
-    for (std::size_t i = 0; i < s.name.size(); ++i)
-      out.value(number(values[i]), {{"channel", s.name[i]}});
-  };
   out.counter("windows_total", "Estimates published.").value(number(s.windows));
   out.counter("sample_sets_total", "Instants given to the estimator.").value(number(s.sample_sets));
   out.counter("window_restarts_total", "Gaps that restarted the window.").value(number(s.gaps));
@@ -116,25 +110,18 @@ void add_status(MetricFamilies& out, const status_t& s) {
       .value(s.queue_high_water);
   out.counter("queue_dropped_total", "Messages lost to a full queue.")
       .value(number(s.queue_dropped));
-  out.counter("samples_total", "Samples received.");
-  per_channel(s.received);
-  out.counter("samples_lost_total", "Sequence numbers never seen.");
-  per_channel(s.lost);
-  out.counter("samples_repaired_total", "Single losses filled by interpolation.");
-  per_channel(s.repaired);
+  out.counter("samples_total", "Samples received.").each("channel", s.name, s.received);
+  out.counter("samples_lost_total", "Sequence numbers never seen.").each("channel", s.name, s.lost);
+  out.counter("samples_repaired_total", "Single losses filled by interpolation.")
+      .each("channel", s.name, s.repaired);
   out.counter("samples_unused_total", "Samples received and not used, by reason.");
-  for (const auto& [reason, values] :
-       std::map<std::string, const std::vector<std::int64_t>*>{{"late", &s.late},
-                                                               {"rejected", &s.rejected},
-                                                               {"stuck", &s.stuck},
-                                                               {"clipped", &s.clipped}})
-    for (std::size_t i = 0; i < s.name.size(); ++i)
-      out.value(number((*values)[i]), {{"channel", s.name[i]}, {"reason", reason}});
+  out.each("channel", s.name, s.clipped, {{"reason", "clipped"}})
+      .each("channel", s.name, s.late, {{"reason", "late"}})
+      .each("channel", s.name, s.rejected, {{"reason", "rejected"}})
+      .each("channel", s.name, s.stuck, {{"reason", "stuck"}});
   out.gauge("channel_noise_mps2_per_root_hertz",
-            "Noise density reckoned with, m/s^2/sqrt(Hz); none while it is not known.");
-  for (std::size_t i = 0; i < s.name.size(); ++i)
-    if (std::isfinite(s.noise_mps2_per_rthz[i]))
-      out.value(s.noise_mps2_per_rthz[i], {{"channel", s.name[i]}});
+            "Noise density reckoned with, m/s^2/sqrt(Hz); none while it is not known.")
+      .each("channel", s.name, s.noise_mps2_per_rthz);
 }
 
 }  // namespace framewatch::daemon

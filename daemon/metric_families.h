@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -27,6 +29,19 @@ class MetricFamilies {
   MetricFamilies& gauge(const char* name, const char* help);
   MetricFamilies& counter(const char* name, const char* help);
   MetricFamilies& value(double value, const Labels& labels = {});
+  /// A value of each name, labelled `label`; none where it is not finite. `more`: on all of them.
+  template <typename Values>
+  MetricFamilies& each(const char* label, const std::vector<std::string>& names,
+                       const Values& values, const Labels& more = {}) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto one = static_cast<double>(values[i]);
+      if (!std::isfinite(one)) continue;
+      Labels labels{{label, names[i]}};
+      labels.insert(labels.end(), more.begin(), more.end());
+      value(one, labels);
+    }
+    return *this;
+  }
   /// limit_s: upper limits, the last one infinite; counts: between them.
   void histogram(const char* name, const char* help, const std::vector<double>& limit_s,
                  const std::vector<std::int64_t>& counts, double sum_s);

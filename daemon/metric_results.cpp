@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "daemon/event_words.h"
 #include "daemon/metric_families.h"
 
 namespace framewatch::daemon {
@@ -55,37 +56,30 @@ void add_gap(MetricFamilies& out, const gap_t& g) {
   if (std::isfinite(g.noise_floor))
     out.gauge("gap_noise_floor_ratio", "The least it can be with these sensors.")
         .value(g.noise_floor);
-  out.gauge("channel_gap_ratio", "The same of one channel.");
-  for (std::size_t i = 0; i < g.name.size(); ++i)
-    if (std::isfinite(g.nrmse[i])) out.value(g.nrmse[i], {{"channel", g.name[i]}});
+  out.gauge("channel_gap_ratio", "The same of one channel.").each("channel", g.name, g.nrmse);
 }
 
 void add_can(MetricFamilies& out, const can_status_t& s) {
-  const auto per_bus = [&](const auto& values) {
-    for (std::size_t b = 0; b < s.interface.size(); ++b)
-      if (const auto value = static_cast<double>(values[b]); std::isfinite(value))
-        out.value(value, {{"interface", s.interface[b]}});
-  };
   out.gauge("can_bus_state", "1 for the state the bus is in, 0 for the others.");
   constexpr std::array kStates = {"gone", "active", "warning", "passive", "off"};  // from -1
   for (std::size_t b = 0; b < s.interface.size(); ++b)
     for (std::size_t state = 0; state < kStates.size(); ++state)
       out.value(s.state[b] + 1 == static_cast<int>(state) ? 1 : 0,
                 {{"interface", s.interface[b]}, {"state", kStates[state]}});
-  out.gauge("can_frames_per_second", "All frames on the bus.");
-  per_bus(s.frames_hz);
-  out.gauge("can_load_ratio", "Share of the time the bus is taken, at most.");
-  per_bus(s.load);
-  out.gauge("can_expected_load_ratio", "The same, of the configured nodes.");
-  per_bus(s.expected_load);
-  out.counter("can_error_frames_total", "Error frames.");
-  per_bus(s.error_frames);
-  out.counter("can_bus_off_total", "Times the bus was off.");
-  per_bus(s.bus_off);
-  out.counter("can_bus_errors_total", "Protocol, acknowledgement and transceiver errors.");
-  per_bus(s.bus_errors);
-  out.counter("can_overflow_total", "Overflows of the controller's receive buffer.");
-  per_bus(s.overflow);
+  out.gauge("can_frames_per_second", "All frames on the bus.")
+      .each("interface", s.interface, s.frames_hz);
+  out.gauge("can_load_ratio", "Share of the time the bus is taken, at most.")
+      .each("interface", s.interface, s.load);
+  out.gauge("can_expected_load_ratio", "The same, of the configured nodes.")
+      .each("interface", s.interface, s.expected_load);
+  out.counter("can_error_frames_total", "Error frames.")
+      .each("interface", s.interface, s.error_frames);
+  out.counter("can_bus_off_total", "Times the bus was off.")
+      .each("interface", s.interface, s.bus_off);
+  out.counter("can_bus_errors_total", "Protocol, acknowledgement and transceiver errors.")
+      .each("interface", s.interface, s.bus_errors);
+  out.counter("can_overflow_total", "Overflows of the controller's receive buffer.")
+      .each("interface", s.interface, s.overflow);
   out.counter("can_dropped_frames_total", "Frames lost to full receive queues of the host.")
       .value(static_cast<double>(s.dropped));
 }
@@ -115,7 +109,6 @@ void add_history(MetricFamilies& out, const history_status_t& s) {
 }
 
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
-  constexpr std::array kSeverities = {"information", "warning", "alarm"};
   std::map<std::pair<std::string, std::string>, int> counts;
   // Always there, so that an alert sees it rise from nothing.
   for (const char* severity : kSeverities) {

@@ -24,8 +24,9 @@ ProcessUsage process_usage() {
 
 std::int64_t disk_free_bytes(const std::string& path) {
   std::error_code problem;
-  const std::filesystem::path parent = std::filesystem::absolute(path, problem).parent_path();
-  const auto space = std::filesystem::space(parent, problem);
+  std::filesystem::path at = std::filesystem::absolute(path, problem);
+  while (!std::filesystem::exists(at, problem) && at != at.parent_path()) at = at.parent_path();
+  const auto space = std::filesystem::space(at, problem);
   return problem ? -1 : static_cast<std::int64_t>(space.available);
 }
 

@@ -12,7 +12,7 @@ struct ProcessUsage {
 };
 ProcessUsage process_usage();
 
-/// Free for this process where `path` is, or would be; -1 when it is not known.
+/// Free for this process where `path` is, or would be, its folders too; -1 when it is not known.
 std::int64_t disk_free_bytes(const std::string& path);
 
 }  // namespace framewatch::daemon

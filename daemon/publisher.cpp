@@ -7,7 +7,9 @@
 
 #include <fmt/core.h>
 
+#include "daemon/event_words.h"
 #include "daemon/gap_model.h"
+#include "drivers/encoded.h"
 
 namespace framewatch::daemon {
 
@@ -26,8 +28,7 @@ Publisher::Publisher(const Config& config, MessageSink sink)
 template <typename MessageType>
 void Publisher::send(std::int64_t time_us, const std::string& channel, const MessageType& message) {
   if (!sink_) return;
-  bytes_.resize(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+  drivers::encode_into(bytes_, message);
   sink_(time_us, channel, bytes_);
 }
 
@@ -127,7 +128,6 @@ void Publisher::estimate(const WindowEstimate& e) {
 }
 
 void Publisher::alarm(const Alarm& alarm, const ParameterTable& table) {
-  constexpr int kWarning = 1, kAlarm = 2;
   const std::string& name = table[alarm.parameter].name;
   const double change = 100 * alarm.change.ratio, error = 100 * alarm.change.std_error;
   const double since_s = 1e-6 * static_cast<double>(to_microseconds(alarm.change.since));
@@ -136,7 +136,7 @@ void Publisher::alarm(const Alarm& alarm, const ParameterTable& table) {
   m.since_us = to_microseconds(alarm.change.since);
   m.id = alarm.id;
   m.state = static_cast<std::int32_t>(alarm.state);
-  m.severity = alarm.state == AlarmState::cleared ? kWarning : kAlarm;
+  m.severity = alarm.state == AlarmState::cleared ? severity::warning : severity::alarm;
   m.kind = "stiffness_change";
   m.place = name;
   m.value = change;
@@ -156,8 +156,8 @@ void Publisher::event(const event_t& event) {
 
 void Publisher::withdraw(const std::string& kind) {
   for (event_t e : raised_.take(kind)) {
-    e.state = static_cast<std::int32_t>(AlarmState::cleared);
-    e.severity = 0;
+    e.state = event_state::cleared;
+    e.severity = severity::information;
     e.message = "is not looked for any more: the configuration was changed";
     event(e);
   }
@@ -184,7 +184,6 @@ void Publisher::gap(const GapWindow& window) {
 }
 
 void Publisher::gap_news(const GapNews& news) {
-  constexpr int kInformation = 0, kWarning = 1;
   const bool raised = news.state != AlarmState::cleared;
   const std::string name =
       news.worst_axis >= 0 ? config_.pipeline.axes[static_cast<std::size_t>(news.worst_axis)].name
@@ -194,7 +193,7 @@ void Publisher::gap_news(const GapNews& news) {
   m.since_us = to_microseconds(news.since);
   m.id = news.id;
   m.state = static_cast<std::int32_t>(news.state);
-  m.severity = raised ? kWarning : kInformation;
+  m.severity = raised ? severity::warning : severity::information;
   m.kind = "gap";
   m.place = name;
   m.value = 100 * news.excess;

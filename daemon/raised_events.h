@@ -7,6 +7,8 @@
 
 #include <framewatch/event_t.hpp>
 
+#include "daemon/event_words.h"
+
 namespace framewatch::daemon {
 
 /// The events that are raised and not cleared, in the order they were raised.
@@ -17,7 +19,7 @@ class RaisedEvents {
   void note(const event_t& e) {
     const auto same = std::find_if(events_.begin(), events_.end(),
                                    [&](const event_t& r) { return r.id == e.id; });
-    if (e.state == 0) {
+    if (e.state == event_state::cleared) {
       if (same != events_.end()) events_.erase(same);
     } else if (same != events_.end()) {
       *same = e;

@@ -20,11 +20,25 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kSecond_us = 1'000'000;
 
+std::vector<std::string> names_of(const std::vector<RawChannel>& channels) {
+  std::vector<std::string> out;
+  for (const RawChannel& c : channels) out.push_back(c.name);
+  return out;
+}
+
+std::vector<drivers::ChannelAddress> addresses_of(const std::vector<RawChannel>& channels) {
+  std::vector<drivers::ChannelAddress> out;
+  for (const RawChannel& c : channels) out.push_back(c.address);
+  return out;
+}
+
 /// accel_t of the nodes. What a node's sequence leaves out was not received.
 class LogExport : public RawExport {
  public:
   LogExport(const std::vector<RawChannel>& channels, double rate_hz)
-      : channels_(channels), step_us_(1e6 / rate_hz), tables_(names(), addresses(), rate_hz) {}
+      : channels_(channels),
+        step_us_(1e6 / rate_hz),
+        tables_(names_of(channels), addresses_of(channels), rate_hz) {}
   bool open(const std::string& path) { return log_.open(path); }
 
   bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) override {
@@ -47,16 +61,6 @@ class LogExport : public RawExport {
   std::string error() const override { return log_.error(); }
 
  private:
-  std::vector<std::string> names() const {
-    std::vector<std::string> out;
-    for (const RawChannel& c : channels_) out.push_back(c.name);
-    return out;
-  }
-  std::vector<drivers::ChannelAddress> addresses() const {
-    std::vector<drivers::ChannelAddress> out;
-    for (const RawChannel& c : channels_) out.push_back(c.address);
-    return out;
-  }
   bool send() {
     if (!open_) return true;
     drivers::NodeSample sample = *std::exchange(open_, std::nullopt);
@@ -96,9 +100,7 @@ class CsvExport : public RawExport {
  public:
   explicit CsvExport(std::size_t channels) : channels_(channels) {}
   bool open(const std::string& path, const std::vector<RawChannel>& channels) {
-    std::vector<std::string> names;
-    for (const RawChannel& c : channels) names.push_back(c.name);
-    return csv_.open(path, names);
+    return csv_.open(path, names_of(channels));
   }
   bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) override {
     if (!zero_us_) zero_us_ = time_us;
@@ -150,9 +152,9 @@ class SeedExport : public RawExport {
  public:
   SeedExport(const std::vector<RawChannel>& channels, double rate_hz, double resolution_mps2,
              const SeedNames& names)
-      : resolution_mps2_(resolution_mps2), file_(seed_channels(channels, rate_hz, names), rate_hz) {
-    for (const RawChannel& c : channels) names_.push_back(c.name);
-  }
+      : resolution_mps2_(resolution_mps2),
+        file_(seed_channels(channels, rate_hz, names), rate_hz),
+        names_(names_of(channels)) {}
   bool open(const std::string& path) { return file_.open(path); }
   bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) override {
     if (std::isnan(accel_mps2)) return true;

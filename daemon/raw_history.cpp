@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/channel_names.h"
 #include "daemon/history_files.h"
 #include "drivers/lcm_log.h"
 
@@ -12,12 +13,6 @@ namespace {
 
 constexpr std::int64_t kBlock_us = 250'000;
 constexpr std::size_t kBlockSamples = 4096;
-
-std::vector<std::string> names_of(const Config& config) {
-  std::vector<std::string> names;
-  for (const SensorAxis& axis : config.pipeline.axes) names.push_back(axis.name);
-  return names;
-}
 
 }  // namespace
 
@@ -74,7 +69,8 @@ void RawHistory::end_block() {
     log_slot_ = slot;
     log_bytes_ = log_events_ = 0;
     append(drivers::kCountsTableChannel, time_us,
-           drivers::count_table(names_of(config_), config_.pipeline.options.rate_hz, time_us), 0);
+           drivers::count_table(channel_names(config_), config_.pipeline.options.rate_hz, time_us),
+           0);
   }
   const std::size_t samples = block_.size();
   append(drivers::kCountsChannel, time_us, block_.encode(), samples);

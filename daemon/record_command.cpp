@@ -21,6 +21,7 @@
 #include "daemon/session_finish.h"
 #include "daemon/stop_signal.h"
 #include "drivers/can/can_source.h"
+#include "drivers/encoded.h"
 #include "drivers/lcm_source.h"
 #include "drivers/message_check.h"
 
@@ -262,8 +263,7 @@ class RecordCommand {
     said_answer_ = status.answered;
     said_report_ = status.report;
     next_status_us_ = now_us + kStatus_us;
-    bytes_.resize(static_cast<std::size_t>(status.getEncodedSize()));
-    status.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+    drivers::encode_into(bytes_, status);
     lcm_.publish(config_.lcm.prefix + "SESSION", bytes_.data(),
                  static_cast<unsigned>(bytes_.size()));
   }

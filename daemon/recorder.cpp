@@ -8,6 +8,7 @@
 
 #include "daemon/estimation.h"
 #include "daemon/log.h"
+#include "daemon/process_usage.h"
 #include "drivers/can/candump_line.h"
 #include "drivers/text_output.h"
 
@@ -342,11 +343,7 @@ session_status_t Recorder::status(std::int64_t now_us) const {
   s.lost = log_ ? lost() - lost_before_ : session_.lost;
   s.dropped = log_ ? log_->dropped() : session_.dropped;
   s.bytes = log_ ? log_->bytes() : 0;
-  std::error_code error;
-  std::filesystem::path at = sessions_;
-  while (!at.empty() && !std::filesystem::exists(at, error)) at = at.parent_path();
-  const auto space = std::filesystem::space(at.empty() ? "." : at, error);
-  s.disk_free_bytes = error ? -1 : static_cast<std::int64_t>(space.available);
+  s.disk_free_bytes = disk_free_bytes(sessions_);
   for (const ChannelResult& r : channel_results()) {
     s.name.push_back(r.name);
     s.noise_mps2_per_rthz.push_back(r.noise_density);

@@ -1,5 +1,6 @@
 #include "daemon/service_report.h"
 
+#include "daemon/channel_names.h"
 #include "daemon/clocks.h"
 #include "daemon/process_usage.h"
 
@@ -45,7 +46,7 @@ std::optional<service_t> ServiceReport::look(const LiveEstimation& live, const S
   m.steps.assign(times.steps.counts().begin(), times.steps.counts().end());
   m.latencies.assign(times.latencies.counts().begin(), times.latencies.counts().end());
   m.buckets = static_cast<std::int32_t>(m.limit_s.size());
-  for (const SensorAxis& axis : config_.pipeline.axes) m.name.push_back(axis.name);
+  m.name = channel_names(config_);
   m.newest_us = times.newest_us;
   m.channels = static_cast<std::int32_t>(m.name.size());
   for (const event_t& e : live.estimation().raised().all()) {

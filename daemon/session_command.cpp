@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "drivers/encoded.h"
 #include "drivers/lcm_source.h"
 #include "drivers/message_check.h"
 
@@ -28,16 +29,10 @@ session_command_t session_command(const std::string& verb, const SessionRequest&
   return c;
 }
 
-std::vector<std::uint8_t> encoded(const session_command_t& command) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(command.getEncodedSize()));
-  command.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 int send_session_command(lcm::LCM& lcm, const std::string& prefix, const std::string& verb,
                          const SessionRequest& request) {
   const session_command_t command = session_command(verb, request);
-  const std::vector<std::uint8_t> bytes = encoded(command);
+  const std::vector<std::uint8_t> bytes = drivers::encoded(command);
   std::optional<session_status_t> answer;
   drivers::LcmSource source(
       lcm, {prefix + "SESSION"}, 100,

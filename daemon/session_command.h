@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <framewatch/session_command_t.hpp>
 #include <lcm/lcm-cpp.hpp>
@@ -12,7 +11,6 @@ namespace framewatch::daemon {
 
 /// A command with an id that no other has.
 session_command_t session_command(const std::string& verb, const SessionRequest& request);
-std::vector<std::uint8_t> encoded(const session_command_t& command);
 
 /// Tells the recorder that runs, until it answers. Exit code: 1 when it refuses, or none answers.
 int send_session_command(lcm::LCM& lcm, const std::string& prefix, const std::string& verb,

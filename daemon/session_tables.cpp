@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "daemon/estimate_table.h"
+#include "daemon/event_words.h"
 #include "daemon/html_page.h"
 #include "daemon/session_report.h"
 
@@ -31,13 +32,11 @@ std::string without(const SessionReport& r, std::size_t p, WindowRange windows) 
 
 std::string event_rows(const SessionReport& r) {
   std::vector<std::vector<std::string>> rows;
-  constexpr const char* kState[] = {"cleared", "raised", "changed"};
-  constexpr const char* kSeverity[] = {"information", "warning", "alarm"};
   for (const event_t& e : r.estimates.events) {
     if (rows.size() == kMostEvents) break;
     rows.push_back({fmt::format("{:.2f}", session_seconds(r, e.time_us)),
-                    kState[std::clamp(e.state, 0, 2)], kSeverity[std::clamp(e.severity, 0, 2)],
-                    html_text(e.place), html_text(e.message)});
+                    word(kEventStates, e.state), word(kSeverities, e.severity), html_text(e.place),
+                    html_text(e.message)});
   }
   if (rows.empty()) return "<p>No events.</p>\n";
   return html_table({"time, s", "state", "severity", "place", "what"}, rows) +

@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "daemon/channel_names.h"
 #include "daemon/clocks.h"
 #include "drivers/lcm_log.h"
 #include "drivers/record_csv_writer.h"
@@ -17,16 +18,10 @@ std::int64_t microseconds(double time_s) {
   return std::llround(time_s * 1e6);
 }
 
-std::vector<std::string> names(const Config& config) {
-  std::vector<std::string> out;
-  for (const SensorAxis& axis : config.pipeline.axes) out.push_back(axis.name);
-  return out;
-}
-
 class CsvOutput : public SimulationOutput {
  public:
   bool open(const Scenario& s, const std::string& path) {
-    return writer_.open(path, names(s.config));
+    return writer_.open(path, channel_names(s.config));
   }
   bool put(double time_s, const std::vector<double>& raw) override {
     return writer_.write(time_s, raw);
@@ -139,7 +134,7 @@ std::vector<drivers::ChannelAddress> addresses(const std::vector<AxisSource>& so
 }
 
 drivers::AccelMessages accel_messages(const Config& config, double rate_hz) {
-  return {names(config), addresses(config.sources), rate_hz};
+  return {channel_names(config), addresses(config.sources), rate_hz};
 }
 
 }  // namespace framewatch::daemon

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/channel_names.h"
 #include "daemon/effect_json.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -109,14 +110,12 @@ std::string truth_json(const Scenario& s) {
     effects.push_back(effect_json(e, s));
     if (is_channel_effect(e.kind)) faults.push_back(effects.back());
   }
-  Json order = Json::array();
-  for (const SensorAxis& axis : s.config.pipeline.axes) order.push_back(axis.name);
   const Json out{{"case", std::filesystem::path(s.config.path).stem().string()},
                  {"seed", s.seed},
                  {"hidden", effects.empty() ? Json{{"effect", "none"}} : effects.front()},
                  {"effects", effects},
                  {"true_parameters", true_parameters(s)},
-                 {"sensors", {{"faults", faults}, {"order", order}}}};
+                 {"sensors", {{"faults", faults}, {"order", channel_names(s.config)}}}};
   return out.dump(1) + "\n";
 }
 

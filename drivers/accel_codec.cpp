@@ -5,6 +5,8 @@
 
 #include <framewatch/accel_t.hpp>
 
+#include "drivers/encoded.h"
+
 namespace framewatch::drivers {
 namespace {
 
@@ -58,9 +60,7 @@ std::vector<std::uint8_t> encode_accel(const NodeSample& sample) {
   message.sequence = sample.sequence;
   message.node = sample.node;
   for (std::size_t i = 0; i < 3; ++i) message.accel_abs_mps2[i] = sample.accel_abs_mps2[i];
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
+  return encoded(message);
 }
 
 }  // namespace framewatch::drivers

@@ -8,6 +8,8 @@
 
 #include <framewatch/channel_table_t.hpp>
 
+#include "drivers/encoded.h"
+
 namespace framewatch::drivers {
 
 AccelMessages::AccelMessages(std::vector<std::string> names, std::vector<ChannelAddress> addresses,
@@ -58,10 +60,7 @@ std::vector<Message> AccelMessages::tables(std::int64_t time_us) const {
       table.axis.push_back(addresses_[i].axis);
     }
     table.channels = static_cast<std::int32_t>(table.name.size());
-    Message message{lcm_channel + "_CHANNELS", {}};
-    message.bytes.resize(static_cast<std::size_t>(table.getEncodedSize()));
-    table.encode(message.bytes.data(), 0, static_cast<int>(message.bytes.size()));
-    out.push_back(std::move(message));
+    out.push_back({lcm_channel + "_CHANNELS", encoded(table)});
   }
   return out;
 }

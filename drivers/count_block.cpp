@@ -4,6 +4,8 @@
 
 #include <framewatch/channel_table_t.hpp>
 
+#include "drivers/encoded.h"
+
 namespace framewatch::drivers {
 
 std::int32_t count_of(double accel_mps2, double resolution_mps2) {
@@ -31,8 +33,7 @@ void CountBlock::add(const AccelSample& sample) {
 
 const std::vector<std::uint8_t>& CountBlock::encode() {
   block_.samples = static_cast<std::int32_t>(block_.offset_us.size());
-  bytes_.resize(static_cast<std::size_t>(block_.getEncodedSize()));
-  block_.encode(bytes_.data(), 0, static_cast<int>(bytes_.size()));
+  encode_into(bytes_, block_);
   block_.offset_us.clear();
   block_.channel.clear();
   block_.count.clear();
@@ -49,9 +50,7 @@ std::vector<std::uint8_t> count_table(const std::vector<std::string>& names, dou
   table.node.resize(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) table.node[i] = static_cast<std::int32_t>(i);
   table.axis.assign(names.size(), 0);
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(table.getEncodedSize()));
-  table.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
+  return encoded(table);
 }
 
 }  // namespace framewatch::drivers

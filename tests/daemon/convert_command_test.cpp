@@ -10,6 +10,7 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "drivers/accel_codec.h"
+#include "drivers/encoded.h"
 #include "drivers/lcm_log.h"
 #include "drivers/record_file.h"
 #include "tests/support/data.h"
@@ -111,8 +112,7 @@ TEST_F(Convert, RefusesBadUseAndWritesNothing) {
 
 template <typename Type>
 void put(drivers::LcmLogWriter& log, const std::string& channel, const Type& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  const std::vector<std::uint8_t> bytes = drivers::encoded(message);
   ASSERT_TRUE(log.write(0, channel, bytes.data(), bytes.size()));
 }
 

@@ -9,6 +9,7 @@
 #include "daemon/session_estimates.h"
 #include "daemon/summary_history.h"
 #include "daemon/summary_store.h"
+#include "drivers/encoded.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/temporary.h"
 
@@ -321,12 +322,6 @@ TEST(SummaryStore, PrunesTheShortestPeriodOnly) {
   EXPECT_EQ(rows(s, "kx_1_y1", 2).size(), 5u);
 }
 
-std::vector<std::uint8_t> encoded(const event_t& event) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(event.getEncodedSize()));
-  event.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
-
 TEST(SummaryHistory, AnEventBeforeTheFirstWindowPrunesNothing) {
   const test::TemporaryDirectory directory;
   const Config config = test::table_with_history(directory.path("h"));
@@ -339,7 +334,7 @@ TEST(SummaryHistory, AnEventBeforeTheFirstWindowPrunesNothing) {
     SummaryHistory history(config);
     event_t event{};
     event.kind = "history";
-    history.message("FRAMEWATCH_EVENT", encoded(event));
+    history.message("FRAMEWATCH_EVENT", drivers::encoded(event));
     EXPECT_TRUE(
         test::comes_true([&] { return history.counters().commits > 0; }, std::chrono::seconds(5)));
   }

@@ -16,6 +16,7 @@
 #include "daemon/live_times.h"
 #include "daemon/raised_events.h"
 #include "daemon/start_count.h"
+#include "drivers/encoded.h"
 #include "estimator/state/archive.h"
 #include "tests/support/temporary.h"
 
@@ -28,8 +29,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 template <typename Message>
 void give(Metrics& metrics, const std::string& channel, const Message& message,
           std::int64_t now_us) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  const std::vector<std::uint8_t> bytes = drivers::encoded(message);
   metrics.message(channel, bytes.data(), bytes.size(), now_us);
 }
 

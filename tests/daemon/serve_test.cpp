@@ -16,6 +16,7 @@
 #include "daemon/serve_command.h"
 #include "daemon/web_server.h"
 #include "daemon/web_sessions.h"
+#include "drivers/encoded.h"
 #include "drivers/message_check.h"
 #include "tests/daemon/config_fixture.h"
 #include "tests/support/temporary.h"
@@ -257,8 +258,7 @@ class Served : public ::testing::Test {
   }
   template <typename Message>
   void send(const std::string& channel, const Message& message) {
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    const std::vector<std::uint8_t> bytes = drivers::encoded(message);
     view_.message(channel, bytes.data(), bytes.size());
   }
 
@@ -402,14 +402,12 @@ TEST(MessageCheck, StatusAndEventSurviveATripAndRefuseACut) {
   s.name = {"a"};
   s.received = s.lost = s.late = s.repaired = s.rejected = s.stuck = s.clipped = {3};
   s.noise_mps2_per_rthz = {0.5};
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(s.getEncodedSize()));
-  s.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+  std::vector<std::uint8_t> bytes = drivers::encoded(s);
   ASSERT_TRUE(drivers::decode_status(bytes));
   EXPECT_EQ(drivers::decode_status(bytes)->noise_mps2_per_rthz[0], 0.5);
   event_t e{};
   e.place = "kx_1_y1";
-  std::vector<std::uint8_t> more(static_cast<std::size_t>(e.getEncodedSize()));
-  e.encode(more.data(), 0, static_cast<int>(more.size()));
+  std::vector<std::uint8_t> more = drivers::encoded(e);
   ASSERT_TRUE(drivers::decode_event(more));
   EXPECT_EQ(drivers::decode_event(more)->place, "kx_1_y1");
   for (auto* all_bytes : {&bytes, &more}) all_bytes->pop_back();

@@ -4,15 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/encoded.h"
+
 namespace framewatch::drivers {
 namespace {
-
-template <typename Type>
-std::vector<std::uint8_t> encoded(const Type& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
 
 parameter_table_t parameter_table() {
   parameter_table_t table{};

@@ -14,6 +14,7 @@
 
 #include "drivers/accel_codec.h"
 #include "drivers/channel_table.h"
+#include "drivers/encoded.h"
 #include "drivers/lcm_log.h"
 #include "drivers/message_check.h"
 #include "tests/support/temporary.h"
@@ -26,13 +27,6 @@ namespace {
 constexpr std::uint64_t kAccel = 0xecb49719e8cabe05;
 
 const std::string kFirstLog = FRAMEWATCH_SOURCE_DIR "/tests/golden/every_type.lcmlog";
-
-template <typename Type>
-std::vector<std::uint8_t> encoded(const Type& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
 
 accel_t accel() {
   accel_t m{};

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace framewatch::drivers {
+
+/// An LCM message as the bytes that travel, into `bytes`, whose memory is used again.
+template <typename Type>
+void encode_into(std::vector<std::uint8_t>& bytes, const Type& message) {
+  bytes.resize(static_cast<std::size_t>(message.getEncodedSize()));
+  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+}
+
+template <typename Type>
+std::vector<std::uint8_t> encoded(const Type& message) {
+  std::vector<std::uint8_t> bytes;
+  encode_into(bytes, message);
+  return bytes;
+}
+
+}  // namespace framewatch::drivers
