@@ -56,6 +56,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.lcm = read_lcm(document, problems);
   read_can(document, config, problems);
   config.watch = read_watch(document, problems);
+  if (config.watch) config.pipeline.options.long_window_s = config.watch->options.quiet_window_s;
   config.gap = read_gap(document, problems);
   config.history = read_history(document, problems);
   if (problems.size() == before)

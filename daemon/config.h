@@ -36,6 +36,7 @@ struct LcmSettings {
 struct WatchSettings {
   WatchOptions options;
   std::string baseline_path;         ///< empty: none
+  std::string temperature_channel;   ///< LCM channel of temperature_t; empty: none
   std::optional<Baseline> baseline;  ///< of that file, if there is one yet
 };
 

@@ -75,6 +75,7 @@ Reach reach_of(const std::string& key) {
                                     "estimator.max_error_g_ratio",
                                     "estimator.max_error_c_ratio"};
   const std::string name = without_numbers(key);
+  if (name == "watch.temperature_channel") return Reach::restart;  // subscriptions stay
   for (const std::string setting : kSettings)
     if (name == setting || name.starts_with(setting + ".")) return Reach::settings;
   if (name == "channel.noise_mps2_per_rthz") return Reach::window;

@@ -18,6 +18,12 @@ std::optional<WatchSettings> read_watch(const TomlValue& document,
   out.options.smallest_g = section.number("smallest_change_g_ratio");
   out.options.alarms_per_year = section.number("alarms_per_year");
   out.options.shaking_hours_per_year = section.number("shaking_hours_per_year");
+  out.options.quiet_window_s = section.number("quiet_window_s");
+  out.options.quiet_learn_hours = section.number("quiet_learn_hours");
+  out.options.amplitude = section.boolean("follow_amplitude");
+  if (section.given("temperature_channel"))
+    out.temperature_channel = section.text("temperature_channel");
+  out.options.temperature = !out.temperature_channel.empty();
   return out;
 }
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "drivers/message_check.h"
+
 namespace framewatch::daemon {
 
 bool SensorSeconds::passed(std::int64_t time_us) {
@@ -100,7 +102,16 @@ void Estimation::watch(const WindowEstimate& estimate) {
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
                                           std::size_t size) {
+  if (config_.watch && channel == config_.watch->temperature_channel)
+    return temperature(data, size);
   return intake_.message(channel, data, size);
+}
+
+drivers::IntakeResult Estimation::temperature(const void* data, std::size_t size) {
+  const auto message = drivers::decode_temperature({static_cast<const std::uint8_t*>(data), size});
+  if (!message) return drivers::IntakeResult::malformed;
+  if (watch_) watch_->temperature(from_microseconds(message->time_us), message->temperature_degc);
+  return drivers::IntakeResult::table;
 }
 
 void Estimation::notice(const drivers::CanNotice& notice) {

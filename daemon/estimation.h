@@ -90,6 +90,7 @@ class Estimation {
 
  private:
   void publish_state();
+  drivers::IntakeResult temperature(const void* data, std::size_t size);
   void main_window(const WindowEstimate& estimate);
   void watch(const WindowEstimate& estimate);
   void look_for_gap(const SampleSet& instant);

@@ -14,6 +14,8 @@ std::vector<std::string> channels_of(const Config& config) {
   std::vector<std::string> channels = drivers::ChannelBinding(wanted_axes(config)).streams();
   for (std::size_t i = 0, streams = channels.size(); i < streams; ++i)
     channels.push_back(channels[i] + "_CHANNELS");
+  if (config.watch && !config.watch->temperature_channel.empty())
+    channels.push_back(config.watch->temperature_channel);
   return channels;
 }
 

@@ -23,6 +23,8 @@ Publisher::Publisher(const Config& config, MessageSink sink)
       gap_channel_(config.lcm.prefix + "GAP") {
   for (const double window_s : config.pipeline.options.other_windows_s)
     other_channels_.push_back(fmt::format("{}_{:g}S", estimate_channel_, window_s));
+  if (const double window_s = config.pipeline.options.long_window_s; window_s > 0)
+    other_channels_.push_back(fmt::format("{}_{:g}S", estimate_channel_, window_s));
 }
 
 template <typename MessageType>

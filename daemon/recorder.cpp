@@ -63,6 +63,8 @@ std::vector<std::string> Recorder::channels() const {
     out.push_back(config_.lcm.prefix + name);
   for (const double window_s : config_.pipeline.options.other_windows_s)
     out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));
+  if (const double window_s = config_.pipeline.options.long_window_s; window_s > 0)
+    out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));
   return out;
 }
 

@@ -122,4 +122,8 @@ std::optional<service_t> decode_service(std::span<const std::uint8_t> payload) {
   return decode<service_t>(payload, "888884sss88s8s8888888n[888]n[s8]n[884sss]");
 }
 
+std::optional<temperature_t> decode_temperature(std::span<const std::uint8_t> payload) {
+  return decode<temperature_t>(payload, "888");
+}
+
 }  // namespace framewatch::drivers

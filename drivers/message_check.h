@@ -16,6 +16,7 @@
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/temperature_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 namespace framewatch::drivers {
@@ -36,5 +37,6 @@ std::optional<history_status_t> decode_history_status(std::span<const std::uint8
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload);
 std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload);
 std::optional<service_t> decode_service(std::span<const std::uint8_t> payload);
+std::optional<temperature_t> decode_temperature(std::span<const std::uint8_t> payload);
 
 }  // namespace framewatch::drivers

@@ -15,6 +15,7 @@
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/temperature_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include <fmt/core.h>
@@ -25,8 +26,8 @@
 namespace framewatch::drivers {
 namespace {
 
-const std::array<std::pair<const char*, std::int64_t>, 13>& types() {
-  static const std::array<std::pair<const char*, std::int64_t>, 13> all{{
+const std::array<std::pair<const char*, std::int64_t>, 14>& types() {
+  static const std::array<std::pair<const char*, std::int64_t>, 14> all{{
       {"accel_t", accel_t::getHash()},
       {"channel_table_t", channel_table_t::getHash()},
       {"parameter_table_t", parameter_table_t::getHash()},
@@ -40,6 +41,7 @@ const std::array<std::pair<const char*, std::int64_t>, 13>& types() {
       {"service_t", service_t::getHash()},
       {"accel_counts_t", accel_counts_t::getHash()},
       {"history_status_t", history_status_t::getHash()},
+      {"temperature_t", temperature_t::getHash()},
   }};
   return all;
 }
@@ -56,6 +58,7 @@ const char* type_of_channel(const std::string& channel, const std::string& prefi
   if (!stream_of_table(channel).empty()) return "channel_table_t";
   if (channel.starts_with("ACCEL")) return "accel_t";
   if (channel == "COUNTS") return "accel_counts_t";
+  if (channel == "TEMPERATURE") return "temperature_t";
   if (!channel.starts_with(prefix)) return nullptr;
   const std::string rest = channel.substr(prefix.size());
   if (rest.starts_with("ESTIMATE")) return "window_estimate_t";

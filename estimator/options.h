@@ -15,6 +15,8 @@ struct EstimatorOptions {
   double window_s = 5;   ///< rounded to 20 blocks of whole samples
   /// Further windows, five per length; rounded to whole blocks of the main one, at least four.
   std::vector<double> other_windows_s = {1, 2.5, 10};
+  /// Length of the windows that motion is accumulated over, however weak (LongWindow); 0: none.
+  double long_window_s = 0;
   double hop_s = 0.01;  ///< between published windows; rounded to whole samples, >= 1
   int boxplot_windows = 500;
   double high_pass_hz = 0.3;       ///< drift control, second order; the paper's variant: 0.1

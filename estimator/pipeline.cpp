@@ -1,5 +1,6 @@
 #include "estimator/pipeline.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/identify/window_estimator.h"
@@ -21,6 +22,12 @@ std::vector<std::string> problems(const PipelineConfig& config) {
   for (const double s : o.other_windows_s) {
     at_least("other_windows_s", s, 8 / o.rate_hz);
     if (s > 20 * o.window_s) found.push_back("other_windows_s: at most 20 times window_s");
+  }
+  if (o.long_window_s != 0) {
+    double longest = o.window_s;
+    for (const double s : o.other_windows_s) longest = std::max(longest, s);
+    if (!(o.long_window_s > longest))
+      found.push_back("the long window (watch.quiet_window_s): must be longer than the others");
   }
   at_least("hop_s", o.hop_s, 0);
   at_least("boxplot_windows", o.boxplot_windows, 1);

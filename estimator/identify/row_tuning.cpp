@@ -226,34 +226,43 @@ void RowTuning::rows(int floor, const std::vector<std::uint8_t>& known, FloorRow
 }
 
 void RowTuning::pack_noise(int floor, FloorRows& out) const {
-  const int front = layout_->front(floor);
-  const int stride = padded(front);
-  const int unknowns = front - 1;
-  out.noise_taken_off.clear();
+  const int unknowns = layout_->front(floor) - 1;
   const auto energy = [&](int p, int q) -> double& {
     return out.noise_energy[static_cast<std::size_t>(p * unknowns + q)];
   };
-  double whole = 0;
-  for (int p = 0; p < unknowns; ++p) {
+  for (int p = 0; p < unknowns; ++p)
     for (int q = 0; q < p; ++q) energy(p, q) = energy(q, p);
-    for (int q = p; q < unknowns; ++q) whole += (q == p ? 1 : 2) * energy(p, q);
-  }
   out.noise_diagonal.clear();
   for (int p = 0; p < unknowns; ++p) out.noise_diagonal.push_back(energy(p, p));
   out.noise_pull.assign(static_cast<std::size_t>(unknowns * WrongDesigns::kCount), 0.0);
   kernels::in_use->multiply_add(out.noise_energy.data(), unknowns, unknowns, unknowns,
                                 wrong_.floor(floor), out.noise_pull.data(), WrongDesigns::kCount);
+  pack_taken_off(*layout_, floor, out, kTakenOff, out.noise_taken_off);
+}
+
+void pack_taken_off(const FloorLayout& layout, int floor, const FloorRows& rows, double share,
+                    std::vector<double>& out) {
+  const int front = layout.front(floor);
+  const int stride = padded(front);
+  const int unknowns = front - 1;
+  const auto energy = [&](int p, int q) {
+    return rows.noise_energy[static_cast<std::size_t>(p * unknowns + q)];
+  };
+  double whole = 0;
+  for (int p = 0; p < unknowns; ++p)
+    for (int q = p; q < unknowns; ++q) whole += (q == p ? 1 : 2) * energy(p, q);
   const auto entry = [&](int i, int j) {  // i <= j
     if (j > unknowns) return 0.0;
-    if (j < unknowns) return kTakenOff * energy(i, j);
-    if (i == unknowns) return out.noise_response - (1 - kTakenOff) * whole;
-    double sum = out.noise_right[static_cast<std::size_t>(i)];
-    for (int q = 0; q < unknowns; ++q) sum -= (1 - kTakenOff) * energy(i, q);
+    if (j < unknowns) return share * energy(i, j);
+    if (i == unknowns) return rows.noise_response - (1 - share) * whole;
+    double sum = rows.noise_right[static_cast<std::size_t>(i)];
+    for (int q = 0; q < unknowns; ++q) sum -= (1 - share) * energy(i, q);
     return sum;
   };
+  out.clear();
   for (int i = 0; i < front; ++i)
     for (int j = packed_row_begin(i); j < stride; ++j)
-      out.noise_taken_off.push_back(entry(std::min(i, j), std::max(i, j)));
+      out.push_back(entry(std::min(i, j), std::max(i, j)));
 }
 
 double RowTuning::damping() const {

@@ -24,6 +24,14 @@ namespace framewatch {
 /// docs/equations.md, noise in the regressors.
 inline constexpr double kTakenOff = 0.8;
 
+struct FloorRows;
+
+/// The part of a floor's sensor noise per instant that a solver takes off, packed like the sums:
+/// `share` of the normal matrix, and of the right-hand side so much that the rest pulls toward the
+/// design.
+void pack_taken_off(const FloorLayout& layout, int floor, const FloorRows& rows, double share,
+                    std::vector<double>& out);
+
 /// One floor's projected equations: each row r is sum_f phi_rf (equation f), low-passed by an
 /// all-pole section s = gain x - a1 s' - a2 s'' and scaled by the root of its weight.
 struct FloorRows {

@@ -12,12 +12,12 @@ namespace {
 constexpr double kCorrection = 1.155;
 }  // namespace
 
-BatchMeans::BatchMeans(const FloorLayout& layout)
+BatchMeans::BatchMeans(const FloorLayout& layout, double taken_off)
     : layout_(layout),
       columns_(kBlocks + WrongDesigns::kCount),
       factor_(layout),
       inverse_(layout),
-      noise_(layout),
+      noise_(layout, taken_off),
       next_step_(steps()),
       block_(kBlocks, nullptr),
       wrong_(layout) {
@@ -33,7 +33,7 @@ BatchMeans::BatchMeans(const FloorLayout& layout)
   x_.assign(front, 0.0);
 }
 
-void BatchMeans::begin(const WindowSums& sums, StorySolver& solver, const Fit& fit,
+void BatchMeans::begin(const SumsShape& shape, StorySolver& solver, const Fit& fit,
                        const std::vector<double>& prior, const NoiseShare& noise,
                        double noise_level) {
   solver.swap_factor(factor_);
@@ -45,8 +45,7 @@ void BatchMeans::begin(const WindowSums& sums, StorySolver& solver, const Fit& f
   prior_ = prior;
   noise_ = noise;
   noise_level_ = noise_level;
-  shape_ = &sums.shape();
-  for (int b = 0; b < kBlocks; ++b) block_[static_cast<std::size_t>(b)] = sums.block(b);
+  shape_ = &shape;
   std::fill(columns_values_.begin(), columns_values_.end(), 0.0);
   next_step_ = 0;
 }

@@ -25,18 +25,24 @@ class BatchMeans {
  public:
   static constexpr int kBlocks = 20;
 
-  explicit BatchMeans(const FloorLayout& layout);
+  /// taken_off: share of the noise, see NoiseShare.
+  explicit BatchMeans(const FloorLayout& layout, double taken_off = kTakenOff);
 
   /// The window of kBlocks blocks and the solution that fits it.
   struct Fit {
     const std::vector<double>* solution;
     const std::vector<double>* information;
   };
-  /// After maintain() closed the block that ends the window `solver` solved and `fit` fits, and
-  /// before the next one closes: the pass must be done by then. Takes the solver's factor; its
-  /// solution stays. noise_level: variance of the noise over the tuning's.
-  void begin(const WindowSums& sums, StorySolver& solver, const Fit& fit,
-             const std::vector<double>& prior, const NoiseShare& noise, double noise_level);
+  /// sums: WindowSums, after maintain() closed the block that ends the window `solver` solved and
+  /// `fit` fits, and before the next one closes: the pass must be done by then; or other blocks
+  /// that last as long. Takes the solver's factor; its solution stays. noise_level: variance of the
+  /// noise over the tuning's.
+  template <typename Sums>
+  void begin(const Sums& sums, StorySolver& solver, const Fit& fit,
+             const std::vector<double>& prior, const NoiseShare& noise, double noise_level) {
+    for (int b = 0; b < kBlocks; ++b) block_[static_cast<std::size_t>(b)] = sums.block(b);
+    begin(sums.shape(), solver, fit, prior, noise, noise_level);
+  }
   /// Of a whole pass.
   int steps() const { return 2 * layout_.floors(); }
   bool running() const { return next_step_ < steps(); }
@@ -57,8 +63,8 @@ class BatchMeans {
   const std::vector<double>& noise_share() const { return noise_share_; }
 
   /// rows, sums: those of the pass under way, if any.
-  template <typename Archive>
-  void archive(Archive& a, const RowChain& rows, const WindowSums& sums) {
+  template <typename Archive, typename Sums>
+  void archive(Archive& a, const RowChain& rows, const Sums& sums) {
     a(next_step_, factor_, inverse_, noise_level_, columns_values_, solution_, score_scale_);
     a(prior_, inverse_diagonal_, new_error_, new_share_, new_noise_share_);
     a(std_error_, prior_share_, noise_share_);
@@ -72,6 +78,8 @@ class BatchMeans {
   }
 
  private:
+  void begin(const SumsShape& shape, StorySolver& solver, const Fit& fit,
+             const std::vector<double>& prior, const NoiseShare& noise, double noise_level);
   void assemble(int floor);
   void add_block_scores(int floor);
   void add_pulls(int floor);

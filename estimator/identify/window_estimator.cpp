@@ -92,6 +92,10 @@ WindowEstimator::WindowEstimator(const PipelineConfig& config, const ParameterTa
     self_tuning_ =
         std::make_unique<SelfTuning>(layout_, table_, make_machine(active_->tuning().design()),
                                      kBlocks, triple_.length(), noise_.configured());
+  if (options_.long_window_s > 0)
+    long_ = std::make_unique<LongWindow>(structure_, layout_, table_, options_, block_rows_,
+                                         static_cast<int>(other_blocks_.size()) + 1,
+                                         noise_.configured());
 }
 
 std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& design) const {
@@ -103,6 +107,7 @@ std::unique_ptr<Machine> WindowEstimator::make_machine(const Eigen::VectorXd& de
 std::vector<int> WindowEstimator::other_window_rows() const {
   std::vector<int> rows;
   for (const int blocks : other_blocks_) rows.push_back(blocks * block_rows_);
+  if (long_) rows.push_back(long_->rows());
   return rows;
 }
 
@@ -146,11 +151,23 @@ void WindowEstimator::advance_errors(Time window_end) {
   if (active_->finish(ring_) && active_->full()) {
     main_.begin_errors(active_->sums(), main_);
     others_.block_closed(active_->sums(), window_end);
+    if (long_) long_->block_closed(active_->sums(), ring_.at(ring_.end() - 1).known, window_end);
     return;
   }
   if (main_.advance_errors(steps_per_instant_)) look_at_tuning();
   other_ =
       others_.advance({active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned()});
+  if (long_ && other_ == nullptr) advance_long();
+}
+
+void WindowEstimator::advance_long() {
+  other_ = long_->advance(
+      {active_.get(), &ring_.at(ring_.end() - 1).known, {matched_, noise_.configured()}, tuned()});
+  if (other_ == nullptr || !self_tuning_ || self_tuning_->tuned() || !self_tuning_->due()) return;
+  // Where no ordinary window ever shows anything, the filters are tuned to the long ones.
+  const WindowSolution& solution = long_->solution();
+  for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = solution.shown(static_cast<int>(u));
+  self_tuning_->look(*active_, solution.solver().solution(), solution.std_error(), shown_, noise_);
 }
 
 void WindowEstimator::look_at_tuning() {
@@ -166,6 +183,7 @@ void WindowEstimator::exchanged_machines() {
   }
   main_.retuned();
   others_.retuned();
+  if (long_) long_->retuned();
 }
 
 void WindowEstimator::fill_estimate(Time end) {

@@ -6,6 +6,7 @@
 #include "estimator/identify/boxplot.h"
 #include "estimator/identify/channel_noise.h"
 #include "estimator/identify/estimate.h"
+#include "estimator/identify/long_window.h"
 #include "estimator/identify/machine.h"
 #include "estimator/identify/other_windows.h"
 #include "estimator/identify/self_tuning.h"
@@ -43,13 +44,33 @@ class WindowEstimator {
     if (self_tuning_) a(*self_tuning_);
     main_.archive(a, active_->rows(), active_->sums());
     others_.archive(a, *active_);
+    archive_long(a);
     a(boxplots_, estimate_, expected_index_, since_hop_, gaps_);
   }
 
  private:
+  /// A state of its own, so that one with another long window, or none, does not spoil the rest.
+  template <typename Archive>
+  void archive_long(Archive& a) {
+    int rows = long_ ? long_->rows() : 0;
+    std::vector<std::uint8_t> bytes;
+    if constexpr (Archive::kReading) {
+      a(rows, bytes);
+      if (!long_) return;
+      StateReader state(bytes);
+      if (rows == long_->rows()) long_->archive(state, *active_);
+      if (rows != long_->rows() || !state.whole()) long_->retuned();
+    } else {
+      StateWriter state;
+      if (long_) long_->archive(state, *active_);
+      bytes = state.bytes();
+      a(rows, bytes);
+    }
+  }
   void restart();
   void advance_errors(Time window_end);
   void look_at_tuning();
+  void advance_long();
   void exchanged_machines();
   /// The filters are right, as far as is known.
   bool tuned() const { return self_tuning_ == nullptr || self_tuning_->tuned(); }
@@ -75,8 +96,9 @@ class WindowEstimator {
   std::unique_ptr<SelfTuning> self_tuning_;  ///< null when switched off
   WindowSolution main_;
   OtherWindows others_;
-  int steps_per_instant_ = 1;        ///< of a pass of errors: done before the next block closes
-  std::vector<std::uint8_t> shown_;  ///< of look_at_tuning()
+  std::unique_ptr<LongWindow> long_;  ///< null: none
+  int steps_per_instant_ = 1;         ///< of a pass of errors: done before the next block closes
+  std::vector<std::uint8_t> shown_;   ///< of look_at_tuning()
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
   const WindowEstimate* other_ = nullptr;

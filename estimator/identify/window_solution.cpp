@@ -17,14 +17,15 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& layout,
-                               const ParameterTable& table, const EstimatorOptions& options)
+                               const ParameterTable& table, const EstimatorOptions& options,
+                               double taken_off)
     : structure_(structure),
       layout_(layout),
       table_(table),
       options_(options),
-      noise_(layout),
+      noise_(layout, taken_off),
       solver_(layout),
-      errors_(layout),
+      errors_(layout, taken_off),
       prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
       warm_(static_cast<std::size_t>(layout.floors()), 0),
       known_(static_cast<std::size_t>((layout.floors() + 1) * layout.frames()), 0),
@@ -65,11 +66,6 @@ void WindowSolution::solve(const WindowParts& sums, const RowChain& rows, const 
   residual_energy_ = std::max(solver_.residual_energy() + taken_off * noise_.residual(), 0.0);
   noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
   if (closes_block) noise_level_ = noise_scale_;
-}
-
-void WindowSolution::begin_errors(const WindowSums& all, const WindowSolution& fit) {
-  const BatchMeans::Fit of{&fit.solver_.solution(), &fit.solver_.information()};
-  errors_.begin(all, solver_, of, prior_, noise_, noise_scale_);
 }
 
 bool WindowSolution::advance_errors(int steps) {

@@ -20,8 +20,9 @@ namespace framewatch {
 /// errors and with a verdict on every parameter. docs/equations.md (18), (21), (22).
 class WindowSolution {
  public:
+  /// taken_off: share of the noise, see NoiseShare.
   WindowSolution(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
-                 const EstimatorOptions& options);
+                 const EstimatorOptions& options, double taken_off = kTakenOff);
 
   /// A new run of windows: nothing is known of its errors.
   void restart();
@@ -36,7 +37,11 @@ class WindowSolution {
 
   /// A pass of standard errors, spread over instants (BatchMeans). fit: the solution that fits
   /// BatchMeans::kBlocks blocks, this one or another.
-  void begin_errors(const WindowSums& all, const WindowSolution& fit);
+  template <typename Sums>
+  void begin_errors(const Sums& all, const WindowSolution& fit) {
+    const BatchMeans::Fit of{&fit.solver_.solution(), &fit.solver_.information()};
+    errors_.begin(all, solver_, of, prior_, noise_, noise_scale_);
+  }
   bool advance_errors(int steps);
   /// The next solution is of other rows: a pass under way is given up, errors stay.
   void retuned() {
@@ -62,8 +67,8 @@ class WindowSolution {
   void fill(const Situation& situation, WindowEstimate& estimate);
 
   /// rows, sums: of the machine in service.
-  template <typename Archive>
-  void archive(Archive& a, const RowChain& rows, const WindowSums& sums) {
+  template <typename Archive, typename Sums>
+  void archive(Archive& a, const RowChain& rows, const Sums& sums) {
     noise_.archive(a, rows);
     errors_.archive(a, rows, sums);
     a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_);

@@ -82,6 +82,9 @@ class WindowSums {
   /// Completed block, age 0 = the newest; valid after maintain().
   const double* block(int age) const;
 
+  /// Per floor: instants of the newest completed block in which it had rows.
+  const int* newest_instants() { return counts(pushed_ / block_rows_ - 1); }
+
   /// A completed block as a number, -1 for none, and back.
   std::int64_t number_of(const double* block) const {
     return block == nullptr ? -1 : (block - blocks_ring_.data()) / std::ptrdiff_t(shape_.size);

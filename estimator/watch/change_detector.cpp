@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kFreedom = 19;         // of standard errors from 20 blocks
 constexpr double kMemory_s = 15;        // of the usual standard error
+constexpr double kBaselineErrors = 3;   // that a value may be off by for ever
 constexpr double kMostOfThreshold = 2;  // a sum beyond that tells nothing more
 
 double log_likelihood(double z) {
@@ -51,7 +52,7 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
       usual == 0 ? error : usual + std::min(1.0, window_s / kPhases / kMemory_s) * (error - usual);
   const double scale = std::hypot(std::max(error, usual), baseline_error);
   const double off = e.value[p] / baseline_.value[p] - 1;
-  const double spare = parameter.watched.spare / scale;
+  const double spare = (parameter.watched.spare + kBaselineErrors * baseline_error) / scale;
   const double z = off / scale, least = parameter.watched.smallest / scale;
 
   for (const int sign : {-1, 1}) {

@@ -2,18 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace framewatch {
 namespace {
 
-constexpr double kSeconds = 3600;
+constexpr double kSeconds = 3600, kHoursPerYear = 8766;
+constexpr double kBinsPerWindow = 20, kBin_s = 60;  // of the temperature's means
+constexpr double kExpectedErrors = 3;
 constexpr double kNewsErrors = 2;  // standard errors a change moves by before it is told again
 
 /// A design off by its tolerance may not move a value by more than this share of the change that
 /// matters. A panel's change that matters is one or two standard errors of its values, so that what
 /// moves them all alike must be allowed for; a frame's is many.
 constexpr double kMostPull_k = 0.1, kMostPull_g = 0.25;
+/// The same of long windows, whose baseline is pulled alike.
+constexpr double kMostPullQuiet = 0.4;
 
 std::vector<Watched> what_is_watched(const ParameterTable& table, const WatchOptions& o) {
   const auto watched = [](double smallest, double pull, ParameterKind kind, double spare) {
@@ -30,15 +35,30 @@ std::vector<Watched> what_is_watched(const ParameterTable& table, const WatchOpt
   return out;
 }
 
+/// The value as it would be under the conditions of the baseline. What they may explain by
+/// kExpectedErrors errors is no deviation: that error is the same in every window.
+void correct(WindowEstimate& e, std::size_t p, double baseline, const Dependence::Expected& now) {
+  if (!std::isfinite(now.std_error) || now.ratio <= 0) {
+    e.reason[p] = Observability::quiet;
+    return;
+  }
+  const double off = e.value[p] / now.ratio - baseline;
+  const double explained = kExpectedErrors * now.std_error * baseline;
+  e.value[p] = baseline + std::copysign(std::max(std::abs(off) - explained, 0.0), off);
+  e.std_error[p] /= now.ratio;
+}
+
 /// Sums that may cross it, per year, over the false alarms that are put up with:
 /// docs/equations.md (41).
 double threshold_for(const WatchOptions& o, const std::vector<double>& windows_s,
                      const std::vector<Watched>& watched) {
   const auto count = static_cast<double>(std::count_if(
       watched.begin(), watched.end(), [](const Watched& w) { return w.smallest > 0; }));
-  double per_second = 0;
-  for (const double s : windows_s) per_second += 2 * count * ChangeDetector::kPhases / s;
-  const double tests = per_second * kSeconds * o.shaking_hours_per_year;
+  const double tests_per_window = 2 * count * ChangeDetector::kPhases;
+  double tests = 0;
+  for (const double s : windows_s)
+    tests += tests_per_window * kSeconds * o.shaking_hours_per_year / s;
+  if (o.quiet_window_s > 0) tests += tests_per_window * kSeconds * kHoursPerYear / o.quiet_window_s;
   return std::log(std::max(tests / o.alarms_per_year, 2.0));
 }
 
@@ -52,31 +72,87 @@ Watch::Watch(const ParameterTable& table, const WatchOptions& options,
       threshold_(threshold_for(options, windows_s, watched_)),
       learner_(table.size(), options.learn_s),
       baseline_(std::move(baseline)),
+      temperature_(options.quiet_window_s > 0 ? options.quiet_window_s / kBinsPerWindow : kBin_s),
+      learned_degc_(std::numeric_limits<double>::quiet_NaN()),
+      quiet_learner_(table.size(), {kSeconds * options.quiet_learn_hours, options.temperature,
+                                    options.amplitude}),
+      quiet_baseline_(watched_.size()),
+      dependence_(watched_.size()),
+      corrected_(watched_.size()),
       states_(watched_.size()) {
-  detectors_.reserve(windows_s.size());
+  const Baseline none(watched_.size());
+  detectors_.assign(windows_s_.size() + 1, ChangeDetector(none, watched_, threshold_));
   news_.reserve(watched_.size());
   if (baseline_) begin();
 }
 
 void Watch::begin() {
-  detectors_.clear();
   for (std::size_t i = 0; i < windows_s_.size(); ++i)
-    detectors_.emplace_back(*baseline_, watched_, threshold_);
+    detectors_[i] = ChangeDetector(*baseline_, watched_, threshold_);
+}
+
+void Watch::begin_quiet() {
+  std::vector<Watched> watched = watched_;
+  for (Watched& w : watched) w.most_pull *= kMostPullQuiet / kMostPull_k;
+  detectors_.back() = ChangeDetector(quiet_baseline_, watched, threshold_);
 }
 
 const std::vector<Alarm>& Watch::push(const WindowEstimate& estimate) {
   news_.clear();
-  if (!baseline_) {
-    if (!learner_.push(estimate)) return news_;
-    baseline_ = learner_.baseline();
-    begin();
-    return news_;
-  }
   const auto window = static_cast<std::size_t>(estimate.window);
-  if (window >= detectors_.size()) return news_;
-  detectors_[window].push(estimate);
+  if (window > windows_s_.size()) return news_;
+  const bool quiet = window == windows_s_.size();
+  if (quiet ? learns_quiet(estimate) : learns(estimate)) return news_;
+  detectors_[window].push(quiet ? corrected_quiet(estimate) : corrected(estimate));
   for (int p = 0; p < static_cast<int>(states_.size()); ++p) tell(p, estimate);
   return news_;
+}
+
+bool Watch::learns(const WindowEstimate& estimate) {
+  if (baseline_) return false;
+  const double degc = temperature_.mean(estimate.start, estimate.end);
+  if (std::isnan(learned_degc_)) learned_degc_ = degc;
+  if (!learner_.push(estimate)) return true;
+  baseline_ = learner_.baseline();
+  if (!std::isnan(degc)) learned_degc_ = (learned_degc_ + degc) / 2;
+  begin();
+  return true;
+}
+
+bool Watch::learns_quiet(const WindowEstimate& estimate) {
+  if (quiet_known_) return false;
+  if (!quiet_learner_.push(estimate, temperature_.mean(estimate.start, estimate.end))) return true;
+  quiet_known_ = true;
+  quiet_baseline_ = quiet_learner_.baseline();
+  dependence_ = quiet_learner_.dependence();
+  begin_quiet();
+  return true;
+}
+
+const WindowEstimate& Watch::corrected(const WindowEstimate& e) {
+  if (!options_.temperature || std::isnan(learned_degc_)) return e;
+  const double degc = temperature_.mean(e.start, e.end);
+  if (std::isnan(degc)) return e;
+  corrected_ = e;
+  for (std::size_t p = 0; p < watched_.size(); ++p) {
+    if (watched_[p].smallest == 0 || e.reason[p] != Observability::observable) continue;
+    const bool known = quiet_known_ && std::isfinite(quiet_baseline_.value[p]);
+    const double guessed = DependenceLearner::kUsualPerDegc * std::abs(degc - learned_degc_);
+    correct(corrected_, p, baseline_->value[p],
+            known ? dependence_.change(p, learned_degc_, degc) : Dependence::Expected{1, guessed});
+  }
+  return corrected_;
+}
+
+const WindowEstimate& Watch::corrected_quiet(const WindowEstimate& e) {
+  corrected_ = e;
+  const double degc = temperature_.mean(e.start, e.end);
+  for (std::size_t p = 0; p < watched_.size(); ++p) {
+    if (watched_[p].smallest == 0 || e.reason[p] != Observability::observable) continue;
+    correct(corrected_, p, quiet_baseline_.value[p],
+            dependence_.expected(p, {degc, DependenceLearner::log_amplitude(e, p)}));
+  }
+  return corrected_;
 }
 
 void Watch::tell(int parameter, const WindowEstimate& estimate) {

@@ -7,6 +7,8 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/watch/baseline.h"
 #include "estimator/watch/change_detector.h"
+#include "estimator/watch/dependence.h"
+#include "estimator/watch/mean_temperature.h"
 
 namespace framewatch {
 
@@ -17,6 +19,13 @@ struct WatchOptions {
   double alarms_per_year = 1;  ///< false ones that are put up with, of the whole building
   /// Time a year in which the building moves enough for windows to have values.
   double shaking_hours_per_year = 10;
+  /// Length of the long windows, in which weak motion is watched; 0: it is not.
+  double quiet_window_s = 3600;
+  /// Hours of long windows that their baseline takes.
+  double quiet_learn_hours = 24;
+  /// What a baseline may follow: the temperature, given by temperature(), and, of long windows, the
+  /// amplitude of the motion.
+  bool temperature = false, amplitude = false;
 };
 
 enum class AlarmState { cleared, raised, changed };
@@ -31,31 +40,42 @@ struct Alarm {
 };
 
 /// Watches frame and panel stiffness for changes against a baseline, given or learned first, in the
-/// windows of every length at once: short ones are quick, long ones see small changes.
+/// windows of every length at once: short ones are quick, long ones see small changes. The longest,
+/// of accumulated weak motion, have a baseline of their own, always learned: a building is stiffer
+/// when it hardly moves.
 class Watch {
  public:
-  /// windows_s: lengths of the windows, WindowEstimate::window its index.
+  /// windows_s: lengths of the windows, WindowEstimate::window its index; the next index is that of
+  /// the long window, if there is one.
   Watch(const ParameterTable& table, const WatchOptions& options,
         const std::vector<double>& windows_s, std::optional<Baseline> baseline);
 
   /// What this window changes about alarms; valid until the next call.
   const std::vector<Alarm>& push(const WindowEstimate& estimate);
 
+  /// What a thermometer said.
+  void temperature(Time time, double degc) { temperature_.push(time, degc); }
+
   /// Null while it is being learned.
   const Baseline* baseline() const { return baseline_ ? &*baseline_ : nullptr; }
+  /// Of the long windows; null while it is being learned.
+  const Baseline* quiet_baseline() const { return quiet_known_ ? &quiet_baseline_ : nullptr; }
   /// Of every detector's sums: false alarms come at most as often as the options ask for.
   double threshold() const { return threshold_; }
 
   template <typename Archive>
   void archive(Archive& a) {
     bool known = baseline_.has_value();
-    a(known, learner_);
+    a(known, learner_, learned_degc_, quiet_known_, quiet_learner_, quiet_baseline_, dependence_);
     if (known) {
       if (!baseline_) baseline_.emplace();
       a(*baseline_);
-      if constexpr (Archive::kReading) begin();
     }
-    a(detectors_, states_, last_id_);
+    if constexpr (Archive::kReading) {
+      if (known) begin();
+      if (quiet_known_) begin_quiet();
+    }
+    a(temperature_, detectors_, states_, last_id_);
   }
 
  private:
@@ -70,6 +90,12 @@ class Watch {
     }
   };
   void begin();
+  void begin_quiet();
+  bool learns(const WindowEstimate& estimate);
+  bool learns_quiet(const WindowEstimate& estimate);
+  /// The estimate as it would be under the conditions of its baseline.
+  const WindowEstimate& corrected(const WindowEstimate& estimate);
+  const WindowEstimate& corrected_quiet(const WindowEstimate& estimate);
   void tell(int parameter, const WindowEstimate& estimate);
 
   WatchOptions options_;
@@ -78,7 +104,14 @@ class Watch {
   double threshold_;
   BaselineLearner learner_;
   std::optional<Baseline> baseline_;
-  std::vector<ChangeDetector> detectors_;
+  MeanTemperature temperature_;
+  double learned_degc_;  ///< at which the baseline was learned; NaN: not known
+  bool quiet_known_ = false;
+  DependenceLearner quiet_learner_;
+  Baseline quiet_baseline_;
+  Dependence dependence_;
+  std::vector<ChangeDetector> detectors_;  ///< by window, the long one last
+  WindowEstimate corrected_;
   std::vector<State> states_;
   std::vector<Alarm> news_;
   std::int64_t last_id_ = 0;

@@ -1,12 +1,18 @@
 // [watch] through the whole program: learning, events, baseline files, a restart.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <gtest/gtest.h>
 
+#include <framewatch/temperature_t.hpp>
+
 #include "daemon/baseline_file.h"
+#include "daemon/config_changes.h"
+#include "daemon/estimation.h"
 #include "daemon/replay_command.h"
 #include "daemon/simulate_command.h"
+#include "drivers/encoded.h"
 #include "drivers/lcm_log.h"
 #include "drivers/message_check.h"
 #include "tests/support/recorded_table_test.h"
@@ -129,6 +135,56 @@ TEST_F(WatchedTable, ReportsEveryProblemOfABaselineFile) {
   ASSERT_EQ(problems.size(), 3U);
   for (const ConfigProblem& p : problems)
     EXPECT_EQ(p.where.find(path("bad.toml") + ":"), 0U) << p.where;
+}
+
+std::optional<Config> watching(const std::string& keys, std::vector<ConfigProblem>& problems) {
+  return parse_config("watch.toml", test::read_file(test::table_config()) + "\n[watch]\n" + keys,
+                      problems);
+}
+
+TEST(QuietWatchConfig, HasLongWindowsUnlessTheyAreTurnedOff) {
+  std::vector<ConfigProblem> problems;
+  const auto usual = watching("", problems), off = watching("quiet_window_s = 0\n", problems);
+  ASSERT_TRUE(usual && off);
+  EXPECT_EQ(usual->pipeline.options.long_window_s, 3600);
+  EXPECT_EQ(off->pipeline.options.long_window_s, 0);
+  EXPECT_FALSE(watching("quiet_window_s = 10\n", problems));
+  ASSERT_EQ(problems.size(), 1U);
+  EXPECT_NE(problems[0].message.find("quiet_window_s"), std::string::npos);
+}
+
+TEST(QuietWatchConfig, AThermometerIsHeardOnItsChannel) {
+  std::vector<ConfigProblem> problems;
+  const auto config = watching("temperature_channel = \"ROOF\"\n", problems),
+             none = watching("", problems);
+  ASSERT_TRUE(config && none);
+  const std::vector<std::uint8_t> bytes = drivers::encoded(temperature_t{1, 20});
+  Estimation estimation(*config, {}), deaf(*none, {});
+  EXPECT_EQ(estimation.message("ROOF", bytes.data(), bytes.size()), drivers::IntakeResult::table);
+  EXPECT_EQ(estimation.message("ROOF", bytes.data(), bytes.size() - 1),
+            drivers::IntakeResult::malformed);
+  EXPECT_EQ(deaf.message("ROOF", bytes.data(), bytes.size()), drivers::IntakeResult::foreign);
+}
+
+TEST(QuietWatchConfig, ALongWindowMayComeAndGoWhileItRuns) {
+  std::vector<ConfigProblem> problems;
+  const auto with = watching("", problems), without = watching("quiet_window_s = 0\n", problems);
+  ASSERT_TRUE(with && without);
+  const auto windows = [](const Config& from, const Config& to) {
+    Estimation before(from, {});
+    for (int t = 0; t < 1000; ++t)
+      for (int a = 0; a < std::ssize(from.pipeline.axes); ++a)
+        before.sample({from_microseconds(10'000LL * t), a, std::sin(0.3 * t + a)});
+    Estimation after(to, {});
+    after.take_over(before, true);
+    for (int t = 1000; t < 1050; ++t)
+      for (int a = 0; a < std::ssize(to.pipeline.axes); ++a)
+        after.sample({from_microseconds(10'000LL * t), a, std::sin(0.3 * t + a)});
+    return after.pipeline().counters().sample_sets;
+  };
+  EXPECT_EQ(windows(*with, *without), windows(*with, *with));
+  EXPECT_EQ(windows(*without, *with), windows(*with, *with));
+  EXPECT_GT(windows(*without, *with), 1000);
 }
 
 TEST(BaselineFile, IsReadAsItWasWritten) {

@@ -10,6 +10,7 @@
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/temperature_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "drivers/accel_codec.h"
@@ -288,6 +289,13 @@ history_status_t history_status() {
   return m;
 }
 
+temperature_t temperature() {
+  temperature_t m{};
+  m.time_us = 110;
+  m.temperature_degc = -12.5;
+  return m;
+}
+
 std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
   return {{"ACCEL", encoded(accel())},
           {"ACCEL_CHANNELS", encoded(channel_table())},
@@ -301,7 +309,8 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
           {"FRAMEWATCH_SESSION_COMMAND", encoded(session_command())},
           {"FRAMEWATCH_SERVICE", encoded(service())},
           {"COUNTS", encoded(accel_counts())},
-          {"FRAMEWATCH_HISTORY", encoded(history_status())}};
+          {"FRAMEWATCH_HISTORY", encoded(history_status())},
+          {"TEMPERATURE", encoded(temperature())}};
 }
 
 TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
@@ -375,6 +384,9 @@ TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
     if (e.channel == "FRAMEWATCH_HISTORY") {
       EXPECT_EQ(decode_history_status(e.data).value_or(history_status_t{}).summary_trouble,
                 "disk I/O error");
+    }
+    if (e.channel == "TEMPERATURE") {
+      EXPECT_EQ(decode_temperature(e.data).value_or(temperature_t{}).temperature_degc, -12.5);
     }
     if (e.channel == "FRAMEWATCH_EVENT") {
       const auto decoded = decode_event(e.data);

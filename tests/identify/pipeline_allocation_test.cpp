@@ -66,6 +66,7 @@ TEST(PipelineAllocation, SamplesAllocateNothing) {
     const Structure s = small ? test::table1() : test::table2();
     PipelineConfig config = test::pipeline_config(s);
     config.design = small ? test::table1_theta() : test::table2_theta('c');
+    config.options.long_window_s = 8;
     const Watched run = watch(config, test::shaken(s, config.design, 100, 25, 0.01));
     EXPECT_EQ(run.allocations, 0);
     EXPECT_GT(run.values, 500);
@@ -86,6 +87,8 @@ TEST(PipelineAllocation, LossesGapsAndSilentAxesAllocateNothing) {
   const Structure s = test::table1();
   PipelineConfig config = test::pipeline_config(s);
   config.design = test::table1_theta();
+  config.options.long_window_s = 8;
+  for (SensorAxis& axis : config.axes) axis.noise_density = 1e-3;
   const Watched run =
       watch(config, test::shaken(s, config.design, 100, 40, 0.01), [](int t, int axis) {
         if (t == 1400) return axis != 3;              // a single loss

@@ -48,6 +48,7 @@ class State : public testing::TestWithParam<bool> {
     config_.options.self_tune = true;
     config_.options.window_s = 4;
     config_.options.other_windows_s = {1, 2, 6};
+    config_.options.long_window_s = 5;
     config_.options.hop_s = 0.04;
     config_.options.boxplot_windows = 60;
     config_.options.settle_s = 1;

@@ -1,0 +1,121 @@
+#include "estimator/watch/dependence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace framewatch {
+
+Dependence::Dependence(std::size_t parameters)
+    : at_(2 * parameters, 0.0), slope_(2 * parameters, 0.0), covariance_(3 * parameters, 0.0) {}
+
+Dependence::Expected Dependence::expected(std::size_t p, const Conditions& now) const {
+  const double* variance = &covariance_[3 * p];
+  const auto off = [&](std::size_t i, double value) {
+    return variance[i] > 0 ? value - at_[2 * p + i] : 0.0;
+  };
+  const double t = off(0, now.degc), a = off(1, now.log_amplitude);
+  const double error = variance[0] * t * t + variance[1] * a * a + 2 * variance[2] * t * a;
+  if (!std::isfinite(error)) return {1, std::numeric_limits<double>::infinity()};
+  return {1 + slope_[2 * p] * t + slope_[2 * p + 1] * a, std::sqrt(std::max(error, 0.0))};
+}
+
+Dependence::Expected Dependence::change(std::size_t p, double from_degc, double to_degc) const {
+  const double step = to_degc - from_degc;
+  return {1 + slope_[2 * p] * step, std::sqrt(covariance_[3 * p]) * std::abs(step)};
+}
+
+DependenceLearner::DependenceLearner(int parameters, const DependenceOptions& options)
+    : options_(options), sums_(static_cast<std::size_t>(parameters)) {}
+
+double DependenceLearner::log_amplitude(const WindowEstimate& e, std::size_t p) {
+  return e.snr[p] > 0 ? std::log(e.snr[p]) / 2 : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool DependenceLearner::push(const WindowEstimate& e, double degc) {
+  if (complete() || e.status != WindowStatus::valid) return false;
+  if (windows_ > 0 && e.start <= end_) return false;
+  if (options_.temperature && std::isnan(degc)) return false;
+  end_ = e.end;
+  ++windows_;
+  learned_s_ += std::chrono::duration<double>(e.end - e.start).count();
+  for (std::size_t p = 0; p < sums_.size(); ++p) {
+    if (e.reason[p] != Observability::observable) continue;
+    Sum& sum = sums_[p];
+    const double t = options_.temperature ? degc : 0;
+    const double a = options_.amplitude ? log_amplitude(e, p) : 0;
+    if (sum.count++ == 0) {
+      sum.first = e.value[p];
+      sum.first_degc = t;
+      sum.first_log = a;
+    }
+    const double y = e.value[p] / sum.first - 1;
+    const double error = e.std_error[p] / sum.first;
+    const double weight = 1 / (error * error);
+    const double x[] = {1, t - sum.first_degc, a - sum.first_log};
+    for (std::size_t i = 0, at = 0; i < 3; ++i) {
+      sum.right[i] += weight * x[i] * y;
+      for (std::size_t j = i; j < 3; ++j) sum.normal[at++] += weight * x[i] * x[j];
+    }
+    sum.square += weight * y * y;
+  }
+  return complete();
+}
+
+DependenceLearner::Fit DependenceLearner::fit(const Sum& s) const {
+  const auto& n = s.normal;
+  const double mean[] = {n[1] / n[0], n[2] / n[0]};
+  // About the mean conditions; what is not asked for has a variance of nothing.
+  constexpr double kNever = 1e30;
+  const double m00 = n[3] - n[0] * mean[0] * mean[0] +
+                     (options_.temperature ? 1 / (kUsualPerDegc * kUsualPerDegc) : kNever);
+  const double m11 = n[5] - n[0] * mean[1] * mean[1] +
+                     (options_.amplitude ? 1 / (kUsualPerLog * kUsualPerLog) : kNever);
+  const double m01 = n[4] - n[0] * mean[0] * mean[1];
+  const double y = s.right[0] / n[0];
+  const double r0 = s.right[1] - mean[0] * s.right[0], r1 = s.right[2] - mean[1] * s.right[0];
+  const double determinant = m00 * m11 - m01 * m01;
+  const double slope0 = (m11 * r0 - m01 * r1) / determinant;
+  const double slope1 = (m00 * r1 - m01 * r0) / determinant;
+  const double left = s.square - s.right[0] * y - slope0 * r0 - slope1 * r1;
+  const int freedom = s.count - 1 - (options_.temperature ? 1 : 0) - (options_.amplitude ? 1 : 0);
+  const double excess = freedom > 0 ? std::max(left / freedom, 1.0) : 1.0;
+  const double value = s.first * (1 + y);
+  const double scale = 1 / (1 + y);  // slopes are of the first value, and wanted of this one
+  Fit out{};
+  out.value = value;
+  out.std_error = s.first * std::sqrt(excess / n[0]);
+  out.at = {s.first_degc + mean[0], s.first_log + mean[1]};
+  out.slope = {options_.temperature ? scale * slope0 : 0.0,
+               options_.amplitude ? scale * slope1 : 0.0};
+  const double variance = excess * scale * scale / determinant;
+  out.covariance = {options_.temperature ? variance * m11 : 0.0,
+                    options_.amplitude ? variance * m00 : 0.0,
+                    options_.temperature && options_.amplitude ? -variance * m01 : 0.0};
+  return out;
+}
+
+Baseline DependenceLearner::baseline() const {
+  Baseline out(sums_.size());
+  for (std::size_t p = 0; p < sums_.size(); ++p) {
+    if (!known(sums_[p])) continue;
+    const Fit f = fit(sums_[p]);
+    out.value[p] = f.value;
+    out.std_error[p] = f.std_error;
+  }
+  return out;
+}
+
+Dependence DependenceLearner::dependence() const {
+  Dependence out(sums_.size());
+  for (std::size_t p = 0; p < sums_.size(); ++p) {
+    if (!known(sums_[p])) continue;
+    const Fit f = fit(sums_[p]);
+    std::copy(f.at.begin(), f.at.end(), &out.at_[2 * p]);
+    std::copy(f.slope.begin(), f.slope.end(), &out.slope_[2 * p]);
+    std::copy(f.covariance.begin(), f.covariance.end(), &out.covariance_[3 * p]);
+  }
+  return out;
+}
+
+}  // namespace framewatch

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "estimator/identify/estimate.h"
+#include "estimator/watch/baseline.h"
+
+namespace framewatch {
+
+/// What stiffness may depend on without damage: temperature, degC, and the logarithm of the
+/// amplitude of the element's own motion.
+struct Conditions {
+  double degc;
+  double log_amplitude;
+};
+
+/// How a baseline's values follow the conditions, relative to the value, per degC and per unit of
+/// the logarithm. Theta order.
+class Dependence {
+ public:
+  Dependence() = default;
+  explicit Dependence(std::size_t parameters);
+
+  struct Expected {
+    double ratio;      ///< to the baseline's value
+    double std_error;  ///< of that, from the slopes'; infinite when a condition is not known
+  };
+  Expected expected(std::size_t parameter, const Conditions& now) const;
+  /// From one temperature to another.
+  Expected change(std::size_t parameter, double from_degc, double to_degc) const;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(at_, slope_, covariance_);
+  }
+
+ private:
+  friend class DependenceLearner;
+  std::vector<double> at_, slope_;  ///< (degC, logarithm) of every parameter
+  std::vector<double> covariance_;  ///< of the two slopes: 00, 11, 01 of every parameter
+};
+
+struct DependenceOptions {
+  double learn_s = 86400;  ///< sum of the windows it takes
+  bool temperature = false, amplitude = false;
+};
+
+/// Takes a baseline from long windows that do not overlap, and how it follows the conditions: least
+/// squares weighted by 1 / std_error^2, the slopes weakly drawn to zero, by which what the
+/// conditions did not show has an honest error. Errors are what the weights say, or what the
+/// scatter about the fit says if that is more.
+class DependenceLearner {
+ public:
+  /// What a slope may be before anything is known: standard deviations.
+  static constexpr double kUsualPerDegc = 0.005, kUsualPerLog = 0.05;
+
+  DependenceLearner(int parameters, const DependenceOptions& options);
+
+  /// degc: mean of the window; NaN: not known. A window without the temperature asked for does not
+  /// count. True when this one completed the baseline.
+  bool push(const WindowEstimate& estimate, double degc);
+  bool complete() const { return learned_s_ >= options_.learn_s; }
+  Baseline baseline() const;
+  Dependence dependence() const;
+
+  static double log_amplitude(const WindowEstimate& estimate, std::size_t parameter);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(learned_s_, windows_, end_, sums_);
+  }
+
+ private:
+  struct Sum {
+    int count = 0;
+    double first = 0, first_degc = 0, first_log = 0;
+    std::array<double, 6> normal{};  ///< of (1, degC, log): 00 01 02 11 12 22
+    std::array<double, 3> right{};
+    double square = 0;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(count, first, first_degc, first_log, normal, right, square);
+    }
+  };
+  struct Fit {
+    double value, std_error;  ///< at the mean conditions
+    std::array<double, 2> at, slope;
+    std::array<double, 3> covariance;
+  };
+  Fit fit(const Sum& sum) const;
+  bool known(const Sum& sum) const { return sum.count > 0 && 2 * sum.count >= windows_; }
+
+  DependenceOptions options_;
+  double learned_s_ = 0;
+  int windows_ = 0;
+  Time end_{};
+  std::vector<Sum> sums_;
+};
+
+}  // namespace framewatch

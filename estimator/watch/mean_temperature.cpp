@@ -1,0 +1,35 @@
+#include "estimator/watch/mean_temperature.h"
+
+#include <cmath>
+#include <limits>
+
+namespace framewatch {
+namespace {
+
+constexpr double kColdest_degc = -90, kHottest_degc = 150;  // beyond is a broken thermometer
+
+}  // namespace
+
+void MeanTemperature::push(Time time, double degc) {
+  if (!(degc >= kColdest_degc && degc <= kHottest_degc)) return;
+  const std::int64_t number = number_of(time);
+  if (number < 0) return;
+  Bin& bin = bins_[static_cast<std::size_t>(number % kBins)];
+  if (bin.number != number) bin = {number, 0, 0};
+  ++bin.count;
+  bin.sum += degc;
+}
+
+double MeanTemperature::mean(Time start, Time end) const {
+  const std::int64_t first = number_of(start), last = number_of(end);
+  double sum = 0;
+  int count = 0;
+  for (const Bin& bin : bins_) {
+    if (bin.count == 0 || bin.number < first || bin.number > last) continue;
+    sum += bin.sum / static_cast<double>(bin.count);
+    ++count;
+  }
+  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace framewatch

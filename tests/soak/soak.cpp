@@ -1,0 +1,103 @@
+// soak: a building's months in hours, and whether all is well then.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "tests/soak/soak_run.h"
+
+namespace framewatch::soak {
+namespace {
+
+constexpr const char* kUsage = R"(usage: soak DIR [--days N] [--seed N] [--alarms-per-year N]
+
+Runs the demo building for N days (30) as fast as it goes: quiet, traffic, two earthquakes, failing
+sensors, steps of the clock, stiffness that follows the temperature; no damage. The history is
+written to DIR, which must not be there. Prints what there is to say every day, and at the end.
+exit: 0 all holds, 1 something does not, 2 usage
+)";
+
+// Limits.
+constexpr double kMostGrowth_bytes = 1 << 20;
+constexpr double kSumError = 1e-9;
+constexpr int kWindowsPerStep = 10;  // lost when the clock steps
+constexpr int kTwice = 2;
+constexpr double kDaysPerYear = 365.25;
+
+int judge(const SoakOptions& o, const SoakResult& r) {
+  int failed = 0;
+  const auto line = [&](bool holds, const std::string& text) {
+    failed += holds ? 0 : 1;
+    fmt::print("{} {}\n", holds ? "holds " : "FAILS ", text);
+  };
+  const double growth = static_cast<double>(r.resident_most - r.resident_warm);
+  const double allowed = kTwice * o.alarms_per_year * o.days / kDaysPerYear;
+  fmt::print("{} instants, {} samples, {:.0f} times real time\n", r.instants, r.samples,
+             static_cast<double>(r.instants) / 100 / r.wall_s);
+  line(growth <= kMostGrowth_bytes,
+       fmt::format("resident: {:.1f} MiB after a tenth, {:+.2f} MiB at most since",
+                   static_cast<double>(r.resident_warm) / (1 << 20), growth / (1 << 20)));
+  line(r.windows >= r.expected_windows - kWindowsPerStep * SoakNight::kClockSteps &&
+           r.breaks <= SoakNight::kClockSteps,
+       fmt::format("windows: {} of {}, {} breaks for {} steps of the clock", r.windows,
+                   r.expected_windows, r.breaks, SoakNight::kClockSteps));
+  line(r.sum_error <= kSumError && r.sums_compared > 0,
+       fmt::format("sums: {:.1e} from those of the last half minute alone, {} times", r.sum_error,
+                   r.sums_compared));
+  line(r.history_trouble.empty() && r.raw_dropped == 0 && r.summary_dropped == 0 &&
+           std::abs(r.summarised_windows - r.windows) <= 3 * SoakNight::kClockSteps &&
+           r.hourly_windows == r.summarised_windows,
+       fmt::format("history: {} of {} windows in the shortest periods, {} in the longest; dropped: "
+                   "{} samples, {} periods; {}",
+                   r.summarised_windows, r.windows, r.hourly_windows, r.raw_dropped,
+                   r.summary_dropped, r.history_trouble.empty() ? "sound" : r.history_trouble));
+  line(r.alarms <= allowed,
+       fmt::format("false alarms: {}, allowed {:.1f} (twice the {:g} per year)", r.alarms, allowed,
+                   o.alarms_per_year));
+  fmt::print("long windows: {}, with values {}\n", r.long_windows, r.long_values);
+  for (const std::string& told : r.told) fmt::print("told: {}\n", told);
+  return failed == 0 ? 0 : 1;
+}
+
+int main(int count, char** arguments) {
+  SoakOptions o;
+  for (int i = 1; i < count; ++i) {
+    const std::string argument = arguments[i];
+    const bool has_value = i + 1 < count;
+    if (argument == "--days" && has_value)
+      o.days = std::atof(arguments[++i]);
+    else if (argument == "--seed" && has_value)
+      o.seed = std::strtoull(arguments[++i], nullptr, 10);
+    else if (argument == "--alarms-per-year" && has_value)
+      o.alarms_per_year = std::atof(arguments[++i]);
+    else if (!argument.starts_with("-") && o.directory.empty())
+      o.directory = std::filesystem::absolute(argument);
+    else
+      o.days = -1;
+  }
+  if (o.directory.empty() || !(o.days > 0) || !(o.alarms_per_year > 0)) {
+    fmt::print(stderr, "{}", kUsage);
+    return 2;
+  }
+  if (std::filesystem::exists(o.directory)) {
+    fmt::print(stderr, "soak: {} is there already\n", o.directory);
+    return 2;
+  }
+  o.hour = [](double hours, std::int64_t resident) {
+    constexpr int kDay = 24;
+    if (static_cast<int>(hours) % kDay != 0) return;
+    fmt::print("day {:.0f}: {:.2f} MiB resident\n", hours / kDay,
+               static_cast<double>(resident) / (1 << 20));
+    std::fflush(stdout);
+  };
+  return judge(o, run_soak(o));
+}
+
+}  // namespace
+}  // namespace framewatch::soak
+
+int main(int count, char** arguments) {
+  return framewatch::soak::main(count, arguments);
+}

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "daemon/config.h"
+#include "tests/support/restless_building.h"
+
+namespace framewatch::soak {
+
+/// What its nodes send at one instant.
+struct Instant {
+  std::int64_t time_us;              ///< by the nodes' clock
+  const std::vector<double>* accel;  ///< per axis, m/s^2; NaN: its node sends nothing
+};
+
+/// A building without damage, for as long as asked: quiet, busier by day, traffic, two earthquakes,
+/// stiffness that follows a daily temperature; a sensor that fails for a while, one that is stuck,
+/// one with spikes; three steps of the nodes' clock. What happens when is a share of the duration.
+class SoakNight {
+ public:
+  static constexpr double kSwing = 0.03;  ///< of stiffness in a day, trough to crest
+  static constexpr int kClockSteps = 3;
+
+  SoakNight(const PipelineConfig& config, std::int64_t instants, std::uint64_t seed);
+
+  Instant next();
+  /// Of the instant next() gave last.
+  double degc() const { return degc_; }
+
+ private:
+  double share(double of) const { return of * static_cast<double>(instants_); }
+  bool within(double from, double to) const {
+    return static_cast<double>(at_) >= share(from) && static_cast<double>(at_) < share(to);
+  }
+  void season();
+  void fail(std::vector<double>& accel);
+
+  std::int64_t instants_, at_ = -1, clock_us_ = 0, burst_ = 0;
+  Eigen::VectorXd truth_;
+  int parameters_stiff_;  ///< theta's first half: stiffness
+  Random random_;
+  test::RestlessBuilding building_;
+  double degc_ = 10;
+  std::vector<double> accel_;
+};
+
+}  // namespace framewatch::soak

@@ -1,0 +1,263 @@
+#include "tests/soak/soak_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/core.h>
+#include <framewatch/temperature_t.hpp>
+
+#include "daemon/clocks.h"
+#include "daemon/estimation.h"
+#include "daemon/history.h"
+#include "daemon/history_files.h"
+#include "daemon/process_usage.h"
+#include "daemon/summary_query.h"
+#include "drivers/accel_codec.h"
+#include "drivers/encoded.h"
+#include "drivers/message_check.h"
+#include "tests/support/recorded_table_test.h"
+#include "tests/support/temporary.h"
+
+namespace framewatch::soak {
+namespace {
+
+constexpr double kRate_hz = test::RestlessBuilding::kRate_hz;
+constexpr std::int64_t kHour = 3600 * 100, kTick = 1000;  // instants
+constexpr double kNoise = 2e-5;                           // m/s^2/sqrt(Hz)
+constexpr double kHop_s = 1;
+constexpr std::int64_t kKept = 3000;  // instants that a second pipeline sees
+constexpr double kCompared[] = {0.12, 0.32, 0.48, 0.75, 0.99};  // shares of the duration
+constexpr std::int64_t kTemperature = 100 * 120;
+
+daemon::Config configuration(const SoakOptions& o) {
+  std::vector<daemon::ConfigProblem> problems;
+  std::string text = test::read_file(test::table_config());
+  const std::string noise = "noise_mps2_per_rthz = 5e-4";
+  for (std::size_t at = 0; (at = text.find(noise, at)) != std::string::npos;)
+    text.replace(at, noise.size(), fmt::format("noise_mps2_per_rthz = {}", kNoise));
+  const std::string hop = "hop_s = 0.01";
+  text.replace(text.find(hop), hop.size(), fmt::format("hop_s = {:.1f}", kHop_s));
+  text += fmt::format(
+      "\n[lcm]\nboxplot_every = 60\n[watch]\nalarms_per_year = {}\nshaking_hours_per_year = 8766\n"
+      "quiet_window_s = {}\n"
+      "quiet_learn_hours = {}\ntemperature_channel = \"TEMPERATURE\"\n[history]\n"
+      "directory = \"{}\"\nkeep_gb = 0.2\nsummary_s = [{}, {}, {}]\n",
+      o.alarms_per_year, o.quiet_window_s, o.quiet_learn_hours, o.directory, o.summary_s,
+      10 * o.summary_s, 60 * o.summary_s);
+  auto config = daemon::parse_config("soak.toml", text, problems);
+  if (!config) throw std::runtime_error(problems.front().message);
+  return *config;
+}
+
+void put(std::uint8_t* to, std::uint64_t value) {
+  for (int i = 7; i >= 0; --i, value >>= 8) to[i] = static_cast<std::uint8_t>(value);
+}
+
+/// One node with one axis; its message is changed where it lies.
+struct Node {
+  std::vector<std::uint8_t> message;
+  std::int64_t sequence = 0;
+  std::size_t accel_at;
+
+  Node(int node, int axis)
+      : message(drivers::encode_accel({{}, 0, node, {std::nan(""), std::nan(""), std::nan("")}})),
+        accel_at(28 + 8 * static_cast<std::size_t>(axis)) {}
+  void set(std::int64_t time_us, double accel) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &accel, sizeof bits);
+    put(&message[8], static_cast<std::uint64_t>(time_us));
+    put(&message[16], static_cast<std::uint64_t>(sequence++));
+    put(&message[accel_at], bits);
+  }
+};
+
+class Soak {
+ public:
+  explicit Soak(const SoakOptions& options)
+      : options_(options),
+        config_(configuration(options)),
+        instants_(std::llround(options.days * 24 * static_cast<double>(kHour))),
+        night_(config_.pipeline, instants_, options.seed),
+        history_(std::make_unique<daemon::History>(config_)),
+        estimation_(
+            config_,
+            [this](std::int64_t, const std::string& channel,
+                   const std::vector<std::uint8_t>& bytes) { published(channel, bytes); },
+            [this](const WindowEstimate& e) { window(e); }) {
+    estimation_.tap([this](const AccelSample& sample) { history_->sample(sample); }, {});
+    for (const daemon::AxisSource& source : config_.sources)
+      nodes_.emplace_back(source.node, source.axis);
+  }
+
+  SoakResult run() {
+    const std::int64_t began_us = daemon::steady_clock_us();
+    for (std::int64_t i = 0; i < instants_; ++i) step(i);
+    estimation_.finish();
+    result_.wall_s = 1e-6 * static_cast<double>(daemon::steady_clock_us() - began_us);
+    result_.instants = instants_;
+    for (const AxisCounters& axis : estimation_.pipeline().counters().axes)
+      result_.samples += axis.received;
+    result_.raw_dropped = history_->status().raw_dropped;
+    result_.summary_dropped = history_->status().summary_dropped;
+    result_.expected_windows = instants_ / std::llround(kHop_s * kRate_hz);
+    history_.reset();
+    look_at_history();
+    return result_;
+  }
+
+ private:
+  void step(std::int64_t i);
+  void published(const std::string& channel, const std::vector<std::uint8_t>& bytes);
+  void window(const WindowEstimate& e);
+  void compare_sums(const WindowEstimate& e);
+  double difference(const WindowEstimate& e, std::size_t from) const;
+  void look_at_history();
+
+  SoakOptions options_;
+  daemon::Config config_;
+  std::int64_t instants_;
+  SoakNight night_;
+  std::unique_ptr<daemon::History> history_;
+  daemon::Estimation estimation_;
+  std::vector<Node> nodes_;
+  std::deque<std::pair<std::int64_t, std::vector<double>>> kept_;  ///< before a comparison
+  std::size_t next_compared_ = 0;
+  std::int64_t at_ = 0;
+  std::optional<Time> last_end_;
+  SoakResult result_;
+};
+
+void Soak::step(std::int64_t i) {
+  at_ = i;
+  const Instant instant = night_.next();
+  if (i % kTemperature == 0) {
+    const std::vector<std::uint8_t> bytes =
+        drivers::encoded(temperature_t{instant.time_us, night_.degc()});
+    estimation_.message("TEMPERATURE", bytes.data(), bytes.size());
+  }
+  if (next_compared_ < std::size(kCompared) &&
+      static_cast<double>(i + 2 * kKept) >
+          kCompared[next_compared_] * static_cast<double>(instants_)) {
+    kept_.emplace_back(instant.time_us, *instant.accel);
+    if (std::ssize(kept_) > kKept) kept_.pop_front();
+  }
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    if (std::isnan((*instant.accel)[n])) continue;
+    nodes_[n].set(instant.time_us, (*instant.accel)[n]);
+    estimation_.message("ACCEL", nodes_[n].message.data(), nodes_[n].message.size());
+  }
+  if (i % kTick == 0) history_->tick(daemon::steady_clock_us());
+  if ((i + 1) % kHour != 0 && (i + 1) % std::max<std::int64_t>(instants_ / 100, 1) != 0) return;
+  const std::int64_t resident = daemon::process_usage().resident_bytes;
+  if (10 * i < instants_)
+    result_.resident_warm = std::max(result_.resident_warm, resident);
+  else
+    result_.resident_most = std::max(result_.resident_most, resident);
+  if ((i + 1) % kHour == 0 && options_.hour)
+    options_.hour(static_cast<double>(i + 1) / kHour, resident);
+}
+
+void Soak::published(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+  history_->message(channel, bytes);
+  if (channel.ends_with("_EVENT")) {
+    const auto event = drivers::decode_event(bytes);
+    if (!event || event->kind != "stiffness_change") return;
+    if (event->state == 1) ++result_.alarms;
+    result_.told.push_back(
+        fmt::format("{:.2f} h: {}", static_cast<double>(at_) / kHour, event->message));
+  }
+  if (channel.find("ESTIMATE_") == std::string::npos ||
+      !channel.ends_with(fmt::format("{:g}S", options_.quiet_window_s)))
+    return;
+  const auto estimate = drivers::decode_window_estimate(bytes);
+  ++result_.long_windows;
+  result_.long_values += estimate && estimate->status == 1 ? 1 : 0;
+}
+
+void Soak::window(const WindowEstimate& e) {
+  ++result_.windows;
+  if (last_end_) {
+    const auto hop = std::chrono::duration<double>(e.end - *last_end_).count();
+    if (std::abs(hop - kHop_s) > 1e-3) ++result_.breaks;
+  }
+  last_end_ = e.end;
+  if (next_compared_ < std::size(kCompared) && std::ssize(kept_) == kKept &&
+      static_cast<double>(at_) > kCompared[next_compared_] * static_cast<double>(instants_))
+    compare_sums(e);
+}
+
+/// Of this window's solution from that of a pipeline that begins with a kept instant.
+double Soak::difference(const WindowEstimate& e, std::size_t from) const {
+  PipelineConfig config = config_.pipeline;
+  config.design = estimation_.pipeline().design();
+  config.options.self_tune = false;
+  config.options.long_window_s = 0;
+  config.options.hop_s = 0.01;
+  double least = 1;
+  Pipeline pipeline(config, [&](const WindowEstimate& other) {
+    if (other.end != e.end || other.status == WindowStatus::warming_up) return;
+    double most = 0;
+    for (std::size_t p = 0; p < e.solution.size(); ++p)
+      most = std::max(most, std::abs(e.solution[p] / other.solution[p] - 1));
+    least = most;
+  });
+  for (std::size_t i = from; i < kept_.size(); ++i)
+    for (std::size_t a = 0; a < kept_[i].second.size(); ++a)
+      if (!std::isnan(kept_[i].second[a]))
+        pipeline.push({from_microseconds(kept_[i].first), static_cast<int>(a), kept_[i].second[a]});
+  pipeline.finish();
+  return least;
+}
+
+void Soak::compare_sums(const WindowEstimate& e) {
+  // Blocks begin where a pipeline, or a newly tuned one, did: one of so many places.
+  constexpr std::size_t kBlockRows = 25;
+  double least = 1;
+  for (std::size_t from = 0; from < kBlockRows; ++from) {
+    least = std::min(least, difference(e, from));
+    if (least < 1e-11) break;
+  }
+  result_.sum_error = std::max(result_.sum_error, least);
+  ++result_.sums_compared;
+  ++next_compared_;
+  kept_.clear();
+}
+
+void Soak::look_at_history() {
+  daemon::SqliteFile file;
+  if (!file.open_to_read(daemon::summary_file(options_.directory))) {
+    result_.history_trouble = file.error();
+    return;
+  }
+  auto check = file.prepare("PRAGMA integrity_check");
+  if (!check.row() || check.text(0) != "ok") result_.history_trouble = "integrity_check";
+  daemon::SummaryQuery query;
+  if (const std::string problem = query.open(options_.directory); !problem.empty()) {
+    result_.history_trouble = problem;
+    return;
+  }
+  const auto windows = [&](std::int64_t period_s) {
+    std::int64_t sum = 0;
+    for (const daemon::SummaryRow& row :
+         query.rows(query.parameters().front().id, period_s, INT64_MIN / 2, INT64_MAX / 2))
+      sum += row.windows;
+    return sum;
+  };
+  result_.summarised_windows = windows(options_.summary_s);
+  result_.hourly_windows = windows(60 * options_.summary_s);
+  if (!query.problem().empty()) result_.history_trouble = query.problem();
+}
+
+}  // namespace
+
+SoakResult run_soak(const SoakOptions& options) {
+  return Soak(options).run();
+}
+
+}  // namespace framewatch::soak

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/soak/soak_night.h"
+
+namespace framewatch::soak {
+
+struct SoakOptions {
+  double days = 30;
+  std::string directory;         ///< of the history
+  double quiet_window_s = 3600;  ///< [watch]
+  double quiet_learn_hours = 96;
+  double alarms_per_year = 120;  ///< false ones that are put up with
+  std::int64_t summary_s = 60;   ///< the shortest period of the summaries
+  std::uint64_t seed = 1;
+  /// Called every hour of the building's, with the hours and what is resident.
+  std::function<void(double, std::int64_t)> hour;
+};
+
+struct SoakResult {
+  std::int64_t instants = 0, samples = 0;
+  double wall_s = 0;
+  // Memory, after the first tenth and the most since.
+  std::int64_t resident_warm = 0, resident_most = 0;
+  // Windows.
+  std::int64_t windows = 0, expected_windows = 0, breaks = 0;
+  std::int64_t long_windows = 0, long_values = 0;
+  /// Largest relative difference between a window's normal solution and that of a pipeline that saw
+  /// nothing but the last minutes, at five times; times at which there was none.
+  double sum_error = 0;
+  int sums_compared = 0;
+  // The history.
+  std::string history_trouble;  ///< empty: none
+  std::int64_t summarised_windows = 0, hourly_windows = 0, raw_dropped = 0, summary_dropped = 0;
+  // Changes that are none.
+  int alarms = 0;
+  std::vector<std::string> told;
+};
+
+SoakResult run_soak(const SoakOptions& options);
+
+}  // namespace framewatch::soak

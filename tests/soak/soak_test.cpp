@@ -1,0 +1,41 @@
+// A short soak: the same happens in 20 minutes that happens in 30 days.
+#include "tests/soak/soak_run.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary.h"
+
+namespace framewatch::soak {
+namespace {
+
+constexpr double kMinutes = 20;
+constexpr double kSumError = 1e-9;
+constexpr std::int64_t kWindowsPerStep = 10;  // lost when the clock steps
+constexpr std::int64_t kRepeatedPerStep = 3;  // and told twice
+
+TEST(Soak, LosesNothingAndRaisesNothing) {
+  const test::TemporaryDirectory directory;
+  SoakOptions o;
+  o.days = kMinutes / 1440;
+  o.directory = directory.path("history");
+  o.quiet_window_s = 60;
+  o.quiet_learn_hours = 0.05;
+  o.alarms_per_year = 1;
+  o.summary_s = 1;
+  const SoakResult r = run_soak(o);
+  EXPECT_GE(r.windows, r.expected_windows - kWindowsPerStep * SoakNight::kClockSteps);
+  EXPECT_LE(r.breaks, SoakNight::kClockSteps);
+  EXPECT_GE(r.sums_compared, 4);
+  EXPECT_LT(r.sum_error, kSumError);
+  EXPECT_EQ(r.history_trouble, "");
+  EXPECT_EQ(r.raw_dropped, 0);
+  EXPECT_EQ(r.summary_dropped, 0);
+  EXPECT_NEAR(static_cast<double>(r.summarised_windows), static_cast<double>(r.windows),
+              kRepeatedPerStep * SoakNight::kClockSteps);
+  EXPECT_EQ(r.hourly_windows, r.summarised_windows);
+  EXPECT_GT(r.long_values, 10);
+  EXPECT_EQ(r.alarms, 0);
+}
+
+}  // namespace
+}  // namespace framewatch::soak
