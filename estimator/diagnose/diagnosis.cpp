@@ -32,12 +32,12 @@ constexpr double kLeastGain = 50;
 constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
 constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
 constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
-constexpr double kOwnPrice = 0.1;   ///< of the excess: what an arbitrary force must be better by
+/// Of the excess: what an arbitrary force must be better by than a law.
+constexpr double kOwnPrice = 1 - kTakesAway;
 constexpr double kApart =
     0.25;  ///< of the excess that records leave at most if each may be another building
 constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
-constexpr double kExact = 1e-9;        ///< tolerance of what is declared
-constexpr int kPolishSteps = 6, kTrainSteps = 8, kDeclaredSteps = 15;
+constexpr int kPolishSteps = 6, kTrainSteps = 8, kDeclaredSteps = 5;
 
 double sum(const std::vector<double>& values) {
   double out = 0;
@@ -58,6 +58,19 @@ bool has_law(const Model& model) {
 
 Forcing forcing_of(const Model& model) {
   return has_law(model) ? Forcing::simulated : Forcing::measured;
+}
+
+/// How many values of a model are fitted beyond those of the linear building.
+double fitted_values(const Model& model) {
+  const auto free = [](const std::vector<Knob>& knobs) {
+    return std::count_if(knobs.begin(), knobs.end(), [](const Knob& k) { return k.free; });
+  };
+  auto out = static_cast<double>(model.free_gain.size() + model.free_clock.size());
+  for (const ModelEffect& e : model.effects) {
+    out += static_cast<double>(free(e.knobs));
+    for (const std::vector<Knob>& knobs : e.record_knobs) out += static_cast<double>(free(knobs));
+  }
+  return out;
 }
 
 std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
@@ -166,25 +179,32 @@ class Search {
     if (better.good && better.cost < now.cost) now = better;
   }
 
+  /// Step by step: a stiff law may lose its way when all of the errors go at once.
   Model declared(const Model& fitted) const {
-    Model start = fitted;
-    start.mass_change.setZero();
-    const auto reset = [](Eigen::VectorXd& errors, const std::vector<int>& free) {
-      for (Index a = 0; a < errors.size(); ++a)
-        if (std::find(free.begin(), free.end(), static_cast<int>(a)) == free.end()) errors[a] = 0;
-    };
-    reset(start.gain, start.free_gain);
-    reset(start.clock_s, start.free_clock);
+    Model out = fitted;
     for (const auto* list : {&out_.known, &out_.effects})
       for (const FoundEffect& found : *list)
         if (found.index >= 0)
-          fix_exponent(found.chosen.kind, start.effects[static_cast<std::size_t>(found.index)]);
-    const Fitter exact(plant_, stretches_, {kExact, kExact, kExact});
+          fix_exponent(found.chosen.kind, out.effects[static_cast<std::size_t>(found.index)]);
+    const Model none = initial_model(plant_);
+    const auto shrink = [&](Eigen::VectorXd Model::*errors, double share,
+                            const std::vector<int>& free) {
+      for (Index a = 0; a < (out.*errors).size(); ++a)
+        if (std::find(free.begin(), free.end(), static_cast<int>(a)) == free.end())
+          (out.*errors)[a] = share * (fitted.*errors)[a] + (1 - share) * (none.*errors)[a];
+    };
+    const Fitter exact(plant_, stretches_, {0, 0, 0});
     FitOptions options;
-    options.forcing = forcing_of(start);
+    options.forcing = forcing_of(out);
     options.max_steps = kDeclaredSteps;
-    const FitResult out = exact.fit(start, {}, options);
-    return out.good ? out.model : start;
+    for (const double share : {0.75, 0.5, 0.25, 0.0}) {
+      shrink(&Model::mass_change, share, {});
+      shrink(&Model::gain, share, out.free_gain);
+      shrink(&Model::clock_s, share, out.free_clock);
+      const FitResult next = exact.fit(out, {}, options);
+      if (next.good) out = next.model;
+    }
+    return out;
   }
 
   std::vector<Trial> trials_of(const FitResult& now, const Located& located, double begin,
@@ -211,7 +231,10 @@ class Search {
         }
       }
     }
-    const std::vector<Trial> single = try_places(context, contenders(located.places));
+    std::vector<Localisation> places = contenders(located.places);
+    const std::vector<Localisation> more = as_likely(fitter_, now, located, options_.parallel);
+    places.insert(places.end(), more.begin(), more.end());
+    const std::vector<Trial> single = try_places(context, places);
     trials.insert(trials.end(), single.begin(), single.end());
     bound = left * equations / std::max(equations - unseen, 1.0);
     return trials;
@@ -236,11 +259,13 @@ class Search {
     std::vector<Trial> trials = trials_of(now, located, begin, bound);
     if (trials.empty()) return false;
     bound = std::min(bound, cost);
-    // Two effects must beat one by more than chance, a law what any force would do.
+    // Two effects must beat one by more than chance, a law what any force would do, and every
+    // value that is fitted what values fit of noise.
+    const double of_value = 0.5 * std::log(expected_now);
     const auto price = [&](const Trial& t) {
       const bool any = t.model.effects.size() > now.model.effects.size() &&
                        t.model.effects.back().form == LawForm::broadband;
-      return t.cost + (t.second ? needed : 0.0) +
+      return t.cost + of_value * fitted_values(t.model) + (t.second ? needed : 0.0) +
              (any ? needed + kOwnPrice * std::max(cost - bound, 0.0) : 0.0);
     };
     const auto rank = [&] {
@@ -272,7 +297,7 @@ class Search {
     }
     adopt(trials, now);
     cost = now.cost;
-    return sum(now.misfit) > kAdequate * expected(now.model);
+    return true;
   }
 
   void sharpen(std::vector<Trial>& trials, const FitResult& now) const {

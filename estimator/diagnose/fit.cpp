@@ -5,6 +5,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "estimator/diagnose/run_columns.h"
+
 namespace framewatch {
 namespace {
 
@@ -62,6 +64,21 @@ std::vector<double> Fitter::misfit(const Model& model, std::vector<MatrixXcd>& m
   return out;
 }
 
+VectorXd Fitter::column(const Model& model, std::size_t record, const Whitened& system,
+                        const Unknown& unknown, Forcing forcing) const {
+  const Stretch& s = stretches_[record];
+  const int ratio = ratio_[record];
+  const bool run = forcing == Forcing::simulated && !system.tracks.empty() && !plant_.prescribed;
+  if (run && moves_run(plant_, unknown)) {
+    std::optional<VectorXd> out = run_column(plant_, model, s, record, system, unknown, ratio);
+    const bool of_law = unknown.kind >= Unknown::Kind::knob &&
+                        model.effects[static_cast<std::size_t>(unknown.index)].element_law();
+    if (out && !of_law) *out += column_of(plant_, model, s, record, system, unknown, ratio);
+    if (out) return *out;
+  }
+  return column_of(plant_, model, s, record, system, unknown, ratio);
+}
+
 Linearised Fitter::linearise(const Model& model, const std::vector<MatrixXcd>& motion,
                              Forcing forcing) const {
   Linearised out;
@@ -86,8 +103,7 @@ Linearised Fitter::linearise(const Model& model, const std::vector<MatrixXcd>& m
     if (!system.good) return out;
     MatrixXd columns(system.residual.size(), count);
     for (Index u = 0; u < count; ++u)
-      columns.col(u) = column_of(plant_, model, stretches_[r], r, system,
-                                 out.unknowns[static_cast<std::size_t>(u)], ratio_[r]);
+      columns.col(u) = column(model, r, system, out.unknowns[static_cast<std::size_t>(u)], forcing);
     MatrixXd square = MatrixXd::Zero(count, count);
     square.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
     const MatrixXd cross = columns.transpose() * system.ends;

@@ -85,6 +85,9 @@ class Fitter {
   int ratio(std::size_t record) const { return ratio_[record]; }
 
  private:
+  Eigen::VectorXd column(const Model& model, std::size_t record, const Whitened& system,
+                         const Unknown& unknown, Forcing forcing) const;
+
   const Plant& plant_;
   const std::vector<Stretch>& stretches_;
   Tolerances tolerances_;

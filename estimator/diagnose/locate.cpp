@@ -1,6 +1,7 @@
 #include "estimator/diagnose/locate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace framewatch {
@@ -9,6 +10,8 @@ namespace {
 constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
 constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
 constexpr std::size_t kContenders = 3, kMostContenders = 5;
+constexpr std::size_t kMostAsLikely = 16;
+constexpr double kChance = 4;  ///< standard deviations of the misfit under noise
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
 constexpr int kSteps = 8, kPairSteps = 6;
 
@@ -77,6 +80,28 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
   std::vector<const Localisation*> starts;
   for (std::size_t i = 0; i < std::min(kPairs, pairs.size()); ++i) starts.push_back(&pairs[i]);
   return iterated(fitter, now, starts, kPairSteps, parallel);
+}
+
+std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
+                                    const Located& located, const Parallel& parallel) {
+  if (located.once.empty() || located.places.empty()) return {};
+  double expected = 0;
+  for (std::size_t r = 0; r < fitter.stretches().size(); ++r)
+    expected += fitter.expected(r, now.model);
+  const double most = located.once.front().ratio + kChance / std::sqrt(expected);
+  std::vector<const Localisation*> starts;
+  for (const Localisation& l : located.once) {
+    const Suspect& s = l.suspects.front();
+    const bool seen = std::any_of(
+        located.places.begin(), located.places.end(),
+        [&](const Localisation& place) { return place.suspects.front().place == s.place; });
+    if (l.ratio > most || starts.size() >= kMostAsLikely) break;
+    if (s.kind != Suspect::Kind::element && !seen) starts.push_back(&l);
+  }
+  std::vector<Localisation> out = iterated(fitter, now, starts, kSteps, parallel);
+  const double limit = located.places.front().ratio + kChance / std::sqrt(expected);
+  std::erase_if(out, [&](const Localisation& l) { return l.ratio > limit; });
+  return out;
 }
 
 std::vector<Localisation> contenders(const std::vector<Localisation>& places) {

@@ -15,6 +15,11 @@ struct Located {
 /// Every place of the plant.
 Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel);
 
+/// Further places that do as well as the best within chance, if what can be there is quick to fit:
+/// all but elements. Best first.
+std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
+                                    const Located& located, const Parallel& parallel);
+
 /// Two places at once: the best single ones with every other, and every two axes. Best first.
 std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
                                        const std::vector<Localisation>& once,

@@ -51,7 +51,27 @@ void add_floors(const Plant& plant, const Localisation& place, std::vector<Propo
   }
 }
 
-void add_links(const Plant& plant, const Localisation& place, std::vector<Proposal>& out) {
+/// The size for which a linear effect comes nearest to the force that its place needs.
+ScalarFit fit_of(const Fitter& fitter, const Localisation& place, const std::vector<Needed>& needed,
+                 ModelEffect effect) {
+  effect.knobs[0].value = 1;
+  const Eigen::VectorXcd along =
+      place.suspects.front().directions.col(0).cast<std::complex<double>>();
+  std::vector<std::vector<Eigen::VectorXcd>> columns(needed.size());
+  for (std::size_t r = 0; r < needed.size(); ++r) {
+    const Stretch& s = fitter.stretches()[r];
+    Eigen::VectorXcd force(s.bins());
+    for (Index b = 0; b < s.bins(); ++b)
+      force[b] = along.dot(linear_operation(fitter.plant(), place.model, effect, s.w[b]) *
+                           place.motion[r].col(b));
+    columns[r].push_back(force / along.squaredNorm());
+  }
+  return scalar_fit(needed, columns);
+}
+
+void add_links(const Fitter& fitter, const Localisation& place, const std::vector<Needed>& needed,
+               std::vector<Proposal>& out) {
+  const Plant& plant = fitter.plant();
   for (const bool spring : {true, false}) {
     ModelEffect e;
     e.form = spring ? LawForm::spring : LawForm::damper;
@@ -60,8 +80,11 @@ void add_links(const Plant& plant, const Localisation& place, std::vector<Propos
     const Index element = plant.table.frame_stiffness(1, e.place.frame);
     const double size = plant.design[spring ? element : element + plant.element_count()];
     e.knobs = {bounded_knob(0.05 * size, 0.02 * size, spring ? -10 * size : 0, 1e15)};
+    const ScalarFit fit = fit_of(fitter, place, needed, e);
+    if (spring || fit.coefficients[0] > 0) e.knobs[0].value = fit.coefficients[0];
     out.push_back(
         with_effect(place, e, spring ? EffectKind::added_spring : EffectKind::added_damper));
+    out.back().misfit = fit.misfit;
   }
 }
 
@@ -102,7 +125,7 @@ std::vector<Proposal> propose(const Fitter& fitter, const Localisation& all, std
   }
   if (suspect.kind == Suspect::Kind::link ||
       (suspect.kind == Suspect::Kind::node && suspect.place.story >= 2))
-    add_links(plant, place, out);
+    add_links(fitter, place, needed, out);
   std::stable_sort(out.begin(), out.end(),
                    [](const Proposal& x, const Proposal& y) { return x.misfit < y.misfit; });
   return out;

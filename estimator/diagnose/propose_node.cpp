@@ -18,9 +18,10 @@ constexpr double kSlow = 0.3;     ///< of the rate: where friction has turned
 constexpr Complex kJ{0, 1};
 
 constexpr double kStationary = 0.25;  ///< share of the mean power that is there at rest, at least
-constexpr double kStandsOut = 3;      ///< power of a force over its noise
-constexpr double kEnds_s = 2;         ///< of a stretch, where what goes on beyond it shows
-constexpr double kQuietest = 0.15;    ///< share of the seconds that count as rest
+constexpr double kAsMuch = 0.5;     ///< the same, above which laws of the motion need not be asked
+constexpr double kStandsOut = 3;    ///< power of a force over its noise
+constexpr double kEnds_s = 2;       ///< of a stretch, where what goes on beyond it shows
+constexpr double kQuietest = 0.15;  ///< share of the seconds that count as rest
 
 Band band_of_fit(const Fitter& fitter) {
   const VectorXd& w = fitter.stretches()[0].w;
@@ -184,11 +185,20 @@ Seconds seconds_of(const Plant& plant, const Stretch& s, const VectorXcd& force)
   return out;
 }
 
-/// Whether a force is there as much when the ground is at rest: no law of the building makes such.
-bool is_stationary(const Plant& plant, const Stretch& s, const Needed& needed) {
-  const Seconds seconds = seconds_of(plant, s, needed.force);
+/// A force without what the element that it may as well be of would do linearly.
+VectorXcd beyond_linear(const Stretch& s, const Needed& needed) {
+  if (needed.d.size() == 0) return needed.force;
+  const std::vector<VectorXcd> columns{needed.d, needed.d.array() * s.w.array() * kJ};
+  const VectorXd fit = scalar_fit({needed}, {columns}).coefficients;
+  return needed.force - fit[0] * columns[0] - fit[1] * columns[1];
+}
+
+/// Share of a force's mean power that is there when the ground is at rest: no law of the building
+/// makes such. 0 when the force does not stand out.
+double share_at_rest(const Plant& plant, const Stretch& s, const Needed& needed) {
+  const Seconds seconds = seconds_of(plant, s, beyond_linear(s, needed));
   const std::size_t count = seconds.force.size();
-  if (count < 8) return false;
+  if (count < 8) return 0;
   std::vector<std::size_t> order(count);
   for (std::size_t i = 0; i < count; ++i) order[i] = i;
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -203,7 +213,7 @@ bool is_stationary(const Plant& plant, const Stretch& s, const Needed& needed) {
     all += seconds.force[order[i]] / static_cast<double>(count);
     if (i < quiet) rest += seconds.force[order[i]] / static_cast<double>(quiet);
   }
-  return all > kStandsOut * noise && rest - noise > kStationary * (all - noise);
+  return all > kStandsOut * noise ? (rest - noise) / (all - noise) : 0;
 }
 
 /// Whether a force goes with the deformation of the element it may as well be of, otherwise than
@@ -232,9 +242,9 @@ void add_node_proposals(const Fitter& fitter, const Localisation& place,
   add_harmonic(fitter, place, needed, node, out);
   for (std::size_t r = 0; r < needed.size(); ++r) {
     const Stretch& s = fitter.stretches()[r];
-    if (!is_stationary(fitter.plant(), s, needed[r]) ||
-        follows_motion(s, needed[r], fitter.ratio(r)))
-      return;
+    const double at_rest = share_at_rest(fitter.plant(), s, needed[r]);
+    if (at_rest < kStationary) return;
+    if (at_rest < kAsMuch && follows_motion(s, needed[r], fitter.ratio(r))) return;
   }
   ModelEffect e;
   e.form = LawForm::broadband;

@@ -11,6 +11,8 @@ constexpr double kRoundest = 20;  ///< exponent of hysteresis; above it has a co
 constexpr double kDissipates = 0.15;
 constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
 constexpr int kSharpSteps = 12;
+constexpr int kGlance = 3;      ///< steps of a free run's fit after which it is seen what leads
+constexpr double kStillIn = 4;  ///< times the least cost: what is worse then is not fitted on
 constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
 
 bool contains(const std::vector<EffectKind>& list, EffectKind kind) {
@@ -119,18 +121,34 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     });
     if (f.candidate->second || static_cast<std::size_t>(same) < kLawsRun) kept.push_back(f);
   }
+  std::vector<FitResult> runs(kept.size());
+  const auto run = [&](int steps, const Model& model, const std::vector<Eigen::MatrixXcd>& motion) {
+    FitOptions options = run_options(model);
+    options.max_steps = std::min(options.max_steps, steps);
+    return c.fitter.fit(model, motion, options);
+  };
+  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    runs[at] = run(kGlance, kept[at].fit.model, kept[at].fit.motion);
+  });
+  double least = 1e300;
+  for (const FitResult& r : runs)
+    if (r.good) least = std::min(least, r.cost);
   std::vector<Trial> out(kept.size());
   std::vector<char> good(kept.size());
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
+    if (!runs[at].good) return;
+    if (runs[at].cost < kStillIn * least && runs[at].steps == kGlance) {
+      const FitResult on = run(kLinearSteps, runs[at].model, runs[at].motion);
+      if (on.good && on.cost < runs[at].cost) runs[at] = on;
+    }
     const Fitted& f = kept[at];
-    const FitResult run = c.fitter.fit(f.fit.model, f.fit.motion, run_options(f.fit.model));
-    if (!run.good) return;
     Trial& t = out[at];
     t.kind = f.candidate->kind;
     t.place = f.candidate->place;
     t.second = f.candidate->second;
-    take(c, run, t);
+    take(c, runs[at], t);
     good[at] = is_named(c, t);
   });
   std::vector<Trial> trials;

@@ -44,11 +44,6 @@ MatrixXcd calibrated(const Model& model, const Stretch& stretch) {
   return out;
 }
 
-struct Equivalent {
-  double stiffness = 0, damping = 0;
-};
-
-/// The linear element nearest to a force.
 Equivalent equivalent_of(const LawTrack& track) {
   const double dd = track.d.squaredNorm(), vv = track.v.squaredNorm(), dv = track.d.dot(track.v);
   const double fd = track.force.dot(track.d), fv = track.force.dot(track.v);
@@ -135,7 +130,7 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
   for (std::size_t l = 0; l < laws.size(); ++l) {
     const LawTrack& track = out.tracks[l];
     if (!track.force.allFinite()) return out;
-    const Equivalent linear = equivalent_of(track);
+    const Equivalent& linear = out.linear.emplace_back(equivalent_of(track));
     const int element = element_of(plant, laws[l]->place);
     theta[element] += linear.stiffness;
     theta[element + elements] += linear.damping;

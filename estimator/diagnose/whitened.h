@@ -15,6 +15,11 @@ namespace framewatch {
 /// model itself does under the measured motion of the base.
 enum class Forcing { measured, simulated };
 
+/// The linear element nearest to the force of a law.
+struct Equivalent {
+  double stiffness = 0, damping = 0;  ///< N/m, N s/m
+};
+
 /// The equations of one stretch under one model, D A + forces, whitened by the noise that the
 /// sensors put into them: docs/equations.md (33). Rows: real parts, then imaginary parts of every
 /// equation, bin by bin.
@@ -25,6 +30,7 @@ struct Whitened {
   Eigen::MatrixXcd calibrated;              ///< axes x bins: spectra without the model's errors
   Eigen::MatrixXcd motion;                  ///< the same with less noise where the model fits
   std::vector<LawTrack> tracks;             ///< of the element laws
+  std::vector<Equivalent> linear;           ///< of the element laws
   std::vector<Eigen::VectorXcd> force;      ///< of the element laws: spectrum, N
   Eigen::VectorXd residual;                 ///< before end terms
   Eigen::MatrixXd ends;                     ///< columns of the end terms

@@ -1,0 +1,51 @@
+#include "estimator/diagnose/run_columns.h"
+
+#include <complex>
+
+namespace framewatch {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
+
+}  // namespace
+
+bool moves_run(const Plant& plant, const Unknown& unknown) {
+  using Kind = Unknown::Kind;
+  if (unknown.kind == Kind::theta)
+    return unknown.index < plant.element_count() && plant.table[unknown.index].frame >= 0;
+  return unknown.kind == Kind::knob || unknown.kind == Kind::record_knob;
+}
+
+std::optional<VectorXd> run_column(const Plant& plant, const Model& model, const Stretch& stretch,
+                                   std::size_t record, const Whitened& system,
+                                   const Unknown& unknown, int ratio) {
+  if (unknown.kind == Unknown::Kind::record_knob &&
+      static_cast<std::size_t>(unknown.record) != record)
+    return VectorXd::Zero(system.residual.size());
+  const double change = unknown.kind == Unknown::Kind::theta ? kChange : 1.0;
+  Model moved = model;
+  set_value(moved, unknown, value_of(model, unknown) + change);
+  const FreeRun run = free_run(plant, moved, stretch, record, ratio);
+  if (!run.good) return std::nullopt;
+  VectorXd out = VectorXd::Zero(system.residual.size());
+  std::size_t law = 0;
+  for (const ModelEffect& e : model.effects) {
+    if (!e.element_law()) continue;
+    const LawTrack &from = system.tracks[law], &to = run.tracks[law];
+    const Equivalent& linear = system.linear[law];
+    const VectorXcd force = band_of((to.force - from.force) / change, stretch, ratio);
+    const VectorXcd d = band_of((to.d - from.d) / change, stretch, ratio);
+    const VectorXcd beyond =
+        force.array() - d.array() * (linear.stiffness + std::complex<double>(0, 1) *
+                                                            linear.damping * stretch.w.array());
+    out += whiten_rows(system, plant.building.act.col(element_of(plant, e.place)), beyond);
+    ++law;
+  }
+  return out;
+}
+
+}  // namespace framewatch
