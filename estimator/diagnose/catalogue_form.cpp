@@ -39,10 +39,8 @@ void set_broadband(Effect& out, const Plant& plant, const std::vector<Stretch>& 
     return other.form == LawForm::broadband && other.place == e.place;
   });
   const Stretch& s = stretches.front();
-  const bool laws = std::any_of(rest.effects.begin(), rest.effects.end(),
-                                [](const ModelEffect& other) { return other.element_law(); });
-  const Whitened system = whiten(plant, rest, s, 0, laws ? Forcing::simulated : Forcing::measured,
-                                 {}, steps_per_sample(plant, s.rate_hz));
+  const Whitened system =
+      whiten(plant, rest, s, 0, forcing_of(rest), {}, steps_per_sample(plant, s.rate_hz));
   if (!system.good) return;
   const Eigen::Index n = plant.equations();
   const Eigen::VectorXcd direction =

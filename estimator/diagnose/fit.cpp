@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 
@@ -29,12 +30,20 @@ double prior_cost(const Model& model, const std::vector<Unknown>& unknowns) {
 }
 
 double total(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double v : values) sum += v;
-  return sum;
+  return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 }  // namespace
+
+double FitResult::total_misfit() const {
+  return total(misfit);
+}
+
+Forcing forcing_of(const Model& model) {
+  const bool laws = std::any_of(model.effects.begin(), model.effects.end(),
+                                [](const ModelEffect& e) { return e.element_law(); });
+  return laws ? Forcing::simulated : Forcing::measured;
+}
 
 Fitter::Fitter(const Plant& plant, const std::vector<Stretch>& stretches,
                const Tolerances& tolerances)
@@ -47,6 +56,12 @@ double Fitter::expected(std::size_t record, const Model& model) const {
   for (const ModelEffect& e : model.effects)
     n -= e.form == LawForm::clipped || e.form == LawForm::broadband;
   return n * static_cast<double>(stretches_[record].bins()) - 2 * n;
+}
+
+double Fitter::expected(const Model& model) const {
+  double out = 0;
+  for (std::size_t r = 0; r < stretches_.size(); ++r) out += expected(r, model);
+  return out;
 }
 
 std::vector<double> Fitter::misfit(const Model& model, std::vector<MatrixXcd>& motion,
@@ -69,7 +84,7 @@ VectorXd Fitter::column(const Model& model, std::size_t record, const Whitened& 
   const Stretch& s = stretches_[record];
   const int ratio = ratio_[record];
   const bool run = forcing == Forcing::simulated && !system.tracks.empty() && !plant_.prescribed;
-  if (run && moves_run(plant_, unknown)) {
+  if (run && moves_run(plant_, model, unknown)) {
     std::optional<VectorXd> out = run_column(plant_, model, s, record, system, unknown, ratio);
     const bool of_law = unknown.kind >= Unknown::Kind::knob &&
                         model.effects[static_cast<std::size_t>(unknown.index)].element_law();

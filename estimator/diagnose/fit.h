@@ -60,7 +60,12 @@ struct FitResult {
   std::vector<double> misfit;            ///< of each stretch
   std::vector<Eigen::MatrixXcd> motion;  ///< of each stretch
   int steps = 0;
+
+  double total_misfit() const;
 };
+
+/// Laws act on the motion of the model's own free run, of a linear model there is nothing to run.
+Forcing forcing_of(const Model& model);
 
 /// Fits models of one plant to several stretches by Gauss-Newton (Levenberg-Marquardt) on the
 /// whitened equations.
@@ -79,6 +84,7 @@ class Fitter {
                              Forcing forcing, const Linearised* weights = nullptr) const;
   /// Degrees of freedom of a stretch: what the misfit is when nothing but noise is left.
   double expected(std::size_t record, const Model& model) const;
+  double expected(const Model& model) const;  ///< of all
   const Plant& plant() const { return plant_; }
   const std::vector<Stretch>& stretches() const { return stretches_; }
   const Tolerances& tolerances() const { return tolerances_; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/LU>
 
@@ -18,6 +19,8 @@ constexpr double kStepsPerPeriod = 30;
 constexpr int kSincHalf = 12;
 constexpr double kRunAway_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
+constexpr int kSecants = 8, kGrows = 60;
+constexpr double kRootPart = 1e-10, kLeastForce_n = 1e-12;
 
 struct System {
   MatrixXd mass, damping, stiffness, inputs;
@@ -132,6 +135,52 @@ System assemble_system(const Plant& plant, const Model& model, const std::vector
   return out;
 }
 
+/// Root of `miss`, which falls, near `start`: secants, and where they fail a bracket.
+template <typename Miss>
+double root_near(const Miss& miss, double start) {
+  double f = start, value = miss(f), before = f, value_before = value;
+  if (value == 0) return f;
+  f += value;
+  for (int i = 0; i < kSecants; ++i) {
+    value_before = std::exchange(value, miss(f));
+    if (std::abs(value) <= kRootPart * std::max(std::abs(f), kLeastForce_n)) return f;
+    const double slope = (value - value_before) / (f - before);
+    before = f;
+    if (!(slope < 0)) break;
+    f -= value / slope;
+  }
+  f = start, value = miss(f);
+  double low = f, high = f, at_low = value, at_high = value;
+  double width = std::max(std::abs(value), kLeastForce_n);
+  for (int grow = 0; grow < kGrows && at_low < 0; ++grow, width *= 2) {
+    high = low, at_high = at_low;
+    low -= width;
+    at_low = miss(low);
+  }
+  for (int grow = 0; grow < kGrows && at_high > 0; ++grow, width *= 2) {
+    low = high, at_low = at_high;
+    high += width;
+    at_high = miss(high);
+  }
+  const double small = kRootPart * std::max({std::abs(low), std::abs(high), kLeastForce_n});
+  bool was_low = false, was_high = false;
+  for (int i = 0; i < kGrows && high - low > small && at_low > 0 && at_high < 0; ++i) {
+    f = (low * at_high - high * at_low) / (at_high - at_low);
+    value = miss(f);
+    if (std::abs(value) <= small) return f;
+    if (value > 0) {
+      low = f, at_low = value;
+      if (was_low) at_high /= 2;
+      was_low = true, was_high = false;
+    } else {
+      high = f, at_high = value;
+      if (was_high) at_low /= 2;
+      was_high = true, was_low = false;
+    }
+  }
+  return at_low == 0 ? low : at_high == 0 ? high : f;
+}
+
 }  // namespace
 
 VectorXd upsampled(const VectorXd& signal, int ratio) {
@@ -239,39 +288,7 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
         const double gv = law.seen.velocity_gain[law.input];
         // f = F(d + gd f, v + gv f): gd, gv < 0, F rises, so the root is bracketed.
         const auto miss = [&](double f) { return law.motion.force(d + gd * f, v + gv * f, t) - f; };
-        double f = law.force, value = miss(f);
-        double low = f, high = f, at_low = value, at_high = value;
-        double width = std::max(std::abs(value), 1e-12);
-        for (int grow = 0; grow < 60 && at_low < 0; ++grow, width *= 2) {
-          high = low, at_high = at_low;
-          low -= width;
-          at_low = miss(low);
-        }
-        for (int grow = 0; grow < 60 && at_high > 0; ++grow, width *= 2) {
-          low = high, at_low = at_high;
-          high += width;
-          at_high = miss(high);
-        }
-        const double small = 1e-10 * std::max({std::abs(low), std::abs(high), 1e-12});
-        bool was_low = false, was_high = false;
-        for (int it = 0; it < 60 && high - low > small && at_low > 0 && at_high < 0; ++it) {
-          f = (low * at_high - high * at_low) / (at_high - at_low);
-          value = miss(f);
-          if (std::abs(value) <= small) {
-            low = high = f;
-            break;
-          }
-          if (value > 0) {
-            low = f, at_low = value;
-            if (was_low) at_high /= 2;
-            was_low = true, was_high = false;
-          } else {
-            high = f, at_high = value;
-            if (was_high) at_low /= 2;
-            was_high = true, was_low = false;
-          }
-        }
-        law.force = at_low == 0 ? low : at_high == 0 ? high : (low == high ? low : f);
+        law.force = root_near(miss, law.force);
         corrected[law.input] = law.force;
         if (sweep + 1 == (laws.size() > 1 ? kSweeps : 1)) {
           at_step[l] = {d + gd * law.force, v + gv * law.force};

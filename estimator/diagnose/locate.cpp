@@ -85,10 +85,8 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
 std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
                                     const Located& located, const Parallel& parallel) {
   if (located.once.empty() || located.places.empty()) return {};
-  double expected = 0;
-  for (std::size_t r = 0; r < fitter.stretches().size(); ++r)
-    expected += fitter.expected(r, now.model);
-  const double most = located.once.front().ratio + kChance / std::sqrt(expected);
+  const double chance = kChance / std::sqrt(fitter.expected(now.model));
+  const double most = located.once.front().ratio + chance;
   std::vector<const Localisation*> starts;
   for (const Localisation& l : located.once) {
     const Suspect& s = l.suspects.front();
@@ -99,7 +97,7 @@ std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
     if (s.kind != Suspect::Kind::element && !seen) starts.push_back(&l);
   }
   std::vector<Localisation> out = iterated(fitter, now, starts, kSteps, parallel);
-  const double limit = located.places.front().ratio + kChance / std::sqrt(expected);
+  const double limit = located.places.front().ratio + chance;
   std::erase_if(out, [&](const Localisation& l) { return l.ratio > limit; });
   return out;
 }

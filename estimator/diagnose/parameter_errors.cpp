@@ -15,10 +15,7 @@ using Eigen::VectorXd;
 
 void set_errors(const Fitter& fitter, const Model& model,
                 const std::vector<Eigen::MatrixXcd>& motion, std::vector<FoundEffect>& effects) {
-  const bool laws = std::any_of(model.effects.begin(), model.effects.end(),
-                                [](const ModelEffect& e) { return e.element_law(); });
-  const Linearised at =
-      fitter.linearise(model, motion, laws ? Forcing::simulated : Forcing::measured);
+  const Linearised at = fitter.linearise(model, motion, forcing_of(model));
   if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return;
   MatrixXd normal = at.normal;
   normal.diagonal() += at.prior;

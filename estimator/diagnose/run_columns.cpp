@@ -1,5 +1,6 @@
 #include "estimator/diagnose/run_columns.h"
 
+#include <algorithm>
 #include <complex>
 
 namespace framewatch {
@@ -13,11 +14,17 @@ constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
 
 }  // namespace
 
-bool moves_run(const Plant& plant, const Unknown& unknown) {
+bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
   using Kind = Unknown::Kind;
-  if (unknown.kind == Kind::theta)
-    return unknown.index < plant.element_count() && plant.table[unknown.index].frame >= 0;
-  return unknown.kind == Kind::knob || unknown.kind == Kind::record_knob;
+  if (unknown.kind == Kind::knob || unknown.kind == Kind::record_knob) return true;
+  if (unknown.kind != Kind::theta || unknown.index >= plant.element_count()) return false;
+  const int frame = plant.table[unknown.index].frame;
+  if (frame < 0) return false;
+  const Structure& s = plant.structure;
+  return std::any_of(model.effects.begin(), model.effects.end(), [&](const ModelEffect& e) {
+    return e.element_law() &&
+           (e.place.frame < 0 || s.direction(e.place.frame) == s.direction(frame));
+  });
 }
 
 std::optional<VectorXd> run_column(const Plant& plant, const Model& model, const Stretch& stretch,

@@ -7,8 +7,8 @@
 namespace framewatch {
 
 /// Whether an unknown changes the motion of a free run so much that a fit has to know it: the
-/// frames' stiffness and what effects have.
-bool moves_run(const Plant& plant, const Unknown& unknown);
+/// stiffness of the frames along a law's, and what effects have.
+bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown);
 
 /// What one unknown changes in the whitened equations through the forces of the laws, which act on
 /// the motion of the free run and change it. system: of the model, whitened with

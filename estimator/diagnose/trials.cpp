@@ -19,11 +19,6 @@ bool contains(const std::vector<EffectKind>& list, EffectKind kind) {
   return std::find(list.begin(), list.end(), kind) != list.end();
 }
 
-bool has_law(const Model& model) {
-  return std::any_of(model.effects.begin(), model.effects.end(),
-                     [](const ModelEffect& e) { return e.element_law(); });
-}
-
 /// A model with what it is called.
 struct Candidate {
   Model model;
@@ -44,9 +39,7 @@ struct Fitted {
 void take(const TrialContext& c, const FitResult& run, Trial& t) {
   std::size_t next = c.now.model.effects.size();
   const auto name = [&](EffectKind guess) {
-    const bool in_model = guess != EffectKind::gain_error && guess != EffectKind::polarity &&
-                          guess != EffectKind::time_shift;
-    return in_model && next < run.model.effects.size()
+    return !is_axis_error(guess) && next < run.model.effects.size()
                ? name_of_fit(run.model.effects[next++], c.fitter.stretches().front())
                : guess;
   };
@@ -94,8 +87,8 @@ bool is_named(const TrialContext& c, const Trial& t) {
 
 FitOptions run_options(const Model& model) {
   FitOptions options;
-  options.forcing = has_law(model) ? Forcing::simulated : Forcing::measured;
-  options.max_steps = has_law(model) ? kRunSteps : kLinearSteps;
+  options.forcing = forcing_of(model);
+  options.max_steps = options.forcing == Forcing::simulated ? kRunSteps : kLinearSteps;
   return options;
 }
 
@@ -198,6 +191,11 @@ Trial sharpened(const TrialContext& c, const Trial& trial) {
   Trial out = trial;
   take(c, run, out);
   return out.cost < trial.cost && is_named(c, out) ? out : trial;
+}
+
+bool is_axis_error(EffectKind kind) {
+  return kind == EffectKind::gain_error || kind == EffectKind::polarity ||
+         kind == EffectKind::time_shift;
 }
 
 double spared(const Fitter& fitter, const Model& model) {

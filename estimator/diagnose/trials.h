@@ -15,6 +15,9 @@ struct TrialContext {
   std::function<void(const std::string&, double)> progress;  ///< share of this step
 };
 
+/// Whether an effect is an axis' freed gain or clock rather than a member of the model's effects.
+bool is_axis_error(EffectKind kind);
+
 /// Misfit that a model is spared because it does not look at what may be anything.
 double spared(const Fitter& fitter, const Model& model);
 
