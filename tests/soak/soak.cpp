@@ -32,13 +32,14 @@ int judge(const SoakOptions& o, const SoakResult& r) {
     failed += holds ? 0 : 1;
     fmt::print("{} {}\n", holds ? "holds " : "FAILS ", text);
   };
-  const double growth = static_cast<double>(r.resident_most - r.resident_warm);
+  const auto growth = static_cast<double>(r.growth());
   const double allowed = kTwice * o.alarms_per_year * o.days / kDaysPerYear;
   fmt::print("{} instants, {} samples, {:.0f} times real time\n", r.instants, r.samples,
              static_cast<double>(r.instants) / 100 / r.wall_s);
   line(growth <= kMostGrowth_bytes,
-       fmt::format("resident: {:.1f} MiB after a tenth, {:+.2f} MiB at most since",
-                   static_cast<double>(r.resident_warm) / (1 << 20), growth / (1 << 20)));
+       fmt::format("resident: {:.1f} MiB, {:+.2f} MiB at most after the first fifth",
+                   r.resident.empty() ? 0 : static_cast<double>(r.resident.front()) / (1 << 20),
+                   growth / (1 << 20)));
   line(r.windows >= r.expected_windows - kWindowsPerStep * SoakNight::kClockSteps &&
            r.breaks <= SoakNight::kClockSteps,
        fmt::format("windows: {} of {}, {} breaks for {} steps of the clock", r.windows,
@@ -85,10 +86,8 @@ int main(int count, char** arguments) {
     fmt::print(stderr, "soak: {} is there already\n", o.directory);
     return 2;
   }
-  o.hour = [](double hours, std::int64_t resident) {
-    constexpr int kDay = 24;
-    if (static_cast<int>(hours) % kDay != 0) return;
-    fmt::print("day {:.0f}: {:.2f} MiB resident\n", hours / kDay,
+  o.looked = [](double days, std::int64_t resident) {
+    fmt::print("day {:.2f}: {:.2f} MiB resident\n", days,
                static_cast<double>(resident) / (1 << 20));
     std::fflush(stdout);
   };

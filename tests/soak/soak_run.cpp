@@ -1,9 +1,13 @@
 #include "tests/soak/soak_run.h"
 
+#include <malloc.h>
+
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <deque>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -21,6 +25,7 @@
 #include "drivers/accel_codec.h"
 #include "drivers/encoded.h"
 #include "drivers/message_check.h"
+#include "tests/support/history_fixture.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
 
@@ -31,9 +36,13 @@ constexpr double kRate_hz = test::RestlessBuilding::kRate_hz;
 constexpr std::int64_t kHour = 3600 * 100, kTick = 1000;  // instants
 constexpr double kNoise = 2e-5;                           // m/s^2/sqrt(Hz)
 constexpr double kHop_s = 1;
+constexpr std::int64_t kBlockRows = 25;
+constexpr double kSame = 1e-11;
 constexpr std::int64_t kKept = 3000;  // instants that a second pipeline sees
 constexpr double kCompared[] = {0.12, 0.32, 0.48, 0.75, 0.99};  // shares of the duration
 constexpr std::int64_t kTemperature = 100 * 120;
+constexpr std::int64_t kSettled_us = 2'000'000;  // after a turn of the raw logs
+constexpr std::chrono::minutes kPatience{1};
 
 daemon::Config configuration(const SoakOptions& o) {
   std::vector<daemon::ConfigProblem> problems;
@@ -47,9 +56,10 @@ daemon::Config configuration(const SoakOptions& o) {
       "\n[lcm]\nboxplot_every = 60\n[watch]\nalarms_per_year = {}\nshaking_hours_per_year = 8766\n"
       "quiet_window_s = {}\n"
       "quiet_learn_hours = {}\ntemperature_channel = \"TEMPERATURE\"\n[history]\n"
-      "directory = \"{}\"\nkeep_gb = 0.2\nsummary_s = [{}, {}, {}]\n",
-      o.alarms_per_year, o.quiet_window_s, o.quiet_learn_hours, o.directory, o.summary_s,
-      10 * o.summary_s, 60 * o.summary_s);
+      "directory = \"{}\"\nkeep_gb = 1\nrotate_mb = 4000\ncompress = false\nrotate_s = {}\n"
+      "summary_s = [{}, {}, {}]\n",
+      o.alarms_per_year, o.quiet_window_s, o.quiet_learn_hours, o.directory, o.rotate_s,
+      o.summary_s, 10 * o.summary_s, 60 * o.summary_s);
   auto config = daemon::parse_config("soak.toml", text, problems);
   if (!config) throw std::runtime_error(problems.front().message);
   return *config;
@@ -115,6 +125,7 @@ class Soak {
   void step(std::int64_t i);
   void published(const std::string& channel, const std::vector<std::uint8_t>& bytes);
   void window(const WindowEstimate& e);
+  void look_at_memory(std::int64_t time_us);
   void compare_sums(const WindowEstimate& e);
   double difference(const WindowEstimate& e, std::size_t from) const;
   void look_at_history();
@@ -128,7 +139,7 @@ class Soak {
   std::vector<Node> nodes_;
   std::deque<std::pair<std::int64_t, std::vector<double>>> kept_;  ///< before a comparison
   std::size_t next_compared_ = 0;
-  std::int64_t at_ = 0;
+  std::int64_t at_ = 0, turn_ = 0, phase_ = 0;
   std::optional<Time> last_end_;
   SoakResult result_;
 };
@@ -153,14 +164,28 @@ void Soak::step(std::int64_t i) {
     estimation_.message("ACCEL", nodes_[n].message.data(), nodes_[n].message.size());
   }
   if (i % kTick == 0) history_->tick(daemon::steady_clock_us());
-  if ((i + 1) % kHour != 0 && (i + 1) % std::max<std::int64_t>(instants_ / 100, 1) != 0) return;
-  const std::int64_t resident = daemon::process_usage().resident_bytes;
-  if (10 * i < instants_)
-    result_.resident_warm = std::max(result_.resident_warm, resident);
-  else
-    result_.resident_most = std::max(result_.resident_most, resident);
-  if ((i + 1) % kHour == 0 && options_.hour)
-    options_.hour(static_cast<double>(i + 1) / kHour, resident);
+  look_at_memory(instant.time_us);
+}
+
+void Soak::look_at_memory(std::int64_t time_us) {
+  const std::int64_t since_us = time_us - kSettled_us;
+  const std::int64_t turn = since_us / (1'000'000 * options_.rotate_s);
+  if (turn == std::exchange(turn_, turn) || at_ * 100 < instants_) return;
+  // The log that was turned away is closed by a thread that has time when nobody else does.
+  const auto open_logs = [&] {
+    int count = 0;
+    std::error_code none;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(daemon::raw_folder(options_.directory), none))
+      count += entry.path().extension() == ".partial" ? 1 : 0;
+    return count;
+  };
+  (void)test::comes_true(
+      [&] { return open_logs() <= 1 && history_->status().raw_queue_bytes == 0; }, kPatience);
+  ::malloc_trim(0);
+  result_.resident.push_back(daemon::process_usage().resident_bytes);
+  if (options_.looked)
+    options_.looked(static_cast<double>(at_) / (24 * kHour), result_.resident.back());
 }
 
 void Soak::published(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
@@ -216,12 +241,14 @@ double Soak::difference(const WindowEstimate& e, std::size_t from) const {
 }
 
 void Soak::compare_sums(const WindowEstimate& e) {
-  // Blocks begin where a pipeline, or a newly tuned one, did: one of so many places.
-  constexpr std::size_t kBlockRows = 25;
+  // Blocks begin where a pipeline, or a newly tuned one, did: one of so many places, the last one
+  // found first.
   double least = 1;
-  for (std::size_t from = 0; from < kBlockRows; ++from) {
-    least = std::min(least, difference(e, from));
-    if (least < 1e-11) break;
+  for (std::int64_t i = 0; i < kBlockRows && least > kSame; ++i) {
+    const std::int64_t front = at_ + 1 - std::ssize(kept_);
+    const std::int64_t from = (phase_ + i - front % kBlockRows + kBlockRows) % kBlockRows;
+    least = std::min(least, difference(e, static_cast<std::size_t>(from)));
+    if (least <= kSame) phase_ = (front + from) % kBlockRows;
   }
   result_.sum_error = std::max(result_.sum_error, least);
   ++result_.sums_compared;
@@ -255,6 +282,12 @@ void Soak::look_at_history() {
 }
 
 }  // namespace
+
+std::int64_t SoakResult::growth() const {
+  const auto fifth = resident.begin() + static_cast<std::ptrdiff_t>((resident.size() + 4) / 5);
+  if (fifth == resident.end()) return 0;
+  return *std::max_element(fifth, resident.end()) - *std::max_element(resident.begin(), fifth);
+}
 
 SoakResult run_soak(const SoakOptions& options) {
   return Soak(options).run();

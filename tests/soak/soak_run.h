@@ -14,18 +14,22 @@ struct SoakOptions {
   std::string directory;         ///< of the history
   double quiet_window_s = 3600;  ///< [watch]
   double quiet_learn_hours = 96;
-  double alarms_per_year = 120;  ///< false ones that are put up with
-  std::int64_t summary_s = 60;   ///< the shortest period of the summaries
+  double alarms_per_year = 120;   ///< false ones that are put up with
+  std::int64_t rotate_s = 86400;  ///< of the raw logs
+  std::int64_t summary_s = 60;    ///< the shortest period of the summaries
   std::uint64_t seed = 1;
-  /// Called every hour of the building's, with the hours and what is resident.
-  std::function<void(double, std::int64_t)> hour;
+  /// Called whenever memory was looked at: days, and what is resident.
+  std::function<void(double, std::int64_t)> looked;
 };
 
 struct SoakResult {
   std::int64_t instants = 0, samples = 0;
   double wall_s = 0;
-  // Memory, after the first tenth and the most since.
-  std::int64_t resident_warm = 0, resident_most = 0;
+  /// Resident memory at the turns of the raw logs, when what is still to be written is small: a
+  /// thousand times too fast, the writers' buffers are a thousand times too large.
+  std::vector<std::int64_t> resident;
+  /// The most after the first fifth over the most until then.
+  std::int64_t growth() const;
   // Windows.
   std::int64_t windows = 0, expected_windows = 0, breaks = 0;
   std::int64_t long_windows = 0, long_values = 0;
