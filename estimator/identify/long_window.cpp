@@ -30,6 +30,7 @@ LongWindow::LongWindow(const Structure& structure, const FloorLayout& layout,
                        int window, bool noise_configured)
     : shape_(layout),
       floors_(layout.floors()),
+      own_(static_cast<std::size_t>(layout.own())),
       block_rows_(block_rows),
       piece_blocks_(std::max(
           1, static_cast<int>(
@@ -47,13 +48,16 @@ LongWindow::LongWindow(const Structure& structure, const FloorLayout& layout,
       begins_(kPieces),
       whole_instants_(static_cast<std::size_t>(floors_), 0) {
   estimate_.window = window;
+  fit_.assign(static_cast<std::size_t>(layout.unknowns()), 1.0);
+  x_.assign(static_cast<std::size_t>(layout.own() + 2 * layout.frames() + 1), 0.0);
   known_.reserve(static_cast<std::size_t>((floors_ + 1) * layout.frames()));
 }
 
 void LongWindow::retuned() {
   std::fill(current_.begin(), current_.end(), 0.0);
   std::fill(instants_.begin(), instants_.end(), 0.0);
-  usual_ = rows_ = 0;
+  usual_ = usual_misfit_ = rows_ = 0;
+  std::fill(fit_.begin(), fit_.end(), 1.0);
   blocks_ = 0;
   pieces_ = 0;
   work_ = Work::none;
@@ -64,16 +68,38 @@ const double* LongWindow::block(int age) const {
   return &ring_[static_cast<std::size_t>((pieces_ - 1 - age) % kPieces) * shape_.size];
 }
 
-double LongWindow::energy(const double* block) const {
+double LongWindow::energy(const double* block, bool left) {
   double sum = 0;
+  std::size_t first = 0;
   for (const SumsShape::Floor& floor : shape_.floor) {
+    const auto unknowns = static_cast<std::size_t>(floor.front - 1);
+    std::fill(x_.begin(), x_.end(), 0.0);
+    if (left) std::copy_n(fit_.begin() + static_cast<std::ptrdiff_t>(first), unknowns, x_.begin());
+    x_[unknowns] = -1;
     std::size_t at = floor.offset;
-    for (int i = 0; i + 1 < floor.front; ++i)
-      at += static_cast<std::size_t>(floor.stride - packed_row_begin(i));
-    sum +=
-        block[at + static_cast<std::size_t>(floor.front - 1 - packed_row_begin(floor.front - 1))];
+    for (int i = 0; i < floor.front; ++i) {
+      const int begin = packed_row_begin(i);
+      const double* row = &block[at] - begin;
+      double product = row[i] * x_[static_cast<std::size_t>(i)];
+      for (int k = i + 1; k < floor.front; ++k)
+        product += 2 * row[k] * x_[static_cast<std::size_t>(k)];
+      sum += x_[static_cast<std::size_t>(i)] * product;
+      at += static_cast<std::size_t>(floor.stride - begin);
+    }
+    first += own_;
   }
   return sum;
+}
+
+double LongWindow::weight(const double* block) {
+  const auto limited = [](double now, double& usual, double most) {
+    if (usual == 0) usual = now;
+    usual *= now > usual ? 1 + kUsualStep : 1 - kUsualStep;
+    return now > 0 ? std::min(1.0, most * usual / now) : 1.0;
+  };
+  const double motion = limited(energy(block, false), usual_, kMostOfUsual);
+  const double misfit = limited(energy(block, true), usual_misfit_, kMostOfUsualMisfit);
+  return std::min(motion, misfit * misfit);  // what does not fit at all counts for nothing
 }
 
 bool LongWindow::fits(const std::vector<std::uint8_t>& known) {
@@ -91,11 +117,8 @@ bool LongWindow::fits(const std::vector<std::uint8_t>& known) {
 void LongWindow::block_closed(WindowSums& sums, const std::vector<std::uint8_t>& known, Time time) {
   if (!fits(known)) return;
   const double* block = sums.block(0);
-  const double now = energy(block);
-  if (!(now > 0)) return;
-  if (usual_ == 0) usual_ = now;
-  usual_ *= now > usual_ ? 1 + kUsualStep : 1 - kUsualStep;
-  const double weight = std::min(1.0, kMostOfUsual * usual_ / now);
+  if (!(energy(block, false) > 0)) return;
+  const double weight = this->weight(block);
   if (blocks_ == 0)
     since_ = time - SensorClock::duration(std::llround((block_rows_ - 1) * 1e6 / rate_hz_));
   for (std::size_t i = 0; i < shape_.size; ++i) current_[i] += weight * block[i];
@@ -150,6 +173,10 @@ void LongWindow::solve(const Context& c) {
       &whole_instants_};
   solution_.solve(sums, c.machine->rows(), c.trust, true);
   solution_.begin_errors(*this, solution_);
+  for (std::size_t u = 0; u < fit_.size(); ++u) {
+    const double x = solution_.solver().solution()[u];
+    fit_[u] = solution_.shown(static_cast<int>(u)) ? x : 1.0;
+  }
   work_ = Work::errors;
 }
 

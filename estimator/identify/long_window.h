@@ -12,12 +12,13 @@ namespace framewatch {
 /// length. docs/equations.md (44).
 ///
 /// A block whose response has more than kMostOfUsual times the usual energy is scaled down to that,
-/// so that one strong motion does not stand for the hour: a piece alone shows no spread. Weighted
-/// or not, the equations hold. All but a little of the sensors' noise is taken off, because the sum
-/// of an hour is hardly random any more.
+/// so that one strong motion does not stand for the hour: a piece alone shows no spread. One that
+/// the last solution leaves more of than kMostOfUsualMisfit times the usual, a sensor's spike for
+/// instance, is scaled down by the square. Weighted or not, the equations hold. All but a little of
+/// the sensors' noise is taken off, because the sum of an hour is hardly random any more.
 class LongWindow {
  public:
-  static constexpr double kMostOfUsual = 10, kTakenOff = 0.98;
+  static constexpr double kMostOfUsual = 10, kMostOfUsualMisfit = 4, kTakenOff = 0.98;
 
   /// options.long_window_s: at least that of BatchMeans::kBlocks blocks. window: of its estimates.
   /// Without configured noise it must be as clear as in ordinary windows: measured noise is too
@@ -58,7 +59,7 @@ class LongWindow {
   template <typename Archive>
   void archive(Archive& a, Machine& machine) {
     a(ring_, current_, sum_, ring_instants_, instants_, begins_, end_, since_, usual_, blocks_);
-    a(pieces_, rows_, ring_rows_, work_, added_, known_, strange_);
+    a(pieces_, rows_, ring_rows_, work_, added_, known_, strange_, usual_misfit_, fit_);
     solution_.archive(a, machine.rows(), *this);
     a(estimate_);
   }
@@ -67,14 +68,18 @@ class LongWindow {
   static constexpr int kPieces = BatchMeans::kBlocks;
   enum class Work { none, adding, solving, errors };
   bool fits(const std::vector<std::uint8_t>& known);
-  double energy(const double* block) const;
+  double weight(const double* block);
+  /// Of the response, or of what the last solution leaves of it.
+  double energy(const double* block, bool left);
   void close_piece();
   void add_some();
   void solve(const Context& context);
   const WindowEstimate& give(const Context& context);
 
   SumsShape shape_;
-  int floors_, block_rows_, piece_blocks_;
+  int floors_;
+  std::size_t own_;
+  int block_rows_, piece_blocks_;
   double rate_hz_;
   WindowSolution solution_;
   WindowEstimate estimate_;
@@ -84,9 +89,12 @@ class LongWindow {
   std::vector<Time> begins_;                      ///< of every piece
   Time end_{}, since_{};                          ///< of the newest piece; of the current one
   std::vector<int> whole_instants_;
-  double usual_ = 0;  ///< energy of a block, about the median; 0: none seen
-  double rows_ = 0;   ///< of the current piece, weighted
-  int blocks_ = 0;    ///< of the current piece
+  double usual_ = 0;         ///< energy of a block, about the median; 0: none seen
+  double usual_misfit_ = 0;  ///< likewise, of what the last solution leaves
+  std::vector<double> fit_;  ///< the last solution
+  std::vector<double> x_;    ///< of one call
+  double rows_ = 0;          ///< of the current piece, weighted
+  int blocks_ = 0;           ///< of the current piece
   std::int64_t pieces_ = 0;
   std::vector<std::uint8_t> known_;  ///< of all blocks so far
   int strange_ = 0;                  ///< blocks in a row that were left out

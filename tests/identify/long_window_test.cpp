@@ -22,6 +22,7 @@ constexpr double kOff = 0.08;         // of the design
 constexpr double kMostErrors = 5;     // standard errors a value may be off by
 constexpr double kMostScatter = 1.4;  // rms of these
 constexpr double kMostError = 0.09;
+constexpr double kSpike = 1000;  // m/s^2
 
 struct Told {
   std::vector<WindowEstimate> given;
@@ -58,7 +59,8 @@ class LongWindows : public testing::Test {
       const Eigen::VectorXd& accel = building.next();
       for (int a = 0; a < accel.size(); ++a)
         if (!delivered || delivered(t, a))
-          pipeline.push({from_microseconds(10'000LL * t), a, accel[a]});
+          pipeline.push(
+              {from_microseconds(10'000LL * t), a, t == spike_at_ && a == 7 ? kSpike : accel[a]});
     }
     pipeline.finish();
     return out;
@@ -91,6 +93,7 @@ class LongWindows : public testing::Test {
     return axes;
   }();
   const std::size_t frames_ = 20;
+  int spike_at_ = -1;  ///< instant at which a sensor says kSpike
 };
 
 TEST_F(LongWindows, ShowWhatNoOtherWindowDoes) {
@@ -126,6 +129,15 @@ TEST_F(LongWindows, OneStrongMomentDoesNotStandForAllOfIt) {
   ASSERT_EQ(off.size(), frames_);
   EXPECT_LT(rms(off), kMostScatter);
   EXPECT_GT(error, calm_error / 6);  // a hundred times less if it did
+}
+
+TEST_F(LongWindows, ASpikeOfASensorIsNoMotion) {
+  spike_at_ = 14'000;
+  const Told run = this->run(24'000);
+  ASSERT_FALSE(run.given.empty());
+  const std::vector<double> off = deviations(run.given.back());
+  ASSERT_GE(off.size(), frames_ * 3 / 4);  // errors are larger, and near the limit
+  EXPECT_LT(rms(off), kMostScatter);
 }
 
 TEST_F(LongWindows, ASensorThatIsGoneForAMomentIsLeftOutAndOneThatDiesCostsItsPlace) {
