@@ -15,18 +15,20 @@ namespace framewatch::daemon {
 namespace {
 
 void check_sections(const TomlValue& document, std::vector<TextProblem>& problems) {
-  const std::vector<std::string> known{"structure", "channel", "estimator", "lcm",     "can",
-                                       "can_node",  "watch",   "gap",       "history", "effect"};
+  const std::vector<std::string> known{"structure", "channel",  "estimator", "lcm",
+                                       "can",       "can_node", "watch",     "gap",
+                                       "history",   "actions",  "effect"};
   for (const TomlEntry& entry : document.entries) {
     if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
     const std::string meant = nearest(entry.key, known);
     problems.push_back(
         {entry.place,
          fmt::format("unknown section or key {}: {}", entry.key,
-                     meant.empty() ? "the sections are [structure], [structure.design], "
-                                     "[[channel]], [estimator], [lcm], [[can]], "
-                                     "[[can_node]], [watch], [gap], [history], [[effect]]"
-                                   : fmt::format("did you mean {}?", meant))});
+                     meant.empty()
+                         ? "the sections are [structure], [structure.design], "
+                           "[[channel]], [estimator], [lcm], [[can]], "
+                           "[[can_node]], [watch], [gap], [history], [actions], [[effect]]"
+                         : fmt::format("did you mean {}?", meant))});
   }
 }
 
@@ -59,6 +61,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   if (config.watch) config.pipeline.options.long_window_s = config.watch->options.quiet_window_s;
   config.gap = read_gap(document, problems);
   config.history = read_history(document, problems);
+  config.actions = read_actions(document, problems);
   if (problems.size() == before)
     for (const std::string& rule : framewatch::problems(config.pipeline))
       problems.push_back({{}, rule});
@@ -81,6 +84,7 @@ std::optional<Config> parse_config(const std::string& path, const std::string& t
     load_watch_baseline(config, problems);
     load_gap_model(config, problems);
     place_history(config);
+    place_actions(config);
     if (problems.empty()) return config;
     return std::nullopt;
   }

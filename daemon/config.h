@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/action_options.h"
 #include "daemon/history_options.h"
 #include "daemon/toml_document.h"
 #include "drivers/can/can_map.h"
@@ -59,6 +60,7 @@ struct Config {
   std::optional<WatchSettings> watch;      ///< none: nothing is watched
   std::optional<GapSettings> gap;          ///< none: nothing is simulated beside the measurement
   std::optional<HistorySettings> history;  ///< none: nothing is kept
+  std::optional<ActionSettings> actions;   ///< none: nobody is told
   std::vector<Effect> effects;             ///< that the building has beyond the linear model
 };
 

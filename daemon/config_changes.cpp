@@ -69,6 +69,7 @@ std::string without_numbers(const std::string& key) {
 Reach reach_of(const std::string& key) {
   constexpr std::array kSettings = {"watch",
                                     "gap",
+                                    "actions",
                                     "lcm.boxplot_every",
                                     "estimator.min_snr",
                                     "estimator.max_error_k_ratio",
@@ -118,6 +119,7 @@ void take_settings(Config& running, const Config& fresh) {
   running.lcm.boxplot_every = fresh.lcm.boxplot_every;
   running.watch = fresh.watch;
   running.gap = fresh.gap;
+  running.actions = fresh.actions;
 }
 
 }  // namespace framewatch::daemon

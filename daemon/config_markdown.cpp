@@ -43,6 +43,9 @@ constexpr SectionText kSections[] = {
     {"history", "[history]",
      "Optional: `framewatch run` keeps raw samples, summaries and events on disk "
      "([history](history.md))."},
+    {"actions", "[actions]",
+     "Optional: `framewatch run` tells people of events, by a command and a webhook "
+     "([telling people](actions.md))."},
     {"scenario", "Scenario files: at the top",
      "`framewatch simulate` reads a scenario: the building as above or `config`, and what happens "
      "to it."},

@@ -457,6 +457,8 @@ std::span<const Option> options() {
     all.insert(all.end(), gap.begin(), gap.end());
     const std::span<const Option> history = history_options();
     all.insert(all.end(), history.begin(), history.end());
+    const std::span<const Option> actions = action_options();
+    all.insert(all.end(), actions.begin(), actions.end());
     const std::span<const Option> scenario = scenario_options();
     all.insert(all.end(), scenario.begin(), scenario.end());
     const std::span<const Option> effect = effect_options();

@@ -39,6 +39,7 @@ std::span<const Option> can_options();
 std::span<const Option> watch_options();
 std::span<const Option> gap_options();
 std::span<const Option> history_options();
+std::span<const Option> action_options();
 
 /// Null when the section has no such key.
 const Option* find_option(std::string_view section, std::string_view key);

@@ -49,4 +49,9 @@ std::optional<HistorySettings> read_history(const TomlValue& document,
 /// Resolves the directory beside the configuration file.
 void place_history(Config& config);
 
+std::optional<ActionSettings> read_actions(const TomlValue& document,
+                                           std::vector<TextProblem>& problems);
+/// Resolves the webhook's files beside the configuration file.
+void place_actions(Config& config);
+
 }  // namespace framewatch::daemon

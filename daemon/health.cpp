@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kSilent_s = 5;
 constexpr std::int64_t kBehind_us = 2'000'000;
+constexpr std::int64_t kDay_us = 86'400'000'000;
 constexpr double kLoss_ratio = 1e-3;
 constexpr double kLate_ratio = 1e-2;
 constexpr std::int64_t kLittleDisk_bytes = 1'000'000'000;
@@ -100,6 +101,17 @@ void of_history(const history_status_t& s, std::vector<std::string>& out) {
   if (!s.summary_trouble.empty()) out.push_back("summaries are not stored: " + s.summary_trouble);
 }
 
+void of_actions(const action_status_t& s, std::vector<std::string>& out) {
+  for (std::size_t i = 0; i < s.name.size(); ++i) {
+    if (!s.trouble[i].empty())
+      out.push_back(fmt::format("the {} of [actions] tells nobody: {}", s.name[i], s.trouble[i]));
+    else if (s.lost_us[i] > 0 && s.time_us - s.lost_us[i] < kDay_us)
+      out.push_back(fmt::format("the {} of [actions] has lost {} events, the last one {} ago",
+                                s.name[i], s.lost[i],
+                                span_text(seconds_between(s.lost_us[i], s.time_us))));
+  }
+}
+
 void of_can(const can_status_t& can, std::vector<std::string>& out) {
   constexpr const char* kStates[] = {"gone", "active", "full of errors", "error-passive",
                                      "bus-off"};
@@ -113,7 +125,7 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
 
 std::vector<std::string> Heard::channels() const {
   std::vector<std::string> out;
-  for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "CAN", "HISTORY"})
+  for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "CAN", "HISTORY", "ACTIONS"})
     out.push_back(prefix_ + name);
   return out;
 }
@@ -139,6 +151,8 @@ void Heard::message(const std::string& channel, const void* data, std::size_t si
     if (auto found = drivers::decode_can_status(bytes)) can = std::move(found);
   } else if (name == "HISTORY") {
     if (auto found = drivers::decode_history_status(bytes)) history = std::move(found);
+  } else if (name == "ACTIONS") {
+    if (auto found = drivers::decode_action_status(bytes)) actions = std::move(found);
   }
 }
 
@@ -171,6 +185,7 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   of_punctuality(heard, out);
   if (heard.can) of_can(*heard.can, out);
   if (heard.history) of_history(*heard.history, out);
+  if (heard.actions) of_actions(*heard.actions, out);
   of_process(s, config, now_us, out);
   return out;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <framewatch/action_status_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
@@ -33,6 +34,7 @@ class Heard {
   std::optional<gap_t> gap;
   std::optional<can_status_t> can;
   std::optional<history_status_t> history;
+  std::optional<action_status_t> actions;
 
  private:
   std::string prefix_;

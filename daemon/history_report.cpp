@@ -22,21 +22,23 @@ HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(conf
   history_.emplace(config);
 }
 
-void HistoryReport::look(std::int64_t now_us) {
-  if (!history_) return;
+std::vector<event_t> HistoryReport::look(std::int64_t now_us) {
+  if (!history_) return {};
   history_->tick(steady_clock_us());
-  if (now_us < next_us_) return;
+  if (now_us < next_us_) return {};
   next_us_ = now_us + kStatus_us;
   const history_status_t status = history_->status();
   lcm_.publish(config_.lcm.prefix + "HISTORY", &status);
   const std::string channel = config_.lcm.prefix + "EVENT";
-  for (const event_t& event : monitor_.look(now_us, status)) {
+  std::vector<event_t> news = monitor_.look(now_us, status);
+  for (const event_t& event : news) {
     log(event.state != event_state::cleared ? LogLevel::error : LogLevel::notice,
         "history: " + event.message);
     const std::vector<std::uint8_t> bytes = drivers::encoded(event);
     lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
     history_->message(channel, bytes);
   }
+  return news;
 }
 
 }  // namespace framewatch::daemon

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <lcm/lcm-cpp.hpp>
 
@@ -20,8 +21,8 @@ class HistoryReport {
 
   /// Null when none is configured.
   History* history() { return history_ ? &*history_ : nullptr; }
-  /// Several times a second; now_us: of the host's clock.
-  void look(std::int64_t now_us);
+  /// Several times a second; now_us: of the host's clock. What events it published.
+  std::vector<event_t> look(std::int64_t now_us);
 
  private:
   const Config& config_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "daemon/clocks.h"
+#include "drivers/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -40,6 +41,8 @@ void LiveEstimation::begin_estimation() {
       [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
         lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
         if (history_ != nullptr) history_->message(channel, bytes);
+        if (!tell_ || channel != config_.lcm.prefix + "EVENT") return;
+        if (const auto event = drivers::decode_event(bytes)) tell_(*event);
       });
   if (!segments_ && config_.gap && !config_.gap->store.empty()) segments_.emplace(config_);
   estimation_->tap([this](const AccelSample& sample) { on_sample(sample); },

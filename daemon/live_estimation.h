@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <lcm/lcm-cpp.hpp>
@@ -35,6 +37,8 @@ class LiveEstimation {
   void finish() { estimation_->finish(); }
   /// From now on raw samples and everything that is published go there too; null: no more.
   void record_to(History* history) { history_ = history; }
+  /// From now on every event that is published goes there too.
+  void tell(std::function<void(const event_t&)> tell) { tell_ = std::move(tell); }
   const Estimation& estimation() const { return *estimation_; }
   Estimation& estimation() { return *estimation_; }
   /// Goes on under the settings of another configuration, which `running`, the one this was made
@@ -61,6 +65,7 @@ class LiveEstimation {
   LiveTimes times_;
   std::optional<GapSegments> segments_;  ///< none: none are stored
   History* history_ = nullptr;
+  std::function<void(const event_t&)> tell_;
   std::unique_ptr<Estimation> estimation_;
   drivers::LcmSource source_;
   drivers::CanSource can_;

@@ -23,6 +23,7 @@
 #include "daemon/serve_command.h"
 #include "daemon/simulate_command.h"
 #include "daemon/status_command.h"
+#include "daemon/tell_command.h"
 
 // The one translation unit that sees CLI11 (it costs seconds to compile): it turns the command line
 // into plain argument structs; every command lives in its own file.
@@ -496,6 +497,19 @@ void add_status(CLI::App& app, Action& action, StatusArguments& arguments) {
       [&action, &arguments] { action = [&arguments] { return status_command(arguments); }; });
 }
 
+void add_tell(CLI::App& app, Action& action, TellArguments& arguments) {
+  CLI::App* command = app.add_subcommand(
+      "tell", "try the command and the webhook of [actions], with an event of kind \"test\"");
+  command->footer(
+      "Exit status: 0 somebody was told, 1 one of them failed, 2 bad usage or configuration.\n"
+      "Example: framewatch tell building.toml");
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")
+      ->capture_default_str();
+  command->add_option("--message", arguments.message, "what the event says")->capture_default_str();
+  command->callback(
+      [&action, &arguments] { action = [&arguments] { return tell_command(arguments); }; });
+}
+
 void add_selftest(CLI::App& app, Action& action, SelftestArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "selftest",
@@ -533,6 +547,7 @@ struct Arguments {
   RecordArguments record;
   HistoryArguments history;
   StatusArguments status;
+  TellArguments tell;
   SelftestArguments selftest;
 };
 
@@ -565,6 +580,7 @@ int main(int argc, char** argv) {
   add_record(app, action, arguments.record);
   add_history(app, action, arguments.history);
   add_status(app, action, arguments.status);
+  add_tell(app, action, arguments.tell);
   add_selftest(app, action, arguments.selftest);
 
   try {

@@ -9,6 +9,7 @@
 
 #include <prometheus/metric_family.h>
 
+#include <framewatch/action_status_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
@@ -62,6 +63,7 @@ void add_estimate(MetricFamilies& out, const parameter_table_t& table,
 void add_gap(MetricFamilies& out, const gap_t& gap);
 void add_can(MetricFamilies& out, const can_status_t& can);
 void add_history(MetricFamilies& out, const history_status_t& history);
+void add_actions(MetricFamilies& out, const action_status_t& actions);
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
 
 }  // namespace framewatch::daemon

@@ -108,6 +108,17 @@ void add_history(MetricFamilies& out, const history_status_t& s) {
         .value(number(s.disk_free_bytes));
 }
 
+void add_actions(MetricFamilies& out, const action_status_t& s) {
+  out.counter("action_events_total", "Events that somebody was told, and that nobody was.")
+      .each("way", s.name, s.told, {{"result", "told"}})
+      .each("way", s.name, s.lost, {{"result", "lost"}});
+  out.gauge("action_waiting_events", "Events that are to be told.").each("way", s.name, s.waiting);
+  std::vector<int> trouble;
+  for (const std::string& why : s.trouble) trouble.push_back(why.empty() ? 0 : 1);
+  out.gauge("action_trouble", "1: the newest try to tell somebody failed.")
+      .each("way", s.name, trouble);
+}
+
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
   std::map<std::pair<std::string, std::string>, int> counts;
   // Always there, so that an alert sees it rise from nothing.

@@ -24,7 +24,7 @@ void Metrics::message(const std::string& channel, const void* data, std::size_t 
     return;
   }
   for (const char* wanted :
-       {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "CAN", "HISTORY"}) {
+       {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "CAN", "HISTORY", "ACTIONS"}) {
     if (name != wanted) continue;
     const std::lock_guard<std::mutex> lock(mutex_);
     Newest& newest = newest_[name];
@@ -52,6 +52,7 @@ std::string Metrics::text(std::int64_t now_us, int viewers) const {
   const auto gap = drivers::decode_gap(fresh["GAP"]);
   const auto can = drivers::decode_can_status(fresh["CAN"]);
   const auto history = drivers::decode_history_status(fresh["HISTORY"]);
+  const auto actions = drivers::decode_action_status(fresh["ACTIONS"]);
   MetricFamilies out;
   out.gauge("up", "1: framewatch run has been heard of in the last 5 s.").value(service ? 1 : 0);
   if (service) {
@@ -70,6 +71,7 @@ std::string Metrics::text(std::int64_t now_us, int viewers) const {
   if (gap) add_gap(out, *gap);
   if (can) add_can(out, *can);
   if (history) add_history(out, *history);
+  if (actions) add_actions(out, *actions);
   add_events(out, raised.all());
   const ProcessUsage usage = process_usage();
   out.gauge("serve_viewers", "Open pages of framewatch serve.").value(viewers);

@@ -24,7 +24,8 @@ class Metrics {
 
   /// The channels that nobody but this wants of `framewatch serve`.
   std::vector<std::string> channels() const {
-    return {config_.lcm.prefix + "SERVICE", config_.lcm.prefix + "HISTORY"};
+    const std::string& prefix = config_.lcm.prefix;
+    return {prefix + "SERVICE", prefix + "HISTORY", prefix + "ACTIONS"};
   }
   void message(const std::string& channel, const void* data, std::size_t size, std::int64_t now_us);
 

@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/action_report.h"
 #include "daemon/baseline_keeper.h"
 #include "daemon/can_complaints.h"
 #include "daemon/can_monitor.h"
@@ -166,6 +167,9 @@ int run(const RunArguments& a) {
   LiveEstimation& live = *estimation;
   HistoryReport history(*config, *lcm);
   live.record_to(history.history());
+  ActionReport actions(*config, *lcm);
+  actions.raised_before(live.estimation().raised());
+  live.tell([&actions](const event_t& event) { actions.event(event); });
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
   Watchman watchman(a, *config, *text, starts, resumed);
   RateLimitedLog failures(LogLevel::error);
@@ -181,8 +185,12 @@ int run(const RunArguments& a) {
       ::usleep(1000 * kPoll_ms);
     }
     watchman.look(live, *lcm, manager);
-    history.look(host_clock_us());
-    if (reload_requested()) watchman.reload(live, *config, manager);
+    for (const event_t& event : history.look(host_clock_us())) actions.event(event);
+    actions.look(host_clock_us());
+    if (reload_requested()) {
+      watchman.reload(live, *config, manager);
+      actions.reconfigure();
+    }
   }
   manager.stopping();
   // With a state the instants still open are given out by the next start.

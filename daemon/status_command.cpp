@@ -103,6 +103,16 @@ void print_history(const Heard& h) {
   line("history", text);
 }
 
+void print_actions(const Heard& h) {
+  if (!h.actions) return;
+  std::string text;
+  for (std::size_t i = 0; i < h.actions->name.size(); ++i)
+    text += fmt::format("{}{}: {} events told, {} wait, {} lost", i == 0 ? "" : "; ",
+                        h.actions->name[i], h.actions->told[i], h.actions->waiting[i],
+                        h.actions->lost[i]);
+  line("actions", text);
+}
+
 void print_can(const Heard& h) {
   if (!h.can) return;
   for (std::size_t b = 0; b < h.can->interface.size(); ++b)
@@ -119,6 +129,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   print_estimates(h);
   print_can(h);
   print_history(h);
+  print_actions(h);
   for (const std::string& sentence : odd) line("odd", sentence);
 }
 

@@ -110,6 +110,10 @@ std::optional<history_status_t> decode_history_status(std::span<const std::uint8
   return decode<history_status_t>(payload, "88s8888s888s88");
 }
 
+std::optional<action_status_t> decode_action_status(std::span<const std::uint8_t> payload) {
+  return decode<action_status_t>(payload, "88n[s88888s]");
+}
+
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload) {
   return decode<session_command_t>(payload, "88ssss888");
 }

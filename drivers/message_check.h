@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <framewatch/accel_counts_t.hpp>
+#include <framewatch/action_status_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
@@ -36,6 +37,7 @@ std::optional<accel_counts_t> decode_accel_counts(std::span<const std::uint8_t> 
 std::optional<history_status_t> decode_history_status(std::span<const std::uint8_t> payload);
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload);
 std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload);
+std::optional<action_status_t> decode_action_status(std::span<const std::uint8_t> payload);
 std::optional<service_t> decode_service(std::span<const std::uint8_t> payload);
 std::optional<temperature_t> decode_temperature(std::span<const std::uint8_t> payload);
 

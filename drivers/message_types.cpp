@@ -5,6 +5,7 @@
 
 #include <framewatch/accel_counts_t.hpp>
 #include <framewatch/accel_t.hpp>
+#include <framewatch/action_status_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/channel_table_t.hpp>
 #include <framewatch/event_t.hpp>
@@ -26,8 +27,8 @@
 namespace framewatch::drivers {
 namespace {
 
-const std::array<std::pair<const char*, std::int64_t>, 14>& types() {
-  static const std::array<std::pair<const char*, std::int64_t>, 14> all{{
+const std::array<std::pair<const char*, std::int64_t>, 15>& types() {
+  static const std::array<std::pair<const char*, std::int64_t>, 15> all{{
       {"accel_t", accel_t::getHash()},
       {"channel_table_t", channel_table_t::getHash()},
       {"parameter_table_t", parameter_table_t::getHash()},
@@ -42,6 +43,7 @@ const std::array<std::pair<const char*, std::int64_t>, 14>& types() {
       {"accel_counts_t", accel_counts_t::getHash()},
       {"history_status_t", history_status_t::getHash()},
       {"temperature_t", temperature_t::getHash()},
+      {"action_status_t", action_status_t::getHash()},
   }};
   return all;
 }
@@ -69,6 +71,7 @@ const char* type_of_channel(const std::string& channel, const std::string& prefi
   if (rest == "CAN") return "can_status_t";
   if (rest == "SERVICE") return "service_t";
   if (rest == "HISTORY") return "history_status_t";
+  if (rest == "ACTIONS") return "action_status_t";
   if (rest == "SESSION") return "session_status_t";
   if (rest == "SESSION_COMMAND") return "session_command_t";
   return nullptr;

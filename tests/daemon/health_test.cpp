@@ -105,6 +105,19 @@ TEST(Health, SaysWhatIsOdd) {
   h.history->raw_trouble = "No space left on device";
   EXPECT_EQ(odd(h, config), "raw samples are not stored: No space left on device");
   h = well(config);
+  h.actions.emplace();
+  h.actions->name = {"webhook"};
+  h.actions->time_us = kNow_us;
+  h.actions->lost = {3};
+  h.actions->lost_us = {kNow_us - 70 * kSecond_us};
+  h.actions->trouble = {"the server answers 500"};
+  EXPECT_EQ(odd(h, config), "the webhook of [actions] tells nobody: the server answers 500");
+  h.actions->trouble = {""};
+  EXPECT_EQ(odd(h, config),
+            "the webhook of [actions] has lost 3 events, the last one 1 min 10 s ago");
+  h.actions->time_us += 86'400 * kSecond_us;
+  EXPECT_EQ(odd(h, config), "0 oddities");
+  h = well(config);
   h.can.emplace();
   h.can->interface = {"can0", "can1"};
   h.can->state = {0, 3};

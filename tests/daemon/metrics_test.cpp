@@ -141,6 +141,25 @@ TEST(Metrics, SayWhatTheDiskDoesNotTake) {
   EXPECT_EQ(text.find("history_disk_free_bytes"), std::string::npos);
 }
 
+TEST(Metrics, SayWhetherPeopleAreTold) {
+  const Config config{};
+  Metrics metrics(config);
+  action_status_t actions{};
+  actions.ways = 1;
+  actions.name = {"webhook"};
+  actions.told = {5};
+  actions.lost = {2};
+  actions.merged = actions.lost_us = {0};
+  actions.waiting = {1};
+  actions.trouble = {"the server answers 500"};
+  give(metrics, "FRAMEWATCH_ACTIONS", actions, 0);
+  const std::string text = metrics.text(0, 0);
+  expect_line(text, R"(framewatch_action_events_total{way="webhook",result="told"} 5)");
+  expect_line(text, R"(framewatch_action_events_total{way="webhook",result="lost"} 2)");
+  expect_line(text, R"(framewatch_action_waiting_events{way="webhook"} 1)");
+  expect_line(text, R"(framewatch_action_trouble{way="webhook"} 1)");
+}
+
 TEST(Metrics, ForeignAndDamagedMessagesChangeNothing) {
   const Config config{};
   Metrics metrics(config);

@@ -4,6 +4,7 @@
 
 #include <framewatch/accel_counts_t.hpp>
 #include <framewatch/accel_t.hpp>
+#include <framewatch/action_status_t.hpp>
 #include <framewatch/channel_table_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
@@ -296,6 +297,20 @@ temperature_t temperature() {
   return m;
 }
 
+action_status_t action_status() {
+  action_status_t m{};
+  m.time_us = 110;
+  m.ways = 2;
+  m.name = {"command", "webhook"};
+  m.told = {1, 2};
+  m.lost = {3, 4};
+  m.merged = {5, 6};
+  m.waiting = {7, 8};
+  m.lost_us = {0, 105};
+  m.trouble = {"", "webhook: the server answers 500"};
+  return m;
+}
+
 std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
   return {{"ACCEL", encoded(accel())},
           {"ACCEL_CHANNELS", encoded(channel_table())},
@@ -310,7 +325,8 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
           {"FRAMEWATCH_SERVICE", encoded(service())},
           {"COUNTS", encoded(accel_counts())},
           {"FRAMEWATCH_HISTORY", encoded(history_status())},
-          {"TEMPERATURE", encoded(temperature())}};
+          {"TEMPERATURE", encoded(temperature())},
+          {"FRAMEWATCH_ACTIONS", encoded(action_status())}};
 }
 
 TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
@@ -387,6 +403,10 @@ TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
     }
     if (e.channel == "TEMPERATURE") {
       EXPECT_EQ(decode_temperature(e.data).value_or(temperature_t{}).temperature_degc, -12.5);
+    }
+    if (e.channel == "FRAMEWATCH_ACTIONS") {
+      EXPECT_EQ(decode_action_status(e.data).value_or(action_status_t{}).trouble,
+                action_status().trouble);
     }
     if (e.channel == "FRAMEWATCH_EVENT") {
       const auto decoded = decode_event(e.data);
