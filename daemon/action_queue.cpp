@@ -62,6 +62,14 @@ int ActionQueue::put(const event_t& e, bool acknowledged, std::int64_t now_us) {
   return 1;
 }
 
+void ActionQueue::acknowledged(const event_t& e) {
+  const Key key{e.kind, e.id};
+  const auto waiting = waiting_.find(key);
+  if (waiting == waiting_.end() || waiting->second.event.state == event_state::cleared) return;
+  waiting_.erase(waiting);
+  told_us_.try_emplace(key, INT64_MIN / 2);
+}
+
 std::optional<event_t> ActionQueue::take(std::int64_t now_us) {
   const auto full = static_cast<double>(settings_.per_minute);
   if (tokens_ < 0) tokens_ = full;

@@ -27,6 +27,8 @@ class ActionQueue {
   /// acknowledged: somebody knows; only its end is told. Returns how many events are lost by it: of
   /// too many, the least severe one is.
   int put(const event_t& event, bool acknowledged, std::int64_t now_us);
+  /// Somebody knows of it: only that it is over is still told.
+  void acknowledged(const event_t& event);
   /// The next to be told; empty when none is due.
   std::optional<event_t> take(std::int64_t now_us);
   /// The same, however many were told lately: nothing is to come any more.

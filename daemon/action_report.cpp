@@ -40,10 +40,15 @@ void ActionReport::raised_before(const RaisedEvents& raised) {
       if (*way) (*way)->told_before(e);
 }
 
-void ActionReport::event(const event_t& event) {
+void ActionReport::event(const event_t& event, bool acknowledged) {
   if (!config_.actions) return;
-  if (!config_.actions->command.empty()) command_->event(event, false);
-  if (!config_.actions->webhook.empty()) webhook_->event(event, false);
+  if (!config_.actions->command.empty()) command_->event(event, acknowledged);
+  if (!config_.actions->webhook.empty()) webhook_->event(event, acknowledged);
+}
+
+void ActionReport::acknowledged(const event_t& event) {
+  for (std::optional<ActionWay>* way : {&command_, &webhook_})
+    if (*way) (*way)->acknowledged(event);
 }
 
 void ActionReport::look(std::int64_t now_us) {

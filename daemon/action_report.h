@@ -23,8 +23,10 @@ class ActionReport {
   void reconfigure();
   /// What was raised before this began is known, its end is to be told.
   void raised_before(const RaisedEvents& raised);
-  /// Never waits.
-  void event(const event_t& event);
+  /// Never waits. acknowledged: somebody knows of it; only that it is over is told.
+  void event(const event_t& event, bool acknowledged);
+  /// Somebody knows of it now.
+  void acknowledged(const event_t& event);
   /// Several times a second; now_us: of the host's clock.
   void look(std::int64_t now_us);
 

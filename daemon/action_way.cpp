@@ -53,6 +53,11 @@ void ActionWay::event(const event_t& event, bool acknowledged) {
   wake_.notify_one();
 }
 
+void ActionWay::acknowledged(const event_t& event) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  queue_.acknowledged(event);
+}
+
 ActionWay::Counters ActionWay::counters() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   Counters out = counters_;

@@ -46,6 +46,8 @@ class ActionWay {
   void configure(const ActionSettings& settings, double patience_s);
   void told_before(const event_t& event);
   void event(const event_t& event, bool acknowledged);
+  /// Somebody knows of it.
+  void acknowledged(const event_t& event);
   Counters counters() const;
 
  private:

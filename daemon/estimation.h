@@ -73,6 +73,7 @@ class Estimation {
   std::int64_t windows() const { return windows_; }  ///< published
   /// Events that are raised and not cleared.
   const RaisedEvents& raised() const { return publisher_.raised(); }
+  RaisedEvents& raised() { return publisher_.raised(); }
   /// From now on the gap monitor simulates this; nothing without [gap].
   void adopt(const GapModel& model);
   /// What changes are judged against; null while it is learned, or when nothing is watched.

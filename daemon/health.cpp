@@ -125,7 +125,8 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
 
 std::vector<std::string> Heard::channels() const {
   std::vector<std::string> out;
-  for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "CAN", "HISTORY", "ACTIONS"})
+  for (const char* name :
+       {"SERVICE", "STATUS", "ESTIMATE", "GAP", "CAN", "HISTORY", "ACTIONS", "ACKNOWLEDGED"})
     out.push_back(prefix_ + name);
   return out;
 }
@@ -151,6 +152,8 @@ void Heard::message(const std::string& channel, const void* data, std::size_t si
     if (auto found = drivers::decode_can_status(bytes)) can = std::move(found);
   } else if (name == "HISTORY") {
     if (auto found = drivers::decode_history_status(bytes)) history = std::move(found);
+  } else if (name == "ACKNOWLEDGED") {
+    if (auto found = drivers::decode_acknowledged(bytes)) acknowledged = std::move(found);
   } else if (name == "ACTIONS") {
     if (auto found = drivers::decode_action_status(bytes)) actions = std::move(found);
   }
@@ -174,13 +177,21 @@ std::string span_text(double seconds) {
   return fmt::format("{} d {} h", s / 86400, s % 86400 / 3600);
 }
 
+std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t event_id) {
+  if (!heard.acknowledged) return std::nullopt;
+  const std::vector<std::int64_t>& ids = heard.acknowledged->id;
+  const auto at = std::find(ids.begin(), ids.end(), event_id);
+  if (at == ids.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - ids.begin());
+}
+
 std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us) {
   std::vector<std::string> out;
   const service_t& s = *heard.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i)
-    if (s.event_severity[i] >= severity::warning)
-      out.push_back(
-          fmt::format("{} {}: {}", s.event_kind[i], s.event_place[i], s.event_message[i]));
+    if (s.event_severity[i] >= severity::warning && !acknowledgement_of(heard, s.event_id[i]))
+      out.push_back(fmt::format("{} {}: {} (event {})", s.event_kind[i], s.event_place[i],
+                                s.event_message[i], s.event_id[i]));
   of_samples(heard, now_us, out);
   of_punctuality(heard, out);
   if (heard.can) of_can(*heard.can, out);

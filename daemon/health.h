@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/action_status_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/gap_t.hpp>
@@ -35,12 +36,17 @@ class Heard {
   std::optional<can_status_t> can;
   std::optional<history_status_t> history;
   std::optional<action_status_t> actions;
+  std::optional<acknowledged_t> acknowledged;
 
  private:
   std::string prefix_;
 };
 
-/// Everything that is not as it should be, a sentence each; nothing when it is well. heard.service
+/// Which of heard.acknowledged is of this event; empty when nobody has acknowledged it.
+std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t event_id);
+
+/// Everything that is not as it should be, a sentence each, and that nobody has acknowledged;
+/// nothing when it is well. heard.service
 /// is there. now_us: host clock.
 std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us);
 

@@ -1,6 +1,7 @@
 #include "daemon/history_command.h"
 
 #include <cmath>
+#include <map>
 
 #include <fmt/core.h>
 
@@ -17,8 +18,12 @@ constexpr int kBadInput = 2;
 constexpr std::int64_t kMostEvents = 1'000'000;
 
 void print_events(const HistoryRequest& r, SummaryQuery& summaries) {
+  std::multimap<std::int64_t, std::string> lines;
   for (const event_t& e : summaries.events(r.from_us, r.to_us, kMostEvents))
-    fmt::print("{}\n", event_line(e));
+    lines.emplace(e.time_us, event_line(e));
+  for (const StoredAcknowledgement& a : summaries.acknowledgements(r.from_us, r.to_us))
+    lines.emplace(a.time_us, acknowledgement_line(a));
+  for (const auto& [time_us, text] : lines) fmt::print("{}\n", text);
 }
 
 void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries,

@@ -33,7 +33,8 @@ std::optional<event_t> HistoryMonitor::news(Part& part, const char* place,
   if (bad == part.raised || (!bad && now_us - part.well_since_us < kCalm_us)) return std::nullopt;
   part.raised = bad;
   if (bad) {
-    part.since_us = part.id = status.time_us;
+    part.since_us = status.time_us;
+    part.id = status.time_us + (place == std::string("raw") ? 0 : 1);  // both may begin at once
     part.lost_before = seen;
   }
   event_t e{};

@@ -105,6 +105,11 @@ std::string event_line(const event_t& e) {
                      e.kind, e.place, e.message);
 }
 
+std::string acknowledgement_line(const StoredAcknowledgement& a) {
+  return fmt::format("{}  {:<8} {:<17} {:<10} event {}, by {}{}", utc_text(a.time_us), "known",
+                     a.kind, a.place, a.id, a.who, a.comment.empty() ? "" : ": " + a.comment);
+}
+
 std::string history_overview(const std::string& directory, SummaryQuery& summaries) {
   const std::string structure = summaries.structure();
   std::string out = fmt::format("{}{}{}\n", structure, structure.empty() ? "" : ": ", directory);

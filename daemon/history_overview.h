@@ -16,6 +16,8 @@ std::string history_json(const std::string& directory, SummaryQuery& summaries);
 /// One line per event.
 std::string event_line(const event_t& event);
 
+std::string acknowledgement_line(const StoredAcknowledgement& acknowledgement);
+
 /// "4.2 MB".
 std::string size_text(std::int64_t bytes);
 

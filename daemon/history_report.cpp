@@ -37,6 +37,7 @@ std::vector<event_t> HistoryReport::look(std::int64_t now_us) {
     const std::vector<std::uint8_t> bytes = drivers::encoded(event);
     lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
     history_->message(channel, bytes);
+    raised_.note(event);
   }
   return news;
 }

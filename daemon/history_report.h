@@ -9,6 +9,7 @@
 #include "daemon/config.h"
 #include "daemon/history.h"
 #include "daemon/history_monitor.h"
+#include "daemon/raised_events.h"
 
 namespace framewatch::daemon {
 
@@ -21,6 +22,8 @@ class HistoryReport {
 
   /// Null when none is configured.
   History* history() { return history_ ? &*history_ : nullptr; }
+  /// Its own events that are raised.
+  RaisedEvents& raised() { return raised_; }
   /// Several times a second; now_us: of the host's clock. What events it published.
   std::vector<event_t> look(std::int64_t now_us);
 
@@ -29,6 +32,7 @@ class HistoryReport {
   lcm::LCM& lcm_;
   std::int64_t next_us_ = INT64_MIN;
   HistoryMonitor monitor_;
+  RaisedEvents raised_;
   std::optional<History> history_;
 };
 

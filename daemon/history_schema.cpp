@@ -88,6 +88,17 @@ CREATE TABLE event (
 ) WITHOUT ROWID;
 CREATE INDEX event_time ON event (time_us);
 )sql",
+    R"sql(
+CREATE TABLE acknowledgement (
+  kind    TEXT NOT NULL,
+  id      INTEGER NOT NULL,
+  time_us INTEGER NOT NULL,
+  place   TEXT NOT NULL,
+  who     TEXT NOT NULL,
+  comment TEXT NOT NULL,
+  PRIMARY KEY (kind, id, time_us)
+) WITHOUT ROWID;
+)sql",
 };
 
 std::int64_t version_of(SqliteFile& file) {

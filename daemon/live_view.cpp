@@ -1,13 +1,18 @@
 #include "daemon/live_view.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
+#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/acknowledge_command.h"
 #include "daemon/estimation.h"
+#include "daemon/event_words.h"
 #include "drivers/encoded.h"
 #include "drivers/message_check.h"
 #include "estimator/structure/parameter_table.h"
@@ -138,7 +143,8 @@ std::vector<std::string> LiveView::channels() const {
   for (std::size_t i = 0, streams = out.size(); i < streams; ++i)
     out.push_back(out[i] + "_CHANNELS");
   const std::string& prefix = config_.lcm.prefix;
-  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "CAN", "SESSION"})
+  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "CAN", "SESSION",
+                           "SERVICE", "ACKNOWLEDGED"})
     out.push_back(prefix + name);
   for (const double window_s : config_.pipeline.options.other_windows_s)
     if (std::abs(window_s - kWatched_s) < 1e-9)
@@ -160,7 +166,11 @@ void LiveView::message(const std::string& channel, const void* data, std::size_t
   } else if (channel.starts_with(prefix + "ESTIMATE")) {
     estimate(channel, data, size);
   } else if (channel == prefix + "EVENT") {
-    event(data, size);
+    if (const auto e = drivers::decode_event(bytes(data, size))) event(*e);
+  } else if (channel == prefix + "SERVICE") {
+    if (const auto s = drivers::decode_service(bytes(data, size))) still_raised(*s);
+  } else if (channel == prefix + "ACKNOWLEDGED") {
+    if (auto a = drivers::decode_acknowledged(bytes(data, size))) acknowledged(std::move(*a));
   } else if (channel == prefix + "STATUS") {
     if (const auto s = drivers::decode_status(bytes(data, size)))
       status("status", status_, status_json(*s));
@@ -192,10 +202,14 @@ bool LiveView::tell_recorder(const session_command_t& command) {
 
 void LiveView::send_commands() {
   std::vector<session_command_t> commands;
+  std::vector<acknowledge_t> requests;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     commands.swap(commands_);
+    requests.swap(requests_);
   }
+  for (const acknowledge_t& request : requests)
+    publish_(0, config_.lcm.prefix + "ACKNOWLEDGE", drivers::encoded(request));
   for (const session_command_t& command : commands)
     publish_(0, config_.lcm.prefix + "SESSION_COMMAND", drivers::encoded(command));
 }
@@ -251,16 +265,47 @@ void LiveView::estimate(const std::string& channel, const void* data, std::size_
   newest_ = std::move(*found);
 }
 
-void LiveView::event(const void* data, std::size_t size) {
-  const auto e = drivers::decode_event(bytes(data, size));
-  if (!e) return;
+void LiveView::event(const event_t& e) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  events_[e->id] = *e;
+  events_[e.id] = e;
+  if (e.state == event_state::cleared) acknowledged_here_.erase(e.id);
   if (events_.size() > kMostEvents) {
-    acknowledged_.erase(events_.begin()->first);
+    acknowledged_here_.erase(events_.begin()->first);
     events_.erase(events_.begin());
   }
-  ring_.push("alarm", event_json(*e));
+  ring_.push("alarm", event_json(e));
+}
+
+/// What was raised before this began to listen.
+void LiveView::still_raised(const service_t& s) {
+  for (std::size_t i = 0; i < s.event_id.size(); ++i) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (events_.contains(s.event_id[i])) continue;
+    }
+    event_t e{};
+    e.id = s.event_id[i];
+    e.time_us = e.since_us = s.event_since_us[i];
+    e.state = event_state::raised;
+    e.severity = s.event_severity[i];
+    e.kind = s.event_kind[i];
+    e.place = s.event_place[i];
+    e.value = e.std_error = std::numeric_limits<double>::quiet_NaN();
+    e.message = s.event_message[i];
+    event(e);
+  }
+}
+
+void LiveView::acknowledged(acknowledged_t news) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (acknowledged_ && acknowledged_->id == news.id && acknowledged_->since_us == news.since_us)
+    return;
+  std::set<std::int64_t> touched(news.id.begin(), news.id.end());
+  if (acknowledged_) touched.insert(acknowledged_->id.begin(), acknowledged_->id.end());
+  acknowledged_ = std::move(news);
+  for (const std::int64_t id : touched)
+    if (const auto found = events_.find(id); found != events_.end())
+      ring_.push("alarm", event_json(found->second));
 }
 
 void LiveView::flush() {
@@ -314,7 +359,16 @@ std::string LiveView::status_json(const status_t& s) const {
 }
 
 std::string LiveView::event_json(const event_t& e) const {
-  const auto found = acknowledged_.find(e.id);
+  std::string who, comment;
+  bool known = acknowledged_here_.contains(e.id);
+  if (acknowledged_ && e.state != event_state::cleared) {
+    const std::vector<std::int64_t>& ids = acknowledged_->id;
+    if (const auto at = std::find(ids.begin(), ids.end(), e.id); at != ids.end()) {
+      known = true;
+      who = acknowledged_->who[static_cast<std::size_t>(at - ids.begin())];
+      comment = acknowledged_->comment[static_cast<std::size_t>(at - ids.begin())];
+    }
+  }
   return dumped({{"id", e.id},
                  {"time_us", e.time_us},
                  {"since_us", e.since_us},
@@ -326,7 +380,9 @@ std::string LiveView::event_json(const event_t& e) const {
                  {"error", std::isfinite(e.std_error) ? Json(e.std_error) : Json(nullptr)},
                  {"unit", e.unit},
                  {"message", e.message},
-                 {"acknowledged", found != acknowledged_.end() && found->second}});
+                 {"acknowledged", known},
+                 {"who", who},
+                 {"comment", comment}});
 }
 
 std::string LiveView::baseline_json() const {
@@ -391,7 +447,14 @@ bool LiveView::acknowledge(std::int64_t id) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto found = events_.find(id);
   if (found == events_.end()) return false;
-  acknowledged_[id] = true;
+  // Its own events nobody else knows of.
+  const bool found_here = !config_.watch && found->second.kind == "stiffness_change";
+  if (acknowledged_ && !found_here) {
+    if (requests_.size() == kMostCommands) return false;
+    requests_.push_back(acknowledge_request(id, "the page", ""));
+    return true;
+  }
+  acknowledged_here_.insert(id);
   ring_.push("alarm", event_json(found->second));
   return true;
 }

@@ -4,10 +4,14 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include <framewatch/acknowledge_t.hpp>
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/gap_t.hpp>
+#include <framewatch/service_t.hpp>
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
@@ -50,7 +54,9 @@ class LiveView {
   void keep(const SampleSet& set);
   void parameters(const void* data, std::size_t size);
   void estimate(const std::string& channel, const void* data, std::size_t size);
-  void event(const void* data, std::size_t size);
+  void event(const event_t& event);
+  void still_raised(const service_t& service);
+  void acknowledged(acknowledged_t acknowledged);
   void status(const std::string& name, std::string& kept, std::string json);
   void send_commands();
   std::string status_json(const status_t& status) const;
@@ -75,9 +81,11 @@ class LiveView {
   mutable std::mutex mutex_;  ///< guards what is below
   EventRing ring_;
   std::map<std::int64_t, event_t> events_;
-  std::map<std::int64_t, bool> acknowledged_;
+  std::set<std::int64_t> acknowledged_here_;    ///< where nobody else keeps it
+  std::optional<acknowledged_t> acknowledged_;  ///< as `framewatch run` says
   std::string status_, baseline_, session_, gap_, can_;
   std::vector<session_command_t> commands_;
+  std::vector<acknowledge_t> requests_;
   bool renew_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
+#include "daemon/acknowledge_command.h"
 #include "daemon/adopt_command.h"
 #include "daemon/check_command.h"
 #include "daemon/convert_command.h"
@@ -497,6 +498,27 @@ void add_status(CLI::App& app, Action& action, StatusArguments& arguments) {
       [&action, &arguments] { action = [&arguments] { return status_command(arguments); }; });
 }
 
+void add_acknowledge(CLI::App& app, Action& action, AcknowledgeArguments& arguments) {
+  CLI::App* command =
+      app.add_subcommand("acknowledge", "tell the running daemon that somebody knows of an event");
+  command->footer(
+      "`framewatch status` says the numbers of the events that are raised. An acknowledged event "
+      "is\n"
+      "not odd any more, and [actions] tell nobody of it until it is cleared.\n"
+      "Exit status: 0 acknowledged, 1 no such event is raised, 2 no answer, or bad usage or\n"
+      "configuration.\n"
+      "Example: framewatch acknowledge 3 --comment 'a loose sensor, fixed tomorrow'");
+  command->add_option("EVENT", arguments.id, "number of the event");
+  command->add_option("CONFIG", arguments.config, "configuration file (TOML)")
+      ->capture_default_str();
+  command->add_flag("--all", arguments.all, "every event that is raised");
+  command->add_option("--comment", arguments.comment, "what is known of it");
+  command->add_option("--who", arguments.who, "who knows (default: the user's name)");
+  command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");
+  command->callback(
+      [&action, &arguments] { action = [&arguments] { return acknowledge_command(arguments); }; });
+}
+
 void add_tell(CLI::App& app, Action& action, TellArguments& arguments) {
   CLI::App* command = app.add_subcommand(
       "tell", "try the command and the webhook of [actions], with an event of kind \"test\"");
@@ -548,6 +570,7 @@ struct Arguments {
   HistoryArguments history;
   StatusArguments status;
   TellArguments tell;
+  AcknowledgeArguments acknowledge;
   SelftestArguments selftest;
 };
 
@@ -580,6 +603,7 @@ int main(int argc, char** argv) {
   add_record(app, action, arguments.record);
   add_history(app, action, arguments.history);
   add_status(app, action, arguments.status);
+  add_acknowledge(app, action, arguments.acknowledge);
   add_tell(app, action, arguments.tell);
   add_selftest(app, action, arguments.selftest);
 

@@ -60,6 +60,7 @@ class Publisher {
   /// Clears what is raised of a kind: nobody looks for it any more.
   void withdraw(const std::string& kind);
   const RaisedEvents& raised() const { return raised_; }
+  RaisedEvents& raised() { return raised_; }
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
 
   /// State (estimator/state/archive.h): the events that are raised.

@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/acknowledge_desk.h"
 #include "daemon/action_report.h"
 #include "daemon/baseline_keeper.h"
 #include "daemon/can_complaints.h"
@@ -28,6 +29,7 @@
 #include "daemon/state_file.h"
 #include "daemon/state_keeper.h"
 #include "daemon/stop_signal.h"
+#include "drivers/encoded.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -169,7 +171,16 @@ int run(const RunArguments& a) {
   live.record_to(history.history());
   ActionReport actions(*config, *lcm);
   actions.raised_before(live.estimation().raised());
-  live.tell([&actions](const event_t& event) { actions.event(event); });
+  live.tell([&](const event_t& event) {
+    actions.event(event, live.estimation().raised().acknowledgement(event.id) != nullptr);
+  });
+  AcknowledgeDesk desk(*config, *lcm);
+  const auto acknowledged = [&](const event_t& event, const Acknowledgement& by) {
+    actions.acknowledged(event);
+    if (history.history() != nullptr)
+      history.history()->message(config->lcm.prefix + "ACKNOWLEDGED",
+                                 drivers::encoded(one_acknowledged(event, by)));
+  };
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
   Watchman watchman(a, *config, *text, starts, resumed);
   RateLimitedLog failures(LogLevel::error);
@@ -185,7 +196,9 @@ int run(const RunArguments& a) {
       ::usleep(1000 * kPoll_ms);
     }
     watchman.look(live, *lcm, manager);
-    for (const event_t& event : history.look(host_clock_us())) actions.event(event);
+    for (const event_t& event : history.look(host_clock_us()))
+      actions.event(event, history.raised().acknowledgement(event.id) != nullptr);
+    desk.look({&live.estimation().raised(), &history.raised()}, acknowledged, host_clock_us());
     actions.look(host_clock_us());
     if (reload_requested()) {
       watchman.reload(live, *config, manager);

@@ -113,6 +113,20 @@ void print_actions(const Heard& h) {
   line("actions", text);
 }
 
+void print_known(const Heard& h, std::int64_t now_us) {
+  const service_t& s = *h.service;
+  for (std::size_t i = 0; i < s.event_id.size(); ++i) {
+    const auto at = acknowledgement_of(h, s.event_id[i]);
+    if (!at) continue;
+    const acknowledged_t& a = *h.acknowledged;
+    const std::string comment = a.comment[*at].empty() ? "" : ": " + a.comment[*at];
+    line("known", fmt::format("{} {}: {} (event {}, acknowledged {} ago by {}{})", s.event_kind[i],
+                              s.event_place[i], s.event_message[i], s.event_id[i],
+                              span_text(1e-6 * static_cast<double>(now_us - a.since_us[*at])),
+                              a.who[*at], comment));
+  }
+}
+
 void print_can(const Heard& h) {
   if (!h.can) return;
   for (std::size_t b = 0; b < h.can->interface.size(); ++b)
@@ -130,6 +144,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   print_can(h);
   print_history(h);
   print_actions(h);
+  print_known(h, now_us);
   for (const std::string& sentence : odd) line("odd", sentence);
 }
 
@@ -156,13 +171,21 @@ void print_json(const Heard& h, const std::vector<std::string>& odd, std::int64_
     out["lost"] = total(h.status->lost);
   }
   out["events"] = nlohmann::json::array();
-  for (std::size_t i = 0; i < s.event_id.size(); ++i)
+  for (std::size_t i = 0; i < s.event_id.size(); ++i) {
+    const auto at = acknowledgement_of(h, s.event_id[i]);
+    nlohmann::json known;
+    if (at)
+      known = {{"time_us", h.acknowledged->since_us[*at]},
+               {"who", h.acknowledged->who[*at]},
+               {"comment", h.acknowledged->comment[*at]}};
     out["events"].push_back({{"id", s.event_id[i]},
                              {"since_us", s.event_since_us[i]},
                              {"severity", s.event_severity[i]},
                              {"kind", s.event_kind[i]},
                              {"place", s.event_place[i]},
-                             {"message", s.event_message[i]}});
+                             {"message", s.event_message[i]},
+                             {"acknowledged", known}});
+  }
   fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 

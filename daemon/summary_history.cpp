@@ -26,6 +26,7 @@ SummaryHistory::SummaryHistory(const Config& config)
       table_(config.lcm.prefix + "PARAMETERS"),
       status_(config.lcm.prefix + "STATUS"),
       event_(config.lcm.prefix + "EVENT"),
+      acknowledged_(config.lcm.prefix + "ACKNOWLEDGED"),
       store_(*config.history),
       collector_(kSecond_us * config.history->summary_s.front()),
       next_commit_(Clock::now()),
@@ -42,15 +43,16 @@ SummaryHistory::~SummaryHistory() {
 }
 
 void SummaryHistory::message(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
-  const auto kind = channel == estimate_ ? Kind::estimate
-                    : channel == table_  ? Kind::table
-                    : channel == status_ ? Kind::status
-                    : channel == event_  ? Kind::event
-                                         : std::optional<Kind>();
+  const auto kind = channel == estimate_       ? Kind::estimate
+                    : channel == table_        ? Kind::table
+                    : channel == status_       ? Kind::status
+                    : channel == event_        ? Kind::event
+                    : channel == acknowledged_ ? Kind::acknowledged
+                                               : std::optional<Kind>();
   if (!kind) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (queued_ + bytes.size() > kQueueBytes) {
-    counters_.dropped += *kind == Kind::estimate || *kind == Kind::event;
+    counters_.dropped += *kind != Kind::table && *kind != Kind::status;
     return;
   }
   queued_ += bytes.size();
@@ -76,7 +78,7 @@ void SummaryHistory::work() {
     for (const Message& message : messages) take(message);
     const bool due = Clock::now() >= next_commit_;
     // Sensors that fall silent in the middle of a period leave nothing uncommitted.
-    if (last || (due && waiting_.periods.empty() && waiting_.events.empty())) end_period();
+    if (last || (due && waiting_.empty())) end_period();
     if (last || due) commit();
   }
 }
@@ -112,6 +114,12 @@ void SummaryHistory::take(const Message& message) {
         next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
       }
       break;
+    case Kind::acknowledged:
+      if (auto a = drivers::decode_acknowledged(message.bytes)) {
+        waiting_.acknowledged.push_back(std::move(*a));
+        next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
+      }
+      break;
   }
 }
 
@@ -133,7 +141,7 @@ void SummaryHistory::commit() {
          problem.empty() ? store_.open_periods() : decltype(store_.open_periods())())
       collector_.taken(start_us, last_us);
   }
-  if (waiting_.periods.empty() && waiting_.events.empty() && problem.empty()) {
+  if (waiting_.empty() && problem.empty()) {
     const std::lock_guard<std::mutex> lock(mutex_);
     counters_.trouble.clear();
     return;
@@ -144,6 +152,7 @@ void SummaryHistory::commit() {
     for (const PeriodData& data : waiting_.periods) until_us = std::max(until_us, data.last_us);
     waiting_.periods.clear();
     waiting_.events.clear();
+    waiting_.acknowledged.clear();
   } else {
     next_commit_ = Clock::now() + kAgain;
     store_.close();  // a disk that comes back may hold another file
@@ -172,6 +181,10 @@ void SummaryHistory::bound() {
   while (waiting_.events.size() > kMostEvents) {
     ++dropped;
     waiting_.events.erase(waiting_.events.begin());
+  }
+  while (waiting_.acknowledged.size() > kMostEvents) {
+    ++dropped;
+    waiting_.acknowledged.erase(waiting_.acknowledged.begin());
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.dropped += dropped;

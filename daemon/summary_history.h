@@ -35,14 +35,14 @@ class SummaryHistory {
   SummaryHistory(const SummaryHistory&) = delete;
   SummaryHistory& operator=(const SummaryHistory&) = delete;
 
-  /// What the estimation published; what is no estimate of the main window, table, status or event
-  /// is left alone.
+  /// What the estimation published; what is no estimate of the main window, table, status, event or
+  /// acknowledgement is left alone.
   void message(const std::string& channel, const std::vector<std::uint8_t>& bytes);
   Counters counters() const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Kind { estimate, table, status, event };
+  enum class Kind { estimate, table, status, event, acknowledged };
   struct Message {
     Kind kind;
     std::vector<std::uint8_t> bytes;
@@ -55,7 +55,7 @@ class SummaryHistory {
   void bound();
 
   const Config& config_;
-  const std::string estimate_, table_, status_, event_;  ///< channels
+  const std::string estimate_, table_, status_, event_, acknowledged_;  ///< channels
 
   // Of the thread.
   SummaryStore store_;

@@ -112,4 +112,16 @@ std::vector<event_t> SummaryQuery::events(std::int64_t from_us, std::int64_t to_
   return out;
 }
 
+std::vector<StoredAcknowledgement> SummaryQuery::acknowledgements(std::int64_t from_us,
+                                                                  std::int64_t to_us) {
+  SqliteStatement s = file_.prepare(
+      "SELECT id, time_us, kind, place, who, comment FROM acknowledgement"
+      " WHERE time_us >= ? AND time_us < ? ORDER BY time_us");
+  s.bind(1, from_us).bind(2, to_us);
+  std::vector<StoredAcknowledgement> out;
+  while (s.row())
+    out.push_back({s.integer(0), s.integer(1), s.text(2), s.text(3), s.text(4), s.text(5)});
+  return out;
+}
+
 }  // namespace framewatch::daemon

@@ -23,6 +23,12 @@ struct SummaryRow {
          whisker_high = 0, max = 0;
 };
 
+/// An event was acknowledged; `place` and `kind` are the event's.
+struct StoredAcknowledgement {
+  std::int64_t id = 0, time_us = 0;
+  std::string kind, place, who, comment;
+};
+
 struct SummaryPeriods {
   std::int64_t period_s = 0, count = 0, first_us = 0, last_us = 0;  ///< starts
 };
@@ -49,6 +55,9 @@ class SummaryQuery {
   std::vector<ChannelTotals> channels(std::int64_t from_us, std::int64_t to_us);
   /// In order of time; the newest `most`.
   std::vector<event_t> events(std::int64_t from_us, std::int64_t to_us, std::int64_t most);
+
+  /// In order of time.
+  std::vector<StoredAcknowledgement> acknowledgements(std::int64_t from_us, std::int64_t to_us);
 
   /// Empty unless something could not be read.
   std::string problem() const { return file_.failed() ? file_.error() : ""; }

@@ -66,6 +66,8 @@ std::string SummaryStore::add(const SummaryBatch& batch) {
     }
     for (const event_t& event : batch.events)
       if (!add_event(event)) return false;
+    for (const acknowledged_t& acknowledged : batch.acknowledged)
+      if (!add_acknowledged(acknowledged)) return false;
     return batch.periods.empty() || forget_values(batch.periods.back().start_us);
   });
   if (done) return {};
@@ -247,6 +249,18 @@ bool SummaryStore::add_event(const event_t& e) {
   put.bind(5, e.since_us).bind(6, std::int64_t{e.severity}).bind(7, e.place).bind(8, e.value);
   put.bind(9, e.std_error).bind(10, e.unit).bind(11, e.message).bind(12, e.segment);
   return put.run();
+}
+
+bool SummaryStore::add_acknowledged(const acknowledged_t& a) {
+  SqliteStatement put = file_.prepare(
+      "INSERT OR IGNORE INTO acknowledgement (kind, id, time_us, place, who, comment)"
+      " VALUES (?, ?, ?, ?, ?, ?)");
+  for (std::size_t i = 0; i < a.id.size(); ++i) {
+    put.bind(1, a.kind[i]).bind(2, a.id[i]).bind(3, a.since_us[i]);
+    put.bind(4, a.place[i]).bind(5, a.who[i]).bind(6, a.comment[i]);
+    if (!put.run()) return false;
+  }
+  return true;
 }
 
 std::string SummaryStore::prune(std::int64_t newest_us) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 
@@ -22,6 +23,9 @@ struct SummaryBatch {
   std::vector<std::string> channels;  ///< likewise
   std::vector<PeriodData> periods;
   std::vector<event_t> events;
+  std::vector<acknowledged_t> acknowledged;
+
+  bool empty() const { return periods.empty() && events.empty() && acknowledged.empty(); }
 };
 
 /// The database of a history as it is written: summaries of the configured periods, channels,
@@ -54,6 +58,7 @@ class SummaryStore {
   bool add_channels(const PeriodData& data);
   bool forget_values(std::int64_t newest_us);
   bool add_event(const event_t& event);
+  bool add_acknowledged(const acknowledged_t& acknowledged);
 
   HistorySettings settings_;
   HistoryLock lock_;

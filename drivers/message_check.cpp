@@ -114,6 +114,14 @@ std::optional<action_status_t> decode_action_status(std::span<const std::uint8_t
   return decode<action_status_t>(payload, "88n[s88888s]");
 }
 
+std::optional<acknowledge_t> decode_acknowledge(std::span<const std::uint8_t> payload) {
+  return decode<acknowledge_t>(payload, "8888ss");
+}
+
+std::optional<acknowledged_t> decode_acknowledged(std::span<const std::uint8_t> payload) {
+  return decode<acknowledged_t>(payload, "888sn[8ss8ss]");
+}
+
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload) {
   return decode<session_command_t>(payload, "88ssss888");
 }

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <framewatch/accel_counts_t.hpp>
+#include <framewatch/acknowledge_t.hpp>
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/action_status_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
@@ -38,6 +40,8 @@ std::optional<history_status_t> decode_history_status(std::span<const std::uint8
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload);
 std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload);
 std::optional<action_status_t> decode_action_status(std::span<const std::uint8_t> payload);
+std::optional<acknowledge_t> decode_acknowledge(std::span<const std::uint8_t> payload);
+std::optional<acknowledged_t> decode_acknowledged(std::span<const std::uint8_t> payload);
 std::optional<service_t> decode_service(std::span<const std::uint8_t> payload);
 std::optional<temperature_t> decode_temperature(std::span<const std::uint8_t> payload);
 

@@ -5,6 +5,8 @@
 
 #include <framewatch/accel_counts_t.hpp>
 #include <framewatch/accel_t.hpp>
+#include <framewatch/acknowledge_t.hpp>
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/action_status_t.hpp>
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/channel_table_t.hpp>
@@ -27,8 +29,8 @@
 namespace framewatch::drivers {
 namespace {
 
-const std::array<std::pair<const char*, std::int64_t>, 15>& types() {
-  static const std::array<std::pair<const char*, std::int64_t>, 15> all{{
+const std::array<std::pair<const char*, std::int64_t>, 17>& types() {
+  static const std::array<std::pair<const char*, std::int64_t>, 17> all{{
       {"accel_t", accel_t::getHash()},
       {"channel_table_t", channel_table_t::getHash()},
       {"parameter_table_t", parameter_table_t::getHash()},
@@ -44,6 +46,8 @@ const std::array<std::pair<const char*, std::int64_t>, 15>& types() {
       {"history_status_t", history_status_t::getHash()},
       {"temperature_t", temperature_t::getHash()},
       {"action_status_t", action_status_t::getHash()},
+      {"acknowledge_t", acknowledge_t::getHash()},
+      {"acknowledged_t", acknowledged_t::getHash()},
   }};
   return all;
 }
@@ -71,6 +75,8 @@ const char* type_of_channel(const std::string& channel, const std::string& prefi
   if (rest == "CAN") return "can_status_t";
   if (rest == "SERVICE") return "service_t";
   if (rest == "HISTORY") return "history_status_t";
+  if (rest == "ACKNOWLEDGE") return "acknowledge_t";
+  if (rest == "ACKNOWLEDGED") return "acknowledged_t";
   if (rest == "ACTIONS") return "action_status_t";
   if (rest == "SESSION") return "session_status_t";
   if (rest == "SESSION_COMMAND") return "session_command_t";

@@ -204,7 +204,7 @@ function onAlarm(a) {
     const row = body.insertRow();
     cell(row, clock(x.since_us)); cell(row, x.place).title = x.message;
     cell(row, x.told ? x.message : (100 * x.value).toFixed(1) + ' %'); cell(row, x.told ? '' : (100 * x.error).toFixed(2) + ' %');
-    cell(row, x.state === 0 ? 'cleared' : x.acknowledged ? 'acknowledged' : 'raised');
+    cell(row, x.state === 0 ? 'cleared' : !x.acknowledged ? 'raised' : x.who ? `acknowledged by ${x.who}` : 'acknowledged').title = x.comment || '';
     const last = row.insertCell();
     if (!x.acknowledged && x.state !== 0) last.append(acknowledgeButton(x.id));
   }

@@ -162,6 +162,16 @@ TEST(ActionQueue, WhatSomebodyKnowsIsNotToldAgainUntilItIsOver) {
   EXPECT_EQ(ids(queue, 0), std::vector<std::int64_t>{2});
 }
 
+TEST(ActionQueue, WhatWaitsIsNotToldAnyMoreWhenSomebodyKnows) {
+  ActionQueue queue;
+  queue.configure({});
+  queue.put(event(1), false, 0);
+  queue.acknowledged(event(1));
+  EXPECT_EQ(queue.waiting(), 0u);
+  queue.put(event(1, event_state::cleared), false, 0);
+  EXPECT_EQ(ids(queue, 0), std::vector<std::int64_t>{1});
+}
+
 // --- the command
 
 class Hook : public testing::Test {

@@ -128,7 +128,12 @@ TEST(Health, SaysWhatIsOdd) {
   h.service->event_kind = {"gap", "stiffness_change"};
   h.service->event_place = {"F1", "kx_1_y1"};
   h.service->event_message = {"agree", "is less"};
-  EXPECT_EQ(odd(h, config), "stiffness_change kx_1_y1: is less");
+  EXPECT_EQ(odd(h, config), "stiffness_change kx_1_y1: is less (event 2)");
+  h.acknowledged.emplace();
+  h.acknowledged->id = {1};
+  EXPECT_EQ(odd(h, config), "stiffness_change kx_1_y1: is less (event 2)");
+  h.acknowledged->id = {1, 2};
+  EXPECT_EQ(odd(h, config), "0 oddities");
 }
 
 TEST(Health, SpansAreReadable) {

@@ -375,6 +375,46 @@ TEST_F(Served, ValuesOnTheStreamAreThoseOfTheMessages) {
   EXPECT_NE(stream.find("\"acknowledged\":true"), std::string::npos) << stream;
 }
 
+TEST_F(Served, WhatRunKeepsIsAcknowledgedThere) {
+  service_t service{};
+  service.raised = 1;
+  service.event_id = {7};
+  service.event_since_us = {5};
+  service.event_severity = {2};
+  service.event_kind = {"gap"};
+  service.event_place = {"F1-Y1"};
+  service.event_message = {"they differ"};
+  send("FRAMEWATCH_SERVICE", service);
+  acknowledged_t known{};
+  send("FRAMEWATCH_ACKNOWLEDGED", known);
+  EXPECT_TRUE(view_.acknowledge(7));
+  EventRing::Cursor cursor = view_.join();
+  view_.flush();
+  const auto request = drivers::decode_acknowledge(published_["FRAMEWATCH_ACKNOWLEDGE"]);
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->id, 7);
+  std::string text(100'000, '\0');
+  text.resize(view_.read(cursor, text.data(), text.size()));
+  EXPECT_NE(text.find("they differ"), std::string::npos);
+  EXPECT_EQ(text.find("\"acknowledged\":true"), std::string::npos);
+  known.events = 1;
+  known.id = known.since_us = {7};
+  known.kind = known.place = {""};
+  known.who = {"me"};
+  known.comment = {"loose"};
+  send("FRAMEWATCH_ACKNOWLEDGED", known);
+  text.assign(100'000, '\0');
+  text.resize(view_.read(cursor, text.data(), text.size()));
+  EXPECT_NE(text.find("\"acknowledged\":true,\"who\":\"me\",\"comment\":\"loose\""),
+            std::string::npos)
+      << text;
+  known = {};
+  send("FRAMEWATCH_ACKNOWLEDGED", known);
+  text.assign(100'000, '\0');
+  text.resize(view_.read(cursor, text.data(), text.size()));
+  EXPECT_NE(text.find("\"acknowledged\":false"), std::string::npos);
+}
+
 TEST_F(Served, BytesThatAreNoMessageChangeNothing) {
   const std::uint8_t junk[40] = {1, 2, 3};
   for (const char* channel : {"FRAMEWATCH_PARAMETERS", "FRAMEWATCH_ESTIMATE", "FRAMEWATCH_STATUS",

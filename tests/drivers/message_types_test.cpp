@@ -4,6 +4,8 @@
 
 #include <framewatch/accel_counts_t.hpp>
 #include <framewatch/accel_t.hpp>
+#include <framewatch/acknowledge_t.hpp>
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/action_status_t.hpp>
 #include <framewatch/channel_table_t.hpp>
 #include <framewatch/event_t.hpp>
@@ -311,6 +313,31 @@ action_status_t action_status() {
   return m;
 }
 
+acknowledge_t acknowledge() {
+  acknowledge_t m{};
+  m.request = 1;
+  m.time_us = 120;
+  m.id = 3;
+  m.who = "me";
+  m.comment = "a loose sensor";
+  return m;
+}
+
+acknowledged_t acknowledged() {
+  acknowledged_t m{};
+  m.time_us = 121;
+  m.answered = 1;
+  m.refused = "no event 4 is raised";
+  m.events = 2;
+  m.id = {3, 5};
+  m.kind = {"gap", "stiffness_change"};
+  m.place = {"F1-Y1", "kx_1_y1"};
+  m.since_us = {120, 90};
+  m.who = {"me", "you"};
+  m.comment = {"a loose sensor", ""};
+  return m;
+}
+
 std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
   return {{"ACCEL", encoded(accel())},
           {"ACCEL_CHANNELS", encoded(channel_table())},
@@ -326,7 +353,9 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
           {"COUNTS", encoded(accel_counts())},
           {"FRAMEWATCH_HISTORY", encoded(history_status())},
           {"TEMPERATURE", encoded(temperature())},
-          {"FRAMEWATCH_ACTIONS", encoded(action_status())}};
+          {"FRAMEWATCH_ACTIONS", encoded(action_status())},
+          {"FRAMEWATCH_ACKNOWLEDGE", encoded(acknowledge())},
+          {"FRAMEWATCH_ACKNOWLEDGED", encoded(acknowledged())}};
 }
 
 TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
@@ -403,6 +432,12 @@ TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
     }
     if (e.channel == "TEMPERATURE") {
       EXPECT_EQ(decode_temperature(e.data).value_or(temperature_t{}).temperature_degc, -12.5);
+    }
+    if (e.channel == "FRAMEWATCH_ACKNOWLEDGE") {
+      EXPECT_EQ(decode_acknowledge(e.data).value_or(acknowledge_t{}).comment, "a loose sensor");
+    }
+    if (e.channel == "FRAMEWATCH_ACKNOWLEDGED") {
+      EXPECT_EQ(decode_acknowledged(e.data).value_or(acknowledged_t{}).who, acknowledged().who);
     }
     if (e.channel == "FRAMEWATCH_ACTIONS") {
       EXPECT_EQ(decode_action_status(e.data).value_or(action_status_t{}).trouble,

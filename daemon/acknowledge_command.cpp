@@ -1,0 +1,86 @@
+#include "daemon/acknowledge_command.h"
+
+#include <cstdlib>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "daemon/clocks.h"
+#include "daemon/config.h"
+#include "drivers/encoded.h"
+#include "drivers/lcm_source.h"
+#include "drivers/message_check.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kRefused = 1, kUnreachable = 2, kTries = 10, kWait_ms = 300;
+
+std::string user_name() {
+  const char* name = std::getenv("USER");
+  return name != nullptr && *name != '\0' ? name : "somebody";
+}
+
+}  // namespace
+
+acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
+                                  const std::string& comment) {
+  std::random_device source;
+  acknowledge_t out{};
+  out.request = 1 + (std::int64_t{source()} << 20 | std::int64_t{source() >> 12});
+  out.time_us = host_clock_us();
+  out.id = id;
+  out.who = who;
+  out.comment = comment;
+  return out;
+}
+
+int acknowledge_command(const AcknowledgeArguments& a) {
+  std::vector<ConfigProblem> problems;
+  const std::optional<Config> config = load_config(a.config, problems);
+  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  if (a.all == (a.id != 0))
+    fmt::print(stderr, "framewatch acknowledge: needs the number of an event, or --all\n");
+  if (!config || a.all == (a.id != 0)) return kUnreachable;
+  const std::string& url = a.url.empty() ? config->lcm.url : a.url;
+  std::string error;
+  const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
+  if (!lcm) {
+    fmt::print(stderr, "framewatch acknowledge: {}\n", error);
+    return kUnreachable;
+  }
+  const acknowledge_t request =
+      acknowledge_request(a.id, a.who.empty() ? user_name() : a.who, a.comment);
+  const std::vector<std::uint8_t> bytes = drivers::encoded(request);
+  std::optional<acknowledged_t> answer;
+  drivers::LcmSource source(
+      *lcm, {config->lcm.prefix + "ACKNOWLEDGED"}, 100,
+      [&](const std::string&, const void* data, std::size_t size, std::int64_t) {
+        auto found = drivers::decode_acknowledged({static_cast<const std::uint8_t*>(data), size});
+        if (found && found->answered == request.request) answer = std::move(found);
+      });
+  for (int i = 0; i < kTries && !answer; ++i) {
+    lcm->publish(config->lcm.prefix + "ACKNOWLEDGE", bytes.data(),
+                 static_cast<unsigned>(bytes.size()));
+    (void)source.handle(kWait_ms);
+  }
+  if (!answer) {
+    fmt::print(stderr,
+               "framewatch acknowledge: nobody answers on {} with prefix {}: framewatch status\n",
+               url, config->lcm.prefix);
+    return kUnreachable;
+  }
+  if (!answer->refused.empty()) {
+    fmt::print(stderr, "framewatch acknowledge: {}\n", answer->refused);
+    return kRefused;
+  }
+  for (std::size_t i = 0; i < answer->id.size(); ++i)
+    if (a.all || answer->id[i] == a.id)
+      fmt::print("{} {} ({}) is acknowledged by {}\n", answer->kind[i], answer->place[i],
+                 answer->id[i], answer->who[i]);
+  return 0;
+}
+
+}  // namespace framewatch::daemon

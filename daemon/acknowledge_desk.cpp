@@ -1,0 +1,88 @@
+#include "daemon/acknowledge_desk.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/log.h"
+#include "drivers/message_check.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr std::int64_t kStatus_us = 1'000'000;
+
+void add(acknowledged_t& out, const event_t& e, const Acknowledgement& by) {
+  out.id.push_back(e.id);
+  out.kind.push_back(e.kind);
+  out.place.push_back(e.place);
+  out.since_us.push_back(by.time_us);
+  out.who.push_back(by.who);
+  out.comment.push_back(by.comment);
+  out.events = static_cast<std::int32_t>(out.id.size());
+}
+
+}  // namespace
+
+acknowledged_t one_acknowledged(const event_t& event, const Acknowledgement& by) {
+  acknowledged_t out{};
+  out.time_us = by.time_us;
+  add(out, event, by);
+  return out;
+}
+
+AcknowledgeDesk::AcknowledgeDesk(const Config& config, lcm::LCM& lcm)
+    : config_(config),
+      lcm_(lcm),
+      subscription_(
+          lcm.subscribe(config.lcm.prefix + "ACKNOWLEDGE", &AcknowledgeDesk::on_message, this)) {}
+
+AcknowledgeDesk::~AcknowledgeDesk() {
+  lcm_.unsubscribe(subscription_);
+}
+
+void AcknowledgeDesk::on_message(const lcm::ReceiveBuffer* buffer, const std::string&) {
+  auto request = drivers::decode_acknowledge(
+      {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+  if (request && requests_.size() < kMostRequests) requests_.push_back(std::move(*request));
+}
+
+void AcknowledgeDesk::obey(const acknowledge_t& request, const std::vector<RaisedEvents*>& raised,
+                           const Done& done) {
+  const Acknowledgement by{request.time_us, request.who, request.comment};
+  bool any = false;
+  for (RaisedEvents* events : raised)
+    for (const event_t& e : events->all()) {
+      if (request.id != 0 && request.id != e.id) continue;
+      any = true;
+      if (request.id == 0 && events->acknowledgement(e.id) != nullptr) continue;
+      events->acknowledge(e.id, by);
+      log(LogLevel::notice, fmt::format("event {} ({} {}) is acknowledged by {}: {}", e.id, e.kind,
+                                        e.place, by.who, by.comment));
+      done(e, by);
+    }
+  answered_ = request.request;
+  refused_ = any               ? ""
+             : request.id == 0 ? "no event is raised"
+                               : fmt::format("no event {} is raised", request.id);
+}
+
+void AcknowledgeDesk::look(const std::vector<RaisedEvents*>& raised, const Done& done,
+                           std::int64_t now_us) {
+  const std::vector<acknowledge_t> requests = std::exchange(requests_, {});
+  for (const acknowledge_t& request : requests)
+    if (request.request != answered_) obey(request, raised, done);
+  const bool due = now_us >= next_us_ || next_us_ > now_us + kStatus_us;
+  if (requests.empty() && !due) return;
+  next_us_ = now_us + kStatus_us;
+  acknowledged_t out{};
+  out.time_us = now_us;
+  out.answered = answered_;
+  out.refused = refused_;
+  for (const RaisedEvents* events : raised)
+    for (const event_t& e : events->all())
+      if (const Acknowledgement* by = events->acknowledgement(e.id)) add(out, e, *by);
+  lcm_.publish(config_.lcm.prefix + "ACKNOWLEDGED", &out);
+}
+
+}  // namespace framewatch::daemon
