@@ -11,7 +11,10 @@
 
 #include "daemon/clocks.h"
 #include "daemon/config.h"
+#include "daemon/config_parts.h"
+#include "daemon/file_digest.h"
 #include "daemon/health.h"
+#include "daemon/unit_state.h"
 #include "drivers/lcm_source.h"
 
 namespace framewatch::daemon {
@@ -62,6 +65,16 @@ void print_process(const service_t& s, std::int64_t now_us) {
   line("machine", fmt::format("{:.0f} MB of memory, {:.1f} % of a core since the start",
                               1e-6 * static_cast<double>(s.resident_bytes),
                               100e6 * s.cpu_s / static_cast<double>(now_us - s.started_us)));
+}
+
+/// Which configuration it runs with, and whether the file still is that one.
+void print_config(const service_t& s, const std::string& path) {
+  std::string text = fmt::format("{}, sha256 {:.12}", s.config, s.config_sha256);
+  if (s.reloads > 0) text += fmt::format(", read anew {} times", s.reloads);
+  const std::string now = sha256_of_file(path);
+  line("config", text + (now == s.config_sha256 ? ", as it is on the disk"
+                         : now.empty()          ? fmt::format("; {} cannot be read", path)
+                                                : fmt::format("; {} is another one now", path)));
 }
 
 void print_samples(const Heard& h) {
@@ -130,15 +143,20 @@ void print_known(const Heard& h, std::int64_t now_us) {
 void print_can(const Heard& h) {
   if (!h.can) return;
   for (std::size_t b = 0; b < h.can->interface.size(); ++b)
-    line("can", fmt::format("{}: {:.0f} frames a second, {:.0f} % load", h.can->interface[b],
-                            h.can->frames_hz[b], 100 * h.can->load[b]));
+    line("can", h.can->state[b] < 0
+                    ? h.can->interface[b] + ": not there"
+                    : fmt::format("{}: {:.0f} frames a second, {:.0f} % load", h.can->interface[b],
+                                  h.can->frames_hz[b], 100 * h.can->load[b]));
 }
 
 void print_text(const Heard& h, const Config& config, const std::vector<std::string>& odd,
-                std::int64_t now_us) {
-  fmt::print("{}: {} (framewatch {}, {})\n", config.pipeline.structure.name,
-             odd.empty() ? "well" : "not well", h.service->version, h.service->config);
+                const std::optional<UnitState>& unit, std::int64_t now_us) {
+  const std::string& name = config.pipeline.structure.name;
+  fmt::print("{}: {} (framewatch {})\n", name.empty() ? h.service->config : name,
+             odd.empty() ? "well" : "not well", h.service->version);
   print_process(*h.service, now_us);
+  if (unit) line("systemd", unit_text(*unit));
+  print_config(*h.service, config.path);
   print_samples(h);
   print_estimates(h);
   print_can(h);
@@ -148,13 +166,15 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   for (const std::string& sentence : odd) line("odd", sentence);
 }
 
-void print_json(const Heard& h, const std::vector<std::string>& odd, std::int64_t now_us) {
+void print_json(const Heard& h, const Config& config, const std::vector<std::string>& odd,
+                const std::optional<UnitState>& unit, std::int64_t now_us) {
   const service_t& s = *h.service;
   nlohmann::json out{{"well", odd.empty()},
                      {"odd", odd},
                      {"version", s.version},
                      {"config", s.config},
                      {"config_sha256", s.config_sha256},
+                     {"config_on_disk_sha256", sha256_of_file(config.path)},
                      {"started_us", s.started_us},
                      {"starts", s.starts},
                      {"unclean_starts", s.unclean_starts},
@@ -170,6 +190,11 @@ void print_json(const Heard& h, const std::vector<std::string>& odd, std::int64_
     out["latency_s"] = h.status->latency_s;
     out["lost"] = total(h.status->lost);
   }
+  if (unit)
+    out["systemd"] = {{"active", unit->active},
+                      {"sub", unit->sub},
+                      {"result", unit->result},
+                      {"restarts", unit->restarts}};
   out["events"] = nlohmann::json::array();
   for (std::size_t i = 0; i < s.event_id.size(); ++i) {
     const auto at = acknowledgement_of(h, s.event_id[i]);
@@ -189,13 +214,27 @@ void print_json(const Heard& h, const std::vector<std::string>& odd, std::int64_
   fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
+/// Where the daemon is heard, from a file that is wrong: as far as it says so.
+Config only_lcm(const std::string& path) {
+  Config out;
+  out.path = path;
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  std::vector<TextProblem> problems;
+  if (!text) return out;
+  if (const std::optional<TomlValue> document = parse_toml(*text, problems))
+    out.lcm = read_lcm(*document, problems);
+  return out;
+}
+
 }  // namespace
 
 int status_command(const StatusArguments& a) {
   std::vector<ConfigProblem> problems;
-  const std::optional<Config> config = load_config(a.config, problems);
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
-  if (!config) return kUnreachable;
+  std::optional<Config> config = load_config(a.config, problems);
+  const bool wrong = !config;
+  if (wrong) config = only_lcm(a.config);
+  const auto unit = a.config == kInstalledConfig ? unit_state("framewatch.service") : std::nullopt;
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
   std::string error;
   const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
@@ -211,6 +250,8 @@ int status_command(const StatusArguments& a) {
        !heard.enough() && steady_clock_us() < end_us;)
     if (!source.handle(kPoll_ms)) break;
   if (!heard.service) {
+    for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+    if (unit) fmt::print(stderr, "framewatch.service: {}\n", unit_text(*unit));
     fmt::print(stderr,
                "framewatch status: nothing is heard of framewatch run on {} with prefix {}: "
                "systemctl status framewatch\n",
@@ -218,11 +259,18 @@ int status_command(const StatusArguments& a) {
     return kUnreachable;
   }
   const std::int64_t now_us = host_clock_us();
-  const std::vector<std::string> odd = oddities(heard, *config, now_us);
+  if (wrong) config->sha256 = heard.service->config_sha256;  // what is wrong is said once
+  std::vector<std::string> odd = oddities(heard, *config, now_us);
+  if (wrong)
+    odd.push_back(
+        fmt::format("its configuration file is wrong now, it goes on with what it had "
+                    "read before, and would not start again: {}: {}",
+                    problems.front().where, problems.front().message));
+  if (const std::string why = unit ? unit_oddity(*unit) : ""; !why.empty()) odd.push_back(why);
   if (a.json)
-    print_json(heard, odd, now_us);
+    print_json(heard, *config, odd, unit, now_us);
   else
-    print_text(heard, *config, odd, now_us);
+    print_text(heard, *config, odd, unit, now_us);
   return odd.empty() ? 0 : kNotWell;
 }
 

@@ -11,8 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/clocks.h"
+#include "daemon/file_digest.h"
 #include "daemon/selftest_command.h"
 #include "daemon/status_command.h"
+#include "daemon/unit_state.h"
 #include "drivers/lcm_source.h"
 #include "tests/support/child.h"
 #include "tests/support/recorded_table_test.h"
@@ -173,6 +175,50 @@ TEST(StatusCommand, TellsWellFromNotWellFromNotThere) {
   EXPECT_NE(screen.find("two-story table model: not well"), std::string::npos) << screen;
   EXPECT_NE(screen.find("no samples for"), std::string::npos) << screen;
   EXPECT_EQ(daemon.stop(SIGTERM), 0);
+}
+
+TEST(StatusCommand, SaysWhatTheDaemonUsesWhenItsFileIsAnotherOneOrWrong) {
+  if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
+  std::string error;
+  if (!drivers::open_lcm(LcmSettings{}.url, 1 << 20, error)) GTEST_SKIP() << error;
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.path("table.toml");
+  const std::string text = test::read_file(test::table_config());
+  test::write_file(path, text);
+  test::Child daemon({FRAMEWATCH_PROGRAM, "run", path, "--quiet"});
+  const auto screen = [&](const std::string& now) {
+    test::write_file(path, now);
+    testing::internal::CaptureStdout();
+    const int code = status_command({path, "", false});
+    std::string out = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(code, now == text && out.find("not well") == std::string::npos ? 0 : 1);
+    return out;
+  };
+  const std::string sha = "sha256 " + sha256(text).substr(0, 12);
+  const std::string same = screen(text);
+  EXPECT_NE(same.find(sha + ", as it is on the disk"), std::string::npos) << same;
+  const std::string other = screen(text + "\n# another one\n");
+  EXPECT_NE(other.find(sha + "; " + path + " is another one now"), std::string::npos) << other;
+  EXPECT_NE(other.find("reload framewatch"), std::string::npos) << other;
+  const std::string wrong = screen(text + "\n[wach]\n");
+  EXPECT_NE(wrong.find("its configuration file is wrong now"), std::string::npos) << wrong;
+  EXPECT_NE(wrong.find("did you mean watch"), std::string::npos) << wrong;
+  EXPECT_EQ(wrong.find("reload framewatch"), std::string::npos) << wrong;
+  EXPECT_NE(screen("").find("its configuration file is wrong now"), std::string::npos);
+  EXPECT_EQ(daemon.stop(SIGTERM), 0);
+}
+
+TEST(UnitState, SaysWhatSystemdDoes) {
+  EXPECT_EQ(unit_text({"active", "running", "success", 0}), "active (running)");
+  EXPECT_EQ(unit_oddity({"active", "running", "success", 3}), "");
+  const UnitState gone{"failed", "failed", "start-limit-hit", 15};
+  EXPECT_EQ(unit_text(gone),
+            "failed (failed), the last result was start-limit-hit, restarted 15 times by systemd "
+            "since somebody started it");
+  EXPECT_NE(unit_oddity(gone).find("reset-failed"), std::string::npos);
+  EXPECT_NE(unit_oddity({"activating", "auto-restart", "watchdog", 2}).find("2 times"),
+            std::string::npos);
+  EXPECT_NE(unit_oddity({"failed", "failed", "exit-code", 0}).find("exit-code"), std::string::npos);
 }
 
 TEST(Selftest, FindsTheAnswerThatIsKnown) {
