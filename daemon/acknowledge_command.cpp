@@ -1,5 +1,6 @@
 #include "daemon/acknowledge_command.h"
 
+#include <charconv>
 #include <cstdlib>
 #include <optional>
 #include <random>
@@ -23,6 +24,16 @@ std::string user_name() {
   return name != nullptr && *name != '\0' ? name : "somebody";
 }
 
+/// 0: every event.
+std::optional<std::int64_t> number_of(const std::string& event) {
+  if (event == "all") return 0;
+  std::int64_t id = 0;
+  const char* const end = event.data() + event.size();
+  const auto [at, error] = std::from_chars(event.data(), end, id);
+  if (error != std::errc() || at != end || id == 0) return std::nullopt;
+  return id;
+}
+
 }  // namespace
 
 acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
@@ -41,9 +52,11 @@ int acknowledge_command(const AcknowledgeArguments& a) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(a.config, problems);
   for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
-  if (a.all == (a.id != 0))
-    fmt::print(stderr, "framewatch acknowledge: needs the number of an event, or --all\n");
-  if (!config || a.all == (a.id != 0)) return kUnreachable;
+  const std::optional<std::int64_t> id = number_of(a.event);
+  if (!id)
+    fmt::print(stderr, "framewatch acknowledge: '{}' is neither the number of an event nor all\n",
+               a.event);
+  if (!config || !id) return kUnreachable;
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
   std::string error;
   const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
@@ -52,7 +65,7 @@ int acknowledge_command(const AcknowledgeArguments& a) {
     return kUnreachable;
   }
   const acknowledge_t request =
-      acknowledge_request(a.id, a.who.empty() ? user_name() : a.who, a.comment);
+      acknowledge_request(*id, a.who.empty() ? user_name() : a.who, a.comment);
   const std::vector<std::uint8_t> bytes = drivers::encoded(request);
   std::optional<acknowledged_t> answer;
   drivers::LcmSource source(
@@ -77,7 +90,7 @@ int acknowledge_command(const AcknowledgeArguments& a) {
     return kRefused;
   }
   for (std::size_t i = 0; i < answer->id.size(); ++i)
-    if (a.all || answer->id[i] == a.id)
+    if (*id == 0 || answer->id[i] == *id)
       fmt::print("{} {} ({}) is acknowledged by {}\n", answer->kind[i], answer->place[i],
                  answer->id[i], answer->who[i]);
   return 0;

@@ -10,8 +10,7 @@
 namespace framewatch::daemon {
 
 struct AcknowledgeArguments {
-  std::int64_t id = 0;
-  bool all = false;
+  std::string event;  ///< its number, or "all"
   std::string config = kInstalledConfig;
   std::string url;  ///< LCM provider; empty: the configuration's
   std::string who;  ///< empty: the user's name

@@ -42,8 +42,8 @@ void ActionReport::raised_before(const RaisedEvents& raised) {
 
 void ActionReport::event(const event_t& event, bool acknowledged) {
   if (!config_.actions) return;
-  if (!config_.actions->command.empty()) command_->event(event, acknowledged);
-  if (!config_.actions->webhook.empty()) webhook_->event(event, acknowledged);
+  if (command_ && !config_.actions->command.empty()) command_->event(event, acknowledged);
+  if (webhook_ && !config_.actions->webhook.empty()) webhook_->event(event, acknowledged);
 }
 
 void ActionReport::acknowledged(const event_t& event) {

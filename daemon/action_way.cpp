@@ -8,7 +8,6 @@
 #include <fmt/core.h>
 
 #include "daemon/clocks.h"
-#include "daemon/log.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -70,7 +69,7 @@ ActionWay::Counters ActionWay::counters() const {
 void ActionWay::lose(std::int64_t events, const std::string& why) {
   counters_.lost += events;
   counters_.lost_us = host_clock_us();
-  log(LogLevel::error, fmt::format("{}: {} events are lost: {}", name_, events, why));
+  losses_(host_clock_us(), fmt::format("{}: {} events are lost: {}", name_, events, why));
 }
 
 bool ActionWay::abandoned() const {

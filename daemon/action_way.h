@@ -10,6 +10,7 @@
 #include <framewatch/event_t.hpp>
 
 #include "daemon/action_queue.h"
+#include "daemon/log.h"
 
 namespace framewatch::daemon {
 
@@ -64,6 +65,7 @@ class ActionWay {
   double patience_s_ = 0;
   ActionQueue queue_;
   Counters counters_;
+  RateLimitedLog losses_{LogLevel::error};
   bool stop_ = false;
   std::int64_t give_up_us_ = INT64_MAX;  ///< steady clock
   std::thread thread_;                   ///< last: it sees everything above

@@ -508,10 +508,9 @@ void add_acknowledge(CLI::App& app, Action& action, AcknowledgeArguments& argume
       "Exit status: 0 acknowledged, 1 no such event is raised, 2 no answer, or bad usage or\n"
       "configuration.\n"
       "Example: framewatch acknowledge 3 --comment 'a loose sensor, fixed tomorrow'");
-  command->add_option("EVENT", arguments.id, "number of the event");
+  command->add_option("EVENT", arguments.event, "number of the event, or all")->required();
   command->add_option("CONFIG", arguments.config, "configuration file (TOML)")
       ->capture_default_str();
-  command->add_flag("--all", arguments.all, "every event that is raised");
   command->add_option("--comment", arguments.comment, "what is known of it");
   command->add_option("--who", arguments.who, "who knows (default: the user's name)");
   command->add_option("--url", arguments.url, "LCM provider instead of the configuration's");

@@ -97,13 +97,11 @@ Told post_webhook(const ActionSettings& settings, const std::string& json,
   set(CURLOPT_ERRORBUFFER, error.data());
   const CURLcode result = ::curl_easy_perform(curl.get());
   if (result != CURLE_OK)
-    return {
-        fmt::format("webhook: {}", error[0] != '\0' ? error.data() : ::curl_easy_strerror(result)),
-        true};
+    return {error[0] != '\0' ? error.data() : ::curl_easy_strerror(result), true};
   long status = 0;
   ::curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);
   if (status >= 200 && status < 300) return {};
-  return {fmt::format("webhook: the server answers {}", status), may_pass(status)};
+  return {fmt::format("the server answers {}", status), may_pass(status)};
 }
 
 }  // namespace framewatch::daemon

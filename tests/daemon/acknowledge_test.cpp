@@ -6,6 +6,7 @@
 
 #include "daemon/acknowledge_command.h"
 #include "daemon/acknowledge_desk.h"
+#include "daemon/clocks.h"
 #include "daemon/event_words.h"
 #include "daemon/raised_events.h"
 #include "daemon/summary_query.h"
@@ -176,7 +177,7 @@ class Tower : public testing::Test {
   }
   int acknowledge(std::int64_t id) const {
     AcknowledgeArguments arguments;
-    arguments.id = id;
+    arguments.event = std::to_string(id);
     arguments.config = config();
     arguments.who = "me";
     arguments.comment = "no bus here";
@@ -210,10 +211,12 @@ TEST_F(Tower, AnAcknowledgedEventIsKnownOverARestartAndInTheHistory) {
     EXPECT_EQ(daemon.stop(SIGTERM), 0);
   }
   known_.reset();
+  const std::int64_t again_us = host_clock_us();
   {
     test::Child daemon = run();
     EXPECT_TRUE(heard([&](const acknowledged_t& a) {
-      return a.id == std::vector<std::int64_t>{id} && a.comment[0] == "no bus here";
+      return a.time_us > again_us && a.id == std::vector<std::int64_t>{id} &&
+             a.comment[0] == "no bus here";
     }));
     EXPECT_EQ(daemon.stop(SIGTERM), 0);
   }
@@ -226,6 +229,7 @@ TEST_F(Tower, AnAcknowledgedEventIsKnownOverARestartAndInTheHistory) {
   EXPECT_EQ(stored[0].kind, "interface_gone");
   EXPECT_EQ(stored[0].who, "me");
   EXPECT_EQ(acknowledge(id), 2);  // nobody is there
+  EXPECT_EQ(acknowledge_command({"3x", config(), "", "", ""}), 2);
 }
 
 }  // namespace

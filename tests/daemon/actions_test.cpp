@@ -209,7 +209,7 @@ TEST_F(Hook, GetsTheEventOnItsInputAndInItsEnvironment) {
   EXPECT_EQ(json["id"], 7);
   EXPECT_EQ(json["value"], -5.25);
   EXPECT_TRUE(json["std_error"].is_null());
-  EXPECT_EQ(json["time"], "2023-11-14T22:13:20Z");
+  EXPECT_EQ(json["time"], "2023-11-14T22:13:20.000Z");
   EXPECT_EQ(json["message"], event(7).message);
   EXPECT_EQ(file("argument"), "$(touch made); *");
   EXPECT_FALSE(std::filesystem::exists(directory_.path("made")));
@@ -293,7 +293,7 @@ TEST_F(Webhook, TriesAgainWhatMayPassAndNothingElse) {
     return post_webhook(to(server.port()), "{}", never);
   };
   EXPECT_EQ(answered(204).trouble, "");
-  EXPECT_EQ(answered(500).trouble, "webhook: the server answers 500");
+  EXPECT_EQ(answered(500).trouble, "the server answers 500");
   for (const unsigned status : {500u, 503u, 429u}) EXPECT_TRUE(answered(status).again) << status;
   for (const unsigned status : {302u, 400u, 401u, 404u})
     EXPECT_FALSE(answered(status).again) << status;
@@ -383,7 +383,7 @@ TEST(ActionWay, TellsAgainUntilTheServerTakesItAndCountsWhatItDoesNot) {
   EXPECT_EQ(way.counters().trouble, "");
   way.event(event(2), false);
   EXPECT_TRUE(test::comes_true([&] { return way.counters().lost == 1; }, kSoon));
-  EXPECT_EQ(way.counters().trouble, "webhook: the server answers 404");
+  EXPECT_EQ(way.counters().trouble, "the server answers 404");
   way.event(event(3), false);
   EXPECT_TRUE(test::comes_true([&] { return way.counters().told == 2; }, kSoon));
   EXPECT_EQ(server.requests().size(), 5u);

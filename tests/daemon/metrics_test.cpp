@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <framewatch/action_status_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
