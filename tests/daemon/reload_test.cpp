@@ -55,6 +55,12 @@ TEST(ConfigChanges, SayHowFarTheyReach) {
   EXPECT_EQ(found[3].reach, Reach::settings);
 }
 
+TEST(ConfigChanges, WhoIsToldIsTakenWithoutARestart) {
+  const auto found = changes("", "[actions]\nwebhook = \"http://a\"\n");
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].reach, Reach::settings);
+}
+
 class Reloading : public testing::Test {
  protected:
   void SetUp() override {
