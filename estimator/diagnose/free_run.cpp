@@ -19,7 +19,7 @@ constexpr double kStepsPerPeriod = 30;
 constexpr int kSincHalf = 12;
 constexpr double kRunAway_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
-constexpr int kSecants = 8, kGrows = 60;
+constexpr int kGrows = 60, kIllinois = 60;
 constexpr double kRootPart = 1e-10, kLeastForce_n = 1e-12;
 
 struct System {
@@ -135,50 +135,31 @@ System assemble_system(const Plant& plant, const Model& model, const std::vector
   return out;
 }
 
-/// Root of `miss`, which falls, near `start`: secants, and where they fail a bracket.
+/// Root of `miss` near `start`. It falls by at least one per unit where the law does not soften:
+/// then the root lies between start and start + miss(start).
 template <typename Miss>
 double root_near(const Miss& miss, double start) {
-  double f = start, value = miss(f), before = f, value_before = value;
-  if (value == 0) return f;
-  f += value;
-  for (int i = 0; i < kSecants; ++i) {
+  double before = start, value_before = miss(before);
+  double f = before + value_before, value = miss(f);
+  for (int i = 0; i < kGrows && value * value_before > 0; ++i) {
+    const double width = 2 * (f - before);
+    before = std::exchange(f, f + width);
     value_before = std::exchange(value, miss(f));
-    if (std::abs(value) <= kRootPart * std::max(std::abs(f), kLeastForce_n)) return f;
-    const double slope = (value - value_before) / (f - before);
-    before = f;
-    if (!(slope < 0)) break;
-    f -= value / slope;
   }
-  f = start, value = miss(f);
-  double low = f, high = f, at_low = value, at_high = value;
-  double width = std::max(std::abs(value), kLeastForce_n);
-  for (int grow = 0; grow < kGrows && at_low < 0; ++grow, width *= 2) {
-    high = low, at_high = at_low;
-    low -= width;
-    at_low = miss(low);
-  }
-  for (int grow = 0; grow < kGrows && at_high > 0; ++grow, width *= 2) {
-    low = high, at_low = at_high;
-    high += width;
-    at_high = miss(high);
-  }
-  const double small = kRootPart * std::max({std::abs(low), std::abs(high), kLeastForce_n});
-  bool was_low = false, was_high = false;
-  for (int i = 0; i < kGrows && high - low > small && at_low > 0 && at_high < 0; ++i) {
-    f = (low * at_high - high * at_low) / (at_high - at_low);
-    value = miss(f);
-    if (std::abs(value) <= small) return f;
-    if (value > 0) {
-      low = f, at_low = value;
-      if (was_low) at_high /= 2;
-      was_low = true, was_high = false;
+  const double small = kRootPart * std::max({std::abs(f), std::abs(before), kLeastForce_n});
+  for (int i = 0; i < kIllinois && std::abs(value) > small && std::abs(f - before) > small; ++i) {
+    const double next = (before * value - f * value_before) / (value - value_before);
+    const double found = miss(next);
+    if (found * value < 0) {
+      before = f;
+      value_before = value;
     } else {
-      high = f, at_high = value;
-      if (was_high) at_low /= 2;
-      was_high = true, was_low = false;
+      value_before /= 2;
     }
+    f = next;
+    value = found;
   }
-  return at_low == 0 ? low : at_high == 0 ? high : f;
+  return f;
 }
 
 }  // namespace
