@@ -36,6 +36,7 @@ Model declared_model(const Plant& plant, const std::vector<Stretch>& stretches, 
   FitOptions options;
   options.forcing = forcing_of(out);
   options.max_steps = kSteps;
+  options.through_run = true;
   // Step by step: a stiff law may lose its way when all of the errors go at once.
   for (const double share : {0.75, 0.5, 0.25, 0.0}) {
     shrink(&Model::mass_change, share, {});

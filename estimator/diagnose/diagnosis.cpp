@@ -107,6 +107,7 @@ class Search {
     FitOptions options;
     options.forcing = forcing_of(model);
     options.max_steps = steps;
+    options.through_run = true;
     return fitter_.fit(model, motion, options);
   }
 

@@ -80,11 +80,11 @@ std::vector<double> Fitter::misfit(const Model& model, std::vector<MatrixXcd>& m
 }
 
 VectorXd Fitter::column(const Model& model, std::size_t record, const Whitened& system,
-                        const Unknown& unknown, Forcing forcing) const {
+                        const Unknown& unknown, bool through_run) const {
   const Stretch& s = stretches_[record];
   const int ratio = ratio_[record];
-  const bool run = forcing == Forcing::simulated && !system.tracks.empty() && !plant_.prescribed;
-  if (run && moves_run(plant_, model, unknown)) {
+  if (through_run && !system.tracks.empty() && !plant_.prescribed &&
+      moves_run(plant_, model, unknown)) {
     std::optional<VectorXd> out = run_column(plant_, model, s, record, system, unknown, ratio);
     const bool of_law = unknown.kind >= Unknown::Kind::knob &&
                         model.effects[static_cast<std::size_t>(unknown.index)].element_law();
@@ -95,7 +95,7 @@ VectorXd Fitter::column(const Model& model, std::size_t record, const Whitened& 
 }
 
 Linearised Fitter::linearise(const Model& model, const std::vector<MatrixXcd>& motion,
-                             Forcing forcing) const {
+                             Forcing forcing, bool through_run) const {
   Linearised out;
   out.unknowns = unknowns_of(plant_, model, tolerances_);
   const auto count = static_cast<Index>(out.unknowns.size());
@@ -118,7 +118,8 @@ Linearised Fitter::linearise(const Model& model, const std::vector<MatrixXcd>& m
     if (!system.good) return out;
     MatrixXd columns(system.residual.size(), count);
     for (Index u = 0; u < count; ++u)
-      columns.col(u) = column(model, r, system, out.unknowns[static_cast<std::size_t>(u)], forcing);
+      columns.col(u) = column(model, r, system, out.unknowns[static_cast<std::size_t>(u)],
+                              through_run && forcing == Forcing::simulated);
     MatrixXd square = MatrixXd::Zero(count, count);
     square.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
     const MatrixXd cross = columns.transpose() * system.ends;
@@ -149,7 +150,7 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   double damping = 1e-6;
   int worse = 0;
   for (; out.steps < options.max_steps; ++out.steps) {
-    const Linearised at = linearise(out.model, out.motion, options.forcing);
+    const Linearised at = linearise(out.model, out.motion, options.forcing, options.through_run);
     if (at.systems.size() != stretches_.size() || !at.systems.back().good) break;
     // Weights stay those of `at` within a step: a wrong model must not gain by making itself soft.
     double before = at.level * prior_cost(out.model, at.unknowns);

@@ -51,6 +51,8 @@ struct FitOptions {
   int max_steps = 12;
   double tolerance = 0.3;     ///< converged when the cost falls by less than this
   bool linear_fixed = false;  ///< only what effects have moves
+  /// Derivatives go through the free run: exact where laws act strongly, dearer.
+  bool through_run = false;
 };
 
 struct FitResult {
@@ -76,7 +78,7 @@ class Fitter {
   FitResult fit(const Model& start, const std::vector<Eigen::MatrixXcd>& motion,
                 const FitOptions& options) const;
   Linearised linearise(const Model& model, const std::vector<Eigen::MatrixXcd>& motion,
-                       Forcing forcing) const;
+                       Forcing forcing, bool through_run = false) const;
   /// Misfit of every stretch and the prior's cost at the end; empty when the model cannot be
   /// computed. motion is updated.
   /// weights: of a linearisation, else the model's own.
@@ -92,7 +94,7 @@ class Fitter {
 
  private:
   Eigen::VectorXd column(const Model& model, std::size_t record, const Whitened& system,
-                         const Unknown& unknown, Forcing forcing) const;
+                         const Unknown& unknown, bool through_run) const;
 
   const Plant& plant_;
   const std::vector<Stretch>& stretches_;

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 
 void set_errors(const Fitter& fitter, const Model& model,
                 const std::vector<Eigen::MatrixXcd>& motion, std::vector<FoundEffect>& effects) {
-  const Linearised at = fitter.linearise(model, motion, forcing_of(model));
+  const Linearised at = fitter.linearise(model, motion, forcing_of(model), true);
   if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return;
   MatrixXd normal = at.normal;
   normal.diagonal() += at.prior;

@@ -186,6 +186,7 @@ Trial sharpened(const TrialContext& c, const Trial& trial) {
   free_shapes(start);
   FitOptions options = run_options(start);
   options.max_steps = kSharpSteps;
+  options.through_run = true;
   const FitResult run = c.fitter.fit(start, {}, options);
   if (!run.good) return trial;
   Trial out = trial;

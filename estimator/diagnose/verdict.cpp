@@ -71,6 +71,7 @@ void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
     FitOptions options;
     options.forcing = forcing_of(start);
     options.max_steps = kTrainSteps;
+    options.through_run = true;
     const FitResult fitted = train.fit(start, {}, options);
     return gaps_of(fitter, fitted.good ? fitted.model : start);
   };
