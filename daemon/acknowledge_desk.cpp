@@ -11,6 +11,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::int64_t kStatus_us = 1'000'000;
+constexpr std::size_t kMostText = 500;  ///< bytes of who, and of the comment
 
 void add(acknowledged_t& out, const event_t& e, const Acknowledgement& by) {
   out.id.push_back(e.id);
@@ -44,7 +45,10 @@ AcknowledgeDesk::~AcknowledgeDesk() {
 void AcknowledgeDesk::on_message(const lcm::ReceiveBuffer* buffer, const std::string&) {
   auto request = drivers::decode_acknowledge(
       {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
-  if (request && requests_.size() < kMostRequests) requests_.push_back(std::move(*request));
+  if (!request || requests_.size() == kMostRequests) return;
+  for (std::string* text : {&request->who, &request->comment})
+    if (text->size() > kMostText) text->resize(kMostText);
+  requests_.push_back(std::move(*request));
 }
 
 void AcknowledgeDesk::obey(const acknowledge_t& request, const std::vector<RaisedEvents*>& raised,

@@ -19,7 +19,7 @@ bool ActionQueue::wanted(const event_t& e) const {
 }
 
 void ActionQueue::remember(const Key& key, std::int64_t now_us) {
-  if (told_us_.size() == kMostTold && !told_us_.contains(key))
+  if (told_us_.size() >= kMostTold && !told_us_.contains(key))
     told_us_.erase(std::min_element(told_us_.begin(), told_us_.end(),
                                     [](auto& a, auto& b) { return a.second < b.second; }));
   told_us_[key] = now_us;
@@ -55,10 +55,12 @@ int ActionQueue::put(const event_t& e, bool acknowledged, std::int64_t now_us) {
   }
   waiting_.emplace(key, Waiting{e, due_us, order_++});
   if (waiting_.size() <= kMost) return 0;
-  waiting_.erase(std::min_element(waiting_.begin(), waiting_.end(), [](auto& a, auto& b) {
+  const auto least = std::min_element(waiting_.begin(), waiting_.end(), [](auto& a, auto& b) {
     return std::pair(a.second.event.severity, -a.second.order) <
            std::pair(b.second.event.severity, -b.second.order);
-  }));
+  });
+  if (least->second.event.state == event_state::cleared) told_us_.erase(least->first);
+  waiting_.erase(least);
   return 1;
 }
 
@@ -67,7 +69,7 @@ void ActionQueue::acknowledged(const event_t& e) {
   const auto waiting = waiting_.find(key);
   if (waiting == waiting_.end() || waiting->second.event.state == event_state::cleared) return;
   waiting_.erase(waiting);
-  told_us_.try_emplace(key, INT64_MIN / 2);
+  if (!told_us_.contains(key)) remember(key, INT64_MIN / 2);
 }
 
 std::optional<event_t> ActionQueue::take(std::int64_t now_us) {

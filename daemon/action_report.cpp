@@ -16,8 +16,7 @@ ActionReport::ActionReport(const Config& config, lcm::LCM& lcm) : config_(config
 }
 
 void ActionReport::reconfigure() {
-  if (!config_.actions) return;
-  const ActionSettings& settings = *config_.actions;
+  const ActionSettings settings = config_.actions.value_or(ActionSettings{});
   const std::string& building = config_.pipeline.structure.name;
   if (!settings.command.empty() && !command_)
     command_.emplace("command", [building](const ActionSettings& s, const event_t& e,
@@ -72,8 +71,8 @@ action_status_t ActionReport::status(std::int64_t now_us) const {
     out.lost_us.push_back(c.lost_us);
     out.trouble.push_back(c.trouble);
   };
-  add("command", command_);
-  add("webhook", webhook_);
+  if (!config_.actions->command.empty()) add("command", command_);
+  if (!config_.actions->webhook.empty()) add("webhook", webhook_);
   out.ways = static_cast<std::int32_t>(out.name.size());
   return out;
 }

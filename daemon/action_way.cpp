@@ -109,8 +109,8 @@ void ActionWay::work() {
   }
 }
 
-bool ActionWay::tell_one(const ActionSettings& settings, double patience_s, const event_t& event) {
-  const std::int64_t until_us = steady_clock_us() + static_cast<std::int64_t>(1e6 * patience_s);
+bool ActionWay::tell_one(ActionSettings settings, double patience_s, const event_t& event) {
+  const std::int64_t began_us = steady_clock_us();
   for (double wait_s = kFirstWait_s;; wait_s = std::min(2 * wait_s, kLongestWait_s)) {
     Told told = tell_(settings, event, [this] { return abandoned(); });
     std::unique_lock<std::mutex> lock(mutex_);
@@ -121,8 +121,11 @@ bool ActionWay::tell_one(const ActionSettings& settings, double patience_s, cons
     }
     if (told.trouble != before) log(LogLevel::warning, name_ + ": " + told.trouble);
     const auto wait_us = static_cast<std::int64_t>(1e6 * wait_s);
+    const std::int64_t until_us = began_us + static_cast<std::int64_t>(1e6 * patience_s);
     if (!told.again || stop_ || steady_clock_us() + wait_us > until_us) return false;
     wake_.wait_for(lock, std::chrono::microseconds(wait_us), [this] { return stop_; });
+    settings = settings_;  // a reload may have mended them
+    patience_s = patience_s_;
   }
 }
 

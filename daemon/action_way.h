@@ -53,7 +53,7 @@ class ActionWay {
 
  private:
   void work();
-  bool tell_one(const ActionSettings& settings, double patience_s, const event_t& event);
+  bool tell_one(ActionSettings settings, double patience_s, const event_t& event);
   void lose(std::int64_t events, const std::string& why);
   bool abandoned() const;
 

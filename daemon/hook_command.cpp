@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <string_view>
@@ -26,6 +27,7 @@ namespace {
 constexpr int kLook_ms = 20;
 constexpr std::int64_t kGrace_us = 1'000'000;  // between asking to end and ending
 constexpr std::size_t kMostSaid = 200;         // of its output, for the trouble
+constexpr int kMostReads = 64;                 ///< of one look
 
 class Descriptor {
  public:
@@ -93,10 +95,12 @@ pid_t start(std::vector<std::string> arguments, std::vector<std::string> environ
   return failure == 0 ? pid : -1;
 }
 
-/// What is there to be read, its end kept.
+/// Some of what is there to be read, its end kept: who writes without end is not read without end.
 void read_some(int file, std::string& said) {
   std::array<char, 4096> buffer;
-  for (ssize_t n; (n = ::read(file, buffer.data(), buffer.size())) > 0;) {
+  for (int i = 0; i < kMostReads; ++i) {
+    const ssize_t n = ::read(file, buffer.data(), buffer.size());
+    if (n <= 0) return;
     said.append(buffer.data(), static_cast<std::size_t>(n));
     if (said.size() > kMostSaid) said.erase(0, said.size() - kMostSaid);
   }
@@ -118,7 +122,8 @@ int wait_for(pid_t pid, int output, std::string& said, double timeout_s, const A
     pollfd more{output, POLLIN, 0};
     ::poll(&more, 1, kLook_ms);
     read_some(output, said);
-    if (::waitpid(pid, &status, WNOHANG) == pid) {
+    const pid_t gone = ::waitpid(pid, &status, WNOHANG);
+    if (gone == pid || (gone < 0 && errno == ECHILD)) {
       read_some(output, said);
       return status;
     }
@@ -157,6 +162,7 @@ std::vector<std::pair<std::string, std::string>> event_environment(const event_t
 Told run_hook(const ActionSettings& settings, const std::string& input,
               const std::vector<std::pair<std::string, std::string>>& environment,
               const Abandoned& abandoned) {
+  if (settings.command.empty()) return {"no command is configured any more", false};
   const std::string& name = settings.command.front();
   const auto trouble = [&](const std::string& why) { return Told{name + ": " + why, false}; };
   // A file in memory: who does not read its input, delays nobody.
@@ -180,7 +186,8 @@ Told run_hook(const ActionSettings& settings, const std::string& input,
       wait_for(pid, out.get(), said, settings.command_timeout_s, abandoned, ended_by_us);
   if (ended_by_us) {
     ::kill(-pid, SIGKILL);  // whoever of its group did not hear
-    return trouble(fmt::format("ended after {:g} s", settings.command_timeout_s));
+    return trouble(abandoned() ? "ended, framewatch stops"
+                               : fmt::format("ended after {:g} s", settings.command_timeout_s));
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
   const std::string line = last_line(said);

@@ -270,8 +270,13 @@ void LiveView::event(const event_t& e) {
   events_[e.id] = e;
   if (e.state == event_state::cleared) acknowledged_here_.erase(e.id);
   if (events_.size() > kMostEvents) {
-    acknowledged_here_.erase(events_.begin()->first);
-    events_.erase(events_.begin());
+    // What is still raised would be brought back by the next service_t.
+    auto gone = std::find_if(events_.begin(), events_.end(), [](const auto& known) {
+      return known.second.state == event_state::cleared;
+    });
+    if (gone == events_.end()) gone = events_.begin();
+    acknowledged_here_.erase(gone->first);
+    events_.erase(gone);
   }
   ring_.push("alarm", event_json(e));
 }

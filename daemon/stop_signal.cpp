@@ -14,6 +14,7 @@ extern "C" void request_stop(int) {
 }  // namespace
 
 void catch_stop_signals() {
+  std::signal(SIGCHLD, SIG_DFL);  // who ignores it is told of no child's end
   struct sigaction action {};
   action.sa_handler = request_stop;
   ::sigaction(SIGINT, &action, nullptr);

@@ -57,19 +57,20 @@ bool may_pass(long status) {
 
 Told post_webhook(const ActionSettings& settings, const std::string& json,
                   const Abandoned& abandoned) {
+  if (settings.webhook.empty()) return {"no webhook is configured any more", false};
   Headers headers;
   add(headers, "Content-Type: application/json");
   add(headers, "Expect:");
   if (!settings.webhook_header_file.empty()) {
-    std::string error;
-    const std::optional<std::string> text = read_text_file(settings.webhook_header_file, error);
-    if (!text) return {settings.webhook_header_file + ": " + error, true};
+    std::string trouble;
+    const std::optional<std::string> text = read_text_file(settings.webhook_header_file, trouble);
+    if (!text) return {settings.webhook_header_file + ": " + trouble, true};
     add_lines(headers, *text);
   }
   static const CURLcode ready = ::curl_global_init(CURL_GLOBAL_DEFAULT);
+  std::array<char, CURL_ERROR_SIZE> error{};
   const std::unique_ptr<CURL, Free> curl(ready == CURLE_OK ? ::curl_easy_init() : nullptr);
   if (!curl) return {"libcurl cannot begin", true};
-  std::array<char, CURL_ERROR_SIZE> error{};
   const auto set = [&](CURLoption option, auto value) {
     ::curl_easy_setopt(curl.get(), option, value);
   };
@@ -84,6 +85,7 @@ Told post_webhook(const ActionSettings& settings, const std::string& json,
     set(CURLOPT_CAPATH, static_cast<const char*>(nullptr));
   }
   set(CURLOPT_NOSIGNAL, 1L);
+  set(CURLOPT_QUICK_EXIT, 1L);  // a name server that says nothing keeps nobody waiting
   set(CURLOPT_TIMEOUT_MS, timeout_ms);
   set(CURLOPT_CONNECTTIMEOUT_MS, timeout_ms);
   set(CURLOPT_USERAGENT, "framewatch/" FRAMEWATCH_VERSION);
