@@ -33,16 +33,12 @@ Model declared_model(const Plant& plant, const std::vector<Stretch>& stretches, 
         (out.*errors)[a] = share * (fitted.*errors)[a] + (1 - share) * (none.*errors)[a];
   };
   const Fitter exact(plant, stretches, {0, 0, 0});
-  FitOptions options;
-  options.forcing = forcing_of(out);
-  options.max_steps = kSteps;
-  options.through_run = true;
   // Step by step: a stiff law may lose its way when all of the errors go at once.
   for (const double share : {0.75, 0.5, 0.25, 0.0}) {
     shrink(&Model::mass_change, share, {});
     shrink(&Model::gain, share, out.free_gain);
     shrink(&Model::clock_s, share, out.free_clock);
-    const FitResult next = exact.fit(out, {}, options);
+    const FitResult next = exact.fit(out, {}, thorough(out, kSteps));
     if (next.good) out = next.model;
   }
   return out;

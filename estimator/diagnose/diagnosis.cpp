@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "estimator/diagnose/declared.h"
 #include "estimator/diagnose/known_effects.h"
@@ -104,11 +103,7 @@ class Search {
   }
 
   FitResult fit(const Model& model, const std::vector<MatrixXcd>& motion, int steps) const {
-    FitOptions options;
-    options.forcing = forcing_of(model);
-    options.max_steps = steps;
-    options.through_run = true;
-    return fitter_.fit(model, motion, options);
+    return fitter_.fit(model, motion, thorough(model, steps));
   }
 
   double ratio(const FitResult& now) const {
@@ -268,15 +263,7 @@ class Search {
       place(other);
       out_.effects.push_back(std::move(other));
     }
-    FitResult extended;
-    extended.good = true;
-    extended.model = best.model;
-    extended.misfit = best.misfit;
-    extended.motion = now.motion;
-    const std::vector<double> own =
-        fitter_.misfit(extended.model, extended.motion, Forcing::simulated);
-    extended.cost = own.empty() ? best.cost : std::accumulate(own.begin(), own.end(), 0.0);
-    now = std::move(extended);
+    now = fit(best.model, now.motion, 0);
   }
 
   const Plant& plant_;

@@ -6,8 +6,6 @@
 
 #include <Eigen/Cholesky>
 
-#include "estimator/diagnose/run_columns.h"
-
 namespace framewatch {
 namespace {
 
@@ -16,33 +14,34 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLongestStep = 0.5;  ///< of a stiffness, relative to the design
+constexpr double kLongestStep = 0.5;      ///< of a stiffness, relative to the design
+constexpr double kLeastStiffness = 0.02;  ///< the same
 constexpr int kTries = 7;
 
-double prior_cost(const Model& model, const std::vector<Unknown>& unknowns) {
-  double sum = 0;
-  for (const Unknown& u : unknowns)
-    if (u.sigma > 0) {
-      const double away = (value_of(model, u) - u.centre) / u.sigma;
-      sum += 0.5 * away * away;
-    }
-  return sum;
-}
-
-double total(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
+double total_misfit(const std::vector<Whitened>& systems) {
+  double out = 0;
+  for (const Whitened& s : systems) out += s.misfit;
+  return out;
 }
 
 }  // namespace
 
 double FitResult::total_misfit() const {
-  return total(misfit);
+  return std::accumulate(misfit.begin(), misfit.end(), 0.0);
 }
 
 Forcing forcing_of(const Model& model) {
   const bool laws = std::any_of(model.effects.begin(), model.effects.end(),
                                 [](const ModelEffect& e) { return e.element_law(); });
   return laws ? Forcing::simulated : Forcing::measured;
+}
+
+FitOptions thorough(const Model& model, int max_steps) {
+  FitOptions out;
+  out.forcing = forcing_of(model);
+  out.max_steps = max_steps;
+  out.through_run = true;
+  return out;
 }
 
 Fitter::Fitter(const Plant& plant, const std::vector<Stretch>& stretches,
@@ -64,43 +63,37 @@ double Fitter::expected(const Model& model) const {
   return out;
 }
 
-std::vector<double> Fitter::misfit(const Model& model, std::vector<MatrixXcd>& motion,
-                                   Forcing forcing, const Linearised* weights) const {
-  std::vector<double> out;
-  motion.resize(stretches_.size());
+double Fitter::prior_cost(const Model& model) const {
+  double sum = 0;
+  for (const Unknown& u : unknowns_of(plant_, model, tolerances_))
+    if (u.sigma > 0) {
+      const double away = (value_of(model, u) - u.centre) / u.sigma;
+      sum += 0.5 * away * away;
+    }
+  return sum;
+}
+
+std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<MatrixXcd>& motion,
+                                      Forcing forcing, const std::vector<Whitened>* weights) const {
+  std::vector<Whitened> out;
   for (std::size_t r = 0; r < stretches_.size(); ++r) {
-    Whitened system = whiten(plant_, model, stretches_[r], r, forcing, motion[r], ratio_[r],
-                             weights ? &weights->systems[r] : nullptr);
-    if (!system.good) return {};
-    out.push_back(system.misfit);
-    motion[r] = std::move(system.motion);
+    std::optional<std::vector<LawTrack>> tracks =
+        tracks_of(plant_, model, stretches_[r], r, forcing,
+                  r < motion.size() ? motion[r] : MatrixXcd(), ratio_[r]);
+    if (!tracks) return {};
+    out.push_back(whiten(plant_, model, stretches_[r], r, std::move(*tracks), ratio_[r],
+                         weights ? &(*weights)[r] : nullptr));
+    if (!out.back().good) return {};
   }
-  out.push_back(prior_cost(model, unknowns_of(plant_, model, tolerances_)));
   return out;
 }
 
-VectorXd Fitter::column(const Model& model, std::size_t record, const Whitened& system,
-                        const Unknown& unknown, bool through_run) const {
-  const Stretch& s = stretches_[record];
-  const int ratio = ratio_[record];
-  if (through_run && !system.tracks.empty() && !plant_.prescribed &&
-      moves_run(plant_, model, unknown)) {
-    std::optional<VectorXd> out = run_column(plant_, model, s, record, system, unknown, ratio);
-    const bool of_law = unknown.kind >= Unknown::Kind::knob &&
-                        model.effects[static_cast<std::size_t>(unknown.index)].element_law();
-    if (out && !of_law) *out += column_of(plant_, model, s, record, system, unknown, ratio);
-    if (out) return *out;
-  }
-  return column_of(plant_, model, s, record, system, unknown, ratio);
-}
-
-Linearised Fitter::linearise(const Model& model, const std::vector<MatrixXcd>& motion,
-                             Forcing forcing, bool through_run) const {
+Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
+                             bool through_run) const {
   Linearised out;
   out.unknowns = unknowns_of(plant_, model, tolerances_);
+  out.systems = std::move(systems);
   const auto count = static_cast<Index>(out.unknowns.size());
-  out.normal = MatrixXd::Zero(count, count);
-  out.gradient = VectorXd::Zero(count);
   out.prior = VectorXd::Zero(count);
   out.pull = VectorXd::Zero(count);
   for (Index u = 0; u < count; ++u) {
@@ -110,30 +103,28 @@ Linearised Fitter::linearise(const Model& model, const std::vector<MatrixXcd>& m
     out.prior[u] = 0.5 / (unknown.sigma * unknown.sigma);
     out.pull[u] = out.prior[u] * (unknown.centre - value_of(model, unknown));
   }
-  double misfit = 0, noise = 0;
-  for (std::size_t r = 0; r < stretches_.size(); ++r) {
-    const MatrixXcd driving = r < motion.size() ? motion[r] : MatrixXcd();
-    out.systems.push_back(whiten(plant_, model, stretches_[r], r, forcing, driving, ratio_[r]));
-    const Whitened& system = out.systems.back();
-    if (!system.good) return out;
-    MatrixXd columns(system.residual.size(), count);
-    for (Index u = 0; u < count; ++u)
-      columns.col(u) = column(model, r, system, out.unknowns[static_cast<std::size_t>(u)],
-                              through_run && forcing == Forcing::simulated);
+  for (std::size_t r = 0; r < stretches_.size(); ++r)
+    out.columns.push_back(columns_of(plant_, model, stretches_[r], r, out.systems[r], out.unknowns,
+                                     ratio_[r], through_run));
+  out.level = std::max(1.0, total_misfit(out.systems) / expected(model));
+  out.prior *= out.level;
+  out.pull *= out.level;
+  return out;
+}
+
+NormalEquations normal_equations(const Linearised& at) {
+  const auto count = static_cast<Index>(at.unknowns.size());
+  NormalEquations out{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
+  for (std::size_t r = 0; r < at.systems.size(); ++r) {
+    const Whitened& system = at.systems[r];
+    const MatrixXd& columns = at.columns[r];
     MatrixXd square = MatrixXd::Zero(count, count);
     square.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
     const MatrixXd cross = columns.transpose() * system.ends;
     out.normal += MatrixXd(square.selfadjointView<Eigen::Lower>()) -
                   cross * system.ends_factor.solve(cross.transpose());
     out.gradient += columns.transpose() * system.rest;
-    out.columns.push_back(std::move(columns));
-    out.cross.push_back(cross);
-    misfit += system.misfit;
-    noise += expected(r, model);
   }
-  out.level = std::max(1.0, misfit / noise);
-  out.prior *= out.level;
-  out.pull *= out.level;
   return out;
 }
 
@@ -141,81 +132,85 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
                       const FitOptions& options) const {
   FitResult out;
   out.model = start;
-  out.motion = motion;
-  std::vector<double> own = misfit(out.model, out.motion, options.forcing);
-  if (own.empty()) return out;
-  out.cost = total(own);
+  const auto take = [&](const std::vector<Whitened>& systems) {
+    out.motion.clear();
+    out.misfit.clear();
+    for (const Whitened& s : systems) {
+      out.motion.push_back(s.motion);
+      out.misfit.push_back(s.misfit);
+    }
+    out.cost = out.total_misfit() + prior_cost(out.model);
+  };
+  std::vector<Whitened> now = systems(out.model, motion, options.forcing);
+  if (now.empty()) return out;
+  take(now);
   FitResult best = out;
-  best.misfit = own;
   double damping = 1e-6;
   int worse = 0;
   for (; out.steps < options.max_steps; ++out.steps) {
-    const Linearised at = linearise(out.model, out.motion, options.forcing, options.through_run);
-    if (at.systems.size() != stretches_.size() || !at.systems.back().good) break;
+    const Linearised at = linearise(out.model, std::move(now), options.through_run);
+    NormalEquations equations = normal_equations(at);
     // Weights stay those of `at` within a step: a wrong model must not gain by making itself soft.
-    double before = at.level * prior_cost(out.model, at.unknowns);
-    for (const Whitened& system : at.systems) before += system.misfit;
-    MatrixXd normal = at.normal;
-    normal.diagonal() += at.prior;
-    VectorXd gradient = at.pull - at.gradient;
+    const double before = at.level * prior_cost(out.model) + total_misfit(at.systems);
+    equations.normal.diagonal() += at.prior;
     bool better = false;
     for (int i = 0; i < kTries && !better; ++i) {
-      MatrixXd damped = normal;
-      damped.diagonal().array() += 1e-12 + damping * normal.diagonal().array();
-      for (std::size_t u = 0; u < at.unknowns.size() && options.linear_fixed; ++u) {
-        if (at.unknowns[u].kind >= Unknown::Kind::knob) continue;
-        const auto c = static_cast<Index>(u);
-        damped.row(c).setZero();
-        damped.col(c).setZero();
-        damped(c, c) = 1;
-        gradient[c] = 0;
-      }
-      const VectorXd step = damped.ldlt().solve(gradient);
+      MatrixXd damped = equations.normal;
+      damped.diagonal().array() += 1e-12 + damping * equations.normal.diagonal().array();
+      const VectorXd step = damped.ldlt().solve(at.pull - equations.gradient);
       if (!step.allFinite()) {
         damping = std::max(1e-4, damping * 20);
         continue;
       }
-      double share = 1;
-      for (std::size_t u = 0; u < at.unknowns.size(); ++u)
-        if (at.unknowns[u].kind == Unknown::Kind::theta &&
-            at.unknowns[u].index < plant_.element_count())
-          share = std::min(share,
-                           kLongestStep / std::max(std::abs(step[static_cast<Index>(u)]), 1e-300));
-      Model trial = out.model;
-      for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
-        const Unknown& unknown = at.unknowns[u];
-        double to = value_of(trial, unknown) + share * step[static_cast<Index>(u)];
-        if (unknown.kind == Unknown::Kind::theta && unknown.index < plant_.element_count())
-          to = std::max(to, 0.02);
-        set_value(trial, unknown, to);
-      }
-      std::vector<MatrixXcd> trial_motion = out.motion;
-      const std::vector<double> then = misfit(trial, trial_motion, options.forcing, &at);
-      if (!then.empty() && total(then) + (at.level - 1) * then.back() < before) {
+      const Model trial = moved(out.model, at.unknowns, step);
+      const std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems);
+      if (!then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before) {
         better = true;
-        out.model = std::move(trial);
-        out.motion = std::move(trial_motion);
+        out.model = trial;
+        now = reweighted(trial, then);
         damping = std::max(1e-9, damping / 10);
       } else {
         damping = std::max(1e-3, damping * 10);
       }
     }
-    if (!better) break;
-    own = misfit(out.model, out.motion, options.forcing);
-    if (own.empty()) break;
-    out.cost = total(own);
+    if (!better || now.empty()) break;
+    take(now);
     const double gained = best.cost - out.cost;
-    if (gained > 0) {
-      best = out;
-      best.misfit = own;
-    }
+    if (gained > 0) best = out;
     worse = gained > std::max(options.tolerance, 1e-4 * out.cost) ? 0 : worse + 1;
     if (worse >= 2 || (worse == 1 && std::abs(gained) < options.tolerance)) break;
   }
   best.steps = out.steps;
-  best.misfit.pop_back();
   best.good = true;
   return best;
+}
+
+Model Fitter::moved(const Model& model, const std::vector<Unknown>& unknowns,
+                    const VectorXd& step) const {
+  const auto is_stiffness = [&](const Unknown& u) {
+    return u.kind == Unknown::Kind::theta && u.index < plant_.element_count();
+  };
+  double share = 1;
+  for (std::size_t u = 0; u < unknowns.size(); ++u)
+    if (is_stiffness(unknowns[u]))
+      share =
+          std::min(share, kLongestStep / std::max(std::abs(step[static_cast<Index>(u)]), 1e-300));
+  Model out = model;
+  for (std::size_t u = 0; u < unknowns.size(); ++u) {
+    const double to = value_of(out, unknowns[u]) + share * step[static_cast<Index>(u)];
+    set_value(out, unknowns[u], is_stiffness(unknowns[u]) ? std::max(to, kLeastStiffness) : to);
+  }
+  return out;
+}
+
+std::vector<Whitened> Fitter::reweighted(const Model& model,
+                                         const std::vector<Whitened>& systems) const {
+  std::vector<Whitened> out;
+  for (std::size_t r = 0; r < stretches_.size(); ++r) {
+    out.push_back(whiten(plant_, model, stretches_[r], r, systems[r].tracks, ratio_[r]));
+    if (!out.back().good) return {};
+  }
+  return out;
 }
 
 }  // namespace framewatch

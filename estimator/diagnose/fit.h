@@ -32,28 +32,35 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
 double value_of(const Model& model, const Unknown& unknown);
 void set_value(Model& model, const Unknown& unknown, double value);
 
-/// The whitened equations of all stretches around one model, and their normal equations.
+/// The whitened equations of all stretches around one model.
 struct Linearised {
   std::vector<Unknown> unknowns;
   std::vector<Whitened> systems;         ///< of each stretch
   std::vector<Eigen::MatrixXd> columns;  ///< of each stretch: d(rows)/d(unknowns)
-  std::vector<Eigen::MatrixXd> cross;    ///< of each stretch: unknowns x end terms
-  Eigen::MatrixXd normal;                ///< end terms eliminated, prior not included
-  Eigen::VectorXd gradient;              ///< columns' * rest
   /// Misfit over what noise explains, at least 1: a model that does not fit must not bend what is
   /// only tolerated, so the prior weighs as much more.
   double level = 1;
   Eigen::VectorXd prior, pull;  ///< level / (2 sigma^2); the same times (centre - value)
 };
 
+/// Of all stretches together, end terms eliminated, prior not included.
+struct NormalEquations {
+  Eigen::MatrixXd normal;
+  Eigen::VectorXd gradient;  ///< columns' * rest
+};
+
+NormalEquations normal_equations(const Linearised& at);
+
 struct FitOptions {
   Forcing forcing = Forcing::measured;
   int max_steps = 12;
-  double tolerance = 0.3;     ///< converged when the cost falls by less than this
-  bool linear_fixed = false;  ///< only what effects have moves
+  double tolerance = 0.3;  ///< converged when the cost falls by less than this
   /// Derivatives go through the free run: exact where laws act strongly, dearer.
   bool through_run = false;
 };
+
+/// Free runs with derivatives through them, of a linear model its equations.
+FitOptions thorough(const Model& model, int max_steps);
 
 struct FitResult {
   bool good = false;
@@ -77,13 +84,18 @@ class Fitter {
 
   FitResult fit(const Model& start, const std::vector<Eigen::MatrixXcd>& motion,
                 const FitOptions& options) const;
-  Linearised linearise(const Model& model, const std::vector<Eigen::MatrixXcd>& motion,
-                       Forcing forcing, bool through_run = false) const;
-  /// Misfit of every stretch and the prior's cost at the end; empty when the model cannot be
-  /// computed. motion is updated.
-  /// weights: of a linearisation, else the model's own.
-  std::vector<double> misfit(const Model& model, std::vector<Eigen::MatrixXcd>& motion,
-                             Forcing forcing, const Linearised* weights = nullptr) const;
+  /// The equations of every stretch; empty when the model cannot be computed. weights: those of a
+  /// linearisation, else the model's own.
+  std::vector<Whitened> systems(const Model& model, const std::vector<Eigen::MatrixXcd>& motion,
+                                Forcing forcing,
+                                const std::vector<Whitened>* weights = nullptr) const;
+  /// systems: of the model.
+  Linearised linearise(const Model& model, std::vector<Whitened> systems,
+                       bool through_run = false) const;
+  double prior_cost(const Model& model) const;
+  /// The model a step of the unknowns on, stiffnesses neither far nor below nothing.
+  Model moved(const Model& model, const std::vector<Unknown>& unknowns,
+              const Eigen::VectorXd& step) const;
   /// Degrees of freedom of a stretch: what the misfit is when nothing but noise is left.
   double expected(std::size_t record, const Model& model) const;
   double expected(const Model& model) const;  ///< of all
@@ -93,8 +105,8 @@ class Fitter {
   int ratio(std::size_t record) const { return ratio_[record]; }
 
  private:
-  Eigen::VectorXd column(const Model& model, std::size_t record, const Whitened& system,
-                         const Unknown& unknown, bool through_run) const;
+  /// Systems of the model with its own weights, laws as they acted.
+  std::vector<Whitened> reweighted(const Model& model, const std::vector<Whitened>& systems) const;
 
   const Plant& plant_;
   const std::vector<Stretch>& stretches_;
@@ -102,9 +114,9 @@ class Fitter {
   std::vector<int> ratio_;
 };
 
-/// One unknown's effect on a whitened stretch.
-Eigen::VectorXd column_of(const Plant& plant, const Model& model, const Stretch& stretch,
-                          std::size_t record, const Whitened& system, const Unknown& unknown,
-                          int ratio);
+/// What the unknowns change in a whitened stretch: rows x unknowns.
+Eigen::MatrixXd columns_of(const Plant& plant, const Model& model, const Stretch& stretch,
+                           std::size_t record, const Whitened& system,
+                           const std::vector<Unknown>& unknowns, int ratio, bool through_run);
 
 }  // namespace framewatch

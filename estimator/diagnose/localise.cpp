@@ -14,6 +14,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double kSettled = 1e-3;  ///< change of the misfit, relative
+
 /// Squares and products of unknowns, end terms and residual of one stretch.
 struct Square {
   MatrixXd columns;  ///< unknowns, end terms, residual
@@ -170,14 +172,9 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     one.misfit = left + reduced.tolerated;
     one.ratio = left / reduced.expected;
     one.record_ratio = reduced.record_ratio;
-    one.model = model;
-    for (std::size_t u = 0; u < kept.size(); ++u) {
-      const Unknown& unknown = at.unknowns[static_cast<std::size_t>(kept[u])];
-      double to = value_of(model, unknown) + step[static_cast<Index>(u)];
-      if (unknown.kind == Unknown::Kind::theta && unknown.index < fitter.plant().element_count())
-        to = std::max(to, 0.05);
-      set_value(one.model, unknown, to);
-    }
+    VectorXd whole = VectorXd::Zero(static_cast<Index>(at.unknowns.size()));
+    whole(kept) = step;
+    one.model = fitter.moved(model, at.unknowns, whole);
   });
   return out;
 }
@@ -193,8 +190,9 @@ Localisation localise(const Fitter& fitter, const Model& start,
   driving.resize(fitter.stretches().size());
   double before = 1e300;
   for (int step = 0; step <= steps; ++step) {
-    const Linearised at = fitter.linearise(model, driving, Forcing::measured);
-    if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return out;
+    std::vector<Whitened> systems = fitter.systems(model, driving, Forcing::measured);
+    if (systems.empty()) return out;
+    const Linearised at = fitter.linearise(model, std::move(systems));
     if (takes_everything(fitter, suspects)) return everything(fitter, model, suspects, at.systems);
     const std::vector<Index> kept = moving(at, true);
     std::vector<Square> squares;
@@ -211,23 +209,13 @@ Localisation localise(const Fitter& fitter, const Model& start,
       out.motion.clear();
       for (const Whitened& system : at.systems) out.motion.push_back(system.calibrated);
     }
-    if (step == steps || std::abs(before - reduced.misfit) < 1e-3 * reduced.misfit) break;
+    out.settled = std::abs(before - reduced.misfit) < kSettled * reduced.misfit;
+    if (step == steps || out.settled) break;
     before = reduced.misfit;
     const VectorXd change =
         step_of(reduced, at, std::max(1.0, reduced.misfit / reduced.expected), kept);
     if (!change.allFinite()) break;
-    double share = 1;
-    for (std::size_t u = 0; u < at.unknowns.size(); ++u)
-      if (at.unknowns[u].kind == Unknown::Kind::theta &&
-          at.unknowns[u].index < plant.element_count())
-        share = std::min(share, 0.5 / std::max(std::abs(change[static_cast<Index>(u)]), 1e-300));
-    for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
-      const Unknown& unknown = at.unknowns[u];
-      double to = value_of(model, unknown) + share * change[static_cast<Index>(u)];
-      if (unknown.kind == Unknown::Kind::theta && unknown.index < plant.element_count())
-        to = std::max(to, 0.02);
-      set_value(model, unknown, to);
-    }
+    model = fitter.moved(model, at.unknowns, change);
     for (std::size_t r = 0; r < at.systems.size(); ++r) driving[r] = at.systems[r].calibrated;
   }
   return out;

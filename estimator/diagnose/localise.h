@@ -28,6 +28,7 @@ struct Localisation {
   double misfit = 1e300;  ///< of all stretches, with the prior
   double ratio = 1e300;   ///< over what noise explains; 1: the rest of the building fits
   std::vector<double> record_ratio;
+  bool settled = false;  ///< further steps would change nothing
   Model model;
   std::vector<Eigen::MatrixXcd> motion;
 };

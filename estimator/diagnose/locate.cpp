@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <utility>
 
 namespace framewatch {
 namespace {
@@ -14,23 +16,46 @@ constexpr std::size_t kMostAsLikely = 16;
 constexpr double kChance = 4;  ///< standard deviations of the misfit under noise
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
 constexpr int kSteps = 8, kPairSteps = 6;
+constexpr int kGlance = 3;      ///< steps after which it is seen what leads
+constexpr double kStillIn = 2;  ///< times the margin: what is farther behind then stays there
 
 void sort_by_ratio(std::vector<Localisation>& list) {
   std::stable_sort(list.begin(), list.end(),
                    [](const Localisation& a, const Localisation& b) { return a.ratio < b.ratio; });
 }
 
-/// Localisations again, from where one step has led.
+/// Ratio above which a place is too far behind the best to be tried.
+double margin_of(const Localisation& best) {
+  return 1 + 2 * std::max(best.ratio - 1, 0.05) + 0.1;
+}
+
+/// The same of places that have not come to the end.
+double wide_margin_of(const Localisation& best) {
+  return 1 + kStillIn * (margin_of(best) - 1);
+}
+
+/// Localisations again, from where one step has led. Those whose ratio after a few steps is above
+/// the limit that goes with the best stay there.
 std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
                                    const std::vector<const Localisation*>& starts, int steps,
+                                   const std::function<double(const Localisation&)>& limit_of,
                                    const Parallel& parallel) {
   std::vector<Localisation> out(starts.size());
   run_all(parallel, static_cast<int>(starts.size()), [&](int i) {
     const Localisation& from = *starts[static_cast<std::size_t>(i)];
     out[static_cast<std::size_t>(i)] = localise(
-        fitter, from.model.theta.size() > 0 ? from.model : now.model, {}, from.suspects, steps);
+        fitter, from.model.theta.size() > 0 ? from.model : now.model, {}, from.suspects, kGlance);
   });
   std::erase_if(out, [](const Localisation& l) { return l.model.theta.size() == 0; });
+  if (out.empty()) return out;
+  sort_by_ratio(out);
+  const double limit = limit_of(out.front());
+  run_all(parallel, static_cast<int>(out.size()), [&](int i) {
+    Localisation& one = out[static_cast<std::size_t>(i)];
+    if (one.settled || one.ratio > limit) return;
+    const Localisation on = localise(fitter, one.model, one.motion, one.suspects, steps - kGlance);
+    if (on.misfit < one.misfit) one = on;
+  });
   sort_by_ratio(out);
   return out;
 }
@@ -43,8 +68,9 @@ bool is_global(const Suspect& s) {
 
 Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel) {
   Located out;
-  const Linearised at = fitter.linearise(now.model, now.motion, Forcing::measured);
-  if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return out;
+  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, Forcing::measured);
+  if (systems.empty()) return out;
+  const Linearised at = fitter.linearise(now.model, std::move(systems));
   std::vector<std::vector<Suspect>> lists;
   for (const Suspect& s : suspects_of(fitter.plant(), now.model)) lists.push_back({s});
   out.once = localise_once(fitter, at, now.model, lists, parallel);
@@ -57,15 +83,16 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
     global += is_global(out.once[i].suspects.front());
     starts.push_back(&out.once[i]);
   }
-  out.places = iterated(fitter, now, starts, kSteps, parallel);
+  out.places = iterated(fitter, now, starts, kSteps, wide_margin_of, parallel);
   return out;
 }
 
 std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
                                        const std::vector<Localisation>& once,
                                        const Parallel& parallel) {
-  const Linearised at = fitter.linearise(now.model, now.motion, Forcing::measured);
-  if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return {};
+  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, Forcing::measured);
+  if (systems.empty()) return {};
+  const Linearised at = fitter.linearise(now.model, std::move(systems));
   std::vector<Suspect> all;
   for (const Localisation& l : once)
     if (l.suspects.front().size() == 1) all.push_back(l.suspects.front());
@@ -79,7 +106,7 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
   sort_by_ratio(pairs);
   std::vector<const Localisation*> starts;
   for (std::size_t i = 0; i < std::min(kPairs, pairs.size()); ++i) starts.push_back(&pairs[i]);
-  return iterated(fitter, now, starts, kPairSteps, parallel);
+  return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
 }
 
 std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
@@ -96,8 +123,9 @@ std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
     if (l.ratio > most || starts.size() >= kMostAsLikely) break;
     if (s.kind != Suspect::Kind::element && !seen) starts.push_back(&l);
   }
-  std::vector<Localisation> out = iterated(fitter, now, starts, kSteps, parallel);
   const double limit = located.places.front().ratio + chance;
+  std::vector<Localisation> out = iterated(
+      fitter, now, starts, kSteps, [&](const Localisation&) { return limit + chance; }, parallel);
   std::erase_if(out, [&](const Localisation& l) { return l.ratio > limit; });
   return out;
 }
@@ -106,9 +134,9 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   std::vector<Localisation> out;
   std::map<Suspect::Kind, int> of_kind;
   if (places.empty()) return out;
-  const double margin = 2 * std::max(places.front().ratio - 1, 0.05) + 0.1;
+  const double limit = margin_of(places.front());
   for (const Localisation& place : places) {
-    if (place.ratio - 1 > margin || out.size() >= kMostContenders) break;
+    if (place.ratio > limit || out.size() >= kMostContenders) break;
     const bool another_kind = of_kind[place.suspects.front().kind]++ == 0;
     if (out.size() < kContenders || another_kind) out.push_back(place);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -15,9 +16,10 @@ using Eigen::VectorXd;
 
 void set_errors(const Fitter& fitter, const Model& model,
                 const std::vector<Eigen::MatrixXcd>& motion, std::vector<FoundEffect>& effects) {
-  const Linearised at = fitter.linearise(model, motion, forcing_of(model), true);
-  if (at.systems.size() != fitter.stretches().size() || !at.systems.back().good) return;
-  MatrixXd normal = at.normal;
+  std::vector<Whitened> systems = fitter.systems(model, motion, forcing_of(model));
+  if (systems.empty()) return;
+  const Linearised at = fitter.linearise(model, std::move(systems), true);
+  MatrixXd normal = normal_equations(at).normal;
   normal.diagonal() += at.prior;
   const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();

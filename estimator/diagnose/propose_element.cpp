@@ -73,11 +73,12 @@ class ElementProposals {
   }
 
  private:
-  std::vector<std::vector<VectorXcd>> linear_columns() const {
+  /// Of every record: those of a linear element, and the law's.
+  std::vector<std::vector<VectorXcd>> columns_with(const ModelEffect& effect) const {
     std::vector<std::vector<VectorXcd>> out;
     for (std::size_t r = 0; r < needed_.size(); ++r) {
-      const VectorXd& w = fitter_.stretches()[r].w;
-      out.push_back({needed_[r].d, VectorXcd(needed_[r].d.array() * w.array() * kJ)});
+      out.push_back(linear_columns(needed_[r], fitter_.stretches()[r].w));
+      out.back().push_back(law_bins(effect, r));
     }
     return out;
   }
@@ -117,9 +118,7 @@ class ElementProposals {
     ModelEffect chosen;
     for (const double value : grid) {
       const ModelEffect effect = effect_of(form, knobs(value));
-      auto columns = linear_columns();
-      for (std::size_t r = 0; r < needed_.size(); ++r) columns[r].push_back(law_bins(effect, r));
-      const ScalarFit fit = scalar_fit(needed_, columns);
+      const ScalarFit fit = scalar_fit(needed_, columns_with(effect));
       const bool dissipates = form == LawForm::friction || form == LawForm::power_damping ||
                               form == LawForm::hysteresis || form == LawForm::pinched;
       if (dissipates && fit.coefficients[2] < 0) continue;
@@ -146,10 +145,9 @@ class ElementProposals {
             ModelEffect one = effect;
             one.record_knobs[r] = {bounded_knob(t0, 0.1, -0.2 * seconds, seconds),
                                    logarithmic_knob(length, 0.02, 2 * seconds)};
-            std::vector<std::vector<VectorXcd>> columns = linear_columns();
-            columns = {columns[r]};
-            columns[0].push_back(law_bins(one, r));
-            const ScalarFit fit = scalar_fit({needed_[r]}, columns);
+            std::vector<VectorXcd> columns = linear_columns(needed_[r], fitter_.stretches()[r].w);
+            columns.push_back(law_bins(one, r));
+            const ScalarFit fit = scalar_fit({needed_[r]}, {columns});
             if (fit.misfit < lowest) {
               lowest = fit.misfit;
               effect.record_knobs[r] = one.record_knobs[r];
@@ -157,10 +155,8 @@ class ElementProposals {
           }
         effect.record_knobs[r][1].free = !sudden;
       }
-      auto columns = linear_columns();
-      for (std::size_t r = 0; r < needed_.size(); ++r) columns[r].push_back(law_bins(effect, r));
       add(effect, sudden ? EffectKind::stiffness_drop : EffectKind::stiffness_drift,
-          scalar_fit(needed_, columns));
+          scalar_fit(needed_, columns_with(effect)));
     }
   }
 

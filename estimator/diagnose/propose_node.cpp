@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 #include "estimator/diagnose/propose_parts.h"
 
@@ -49,8 +50,7 @@ void add_resonator(const Fitter& fitter, const Localisation& place,
         const VectorXd& w = fitter.stretches()[r].w;
         const double wr = 2 * M_PI * hz;
         const auto spring = (wr * wr + 2 * h * wr * w.array() * kJ).eval();
-        if (has_element)
-          columns[r] = {needed[r].d, VectorXcd(needed[r].d.array() * w.array() * kJ)};
+        if (has_element) columns[r] = linear_columns(needed[r], w);
         columns[r].push_back((accel[r].array() * spring / (spring - w.array().square())).matrix());
       }
       const ScalarFit fit = scalar_fit(needed, columns);
@@ -139,10 +139,9 @@ void add_harmonic(const Fitter& fitter, const Localisation& place,
       }
       // Restoring force is counted; one from outside has the other sign.
       std::vector<VectorXcd> columns{-band_of(c, s, 1), -band_of(q, s, 1)};
-      if (has_element) {
-        columns.push_back(needed[r].d);
-        columns.push_back(needed[r].d.array() * s.w.array() * kJ);
-      }
+      if (has_element)
+        for (VectorXcd& column : linear_columns(needed[r], s.w))
+          columns.push_back(std::move(column));
       const ScalarFit fit = scalar_fit({needed[r]}, {columns});
       if (fit.misfit < lowest.misfit) {
         lowest = fit;
@@ -188,7 +187,7 @@ Seconds seconds_of(const Plant& plant, const Stretch& s, const VectorXcd& force)
 /// A force without what the element that it may as well be of would do linearly.
 VectorXcd beyond_linear(const Stretch& s, const Needed& needed) {
   if (needed.d.size() == 0) return needed.force;
-  const std::vector<VectorXcd> columns{needed.d, needed.d.array() * s.w.array() * kJ};
+  const std::vector<VectorXcd> columns = linear_columns(needed, s.w);
   const VectorXd fit = scalar_fit({needed}, {columns}).coefficients;
   return needed.force - fit[0] * columns[0] - fit[1] * columns[1];
 }
@@ -220,7 +219,7 @@ double share_at_rest(const Plant& plant, const Stretch& s, const Needed& needed)
 /// linearly: then it is a law of the element, whatever that law is called.
 bool follows_motion(const Stretch& s, const Needed& needed, int ratio) {
   if (needed.d_t.size() == 0) return false;
-  std::vector<VectorXcd> columns{needed.d, needed.d.array() * s.w.array() * kJ};
+  std::vector<VectorXcd> columns = linear_columns(needed, s.w);
   const double linear = scalar_fit({needed}, {columns}).misfit;
   const auto d = needed.d_t.array(), v = needed.v_t.array();
   const double slow = kSlow * std::sqrt(v.square().mean());

@@ -44,6 +44,10 @@ Knob bounded_knob(double value, double step, double low, double high, bool free)
   return out;
 }
 
+std::vector<VectorXcd> linear_columns(const Needed& needed, const VectorXd& w) {
+  return {needed.d, needed.d.array() * w.array() * kJ};
+}
+
 ScalarFit scalar_fit(const std::vector<Needed>& needed,
                      const std::vector<std::vector<VectorXcd>>& columns) {
   const auto count = static_cast<Index>(columns.front().size());

@@ -21,6 +21,9 @@ Knob linear_knob(double value, double step);
 Knob logarithmic_knob(double value, double low, double high);
 Knob bounded_knob(double value, double step, double low, double high, bool free = true);
 
+/// Columns of a linear element with the needed deformation: its spring, its damper.
+std::vector<Eigen::VectorXcd> linear_columns(const Needed& needed, const Eigen::VectorXd& w);
+
 /// Weighted least squares of the needed force on complex columns with real coefficients; the last
 /// is the law's.
 struct ScalarFit {

@@ -1,7 +1,6 @@
 #include "estimator/diagnose/run_columns.h"
 
 #include <algorithm>
-#include <complex>
 
 namespace framewatch {
 namespace {
@@ -30,9 +29,6 @@ bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
 std::optional<VectorXd> run_column(const Plant& plant, const Model& model, const Stretch& stretch,
                                    std::size_t record, const Whitened& system,
                                    const Unknown& unknown, int ratio) {
-  if (unknown.kind == Unknown::Kind::record_knob &&
-      static_cast<std::size_t>(unknown.record) != record)
-    return VectorXd::Zero(system.residual.size());
   const double change = unknown.kind == Unknown::Kind::theta ? kChange : 1.0;
   Model moved = model;
   set_value(moved, unknown, value_of(model, unknown) + change);
@@ -43,13 +39,10 @@ std::optional<VectorXd> run_column(const Plant& plant, const Model& model, const
   for (const ModelEffect& e : model.effects) {
     if (!e.element_law()) continue;
     const LawTrack &from = system.tracks[law], &to = run.tracks[law];
-    const Equivalent& linear = system.linear[law];
     const VectorXcd force = band_of((to.force - from.force) / change, stretch, ratio);
     const VectorXcd d = band_of((to.d - from.d) / change, stretch, ratio);
-    const VectorXcd beyond =
-        force.array() - d.array() * (linear.stiffness + std::complex<double>(0, 1) *
-                                                            linear.damping * stretch.w.array());
-    out += whiten_rows(system, plant.building.act.col(element_of(plant, e.place)), beyond);
+    out += whiten_rows(system, plant.building.act.col(element_of(plant, e.place)),
+                       beyond(system.linear[law], force, d, stretch.w));
     ++law;
   }
   return out;

@@ -85,7 +85,7 @@ bool is_named(const TrialContext& c, const Trial& t) {
   return !contains(c.without, t.kind) && !(t.second && contains(c.without, t.second->first));
 }
 
-FitOptions run_options(const Model& model) {
+FitOptions to_the_end(const Model& model) {
   FitOptions options;
   options.forcing = forcing_of(model);
   options.max_steps = options.forcing == Forcing::simulated ? kRunSteps : kLinearSteps;
@@ -115,14 +115,12 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     if (f.candidate->second || static_cast<std::size_t>(same) < kLawsRun) kept.push_back(f);
   }
   std::vector<FitResult> runs(kept.size());
-  const auto run = [&](int steps, const Model& model, const std::vector<Eigen::MatrixXcd>& motion) {
-    FitOptions options = run_options(model);
-    options.max_steps = std::min(options.max_steps, steps);
-    return c.fitter.fit(model, motion, options);
-  };
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    runs[at] = run(kGlance, kept[at].fit.model, kept[at].fit.motion);
+    const FitResult& from = kept[at].fit;
+    FitOptions options = to_the_end(from.model);
+    options.max_steps = kGlance;
+    runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
   double least = 1e300;
   for (const FitResult& r : runs)
@@ -133,7 +131,8 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     const auto at = static_cast<std::size_t>(i);
     if (!runs[at].good) return;
     if (runs[at].cost < kStillIn * least && runs[at].steps == kGlance) {
-      const FitResult on = run(kLinearSteps, runs[at].model, runs[at].motion);
+      const FitResult on =
+          c.fitter.fit(runs[at].model, runs[at].motion, to_the_end(runs[at].model));
       if (on.good && on.cost < runs[at].cost) runs[at] = on;
     }
     const Fitted& f = kept[at];
@@ -184,10 +183,7 @@ void free_shapes(Model& model) {
 Trial sharpened(const TrialContext& c, const Trial& trial) {
   Model start = trial.model;
   free_shapes(start);
-  FitOptions options = run_options(start);
-  options.max_steps = kSharpSteps;
-  options.through_run = true;
-  const FitResult run = c.fitter.fit(start, {}, options);
+  const FitResult run = c.fitter.fit(start, {}, thorough(start, kSharpSteps));
   if (!run.good) return trial;
   Trial out = trial;
   take(c, run, out);

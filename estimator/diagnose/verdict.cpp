@@ -68,11 +68,7 @@ void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
       stretches.begin() + static_cast<long>(std::min(holdout_from, stretches.size())));
   const Fitter train(fitter.plant(), seen, fitter.tolerances());
   const auto of_train = [&](const Model& start) {
-    FitOptions options;
-    options.forcing = forcing_of(start);
-    options.max_steps = kTrainSteps;
-    options.through_run = true;
-    const FitResult fitted = train.fit(start, {}, options);
+    const FitResult fitted = train.fit(start, {}, thorough(start, kTrainSteps));
     return gaps_of(fitter, fitted.good ? fitted.model : start);
   };
   out.before = of_train(out.linear);

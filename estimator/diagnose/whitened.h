@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -34,7 +35,6 @@ struct Whitened {
   std::vector<Eigen::VectorXcd> force;      ///< of the element laws: spectrum, N
   Eigen::VectorXd residual;                 ///< before end terms
   Eigen::MatrixXd ends;                     ///< columns of the end terms
-  Eigen::MatrixXd ends_normal;
   Eigen::LDLT<Eigen::MatrixXd> ends_factor;
   Eigen::VectorXd rest;  ///< residual without what end terms explain
   double misfit = 0;     ///< sum of squares of `rest`
@@ -42,14 +42,34 @@ struct Whitened {
   Eigen::Index bins() const { return calibrated.cols(); }
 };
 
+/// Spectra of the axes without the errors that the model gives them.
+Eigen::MatrixXcd calibrated(const Model& model, const Stretch& stretch);
+
 /// Variance of every axis' noise in a bin, of the motion that the model says it is of.
 Eigen::VectorXd bin_noise(const Model& model, const Stretch& stretch, Eigen::Index bin);
 
-/// motion: axes x bins that drives the laws when forcing is `measured`; empty: the measured one.
+/// What the element laws do. motion: axes x bins that drives them when forcing is `measured`;
+/// empty: what the sensors measured. Empty when the model runs away.
+std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& model,
+                                               const Stretch& stretch, std::size_t record,
+                                               Forcing forcing, const Eigen::MatrixXcd& motion,
+                                               int ratio);
+
+/// tracks: of the model's element laws.
 /// weights: whose whitener and end terms are taken; null: the model's own.
 Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
-                Forcing forcing, const Eigen::MatrixXcd& motion, int ratio,
-                const Whitened* weights = nullptr);
+                std::vector<LawTrack> tracks, int ratio, const Whitened* weights = nullptr);
+/// The same of tracks_of(); not good when there are none.
+Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
+                Forcing forcing, const Eigen::MatrixXcd& motion, int ratio);
+
+Equivalent equivalent_of(const LawTrack& track);
+/// Spectrum of a force without what a linear element of deformation d does.
+Eigen::VectorXcd beyond(const Equivalent& linear, const Eigen::VectorXcd& force,
+                        const Eigen::VectorXcd& d, const Eigen::VectorXd& w);
+/// Spectrum of a harmonic force from outside.
+Eigen::VectorXcd harmonic_bins(const ModelEffect& effect, const Stretch& stretch,
+                               std::size_t record);
 
 /// equations x bins of forces -> whitened rows.
 Eigen::VectorXd whiten_rows(const Whitened& system, const Eigen::MatrixXcd& forces);
