@@ -1,5 +1,6 @@
 #include "daemon/diagnose_command.h"
 
+#include <malloc.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config_problems.h"
 #include "daemon/diagnose_output.h"
 #include "daemon/diagnose_records.h"
 #include "daemon/workers.h"
@@ -85,12 +87,21 @@ void check_stretches(const std::vector<DiagnoseRecord>& records,
   }
 }
 
+/// Matrices of megabytes come and go by the thousand: from the heap, not each time from the kernel.
+void keep_freed_memory() {
+  constexpr int kLargest = 1 << 30;
+  ::mallopt(M_ARENA_MAX, 1);
+  ::mallopt(M_MMAP_THRESHOLD, kLargest);
+  ::mallopt(M_TRIM_THRESHOLD, kLargest);
+}
+
 }  // namespace
 
 int diagnose_command(const DiagnoseArguments& a) {
+  keep_freed_memory();
   std::vector<ConfigProblem> config_problems;
   const std::optional<Config> config = load_config(a.config, config_problems);
-  for (const ConfigProblem& p : config_problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(config_problems);
   if (!config) return kBadInput;
 
   std::vector<std::string> problems;

@@ -45,7 +45,7 @@ Json both(const DiagnoseOutput& o, const std::vector<Gap>& gaps, bool floor) {
 
 /// Name, place, parameters.
 Json effect_json(const DiagnoseOutput& o, const FoundEffect& f) {
-  const Effect effect = catalogue_effect(o.plant, o.stretches, f, o.diagnosis.declared);
+  const Effect effect = catalogue_effect(o.plant, o.stretches, f, o.diagnosis.model);
   Json parameters = parameters_json(effect);
   std::size_t index = 0;
   for (auto& [key, value] : parameters.items()) {

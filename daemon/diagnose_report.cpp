@@ -177,7 +177,7 @@ std::string ranking(const DiagnoseOutput& o, const std::vector<Trial>& trials, d
 std::string effects_section(const DiagnoseOutput& o) {
   std::string out;
   for (const FoundEffect& f : o.diagnosis.effects) {
-    const Effect effect = catalogue_effect(o.plant, o.stretches, f, o.diagnosis.declared);
+    const Effect effect = catalogue_effect(o.plant, o.stretches, f, o.diagnosis.model);
     const EffectDescription& d = describe(effect.kind);
     out += "<h2>" + html_text(std::string(d.name)) + ", " + place(o, effect.place) + "</h2>\n<p>" +
            html_text(std::string(d.equation)) + "</p>\n";
