@@ -10,6 +10,7 @@
 
 #include "daemon/clocks.h"
 #include "daemon/config.h"
+#include "daemon/config_problems.h"
 #include "drivers/encoded.h"
 #include "drivers/lcm_source.h"
 #include "drivers/message_check.h"
@@ -51,7 +52,7 @@ acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
 int acknowledge_command(const AcknowledgeArguments& a) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(a.config, problems);
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems);
   const std::optional<std::int64_t> id = number_of(a.event);
   if (!id)
     fmt::print(stderr, "framewatch acknowledge: '{}' is neither the number of an event nor all\n",

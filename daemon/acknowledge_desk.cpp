@@ -10,7 +10,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kStatus_us = 1'000'000;
 constexpr std::size_t kMostText = 500;  ///< bytes of who, and of the comment
 
 void add(acknowledged_t& out, const event_t& e, const Acknowledgement& by) {
@@ -76,9 +75,8 @@ void AcknowledgeDesk::look(const std::vector<RaisedEvents*>& raised, const Done&
   const std::vector<acknowledge_t> requests = std::exchange(requests_, {});
   for (const acknowledge_t& request : requests)
     if (request.request != answered_) obey(request, raised, done);
-  const bool due = now_us >= next_us_ || next_us_ > now_us + kStatus_us;
+  const bool due = second_.due(now_us);
   if (requests.empty() && !due) return;
-  next_us_ = now_us + kStatus_us;
   acknowledged_t out{};
   out.time_us = now_us;
   out.answered = answered_;

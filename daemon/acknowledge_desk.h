@@ -10,6 +10,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "daemon/config.h"
+#include "daemon/once_a_second.h"
 #include "daemon/raised_events.h"
 
 namespace framewatch::daemon {
@@ -43,7 +44,8 @@ class AcknowledgeDesk {
   lcm::LCM& lcm_;
   lcm::Subscription* subscription_;
   std::vector<acknowledge_t> requests_;
-  std::int64_t answered_ = 0, next_us_ = INT64_MIN;
+  std::int64_t answered_ = 0;
+  OnceASecond second_;
   std::string refused_;
 };
 

@@ -5,11 +5,7 @@
 #include "daemon/webhook.h"
 
 namespace framewatch::daemon {
-namespace {
-
-constexpr std::int64_t kStatus_us = 1'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 ActionReport::ActionReport(const Config& config, lcm::LCM& lcm) : config_(config), lcm_(lcm) {
   reconfigure();
@@ -51,8 +47,7 @@ void ActionReport::acknowledged(const event_t& event) {
 }
 
 void ActionReport::look(std::int64_t now_us) {
-  if (!config_.actions || (now_us < next_us_ && next_us_ <= now_us + kStatus_us)) return;
-  next_us_ = now_us + kStatus_us;
+  if (!config_.actions || !second_.due(now_us)) return;
   const action_status_t now = status(now_us);
   lcm_.publish(config_.lcm.prefix + "ACTIONS", &now);
 }

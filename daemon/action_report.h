@@ -8,6 +8,7 @@
 
 #include "daemon/action_way.h"
 #include "daemon/config.h"
+#include "daemon/once_a_second.h"
 #include "daemon/raised_events.h"
 
 namespace framewatch::daemon {
@@ -35,7 +36,7 @@ class ActionReport {
 
   const Config& config_;
   lcm::LCM& lcm_;
-  std::int64_t next_us_ = INT64_MIN;
+  OnceASecond second_;
   std::optional<ActionWay> command_, webhook_;  ///< once there was one
 };
 

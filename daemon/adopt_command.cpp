@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "daemon/config.h"
+#include "daemon/config_problems.h"
 #include "daemon/file_digest.h"
 #include "daemon/gap_model.h"
 #include "drivers/text_output.h"
@@ -31,7 +32,7 @@ int adopt(const AdoptArguments& a) {
     error = drivers::write_text_file(config->gap->model_path, *text);
     if (!error.empty()) fmt::print(stderr, "{}\n", error);
   }
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems);
   if (!problems.empty() || !error.empty()) return kBadInput;
   if (a.quiet) return 0;
   fmt::print("{} is now {}\n", config->gap->model_path, a.model);

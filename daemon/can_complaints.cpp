@@ -1,11 +1,10 @@
 #include "daemon/can_complaints.h"
 
 #include <fmt/core.h>
+#include <utility>
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr std::int64_t kEvery_us = 1'000'000;
 
 void add(std::string& news, std::int64_t before, std::int64_t now, const char* what) {
   if (now > before) news += fmt::format("{}{} {}", news.empty() ? "" : ", ", now - before, what);
@@ -55,10 +54,8 @@ std::vector<std::string> CanComplaints::look(const drivers::CanIntake& can,
                                              const drivers::CanSource& source,
                                              std::int64_t now_us) {
   std::vector<std::string> out;
-  if (config_.can.empty() || now_us < next_us_) return out;
-  const bool first = next_us_ == 0;
-  next_us_ = now_us + kEvery_us;
-  if (first) return out;
+  if (config_.can.empty() || !second_.due(now_us)) return out;
+  if (!std::exchange(begun_, true)) return out;
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     const std::string& name = config_.can.buses[b].interface;
     const std::string news = bus_news(b, can.buses()[b], source.state(static_cast<int>(b)).open);

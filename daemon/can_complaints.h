@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "daemon/config.h"
+#include "daemon/once_a_second.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/can/can_source.h"
 
@@ -34,7 +35,9 @@ class CanComplaints {
   const Config& config_;
   std::vector<Bus> buses_;
   std::vector<Node> nodes_;
-  std::int64_t next_us_ = 0, dropped_ = 0, steps_ = 0;
+  OnceASecond second_;
+  bool begun_ = false;
+  std::int64_t dropped_ = 0, steps_ = 0;
 };
 
 }  // namespace framewatch::daemon

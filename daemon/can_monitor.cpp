@@ -9,7 +9,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kEvery_us = 1'000'000;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -45,7 +44,9 @@ std::optional<CanMonitor::Counted> CanMonitor::counted(const std::string& interf
 std::optional<can_status_t> CanMonitor::look(const drivers::CanIntake& can,
                                              const drivers::CanSource& source,
                                              std::int64_t now_us) {
-  if (config_.can.empty() || now_us < last_us_ + kEvery_us) return std::nullopt;
+  if (config_.can.empty() || !second_.due(now_us)) return std::nullopt;
+  const bool stepped_back = now_us < last_us_;
+  if (stepped_back) std::fill(before_.begin(), before_.end(), std::nullopt);
   can_status_t status{};
   status.time_us = now_us;
   status.dropped = source.dropped();

@@ -8,6 +8,7 @@
 #include <framewatch/can_status_t.hpp>
 
 #include "daemon/config.h"
+#include "daemon/once_a_second.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/can/can_source.h"
 
@@ -37,6 +38,7 @@ class CanMonitor {
   std::vector<std::optional<Counted>> before_;
   std::vector<double> expected_load_;
   std::vector<bool> extended_, fd_;  ///< whether the nodes of a bus have such frames
+  OnceASecond second_;
   std::int64_t last_us_ = 0;
 };
 

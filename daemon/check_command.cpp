@@ -4,6 +4,7 @@
 
 #include "daemon/check_report.h"
 #include "daemon/config_markdown.h"
+#include "daemon/config_problems.h"
 #include "daemon/effects_markdown.h"
 
 namespace framewatch::daemon {
@@ -26,7 +27,7 @@ int check_command(const CheckArguments& arguments) {
   } else if (report) {
     fmt::print("{}", to_text(*report));
   } else {
-    for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+    print_problems(problems);
     fmt::print(stderr, "{}: {} problem{}\n", arguments.config, problems.size(),
                problems.size() == 1 ? "" : "s");
   }

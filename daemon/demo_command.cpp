@@ -17,6 +17,7 @@
 #include <fmt/core.h>
 
 #include "daemon/can_output.h"
+#include "daemon/config_problems.h"
 #include "daemon/demo_can.h"
 #include "daemon/demo_files.h"
 #include "daemon/demo_network.h"
@@ -154,7 +155,7 @@ Scenario demo_scenario() {
   std::optional<Scenario> scenario;
   if (config) scenario = read_scenario(kDemoScenario, "built-in scenario", problems, &*config);
   if (scenario) return *std::move(scenario);
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems);
   std::abort();
 }
 

@@ -15,24 +15,12 @@
 #include <fmt/core.h>
 #include <lcm/lcm-cpp.hpp>
 
+#include "daemon/descriptor.h"
+
 namespace framewatch::daemon {
 namespace {
 
 constexpr const char* kGroup = "239.255.76.67";
-
-class Socket {
- public:
-  Socket() : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
-  ~Socket() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-  int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 void set_address(sockaddr& out, const char* address) {
   sockaddr_in in{};
@@ -68,10 +56,10 @@ void keep_user(uid_t user, gid_t group) {
 
 /// Asked before LCM is, which prints a page of advice when there is none.
 bool has_multicast_route() {
-  const Socket socket;
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr group{};
   set_address(group, kGroup);
-  return ::connect(socket.fd(), &group, sizeof group) == 0;
+  return ::connect(socket.get(), &group, sizeof group) == 0;
 }
 
 void count_message(const lcm::ReceiveBuffer*, const std::string&, int* received) {
@@ -89,8 +77,8 @@ bool enter_private_network(std::string& error) {
     error = std::strerror(errno);
     return false;
   }
-  const Socket socket;
-  if (bring_loopback_up(socket.fd()) && add_multicast_route(socket.fd())) return true;
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (bring_loopback_up(socket.get()) && add_multicast_route(socket.get())) return true;
   error = std::strerror(errno);
   return false;
 }

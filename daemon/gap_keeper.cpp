@@ -10,8 +10,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kLook_us = 1'000'000;
-
 /// When it was put there; the beginning of time while it is not.
 std::filesystem::file_time_type put_there(const std::string& path) {
   std::error_code none;
@@ -26,8 +24,7 @@ GapKeeper::GapKeeper(const Config& config) : config_(config) {
 }
 
 void GapKeeper::look(Estimation& estimation, std::int64_t now_us) {
-  if (!config_.gap || config_.gap->model_path.empty() || now_us < next_us_) return;
-  next_us_ = now_us + kLook_us;
+  if (!config_.gap || config_.gap->model_path.empty() || !second_.due(now_us)) return;
   const std::string& path = config_.gap->model_path;
   const auto at = put_there(path);
   if (at == std::exchange(seen_, at) || at == std::filesystem::file_time_type{}) return;

@@ -6,6 +6,7 @@
 
 #include "daemon/config.h"
 #include "daemon/estimation.h"
+#include "daemon/once_a_second.h"
 
 namespace framewatch::daemon {
 
@@ -19,7 +20,7 @@ class GapKeeper {
 
  private:
   const Config& config_;
-  std::int64_t next_us_ = INT64_MIN;
+  OnceASecond second_;
   std::filesystem::file_time_type seen_{};
 };
 

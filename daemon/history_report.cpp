@@ -10,11 +10,7 @@
 #include "drivers/encoded.h"
 
 namespace framewatch::daemon {
-namespace {
-
-constexpr std::int64_t kStatus_us = 1'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(config), lcm_(lcm) {
   if (!config.history) return;
@@ -25,8 +21,7 @@ HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(conf
 std::vector<event_t> HistoryReport::look(std::int64_t now_us) {
   if (!history_) return {};
   history_->tick(steady_clock_us());
-  if (now_us < next_us_) return {};
-  next_us_ = now_us + kStatus_us;
+  if (!second_.due(now_us)) return {};
   const history_status_t status = history_->status();
   lcm_.publish(config_.lcm.prefix + "HISTORY", &status);
   const std::string channel = config_.lcm.prefix + "EVENT";

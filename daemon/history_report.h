@@ -9,6 +9,7 @@
 #include "daemon/config.h"
 #include "daemon/history.h"
 #include "daemon/history_monitor.h"
+#include "daemon/once_a_second.h"
 #include "daemon/raised_events.h"
 
 namespace framewatch::daemon {
@@ -30,7 +31,7 @@ class HistoryReport {
  private:
   const Config& config_;
   lcm::LCM& lcm_;
-  std::int64_t next_us_ = INT64_MIN;
+  OnceASecond second_;
   HistoryMonitor monitor_;
   RaisedEvents raised_;
   std::optional<History> history_;

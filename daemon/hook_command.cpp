@@ -18,6 +18,7 @@
 #include <fmt/core.h>
 
 #include "daemon/clocks.h"
+#include "daemon/descriptor.h"
 #include "daemon/event_words.h"
 #include "daemon/history_files.h"
 
@@ -28,22 +29,6 @@ constexpr int kLook_ms = 20;
 constexpr std::int64_t kGrace_us = 1'000'000;  // between asking to end and ending
 constexpr std::size_t kMostSaid = 200;         // of its output, for the trouble
 constexpr int kMostReads = 64;                 ///< of one look
-
-class Descriptor {
- public:
-  explicit Descriptor(int file = -1) : file_(file) {}
-  ~Descriptor() { reset(-1); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return file_; }
-  void reset(int file) {
-    if (file_ >= 0) ::close(file_);
-    file_ = file;
-  }
-
- private:
-  int file_;
-};
 
 bool is_ours(std::string_view entry) {
   for (const char* name : {"NOTIFY_SOCKET=", "WATCHDOG_", "LISTEN_", "FRAMEWATCH_"})

@@ -5,16 +5,11 @@
 #include "daemon/log.h"
 
 namespace framewatch::daemon {
-namespace {
-
-constexpr std::int64_t kReport_us = 1'000'000;
-
-}  // namespace
+namespace {}  // namespace
 
 void IntakeComplaints::look(const Estimation& estimation, const LiveState& state,
                             std::int64_t now_us) {
-  if (now_us < next_us_) return;
-  next_us_ = now_us + kReport_us;
+  if (!second_.due(now_us)) return;
   const PipelineCounters pipeline = estimation.pipeline().counters();
   const drivers::IntakeCounters& intake = estimation.intake().counters();
   std::int64_t late = 0, rejected = 0;

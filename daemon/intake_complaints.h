@@ -4,6 +4,7 @@
 #include <string>
 
 #include "daemon/estimation.h"
+#include "daemon/once_a_second.h"
 
 namespace framewatch::daemon {
 
@@ -15,7 +16,7 @@ class IntakeComplaints {
  private:
   static void add(std::string& news, std::int64_t& seen, std::int64_t now, const char* what);
 
-  std::int64_t next_us_ = 0;
+  OnceASecond second_;
   std::int64_t seen_[8] = {};
   bool said_unbound_ = false;
 };

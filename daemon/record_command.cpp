@@ -15,6 +15,8 @@
 
 #include "daemon/child_process.h"
 #include "daemon/clocks.h"
+#include "daemon/config_problems.h"
+#include "daemon/descriptor.h"
 #include "daemon/log.h"
 #include "daemon/recorder.h"
 #include "daemon/session_command.h"
@@ -41,24 +43,18 @@ drivers::CanMap listening(drivers::CanMap map) {
 /// One recorder per folder: two would both obey a command.
 class FolderLock {
  public:
-  ~FolderLock() {
-    if (file_ >= 0) ::close(file_);
-  }
-  FolderLock() = default;
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
   /// Empty, or why not.
   std::string lock(const std::string& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
-    file_ = ::open((folder + "/.recorder").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (file_ < 0) return fmt::format("{}: sessions cannot be stored there", folder);
-    if (::flock(file_, LOCK_EX | LOCK_NB) == 0) return "";
+    file_.reset(::open((folder + "/.recorder").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+    if (file_.get() < 0) return fmt::format("{}: sessions cannot be stored there", folder);
+    if (::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) return "";
     return fmt::format("{}: another framewatch record works there; tell it with --send", folder);
   }
 
  private:
-  int file_ = -1;
+  Descriptor file_;
 };
 
 void print_channels(const std::vector<ChannelResult>& results) {
@@ -313,7 +309,7 @@ int record(const RecordArguments& a) {
         {a.config, a.finish, a.reports, a.csv, a.mat, a.split, a.report, a.quiet});
   std::vector<ConfigProblem> config_problems;
   const auto config = load_config(a.config, config_problems);
-  for (const ConfigProblem& p : config_problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(config_problems);
   bool good = config.has_value();
   for (const std::string& p : problems(a.request)) {
     (void)refuse(p);

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/config_problems.h"
 #include "daemon/estimation.h"
 #include "daemon/replay_survey.h"
 #include "daemon/stored_samples.h"
@@ -93,7 +94,7 @@ std::string text(const ParameterTable& table, const Report& report) {
 int refine(const RefineArguments& a) {
   std::vector<ConfigProblem> config_problems;
   const std::optional<Config> config = load_config(a.config, config_problems);
-  for (const ConfigProblem& p : config_problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(config_problems);
   if (!config) return kBadInput;
   const PipelineConfig& pipeline_config = config->pipeline;
   const double to_s = a.to_s < 0 ? a.from_s + pipeline_config.options.window_s : a.to_s;

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "daemon/baseline_file.h"
+#include "daemon/config_problems.h"
 #include "daemon/estimate_output.h"
 #include "daemon/expectation_check.h"
 #include "daemon/progress.h"
@@ -31,7 +32,7 @@ int refuse(const std::string& message) {
 }
 
 void print(const std::vector<ConfigProblem>& problems) {
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems);
 }
 
 /// What can be said before any file is read.

@@ -14,6 +14,7 @@
 #include "daemon/can_complaints.h"
 #include "daemon/can_monitor.h"
 #include "daemon/clocks.h"
+#include "daemon/config_problems.h"
 #include "daemon/file_digest.h"
 #include "daemon/gap_keeper.h"
 #include "daemon/history_report.h"
@@ -139,7 +140,7 @@ int run(const RunArguments& a) {
   if (!text) problems.push_back({a.config, error});
   std::optional<Config> config;
   if (text) config = parse_config(a.config, *text, problems);
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems);
   if (!config) return kBadInput;
 
   catch_stop_signals();

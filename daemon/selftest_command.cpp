@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/config_problems.h"
+
 namespace framewatch::daemon {
 namespace {
 
@@ -34,7 +36,7 @@ int selftest(const SelftestArguments& a) {
   if (!a.config.empty()) {
     std::vector<ConfigProblem> problems;
     const auto config = load_config(a.config, problems);
-    for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+    print_problems(problems);
     if (!config) return kBadInput;
     lcm = config->lcm;
   }

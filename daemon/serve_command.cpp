@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/clocks.h"
+#include "daemon/config_problems.h"
 #include "daemon/file_digest.h"
 #include "daemon/live_view.h"
 #include "daemon/log.h"
@@ -38,7 +39,7 @@ int serve(const ServeArguments& a) {
   std::vector<ConfigProblem> problems_found;
   const std::optional<Config> config = load_config(a.config, problems_found);
   bool good = config.has_value();
-  for (const ConfigProblem& p : problems_found) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems_found);
   WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions, {}};
   std::string error;
   if (!a.token_file.empty()) {

@@ -5,20 +5,13 @@
 #include "daemon/process_usage.h"
 
 namespace framewatch::daemon {
-namespace {
-
-constexpr std::int64_t kEvery_us = 1'000'000;
-
-}  // namespace
 
 ServiceReport::ServiceReport(const Config& config, const StartCount& starts, bool resumed)
     : config_(config), starts_(starts), resumed_(resumed), started_us_(host_clock_us()) {}
 
 std::optional<service_t> ServiceReport::look(const LiveEstimation& live, const StateKeeper& state,
                                              const ReloadCount& reloads, std::int64_t now_us) {
-  const bool clock_stepped_back = next_us_ > now_us + kEvery_us;
-  if (now_us < next_us_ && !clock_stepped_back) return std::nullopt;
-  next_us_ = now_us + kEvery_us;
+  if (!second_.due(now_us)) return std::nullopt;
   const LiveTimes& times = live.times();
   service_t m{};
   m.time_us = now_us;

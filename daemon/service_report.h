@@ -8,6 +8,7 @@
 
 #include "daemon/config.h"
 #include "daemon/live_estimation.h"
+#include "daemon/once_a_second.h"
 #include "daemon/start_count.h"
 #include "daemon/state_keeper.h"
 
@@ -33,7 +34,8 @@ class ServiceReport {
   const Config& config_;
   StartCount starts_;
   bool resumed_;
-  std::int64_t started_us_ = 0, next_us_ = INT64_MIN;
+  std::int64_t started_us_ = 0;
+  OnceASecond second_;
 };
 
 }  // namespace framewatch::daemon

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/config.h"
+#include "daemon/config_problems.h"
 #include "daemon/repair_command.h"
 #include "daemon/replay_command.h"
 #include "daemon/report_command.h"
@@ -170,7 +171,7 @@ class Finishing {
 int finish_session(const FinishArguments& a) {
   std::vector<ConfigProblem> problems;
   const auto config = load_config(a.config, problems);
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems);
   std::string error;
   auto session = read_session_file(a.folder + "/" + kSessionJson, error);
   if (!session) fmt::print(stderr, "{}/{}: {}\n", a.folder, kSessionJson, error);

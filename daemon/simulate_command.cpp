@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/can_output.h"
+#include "daemon/config_problems.h"
 #include "daemon/progress.h"
 #include "daemon/scenario.h"
 #include "daemon/simulation.h"
@@ -32,7 +33,7 @@ int simulate(const SimulateArguments& a) {
     return refuse("nowhere to put it: --out FILE, --lcm, --can or several");
   std::vector<ConfigProblem> problems;
   std::optional<Scenario> scenario = load_scenario(a.scenario, problems);
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems);
   if (!scenario) return kBadInput;
   if (a.seconds > 0) scenario->duration_s = a.seconds;
 

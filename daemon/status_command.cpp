@@ -12,6 +12,7 @@
 #include "daemon/clocks.h"
 #include "daemon/config.h"
 #include "daemon/config_parts.h"
+#include "daemon/config_problems.h"
 #include "daemon/file_digest.h"
 #include "daemon/health.h"
 #include "daemon/unit_state.h"
@@ -250,7 +251,7 @@ int status_command(const StatusArguments& a) {
        !heard.enough() && steady_clock_us() < end_us;)
     if (!source.handle(kPoll_ms)) break;
   if (!heard.service) {
-    for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+    print_problems(problems);
     if (unit) fmt::print(stderr, "framewatch.service: {}\n", unit_text(*unit));
     fmt::print(stderr,
                "framewatch status: nothing is heard of framewatch run on {} with prefix {}: "

@@ -8,6 +8,7 @@
 
 #include "daemon/clocks.h"
 #include "daemon/config.h"
+#include "daemon/config_problems.h"
 #include "daemon/event_json.h"
 #include "daemon/event_words.h"
 #include "daemon/hook_command.h"
@@ -23,7 +24,7 @@ constexpr int kFailed = 1, kBadInput = 2;
 int tell_command(const TellArguments& a) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(a.config, problems);
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  print_problems(problems);
   if (!config) return kBadInput;
   if (!config->actions) {
     fmt::print(stderr, "framewatch tell: {} has no [actions]\n", a.config);
