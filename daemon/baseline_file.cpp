@@ -36,20 +36,29 @@ void read_parameter(const TomlValue& value, const ParameterTable& table, Baselin
   if (!s.given("value") || !s.given("std_error")) return;
   out.value[p] = s.number("value");
   out.std_error[p] = s.number("std_error");
+  if (s.given("temperature_degc")) out.degc[p] = s.number("temperature_degc");
 }
 
 }  // namespace
 
 std::string baseline_text(const Baseline& baseline, const ParameterTable& table) {
-  std::string text = "# Reference parameters of framewatch's [watch].\n";
+  return extended_baseline_text("# Reference parameters of framewatch's [watch].\n",
+                                Baseline(static_cast<std::size_t>(table.size())), baseline, table);
+}
+
+std::string extended_baseline_text(const std::string& text, const Baseline& written,
+                                   const Baseline& baseline, const ParameterTable& table) {
+  std::string out = text;
   for (int i = 0; i < table.size(); ++i) {
     const auto p = static_cast<std::size_t>(i);
-    if (std::isnan(baseline.value[p])) continue;
-    text += fmt::format(
+    if (written.knows(p) || !baseline.knows(p)) continue;
+    out += fmt::format(
         "\n[[parameter]]\nname = \"{}\"\nvalue = {:.17g}\nstd_error = {:.17g}\nunit = \"{}\"\n",
         table[i].name, baseline.value[p], baseline.std_error[p], table[i].unit);
+    if (!std::isnan(baseline.degc[p]))
+      out += fmt::format("temperature_degc = {:.17g}\n", baseline.degc[p]);
   }
-  return text;
+  return out;
 }
 
 std::optional<Baseline> load_baseline(const std::string& path, const ParameterTable& table,

@@ -1,5 +1,8 @@
 #include "daemon/baseline_keeper.h"
 
+#include <fstream>
+#include <iterator>
+
 #include <fmt/core.h>
 
 #include "daemon/baseline_file.h"
@@ -8,19 +11,29 @@
 
 namespace framewatch::daemon {
 
-BaselineKeeper::BaselineKeeper(const Config& config) : table_(config.pipeline.structure) {
-  if (config.watch && !config.watch->baseline) path_ = config.watch->baseline_path;
+BaselineKeeper::BaselineKeeper(const Config& config)
+    : table_(config.pipeline.structure), written_(static_cast<std::size_t>(table_.size())) {
+  if (!config.watch) return;
+  path_ = config.watch->baseline_path;
+  if (config.watch->baseline) written_ = *config.watch->baseline;
 }
 
 void BaselineKeeper::look(const Estimation& estimation) {
-  if (path_.empty() || estimation.baseline() == nullptr) return;
-  const std::string problem =
-      drivers::write_text_file(path_, baseline_text(*estimation.baseline(), table_));
+  const Baseline* baseline = estimation.baseline();
+  if (path_.empty() || baseline == nullptr || written_.holds(*baseline)) return;
+  std::ifstream file(path_, std::ios::binary);
+  const std::string there{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = there.empty()
+                               ? baseline_text(*baseline, table_)
+                               : extended_baseline_text(there, written_, *baseline, table_);
+  written_ = *baseline;
+  if (text == there) return;
+  const std::string problem = drivers::write_text_file(path_, text);
   if (problem.empty())
-    log(LogLevel::notice, fmt::format("baseline learned, written to {}", path_));
+    log(LogLevel::notice,
+        fmt::format("baseline learned of {} parameters, written to {}", baseline->known(), path_));
   else
     log(LogLevel::error, fmt::format("the learned baseline is not stored: {}", problem));
-  path_.clear();
 }
 
 }  // namespace framewatch::daemon

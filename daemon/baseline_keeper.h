@@ -7,7 +7,8 @@
 
 namespace framewatch::daemon {
 
-/// Writes a baseline that was learned live to the configured file, once, and says so in the log.
+/// Adds to the configured file what is learned live of a baseline, when it is, and says so in the
+/// log. What is in the file stays as it is.
 class BaselineKeeper {
  public:
   explicit BaselineKeeper(const Config& config);
@@ -15,7 +16,8 @@ class BaselineKeeper {
 
  private:
   ParameterTable table_;
-  std::string path_;  ///< empty: nothing to write, or written
+  std::string path_;  ///< empty: there is no file
+  Baseline written_;
 };
 
 }  // namespace framewatch::daemon

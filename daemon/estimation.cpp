@@ -167,14 +167,16 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
     (void)pipeline_.load(reader);
     noise_density_ = before.noise_density_;
   }
-  const Baseline* learned = before.baseline();
-  const bool same_baseline = !watch_ || watch_->baseline() == nullptr ||
-                             (learned != nullptr && learned->value == watch_->baseline()->value);
+  const Baseline* given = baseline();
+  const bool same_baseline =
+      given == nullptr || (before.baseline() != nullptr && before.baseline()->holds(*given));
   const bool watch_goes_on =
       watch_ && before.watch_ && same_baseline && copy(*before.watch_, *watch_);
   if (!watch_goes_on) {
     begin_watch();
     publisher_.withdraw("stiffness_change");
+  } else if (!keep_window && config_.watch->options.amplitude) {
+    watch_->forget_quiet();  // amplitudes are over the noise, which is another one
   }
   const bool gap_goes_on = gap_ && before.gap_ && copy(*before.gap_, *gap_);
   if (!gap_goes_on) {

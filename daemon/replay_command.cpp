@@ -116,7 +116,8 @@ class ReplayRun {
         expectations_(std::move(expectations)),
         event_channel_(config.lcm.prefix + "EVENT"),
         survey_(config, a.salvage, a.span),
-        learner_(ParameterTable(config.pipeline.structure).size(),
+        learner_(watched_parameters(ParameterTable(config.pipeline.structure),
+                                    config.watch ? config.watch->options : WatchOptions{}),
                  std::numeric_limits<double>::infinity()),
         series_(ParameterTable(config.pipeline.structure), expectations_.has_value()),
         estimation_(config, sink(), [this](const WindowEstimate& e) {
@@ -243,10 +244,10 @@ class ReplayRun {
   }
 
   std::string write_baseline() const {
-    const Baseline baseline = learner_.baseline();
-    if (std::all_of(baseline.value.begin(), baseline.value.end(),
-                    [](double v) { return std::isnan(v); }))
-      return "--write-baseline: no parameter has a value in half of the windows";
+    const Baseline baseline = learner_.so_far();
+    if (baseline.known() == 0)
+      return "--write-baseline: no parameter has a value in half of the windows that the design "
+             "does not pull";
     return drivers::write_text_file(
         a_.write_baseline, baseline_text(baseline, ParameterTable(config_.pipeline.structure)));
   }

@@ -16,7 +16,7 @@ namespace framewatch::daemon {
 namespace {
 
 const std::string kMagic = "framewatch state\n";
-constexpr std::int32_t kFormat = 8;  ///< goes up whenever archive() of any class changes
+constexpr std::int32_t kFormat = 9;  ///< goes up whenever archive() of any class changes
 constexpr std::size_t kDigestBytes = 64;
 
 std::string digest_of(const std::vector<std::uint8_t>& bytes, std::size_t size) {

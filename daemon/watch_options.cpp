@@ -9,10 +9,11 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "baseline",
      .type = text,
-     .meaning = "File of reference parameters, beside this one unless its path says otherwise. "
-                "When it does not exist, `framewatch run` learns a baseline and writes it; "
-                "`framewatch replay --write-baseline` makes one from records. Without a file every "
-                "run learns its own."},
+     .meaning =
+         "File of reference parameters, beside this one unless its path says otherwise. "
+         "Parameters that it lacks, all when it does not exist, `framewatch run` learns and "
+         "adds to it; `framewatch replay --write-baseline` makes one from records. Without a "
+         "file every run learns its own."},
     {.section = "watch",
      .key = "learn_s",
      .unit = "s",
@@ -20,7 +21,9 @@ const Option kOptions[] = {
      .min = 0,
      .max = 1e6,
      .above_min = true,
-     .meaning = "Sum of the windows with values that a baseline is learned from."},
+     .meaning =
+         "Sum of the windows that every parameter's baseline is learned from at least; it is "
+         "learned on until its standard error is a tenth of the smallest change."},
     {.section = "watch",
      .key = "smallest_change_k_ratio",
      .default_value = "0.03",
@@ -98,6 +101,13 @@ const Option kOptions[] = {
      .type = text,
      .required = true,
      .meaning = "As in estimates."},
+    {.section = "baseline.parameter",
+     .key = "temperature_degc",
+     .unit = "degC",
+     .min = -90,
+     .max = 150,
+     .meaning = "Mean temperature at which it was learned: with `temperature_channel` the value is "
+                "corrected for the temperature since."},
 };
 
 }  // namespace

@@ -11,6 +11,7 @@ constexpr double kInflation = 4;  // information is overstated by correlated res
 /// Frames of a direction whose frequencies differ by less than this cannot be told from a plan that
 /// does not shear its floors.
 constexpr double kSymmetric = 0.02;
+constexpr double kRounding = 1e-12;
 constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -45,6 +46,7 @@ void WindowSolution::restart() {
   errors_.cancel();
   errors_known_ = solved_ = false;
   fresh_ = true;
+  overdrawn_ = false;
   noise_scale_ = noise_level_ = residual_energy_ = 0;
 }
 
@@ -63,9 +65,11 @@ void WindowSolution::solve(const WindowParts& sums, const RowChain& rows, const 
   const double pull = trust.regularise && options_.prior ? noise_level_ : 0.0;
   for (std::size_t u = 0; u < prior_.size(); ++u) prior_[u] = pull * unknowns_[u].prior;
   solver_.factor(sums, prior_, noise_);
-  residual_energy_ = std::max(solver_.residual_energy() + taken_off * noise_.residual(), 0.0);
+  const double residual = solver_.residual_energy() + taken_off * noise_.residual();
+  overdrawn_ = taken_off > 0 && residual < -kRounding * solver_.response_energy();
+  residual_energy_ = std::max(residual, 0.0);
   noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
-  if (closes_block) noise_level_ = noise_scale_;
+  if (closes_block && !overdrawn_) noise_level_ = noise_scale_;
 }
 
 bool WindowSolution::advance_errors(int steps) {
@@ -76,7 +80,7 @@ bool WindowSolution::advance_errors(int steps) {
 
 bool WindowSolution::shown(int unknown) const {
   const auto u = static_cast<std::size_t>(unknown);
-  return solver_.usable(unknown) && solver_.solution()[u] > 0 &&
+  return !overdrawn_ && solver_.usable(unknown) && solver_.solution()[u] > 0 &&
          solver_.information()[u] > options_.min_snr * noise_.energy()[u] * noise_scale_;
 }
 

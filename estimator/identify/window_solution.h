@@ -71,7 +71,7 @@ class WindowSolution {
   void archive(Archive& a, const RowChain& rows, const Sums& sums) {
     noise_.archive(a, rows);
     errors_.archive(a, rows, sums);
-    a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_);
+    a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_, overdrawn_);
     a(residual_energy_, noise_scale_, noise_level_);
   }
 
@@ -101,7 +101,8 @@ class WindowSolution {
   std::vector<std::uint8_t> place_known_;  ///< of every unknown: all motion it needs
   bool errors_known_ = false;
   bool solved_ = false;
-  bool fresh_ = true;  ///< the noise level is that of other rows or of none
+  bool fresh_ = true;       ///< the noise level is that of other rows or of none
+  bool overdrawn_ = false;  ///< it holds less noise than was taken off: its numbers mean nothing
   double residual_energy_ = 0;
   double noise_scale_ = 0;  ///< residual energy over what sensor noise explains
   double noise_level_ = 0;  ///< the same of the last closed block

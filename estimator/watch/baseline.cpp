@@ -2,47 +2,88 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace framewatch {
 
 Baseline::Baseline(std::size_t parameters)
     : value(parameters, std::numeric_limits<double>::quiet_NaN()),
-      std_error(parameters, std::numeric_limits<double>::quiet_NaN()) {}
+      std_error(parameters, std::numeric_limits<double>::quiet_NaN()),
+      degc(parameters, std::numeric_limits<double>::quiet_NaN()) {}
 
-BaselineLearner::BaselineLearner(int parameters, double learn_s)
-    : learn_s_(learn_s), sums_(static_cast<std::size_t>(parameters)) {}
+bool Baseline::knows(std::size_t p) const {
+  return std::isfinite(value[p]);
+}
 
-bool BaselineLearner::push(const WindowEstimate& e) {
-  if (complete() || e.window != 0 || e.status != WindowStatus::valid) return false;
-  if (windows_ > 0 && e.start <= end_) return false;
-  end_ = e.end;
-  ++windows_;
-  learned_s_ += std::chrono::duration<double>(e.end - e.start).count();
+int Baseline::known() const {
+  return static_cast<int>(
+      std::count_if(value.begin(), value.end(), [](double v) { return std::isfinite(v); }));
+}
+
+bool Baseline::holds(const Baseline& other) const {
+  for (std::size_t p = 0; p < value.size(); ++p)
+    if (other.knows(p) && other.value[p] != value[p]) return false;
+  return true;
+}
+
+BaselineLearner::BaselineLearner(const std::vector<Watched>& watched, double learn_s)
+    : watched_(watched), learn_s_(learn_s), sums_(watched.size()) {}
+
+bool BaselineLearner::push(const WindowEstimate& e, double degc) {
+  if (e.window != 0 || !windows_.take(e)) return false;
+  bool any = false;
   for (std::size_t p = 0; p < sums_.size(); ++p) {
-    if (e.reason[p] != Observability::observable) continue;
     Sum& sum = sums_[p];
+    if (sum.complete || !watched_[p].counts(e, p)) continue;
     if (sum.count++ == 0) sum.first = e.value[p];
     const double weight = 1 / (e.std_error[p] * e.std_error[p]);
     const double off = e.value[p] - sum.first;
+    sum.learned_s += SeparateWindows::length_s(e);
     sum.weight += weight;
     sum.value += weight * off;
     sum.square += weight * off * off;
+    if (!std::isnan(degc)) {
+      sum.degc_weight += weight;
+      sum.degc += weight * degc;
+    }
+    sum.complete = enough(p);
+    any = any || sum.complete;
   }
-  return complete();
+  return any;
+}
+
+bool BaselineLearner::enough(std::size_t p) const {
+  if (sums_[p].learned_s < learn_s_) return false;
+  if (watched_[p].smallest == 0) return true;
+  const Mean m = mean(sums_[p]);
+  return m.std_error <= kExact * watched_[p].smallest * m.value;
+}
+
+BaselineLearner::Mean BaselineLearner::mean(const Sum& sum) {
+  const double off = sum.value / sum.weight;
+  const double scatter = std::max(sum.square - sum.weight * off * off, 0.0);
+  const double excess = sum.count > 1 ? scatter / (sum.count - 1) : 1.0;
+  return {sum.first + off, std::sqrt(std::max(excess, 1.0) / sum.weight),
+          sum.degc / sum.degc_weight};  // 0 / 0 is NaN: not known
+}
+
+void BaselineLearner::put(const Sum& sum, std::size_t p, Baseline& out) {
+  const Mean m = mean(sum);
+  out.value[p] = m.value;
+  out.std_error[p] = m.std_error;
+  out.degc[p] = m.degc;
 }
 
 Baseline BaselineLearner::baseline() const {
   Baseline out(sums_.size());
-  for (std::size_t p = 0; p < sums_.size(); ++p) {
-    const Sum& sum = sums_[p];
-    if (sum.count == 0 || 2 * sum.count < windows_) continue;
-    const double mean = sum.value / sum.weight;
-    const double scatter = std::max(sum.square - sum.weight * mean * mean, 0.0);
-    const double excess = sum.count > 1 ? scatter / (sum.count - 1) : 1.0;
-    out.value[p] = sum.first + mean;
-    out.std_error[p] = std::sqrt(std::max(excess, 1.0) / sum.weight);
-  }
+  for (std::size_t p = 0; p < sums_.size(); ++p)
+    if (sums_[p].complete) put(sums_[p], p, out);
+  return out;
+}
+
+Baseline BaselineLearner::so_far() const {
+  Baseline out(sums_.size());
+  for (std::size_t p = 0; p < sums_.size(); ++p)
+    if (windows_.most(sums_[p].count)) put(sums_[p], p, out);
   return out;
 }
 

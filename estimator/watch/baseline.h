@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "estimator/identify/estimate.h"
+#include "estimator/watch/separate_windows.h"
+#include "estimator/watch/watched.h"
 
 namespace framewatch {
 
@@ -12,46 +15,71 @@ struct Baseline {
   Baseline() = default;
   explicit Baseline(std::size_t parameters);
   std::vector<double> value, std_error;
+  std::vector<double> degc;  ///< mean temperature at which it was learned; NaN: not known
+
+  bool knows(std::size_t parameter) const;
+  /// Number of parameters it knows.
+  int known() const;
+  /// Whether it knows what `other` knows, by the same values.
+  bool holds(const Baseline& other) const;
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(value, std_error);
+    a(value, std_error, degc);
   }
 };
 
-/// Takes a baseline from a while in which the building is what it should be: the mean of main
-/// windows that do not overlap, weighted by 1 / std_error^2. Its error is what the weights say, or
-/// what the windows' scatter says if that is more.
+/// Takes a baseline from a while in which the building is what it should be: the mean of the main
+/// windows that count and do not overlap, weighted by 1 / std_error^2. Its error is what the
+/// weights say, or what the windows' scatter says if that is more. Every parameter is learned for
+/// itself, until its baseline is exact enough to be no matter beside the change that is looked for:
+/// in weak motion that takes longer.
 class BaselineLearner {
  public:
-  /// learn_s: sum of the windows it takes.
-  BaselineLearner(int parameters, double learn_s);
+  /// Standard error of a baseline, in changes that matter, at which it is learned.
+  static constexpr double kExact = 0.1;
 
-  /// Other windows than the main one do not count. True when this one completed the baseline.
-  bool push(const WindowEstimate& estimate);
-  bool complete() const { return learned_s_ >= learn_s_; }
-  /// Parameters that at least half of the windows showed; the others have none.
+  /// watched: theta order. learn_s: sum of the windows that every parameter takes at least.
+  BaselineLearner(const std::vector<Watched>& watched, double learn_s);
+
+  /// degc: the window's temperature; NaN: not known. True when this one completed a parameter.
+  bool push(const WindowEstimate& estimate, double degc = std::numeric_limits<double>::quiet_NaN());
+  /// Sum of the windows so far, whatever they show.
+  double seconds() const { return windows_.seconds(); }
+  /// Parameters that are learned.
   Baseline baseline() const;
+  /// Parameters of which at least half of the windows had a value that counts, however exact.
+  Baseline so_far() const;
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(learned_s_, windows_, end_, sums_);
+    a(windows_, sums_);
   }
 
  private:
   struct Sum {
+    bool complete = false;
     int count = 0;
+    double learned_s = 0;
     double weight = 0, value = 0, square = 0;  ///< of values over the first one
     double first = 0;
+    double degc_weight = 0, degc = 0;
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(count, weight, value, square, first);
+      a(complete, count, learned_s, weight, value, square, first, degc_weight, degc);
     }
   };
-  double learn_s_, learned_s_ = 0;
-  int windows_ = 0;
-  Time end_{};
+  struct Mean {
+    double value, std_error, degc;
+  };
+  static Mean mean(const Sum& sum);
+  static void put(const Sum& sum, std::size_t parameter, Baseline& out);
+  bool enough(std::size_t parameter) const;
+
+  std::vector<Watched> watched_;
+  double learn_s_;
+  SeparateWindows windows_;
   std::vector<Sum> sums_;
 };
 

@@ -10,6 +10,7 @@ constexpr double kFreedom = 19;         // of standard errors from 20 blocks
 constexpr double kMemory_s = 15;        // of the usual standard error
 constexpr double kBaselineErrors = 3;   // that a value may be off by for ever
 constexpr double kMostOfThreshold = 2;  // a sum beyond that tells nothing more
+constexpr double kOneWindow = 0.6;      // of the threshold: a window alone convinces nobody
 
 double log_likelihood(double z) {
   return -(kFreedom + 1) / 2 * std::log1p(z * z / kFreedom);
@@ -20,8 +21,7 @@ double log_likelihood(double z) {
 ChangeDetector::ChangeDetector(const Baseline& baseline, const std::vector<Watched>& watched,
                                double threshold)
     : baseline_(baseline), threshold_(threshold), parameters_(watched.size()) {
-  for (std::size_t p = 0; p < watched.size(); ++p)
-    if (std::isfinite(baseline.value[p])) parameters_[p].watched = watched[p];
+  for (std::size_t p = 0; p < watched.size(); ++p) parameters_[p].watched = watched[p];
   used_until_.fill(Time::min());
 }
 
@@ -36,9 +36,7 @@ void ChangeDetector::push(const WindowEstimate& e) {
   const auto phase = static_cast<int>(free - used_until_.begin());
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
     const Watched& watched = parameters_[p].watched;
-    if (watched.smallest > 0 && e.reason[p] == Observability::observable &&
-        e.prior_share[p] + e.noise_share[p] <= watched.most_pull)
-      judge(p, phase, e);
+    if (watched.smallest > 0 && baseline_.knows(p) && watched.counts(e, p)) judge(p, phase, e);
   }
 }
 
@@ -58,8 +56,9 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   for (const int sign : {-1, 1}) {
     Track& track = parameter.away[sign < 0 ? 0 : 1][static_cast<std::size_t>(phase)];
     const double toward = sign * z;
-    const double gain = log_likelihood(toward - std::max(toward, least)) -
-                        log_likelihood(toward - std::clamp(toward, 0.0, spare));
+    const double gain = std::min(log_likelihood(toward - std::max(toward, least)) -
+                                     log_likelihood(toward - std::clamp(toward, 0.0, spare)),
+                                 kOneWindow * threshold_);
     if (track.sum + gain <= 0) {
       track = {};
       continue;

@@ -5,6 +5,7 @@
 
 #include "estimator/identify/estimate.h"
 #include "estimator/watch/baseline.h"
+#include "estimator/watch/watched.h"
 
 namespace framewatch {
 
@@ -18,13 +19,6 @@ struct Change {
   void archive(Archive& a) {
     a(ratio, std_error, since);
   }
-};
-
-/// How a parameter is watched.
-struct Watched {
-  double smallest = 0;   ///< change that matters, relative; 0: not watched
-  double most_pull = 1;  ///< share of prior and noise in a value above which it does not count
-  double spare = 0;      ///< lasting error, relative, that values may have all the same
 };
 
 /// Looks for lasting changes of parameters in the windows of one length: cumulative sums of
@@ -41,6 +35,9 @@ class ChangeDetector {
   /// watched: theta order; what has no baseline is not. threshold: sum at which a change is
   /// believed; a false one has probability exp(-threshold) per window and direction.
   ChangeDetector(const Baseline& baseline, const std::vector<Watched>& watched, double threshold);
+
+  /// What windows are judged against from now on; evidence stays.
+  void set_baseline(const Baseline& baseline) { baseline_ = baseline; }
 
   /// Windows closer than a kPhases-th of their length are left out.
   void push(const WindowEstimate& estimate);

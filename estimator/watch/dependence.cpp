@@ -25,6 +25,10 @@ Dependence::Expected Dependence::change(std::size_t p, double from_degc, double 
   return {1 + slope_[2 * p] * step, std::sqrt(covariance_[3 * p]) * std::abs(step)};
 }
 
+double Dependence::usual_per_degc(std::size_t p) const {
+  return std::hypot(slope_[2 * p], std::sqrt(covariance_[3 * p]));
+}
+
 DependenceLearner::DependenceLearner(int parameters, const DependenceOptions& options)
     : options_(options), sums_(static_cast<std::size_t>(parameters)) {}
 
@@ -33,12 +37,7 @@ double DependenceLearner::log_amplitude(const WindowEstimate& e, std::size_t p) 
 }
 
 bool DependenceLearner::push(const WindowEstimate& e, double degc) {
-  if (complete() || e.status != WindowStatus::valid) return false;
-  if (windows_ > 0 && e.start <= end_) return false;
-  if (options_.temperature && std::isnan(degc)) return false;
-  end_ = e.end;
-  ++windows_;
-  learned_s_ += std::chrono::duration<double>(e.end - e.start).count();
+  if (complete() || (options_.temperature && std::isnan(degc)) || !windows_.take(e)) return false;
   for (std::size_t p = 0; p < sums_.size(); ++p) {
     if (e.reason[p] != Observability::observable) continue;
     Sum& sum = sums_[p];
@@ -98,7 +97,7 @@ DependenceLearner::Fit DependenceLearner::fit(const Sum& s) const {
 Baseline DependenceLearner::baseline() const {
   Baseline out(sums_.size());
   for (std::size_t p = 0; p < sums_.size(); ++p) {
-    if (!known(sums_[p])) continue;
+    if (!windows_.most(sums_[p].count)) continue;
     const Fit f = fit(sums_[p]);
     out.value[p] = f.value;
     out.std_error[p] = f.std_error;
@@ -109,7 +108,7 @@ Baseline DependenceLearner::baseline() const {
 Dependence DependenceLearner::dependence() const {
   Dependence out(sums_.size());
   for (std::size_t p = 0; p < sums_.size(); ++p) {
-    if (!known(sums_[p])) continue;
+    if (!windows_.most(sums_[p].count)) continue;
     const Fit f = fit(sums_[p]);
     std::copy(f.at.begin(), f.at.end(), &out.at_[2 * p]);
     std::copy(f.slope.begin(), f.slope.end(), &out.slope_[2 * p]);

@@ -6,6 +6,7 @@
 
 #include "estimator/identify/estimate.h"
 #include "estimator/watch/baseline.h"
+#include "estimator/watch/separate_windows.h"
 
 namespace framewatch {
 
@@ -28,6 +29,8 @@ class Dependence {
     double std_error;  ///< of that, from the slopes'; infinite when a condition is not known
   };
   Expected expected(std::size_t parameter, const Conditions& now) const;
+  /// By how much the ratio usually changes per degC: the slope and its error.
+  double usual_per_degc(std::size_t parameter) const;
   /// From one temperature to another.
   Expected change(std::size_t parameter, double from_degc, double to_degc) const;
 
@@ -61,7 +64,8 @@ class DependenceLearner {
   /// degc: mean of the window; NaN: not known. A window without the temperature asked for does not
   /// count. True when this one completed the baseline.
   bool push(const WindowEstimate& estimate, double degc);
-  bool complete() const { return learned_s_ >= options_.learn_s; }
+  bool complete() const { return windows_.seconds() >= options_.learn_s; }
+  double learned_s() const { return windows_.seconds(); }
   Baseline baseline() const;
   Dependence dependence() const;
 
@@ -69,7 +73,7 @@ class DependenceLearner {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(learned_s_, windows_, end_, sums_);
+    a(windows_, sums_);
   }
 
  private:
@@ -91,12 +95,9 @@ class DependenceLearner {
     std::array<double, 3> covariance;
   };
   Fit fit(const Sum& sum) const;
-  bool known(const Sum& sum) const { return sum.count > 0 && 2 * sum.count >= windows_; }
 
   DependenceOptions options_;
-  double learned_s_ = 0;
-  int windows_ = 0;
-  Time end_{};
+  SeparateWindows windows_;
   std::vector<Sum> sums_;
 };
 

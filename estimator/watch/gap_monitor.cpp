@@ -7,6 +7,7 @@ namespace framewatch {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kHeld = RunningModel::kDelay + 1;
 
 Direction direction_of(const Structure& s, const SensorAxis& axis) {
@@ -48,7 +49,7 @@ GapMonitor::GapMonitor(const Structure& structure, const std::vector<SensorAxis>
       rate_hz_(estimation.rate_hz),
       high_pass_hz_(estimation.high_pass_hz),
       options_(options),
-      learner_(table_.size(), options.learn_s),
+      learner_(std::vector<Watched>(static_cast<std::size_t>(table_.size())), kInfinity),
       alarm_(options),
       noise_variance_(axes.size()) {
   for (const SensorAxis& axis : axes)
@@ -62,11 +63,13 @@ void GapMonitor::adopt(const GapModel& model) {
 }
 
 void GapMonitor::learn(const WindowEstimate& estimate, const Eigen::VectorXd& believed) {
-  if (current_ || !learner_.push(estimate)) return;
-  const Baseline seen = learner_.baseline();
+  if (current_) return;
+  (void)learner_.push(estimate);
+  if (learner_.seconds() < options_.learn_s) return;
+  const Baseline seen = learner_.so_far();
   GapModel model{believed, {}};
   for (Eigen::Index p = 0; p < model.theta.size(); ++p)
-    if (std::isfinite(seen.value[static_cast<std::size_t>(p)]))
+    if (seen.knows(static_cast<std::size_t>(p)))
       model.theta[p] = seen.value[static_cast<std::size_t>(p)];
   adopt(model);
 }

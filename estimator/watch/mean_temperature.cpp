@@ -22,14 +22,21 @@ void MeanTemperature::push(Time time, double degc) {
 
 double MeanTemperature::mean(Time start, Time end) const {
   const std::int64_t first = number_of(start), last = number_of(end);
-  double sum = 0;
+  double sum = 0, before = std::numeric_limits<double>::quiet_NaN();
   int count = 0;
+  std::int64_t newest = first - kHolds - 1;
   for (const Bin& bin : bins_) {
-    if (bin.count == 0 || bin.number < first || bin.number > last) continue;
-    sum += bin.sum / static_cast<double>(bin.count);
-    ++count;
+    if (bin.count == 0 || bin.number <= newest || bin.number > last) continue;
+    const double mean = bin.sum / static_cast<double>(bin.count);
+    if (bin.number < first) {
+      newest = bin.number;
+      before = mean;
+    } else {
+      sum += mean;
+      ++count;
+    }
   }
-  return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+  return count > 0 ? sum / count : before;
 }
 
 }  // namespace framewatch

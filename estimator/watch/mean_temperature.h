@@ -11,11 +11,14 @@ namespace framewatch {
 class MeanTemperature {
  public:
   static constexpr int kBins = 64;
+  /// A reading holds for so many stretches when no other one comes.
+  static constexpr int kHolds = 20;
 
   explicit MeanTemperature(double bin_s) : bin_us_(static_cast<std::int64_t>(1e6 * bin_s)) {}
 
   void push(Time time, double degc);
-  /// Over the stretches that hold start to end; NaN when there is nothing of them.
+  /// Over the stretches that hold start to end; when there is nothing of them, of the newest one
+  /// before that still holds; else NaN.
   double mean(Time start, Time end) const;
 
   template <typename Archive>

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
 
 namespace framewatch {
 namespace {
@@ -11,7 +9,8 @@ namespace {
 constexpr double kSeconds = 3600, kHoursPerYear = 8766;
 constexpr double kBinsPerWindow = 20, kBin_s = 60;  // of the temperature's means
 constexpr double kExpectedErrors = 3;
-constexpr double kNewsErrors = 2;  // standard errors a change moves by before it is told again
+constexpr double kUnknown_degc = 10;  // that it may be off by when the thermometer is silent
+constexpr double kNewsErrors = 2;     // standard errors a change moves by before it is told again
 
 /// A design off by its tolerance may not move a value by more than this share of the change that
 /// matters. A panel's change that matters is one or two standard errors of its values, so that what
@@ -19,21 +18,6 @@ constexpr double kNewsErrors = 2;  // standard errors a change moves by before i
 constexpr double kMostPull_k = 0.1, kMostPull_g = 0.25;
 /// The same of long windows, whose baseline is pulled alike.
 constexpr double kMostPullQuiet = 0.4;
-
-std::vector<Watched> what_is_watched(const ParameterTable& table, const WatchOptions& o) {
-  const auto watched = [](double smallest, double pull, ParameterKind kind, double spare) {
-    return Watched{smallest, smallest * pull / design_tolerance(kind), smallest * spare};
-  };
-  std::vector<Watched> out(static_cast<std::size_t>(table.size()));
-  for (std::size_t p = 0; p < out.size(); ++p) {
-    const ParameterKind kind = table[static_cast<int>(p)].kind;
-    if (kind == ParameterKind::frame_stiffness)
-      out[p] = watched(o.smallest_k, kMostPull_k, kind, 0);
-    if (kind == ParameterKind::panel_stiffness)
-      out[p] = watched(o.smallest_g, kMostPull_g, kind, kMostPull_g);
-  }
-  return out;
-}
 
 /// The value as it would be under the conditions of the baseline. What they may explain by
 /// kExpectedErrors errors is no deviation: that error is the same in every window.
@@ -46,6 +30,10 @@ void correct(WindowEstimate& e, std::size_t p, double baseline, const Dependence
   const double explained = kExpectedErrors * now.std_error * baseline;
   e.value[p] = baseline + std::copysign(std::max(std::abs(off) - explained, 0.0), off);
   e.std_error[p] /= now.ratio;
+}
+
+DependenceOptions quiet_options(const WatchOptions& o) {
+  return {kSeconds * o.quiet_learn_hours, o.temperature, o.amplitude};
 }
 
 /// Sums that may cross it, per year, over the false alarms that are put up with:
@@ -64,18 +52,32 @@ double threshold_for(const WatchOptions& o, const std::vector<double>& windows_s
 
 }  // namespace
 
+std::vector<Watched> watched_parameters(const ParameterTable& table, const WatchOptions& o) {
+  const auto watched = [](double smallest, double pull, ParameterKind kind, double spare) {
+    if (smallest == 0) return Watched{};
+    return Watched{smallest, smallest * pull / design_tolerance(kind), smallest * spare};
+  };
+  std::vector<Watched> out(static_cast<std::size_t>(table.size()));
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    const ParameterKind kind = table[static_cast<int>(p)].kind;
+    if (kind == ParameterKind::frame_stiffness)
+      out[p] = watched(o.smallest_k, kMostPull_k, kind, 0);
+    if (kind == ParameterKind::panel_stiffness)
+      out[p] = watched(o.smallest_g, kMostPull_g, kind, kMostPull_g);
+  }
+  return out;
+}
+
 Watch::Watch(const ParameterTable& table, const WatchOptions& options,
-             const std::vector<double>& windows_s, std::optional<Baseline> baseline)
+             const std::vector<double>& windows_s, const std::optional<Baseline>& baseline)
     : options_(options),
-      watched_(what_is_watched(table, options)),
+      watched_(watched_parameters(table, options)),
       windows_s_(windows_s),
       threshold_(threshold_for(options, windows_s, watched_)),
-      learner_(table.size(), options.learn_s),
-      baseline_(std::move(baseline)),
+      learner_(watched_, options.learn_s),
+      baseline_(baseline.value_or(Baseline(watched_.size()))),
       temperature_(options.quiet_window_s > 0 ? options.quiet_window_s / kBinsPerWindow : kBin_s),
-      learned_degc_(std::numeric_limits<double>::quiet_NaN()),
-      quiet_learner_(table.size(), {kSeconds * options.quiet_learn_hours, options.temperature,
-                                    options.amplitude}),
+      quiet_learner_(table.size(), quiet_options(options)),
       quiet_baseline_(watched_.size()),
       dependence_(watched_.size()),
       corrected_(watched_.size()),
@@ -83,12 +85,11 @@ Watch::Watch(const ParameterTable& table, const WatchOptions& options,
   const Baseline none(watched_.size());
   detectors_.assign(windows_s_.size() + 1, ChangeDetector(none, watched_, threshold_));
   news_.reserve(watched_.size());
-  if (baseline_) begin();
+  begin();
 }
 
 void Watch::begin() {
-  for (std::size_t i = 0; i < windows_s_.size(); ++i)
-    detectors_[i] = ChangeDetector(*baseline_, watched_, threshold_);
+  for (std::size_t i = 0; i < windows_s_.size(); ++i) detectors_[i].set_baseline(baseline_);
 }
 
 void Watch::begin_quiet() {
@@ -102,45 +103,63 @@ const std::vector<Alarm>& Watch::push(const WindowEstimate& estimate) {
   const auto window = static_cast<std::size_t>(estimate.window);
   if (window > windows_s_.size()) return news_;
   const bool quiet = window == windows_s_.size();
-  if (quiet ? learns_quiet(estimate) : learns(estimate)) return news_;
   detectors_[window].push(quiet ? corrected_quiet(estimate) : corrected(estimate));
+  quiet ? learn_quiet(estimate) : learn(estimate);
   for (int p = 0; p < static_cast<int>(states_.size()); ++p) tell(p, estimate);
   return news_;
 }
 
-bool Watch::learns(const WindowEstimate& estimate) {
-  if (baseline_) return false;
-  const double degc = temperature_.mean(estimate.start, estimate.end);
-  if (std::isnan(learned_degc_)) learned_degc_ = degc;
-  if (!learner_.push(estimate)) return true;
-  baseline_ = learner_.baseline();
-  if (!std::isnan(degc)) learned_degc_ = (learned_degc_ + degc) / 2;
+void Watch::learn(const WindowEstimate& e) {
+  const double degc = temperature_.mean(e.start, e.end);
+  if (options_.temperature && std::isnan(degc)) return;  // it could never be corrected
+  if (!learner_.push(e, degc)) return;
+  const Baseline learned = learner_.baseline();
+  for (std::size_t p = 0; p < watched_.size(); ++p) {
+    if (baseline_.knows(p) || !learned.knows(p)) continue;
+    baseline_.value[p] = learned.value[p];
+    baseline_.std_error[p] = learned.std_error[p];
+    baseline_.degc[p] = learned.degc[p];
+  }
   begin();
-  return true;
 }
 
-bool Watch::learns_quiet(const WindowEstimate& estimate) {
-  if (quiet_known_) return false;
-  if (!quiet_learner_.push(estimate, temperature_.mean(estimate.start, estimate.end))) return true;
+void Watch::learn_quiet(const WindowEstimate& e) {
+  if (quiet_known_ || !quiet_learner_.push(e, temperature_.mean(e.start, e.end))) return;
   quiet_known_ = true;
   quiet_baseline_ = quiet_learner_.baseline();
   dependence_ = quiet_learner_.dependence();
   begin_quiet();
-  return true;
+}
+
+void Watch::forget_quiet() {
+  quiet_known_ = false;
+  quiet_learner_ = DependenceLearner(static_cast<int>(watched_.size()), quiet_options(options_));
+  quiet_baseline_ = Baseline(watched_.size());
+  begin_quiet();
+}
+
+double Watch::quiet_learned() const {
+  return quiet_known_ ? 1 : quiet_learner_.learned_s() / (kSeconds * options_.quiet_learn_hours);
+}
+
+/// Of an ordinary window: what its temperature may do to the baseline's value.
+Dependence::Expected Watch::expected(std::size_t p, double degc) const {
+  const double from = baseline_.degc[p];
+  const bool known = quiet_known_ && quiet_baseline_.knows(p);
+  if (!std::isnan(degc) && known) return dependence_.change(p, from, degc);
+  const double off = std::isnan(degc) ? kUnknown_degc : std::abs(degc - from);
+  const double per_degc = known ? dependence_.usual_per_degc(p) : DependenceLearner::kUsualPerDegc;
+  return {1, per_degc * off};
 }
 
 const WindowEstimate& Watch::corrected(const WindowEstimate& e) {
-  if (!options_.temperature || std::isnan(learned_degc_)) return e;
+  if (!options_.temperature) return e;
   const double degc = temperature_.mean(e.start, e.end);
-  if (std::isnan(degc)) return e;
   corrected_ = e;
-  for (std::size_t p = 0; p < watched_.size(); ++p) {
-    if (watched_[p].smallest == 0 || e.reason[p] != Observability::observable) continue;
-    const bool known = quiet_known_ && std::isfinite(quiet_baseline_.value[p]);
-    const double guessed = DependenceLearner::kUsualPerDegc * std::abs(degc - learned_degc_);
-    correct(corrected_, p, baseline_->value[p],
-            known ? dependence_.change(p, learned_degc_, degc) : Dependence::Expected{1, guessed});
-  }
+  for (std::size_t p = 0; p < watched_.size(); ++p)
+    if (baseline_.knows(p) && !std::isnan(baseline_.degc[p]) &&
+        e.reason[p] == Observability::observable)
+      correct(corrected_, p, baseline_.value[p], expected(p, degc));
   return corrected_;
 }
 
@@ -148,7 +167,7 @@ const WindowEstimate& Watch::corrected_quiet(const WindowEstimate& e) {
   corrected_ = e;
   const double degc = temperature_.mean(e.start, e.end);
   for (std::size_t p = 0; p < watched_.size(); ++p) {
-    if (watched_[p].smallest == 0 || e.reason[p] != Observability::observable) continue;
+    if (!quiet_baseline_.knows(p) || e.reason[p] != Observability::observable) continue;
     correct(corrected_, p, quiet_baseline_.value[p],
             dependence_.expected(p, {degc, DependenceLearner::log_amplitude(e, p)}));
   }

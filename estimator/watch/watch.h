@@ -13,7 +13,7 @@
 namespace framewatch {
 
 struct WatchOptions {
-  double learn_s = 60;  ///< of windows a baseline takes, when none is given
+  double learn_s = 60;  ///< of windows a parameter's baseline takes at least, when none is given
   /// Smallest changes that matter, relative; 0: not watched.
   double smallest_k = 0.03, smallest_g = 0.2;
   double alarms_per_year = 1;  ///< false ones that are put up with, of the whole building
@@ -39,16 +39,19 @@ struct Alarm {
   Time found;     ///< end of the window that says so
 };
 
+/// How the parameters are watched: theta order.
+std::vector<Watched> watched_parameters(const ParameterTable& table, const WatchOptions& options);
+
 /// Watches frame and panel stiffness for changes against a baseline, given or learned first, in the
 /// windows of every length at once: short ones are quick, long ones see small changes. The longest,
 /// of accumulated weak motion, have a baseline of their own, always learned: a building is stiffer
 /// when it hardly moves.
 class Watch {
  public:
-  /// windows_s: lengths of the windows, WindowEstimate::window its index; the next index is that of
-  /// the long window, if there is one.
+  /// baseline: what it lacks is learned. windows_s: lengths of the windows, WindowEstimate::window
+  /// its index; the next index is that of the long window, if there is one.
   Watch(const ParameterTable& table, const WatchOptions& options,
-        const std::vector<double>& windows_s, std::optional<Baseline> baseline);
+        const std::vector<double>& windows_s, const std::optional<Baseline>& baseline);
 
   /// What this window changes about alarms; valid until the next call.
   const std::vector<Alarm>& push(const WindowEstimate& estimate);
@@ -56,26 +59,32 @@ class Watch {
   /// What a thermometer said.
   void temperature(Time time, double degc) { temperature_.push(time, degc); }
 
-  /// Null while it is being learned.
-  const Baseline* baseline() const { return baseline_ ? &*baseline_ : nullptr; }
+  /// Of the parameters that are given or learned so far; null while there is none.
+  const Baseline* baseline() const { return baseline_.known() > 0 ? &baseline_ : nullptr; }
+  /// The parameter's changes matter.
+  bool watched(std::size_t parameter) const { return watched_[parameter].smallest > 0; }
   /// Of the long windows; null while it is being learned.
   const Baseline* quiet_baseline() const { return quiet_known_ ? &quiet_baseline_ : nullptr; }
+  /// How that follows the conditions.
+  const Dependence& dependence() const { return dependence_; }
+  /// Of the long windows their baseline takes, 0..1.
+  double quiet_learned() const;
+  /// Learns the baseline of the long windows anew: the amplitudes are measured otherwise.
+  void forget_quiet();
   /// Of every detector's sums: false alarms come at most as often as the options ask for.
   double threshold() const { return threshold_; }
 
   template <typename Archive>
   void archive(Archive& a) {
-    bool known = baseline_.has_value();
-    a(known, learner_, learned_degc_, quiet_known_, quiet_learner_, quiet_baseline_, dependence_);
-    if (known) {
-      if (!baseline_) baseline_.emplace();
-      a(*baseline_);
-    }
+    bool temperature = options_.temperature, amplitude = options_.amplitude;
+    a(temperature, amplitude, learner_, baseline_);
+    a(quiet_known_, quiet_learner_, quiet_baseline_, dependence_);
     if constexpr (Archive::kReading) {
-      if (known) begin();
+      begin();
       if (quiet_known_) begin_quiet();
     }
     a(temperature_, detectors_, states_, last_id_);
+    if (temperature != options_.temperature || amplitude != options_.amplitude) forget_quiet();
   }
 
  private:
@@ -91,8 +100,9 @@ class Watch {
   };
   void begin();
   void begin_quiet();
-  bool learns(const WindowEstimate& estimate);
-  bool learns_quiet(const WindowEstimate& estimate);
+  void learn(const WindowEstimate& estimate);
+  void learn_quiet(const WindowEstimate& estimate);
+  Dependence::Expected expected(std::size_t parameter, double degc) const;
   /// The estimate as it would be under the conditions of its baseline.
   const WindowEstimate& corrected(const WindowEstimate& estimate);
   const WindowEstimate& corrected_quiet(const WindowEstimate& estimate);
@@ -103,9 +113,8 @@ class Watch {
   std::vector<double> windows_s_;
   double threshold_;
   BaselineLearner learner_;
-  std::optional<Baseline> baseline_;
+  Baseline baseline_;
   MeanTemperature temperature_;
-  double learned_degc_;  ///< at which the baseline was learned; NaN: not known
   bool quiet_known_ = false;
   DependenceLearner quiet_learner_;
   Baseline quiet_baseline_;

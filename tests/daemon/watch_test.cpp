@@ -192,14 +192,37 @@ TEST(BaselineFile, IsReadAsItWasWritten) {
   const std::optional<Config> config = load_config(test::table_config(), problems);
   const ParameterTable table(config->pipeline.structure);
   Baseline b(static_cast<std::size_t>(table.size()));
-  b.value[0] = 1.0 / 3, b.std_error[0] = 1e-3 / 7;
+  b.value[0] = 1.0 / 3, b.std_error[0] = 1e-3 / 7, b.degc[0] = 1.0 / 7;
   const test::TemporaryDirectory directory;
   test::write_file(directory.path("b.toml"), baseline_text(b, table));
   const std::optional<Baseline> back = load_baseline(directory.path("b.toml"), table, problems);
   ASSERT_TRUE(back) << problems[0].message;
   EXPECT_EQ(back->value[0], b.value[0]);
   EXPECT_EQ(back->std_error[0], b.std_error[0]);
+  EXPECT_EQ(back->degc[0], b.degc[0]);
   EXPECT_TRUE(std::isnan(back->value[1]));
+}
+
+TEST(BaselineFile, IsExtendedByWhatItLacks) {
+  std::vector<ConfigProblem> problems;
+  const std::optional<Config> config = load_config(test::table_config(), problems);
+  const ParameterTable table(config->pipeline.structure);
+  Baseline first(static_cast<std::size_t>(table.size()));
+  first.value[0] = 10, first.std_error[0] = 1;
+  Baseline more = first;
+  more.value[0] = 11, more.value[1] = 20, more.std_error[1] = 2;
+  const std::string text = baseline_text(first, table) + "# by hand\n";
+  const std::string extended = extended_baseline_text(text, first, more, table);
+  EXPECT_EQ(extended.find(text), 0u);
+  const test::TemporaryDirectory directory;
+  test::write_file(directory.path("b.toml"), extended);
+  const std::optional<Baseline> back = load_baseline(directory.path("b.toml"), table, problems);
+  ASSERT_TRUE(back) << problems[0].message;
+  EXPECT_EQ(back->value[0], 10);
+  EXPECT_EQ(back->value[1], 20);
+  EXPECT_TRUE(std::isnan(back->degc[1]));
+  EXPECT_TRUE(back->holds(first));
+  EXPECT_FALSE(first.holds(*back));
 }
 
 }  // namespace

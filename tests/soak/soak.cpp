@@ -86,9 +86,9 @@ int main(int count, char** arguments) {
     fmt::print(stderr, "soak: {} is there already\n", o.directory);
     return 2;
   }
-  o.looked = [](double days, std::int64_t resident) {
-    fmt::print("day {:.2f}: {:.2f} MiB resident\n", days,
-               static_cast<double>(resident) / (1 << 20));
+  o.looked = [](double days, std::int64_t resident, int alarms) {
+    fmt::print("day {:.2f}: {:.2f} MiB resident, {} false alarms\n", days,
+               static_cast<double>(resident) / (1 << 20), alarms);
     std::fflush(stdout);
   };
   return judge(o, run_soak(o));

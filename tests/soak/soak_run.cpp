@@ -44,27 +44,6 @@ constexpr std::int64_t kTemperature = 100 * 120;
 constexpr std::int64_t kSettled_us = 2'000'000;  // after a turn of the raw logs
 constexpr std::chrono::minutes kPatience{1};
 
-daemon::Config configuration(const SoakOptions& o) {
-  std::vector<daemon::ConfigProblem> problems;
-  std::string text = test::read_file(test::table_config());
-  const std::string noise = "noise_mps2_per_rthz = 5e-4";
-  for (std::size_t at = 0; (at = text.find(noise, at)) != std::string::npos;)
-    text.replace(at, noise.size(), fmt::format("noise_mps2_per_rthz = {}", kNoise));
-  const std::string hop = "hop_s = 0.01";
-  text.replace(text.find(hop), hop.size(), fmt::format("hop_s = {:.1f}", kHop_s));
-  text += fmt::format(
-      "\n[lcm]\nboxplot_every = 60\n[watch]\nalarms_per_year = {}\nshaking_hours_per_year = 8766\n"
-      "quiet_window_s = {}\n"
-      "quiet_learn_hours = {}\ntemperature_channel = \"TEMPERATURE\"\n[history]\n"
-      "directory = \"{}\"\nkeep_gb = 1\nrotate_mb = 4000\ncompress = false\nrotate_s = {}\n"
-      "summary_s = [{}, {}, {}]\n",
-      o.alarms_per_year, o.quiet_window_s, o.quiet_learn_hours, o.directory, o.rotate_s,
-      o.summary_s, 10 * o.summary_s, 60 * o.summary_s);
-  auto config = daemon::parse_config("soak.toml", text, problems);
-  if (!config) throw std::runtime_error(problems.front().message);
-  return *config;
-}
-
 void put(std::uint8_t* to, std::uint64_t value) {
   for (int i = 7; i >= 0; --i, value >>= 8) to[i] = static_cast<std::uint8_t>(value);
 }
@@ -185,7 +164,8 @@ void Soak::look_at_memory(std::int64_t time_us) {
   ::malloc_trim(0);
   result_.resident.push_back(daemon::process_usage().resident_bytes);
   if (options_.looked)
-    options_.looked(static_cast<double>(at_) / (24 * kHour), result_.resident.back());
+    options_.looked(static_cast<double>(at_) / (24 * kHour), result_.resident.back(),
+                    result_.alarms);
 }
 
 void Soak::published(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
@@ -287,6 +267,27 @@ std::int64_t SoakResult::growth() const {
   const auto fifth = resident.begin() + static_cast<std::ptrdiff_t>((resident.size() + 4) / 5);
   if (fifth == resident.end()) return 0;
   return *std::max_element(fifth, resident.end()) - *std::max_element(resident.begin(), fifth);
+}
+
+daemon::Config configuration(const SoakOptions& o) {
+  std::vector<daemon::ConfigProblem> problems;
+  std::string text = test::read_file(test::table_config());
+  const std::string noise = "noise_mps2_per_rthz = 5e-4";
+  for (std::size_t at = 0; (at = text.find(noise, at)) != std::string::npos;)
+    text.replace(at, noise.size(), fmt::format("noise_mps2_per_rthz = {}", kNoise));
+  const std::string hop = "hop_s = 0.01";
+  text.replace(text.find(hop), hop.size(), fmt::format("hop_s = {:.1f}", kHop_s));
+  text += fmt::format(
+      "\n[lcm]\nboxplot_every = 60\n[watch]\nalarms_per_year = {}\nshaking_hours_per_year = 8766\n"
+      "quiet_window_s = {}\n"
+      "quiet_learn_hours = {}\ntemperature_channel = \"TEMPERATURE\"\n[history]\n"
+      "directory = \"{}\"\nkeep_gb = 1\nrotate_mb = 4000\ncompress = false\nrotate_s = {}\n"
+      "summary_s = [{}, {}, {}]\n",
+      o.alarms_per_year, o.quiet_window_s, o.quiet_learn_hours, o.directory, o.rotate_s,
+      o.summary_s, 10 * o.summary_s, 60 * o.summary_s);
+  auto config = daemon::parse_config("soak.toml", text, problems);
+  if (!config) throw std::runtime_error(problems.front().message);
+  return *config;
 }
 
 SoakResult run_soak(const SoakOptions& options) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/config.h"
 #include "tests/soak/soak_night.h"
 
 namespace framewatch::soak {
@@ -18,8 +19,8 @@ struct SoakOptions {
   std::int64_t rotate_s = 86400;  ///< of the raw logs
   std::int64_t summary_s = 60;    ///< the shortest period of the summaries
   std::uint64_t seed = 1;
-  /// Called whenever memory was looked at: days, and what is resident.
-  std::function<void(double, std::int64_t)> looked;
+  /// Called whenever memory was looked at: days, what is resident, false alarms so far.
+  std::function<void(double, std::int64_t, int)> looked;
 };
 
 struct SoakResult {
@@ -44,6 +45,9 @@ struct SoakResult {
   int alarms = 0;
   std::vector<std::string> told;
 };
+
+/// What the building of a soak is watched with.
+daemon::Config configuration(const SoakOptions& options);
 
 SoakResult run_soak(const SoakOptions& options);
 

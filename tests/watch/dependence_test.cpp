@@ -9,6 +9,7 @@
 
 #include "daemon/paper_buildings.h"
 #include "estimator/simulate/random.h"
+#include "estimator/state/archive.h"
 #include "estimator/watch/mean_temperature.h"
 #include "estimator/watch/watch.h"
 
@@ -103,7 +104,8 @@ TEST(MeanTemperature, IsOfTheStretchesAsked) {
   for (int s = 0; s < 40'000; s += 60) mean.push(from_microseconds(1'000'000LL * s), s / 3600.0);
   mean.push(from_microseconds(1'000'000LL * 39'960), 1e9);  // broken
   EXPECT_NEAR(mean.mean(at(9), at(10) - SensorClock::duration(1)), 9.5, 0.02);
-  EXPECT_TRUE(std::isnan(mean.mean(at(1), at(2))));  // long ago
+  EXPECT_NEAR(mean.mean(at(11.5), at(11.6)), 11.1, 0.05);  // it still holds
+  EXPECT_TRUE(std::isnan(mean.mean(at(1), at(2))));        // long ago
   EXPECT_TRUE(std::isnan(mean.mean(at(20), at(21))));
 }
 
@@ -150,6 +152,65 @@ TEST(Watch, ADailySwingOfStiffnessIsNoChangeWhenItFollowsTheTemperature) {
   // The same building without a thermometer: alarms would come and go, or be missing only because
   // the baseline's own error has swallowed the swing.
   EXPECT_TRUE(blind.false_alarms > 0 || blind.found_hours > follows.found_hours);
+}
+
+/// Ordinary windows all day, and a thermometer that is slower than they are.
+TEST(Watch, ADailySwingRaisesNothingInOrdinaryWindows) {
+  constexpr int kLearn_hours = 24, kDays = 3, kWindow_s = 10, kThermometer_s = 290;
+  const ParameterTable table(daemon::table1());
+  WatchOptions options;
+  options.quiet_learn_hours = kLearn_hours;
+  options.temperature = true;
+  Watch watch(table, options, {5, 1, 2.5, 10}, std::nullopt);
+  Random random(3);
+  int false_alarms = 0;
+  for (int s = kWindow_s; s < kDays * 24 * kHour_s; s += kWindow_s) {
+    const double hours = s / kHour_s;
+    if (s / kThermometer_s != (s - kWindow_s) / kThermometer_s)
+      watch.temperature(at(hours), degc_at(hours));
+    WindowEstimate e = window(table.size(), hours);
+    const bool whole_hour = s % static_cast<int>(kHour_s) == 0;
+    const double middle = hours - (whole_hour ? 0.5 : 0);
+    e.window = whole_hour ? kStrong : 0;
+    if (!whole_hour) e.start = e.end - SensorClock::duration(1'000'000 * (kWindow_s - 1));
+    for (double& value : e.value) value = 1 + kPerDegc * degc_at(middle) + kError * random.normal();
+    for (const Alarm& alarm : watch.push(e))
+      false_alarms += alarm.state == AlarmState::raised ? 1 : 0;
+  }
+  EXPECT_EQ(false_alarms, 0);
+  EXPECT_NE(watch.quiet_baseline(), nullptr);
+}
+
+TEST(Watch, OtherConditionsThanWereLearnedAreLearnedAnew) {
+  constexpr int kLearn_hours = 10;
+  const ParameterTable table(daemon::table1());
+  WatchOptions options;
+  options.quiet_learn_hours = kLearn_hours;
+  const auto watch_of = [&](bool amplitude) {
+    options.amplitude = amplitude;
+    return Watch(table, options, {5, 1, 2.5, 10}, std::nullopt);
+  };
+  const auto go_on = [](Watch& from, Watch& to) {
+    StateWriter writer;
+    writer(from);
+    StateReader reader(writer.bytes());
+    reader(to);
+    return reader.whole();
+  };
+  Watch half = watch_of(false), same = watch_of(false), other = watch_of(true);
+  for (int h = 1; h <= kLearn_hours / 2; ++h) (void)half.push(window(table.size(), h));
+  EXPECT_NEAR(half.quiet_learned(), 0.5, 0.01);
+  EXPECT_TRUE(go_on(half, same));
+  EXPECT_EQ(same.quiet_learned(), half.quiet_learned());
+  EXPECT_TRUE(go_on(half, other));
+  EXPECT_EQ(other.quiet_learned(), 0);
+  for (int h = 6; h <= kLearn_hours + 1; ++h) (void)half.push(window(table.size(), h));
+  ASSERT_NE(half.quiet_baseline(), nullptr);
+  Watch known = watch_of(false), unknown = watch_of(true);
+  EXPECT_TRUE(go_on(half, known));
+  EXPECT_NE(known.quiet_baseline(), nullptr);
+  EXPECT_TRUE(go_on(half, unknown));
+  EXPECT_EQ(unknown.quiet_baseline(), nullptr);
 }
 
 }  // namespace

@@ -242,6 +242,8 @@ TEST_F(Gap, LearnsItsModelWhenNoneIsGiven) {
   GapMonitor m(structure_, axes_, {}, options_, std::nullopt);
   WindowEstimate window(table_.size());
   window.status = WindowStatus::valid;
+  std::fill(window.prior_share.begin(), window.prior_share.end(), 0.0);
+  std::fill(window.noise_share.begin(), window.noise_share.end(), 0.0);
   Eigen::VectorXd believed = 1.5 * theta_;
   for (int i = 1; i <= 13; ++i) {
     EXPECT_FALSE(m.has_model());

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+
+#include "estimator/identify/estimate.h"
+
+namespace framewatch {
+
+/// Picks the windows that are learned from: valid ones that do not overlap, by which their errors
+/// are nearly independent.
+class SeparateWindows {
+ public:
+  /// Whether this one is to be taken; then it counts.
+  bool take(const WindowEstimate& e) {
+    if (e.status != WindowStatus::valid || (count_ > 0 && e.start <= end_)) return false;
+    end_ = e.end;
+    ++count_;
+    seconds_ += length_s(e);
+    return true;
+  }
+  static double length_s(const WindowEstimate& e) {
+    return std::chrono::duration<double>(e.end - e.start).count();
+  }
+  double seconds() const { return seconds_; }
+  /// Whether at least half of them are `count`.
+  bool most(int count) const { return count > 0 && 2 * count >= count_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(count_, seconds_, end_);
+  }
+
+ private:
+  int count_ = 0;
+  double seconds_ = 0;
+  Time end_{};
+};
+
+}  // namespace framewatch
