@@ -209,6 +209,7 @@ void Estimation::publish_state() {
   }
   publisher_.parameters(seconds_.newest_us(), pipeline_);
   publisher_.status(seconds_.newest_us(), counts, live_);
+  if (watch_) publisher_.watch(seconds_.newest_us(), *watch_);
 }
 
 }  // namespace framewatch::daemon

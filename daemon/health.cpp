@@ -96,6 +96,11 @@ void of_punctuality(const Heard& heard, std::vector<std::string>& out) {
     out.push_back(fmt::format("{:.0f} % of the estimates come late", 100 * late / estimates));
 }
 
+void of_watch(const watch_t& w, const Config& config, std::vector<std::string>& out) {
+  if (config.watch && !config.watch->temperature_channel.empty() && std::isnan(w.temperature_degc))
+    out.push_back(fmt::format("no temperature is heard on {}", config.watch->temperature_channel));
+}
+
 void of_history(const history_status_t& s, std::vector<std::string>& out) {
   if (!s.raw_trouble.empty()) out.push_back("raw samples are not stored: " + s.raw_trouble);
   if (!s.summary_trouble.empty()) out.push_back("summaries are not stored: " + s.summary_trouble);
@@ -125,8 +130,8 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
 
 std::vector<std::string> Heard::channels() const {
   std::vector<std::string> out;
-  for (const char* name :
-       {"SERVICE", "STATUS", "ESTIMATE", "GAP", "CAN", "HISTORY", "ACTIONS", "ACKNOWLEDGED"})
+  for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "WATCH", "CAN", "HISTORY",
+                           "ACTIONS", "ACKNOWLEDGED"})
     out.push_back(prefix_ + name);
   return out;
 }
@@ -148,6 +153,8 @@ void Heard::message(const std::string& channel, const void* data, std::size_t si
     if (auto found = drivers::decode_window_estimate(bytes)) estimate = std::move(found);
   } else if (name == "GAP") {
     if (auto found = drivers::decode_gap(bytes)) gap = std::move(found);
+  } else if (name == "WATCH") {
+    if (auto found = drivers::decode_watch(bytes)) watch = std::move(found);
   } else if (name == "CAN") {
     if (auto found = drivers::decode_can_status(bytes)) can = std::move(found);
   } else if (name == "HISTORY") {
@@ -195,6 +202,7 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   of_samples(heard, now_us, out);
   of_punctuality(heard, out);
   if (heard.can) of_can(*heard.can, out);
+  if (heard.watch) of_watch(*heard.watch, config, out);
   if (heard.history) of_history(*heard.history, out);
   if (heard.actions) of_actions(*heard.actions, out);
   of_process(s, config, now_us, out);

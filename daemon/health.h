@@ -12,6 +12,7 @@
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config.h"
@@ -33,6 +34,7 @@ class Heard {
   std::optional<status_t> first_status, status;
   std::optional<window_estimate_t> estimate;
   std::optional<gap_t> gap;
+  std::optional<watch_t> watch;
   std::optional<can_status_t> can;
   std::optional<history_status_t> history;
   std::optional<action_status_t> actions;

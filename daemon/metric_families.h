@@ -17,6 +17,7 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 namespace framewatch::daemon {
@@ -60,6 +61,7 @@ void add_service(MetricFamilies& out, const service_t& service);
 void add_status(MetricFamilies& out, const status_t& status);
 void add_estimate(MetricFamilies& out, const parameter_table_t& table,
                   const window_estimate_t& estimate);
+void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_t& watch);
 void add_gap(MetricFamilies& out, const gap_t& gap);
 void add_can(MetricFamilies& out, const can_status_t& can);
 void add_history(MetricFamilies& out, const history_status_t& history);

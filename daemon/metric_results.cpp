@@ -50,6 +50,34 @@ void add_estimate(MetricFamilies& out, const parameter_table_t& table, const win
     if (std::isfinite(e.snr[p])) out.value(static_cast<double>(e.snr[p]), labels(p));
 }
 
+void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_t& w) {
+  if (table.name.size() != w.watched.size()) return;
+  const auto each = [&](const char* name, const char* help, const auto& value) {
+    out.gauge(name, help);
+    for (std::size_t p = 0; p < w.watched.size(); ++p)
+      if (std::isfinite(value(p)))
+        out.value(value(p),
+                  {{"parameter", table.name[p]}, {"story", std::to_string(table.story[p])}});
+  };
+  each("baseline", "What changes are judged against, in the parameter's unit.",
+       [&](std::size_t p) { return w.baseline[p]; });
+  each("baseline_standard_error_ratio", "Standard error of that over the value.",
+       [&](std::size_t p) { return w.baseline_std_error[p] / w.baseline[p]; });
+  each("quiet_baseline", "The same of weak motion.",
+       [&](std::size_t p) { return w.quiet_baseline[p]; });
+  each("quiet_baseline_standard_error_ratio", "Standard error of that over the value.",
+       [&](std::size_t p) { return w.quiet_std_error[p] / w.quiet_baseline[p]; });
+  each("quiet_baseline_per_degree_celsius_ratio", "How the baseline of weak motion changes.",
+       [&](std::size_t p) { return w.per_degc[p]; });
+  each("quiet_baseline_per_log_amplitude_ratio", "The same with the logarithm of the amplitude.",
+       [&](std::size_t p) { return w.per_log_amplitude[p]; });
+  if (w.long_window_s > 0)
+    out.gauge("quiet_baseline_learned_ratio", "Part of what its learning takes.")
+        .value(w.quiet_learned_ratio);
+  if (std::isfinite(w.temperature_degc))
+    out.gauge("temperature_celsius", "What the thermometer says.").value(w.temperature_degc);
+}
+
 void add_gap(MetricFamilies& out, const gap_t& g) {
   out.gauge("gap_ratio", "Simulation against measurement, NRMSE over the last window.")
       .value(g.overall_nrmse);

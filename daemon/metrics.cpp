@@ -23,8 +23,8 @@ void Metrics::message(const std::string& channel, const void* data, std::size_t 
     if (e && !config_.watch && e->kind == kStiffnessChange) found_here_.note(*e);
     return;
   }
-  for (const char* wanted :
-       {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "CAN", "HISTORY", "ACTIONS"}) {
+  for (const char* wanted : {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "WATCH", "CAN",
+                             "HISTORY", "ACTIONS"}) {
     if (name != wanted) continue;
     const std::lock_guard<std::mutex> lock(mutex_);
     Newest& newest = newest_[name];
@@ -50,6 +50,7 @@ std::string Metrics::text(std::int64_t now_us, int viewers) const {
   const auto table = drivers::decode_parameter_table(fresh["PARAMETERS"]);
   const auto estimate = drivers::decode_window_estimate(fresh["ESTIMATE"]);
   const auto gap = drivers::decode_gap(fresh["GAP"]);
+  const auto watch = drivers::decode_watch(fresh["WATCH"]);
   const auto can = drivers::decode_can_status(fresh["CAN"]);
   const auto history = drivers::decode_history_status(fresh["HISTORY"]);
   const auto actions = drivers::decode_action_status(fresh["ACTIONS"]);
@@ -68,6 +69,7 @@ std::string Metrics::text(std::int64_t now_us, int viewers) const {
   }
   if (status) add_status(out, *status);
   if (table && estimate) add_estimate(out, *table, *estimate);
+  if (table && watch) add_watch(out, *table, *watch);
   if (gap) add_gap(out, *gap);
   if (can) add_can(out, *can);
   if (history) add_history(out, *history);

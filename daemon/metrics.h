@@ -25,7 +25,7 @@ class Metrics {
   /// The channels that nobody but this wants of `framewatch serve`.
   std::vector<std::string> channels() const {
     const std::string& prefix = config_.lcm.prefix;
-    return {prefix + "HISTORY", prefix + "ACTIONS"};
+    return {prefix + "HISTORY", prefix + "ACTIONS", prefix + "WATCH"};
   }
   void message(const std::string& channel, const void* data, std::size_t size, std::int64_t now_us);
 

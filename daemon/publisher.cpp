@@ -20,7 +20,8 @@ Publisher::Publisher(const Config& config, MessageSink sink)
       estimate_channel_(config.lcm.prefix + "ESTIMATE"),
       status_channel_(config.lcm.prefix + "STATUS"),
       event_channel_(config.lcm.prefix + "EVENT"),
-      gap_channel_(config.lcm.prefix + "GAP") {
+      gap_channel_(config.lcm.prefix + "GAP"),
+      watch_channel_(config.lcm.prefix + "WATCH") {
   for (const double window_s : config.pipeline.options.other_windows_s)
     other_channels_.push_back(fmt::format("{}_{:g}S", estimate_channel_, window_s));
   if (const double window_s = config.pipeline.options.long_window_s; window_s > 0)
@@ -163,6 +164,45 @@ void Publisher::withdraw(const std::string& kind) {
     e.message = "is not looked for any more: the configuration was changed";
     event(e);
   }
+}
+
+void Publisher::watch(std::int64_t time_us, const Watch& watch) {
+  if (!sink_) return;
+  framewatch::watch_t& m = watch_;
+  const auto count = static_cast<std::size_t>(watch.parameters());
+  const Baseline none(count);
+  const Baseline& usual = watch.baseline() != nullptr ? *watch.baseline() : none;
+  const bool known = watch.quiet_baseline() != nullptr;
+  const Baseline& quiet = known ? *watch.quiet_baseline() : none;
+  m.time_us = time_us;
+  m.long_window_s = watch.options().quiet_window_s;
+  m.quiet_learned_ratio = watch.quiet_learned();
+  m.temperature_degc = watch.degc(from_microseconds(time_us));
+  m.parameters = static_cast<std::int32_t>(count);
+  m.watched.resize(count);
+  m.baseline = usual.value;
+  m.baseline_std_error = usual.std_error;
+  m.baseline_degc = usual.degc;
+  m.quiet_baseline = quiet.value;
+  m.quiet_std_error = quiet.std_error;
+  for (auto* slopes :
+       {&m.per_degc, &m.per_degc_std_error, &m.per_log_amplitude, &m.per_log_amplitude_std_error})
+    slopes->assign(count, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t p = 0; p < count; ++p) {
+    m.watched[p] = watch.watched(p) ? 1 : 0;
+    if (!quiet.knows(p)) continue;
+    if (watch.options().temperature) {
+      const Dependence::Slope slope = watch.dependence().per_degc(p);
+      m.per_degc[p] = slope.value;
+      m.per_degc_std_error[p] = slope.std_error;
+    }
+    if (watch.options().amplitude) {
+      const Dependence::Slope slope = watch.dependence().per_log(p);
+      m.per_log_amplitude[p] = slope.value;
+      m.per_log_amplitude_std_error[p] = slope.std_error;
+    }
+  }
+  send(time_us, watch_channel_, m);
 }
 
 void Publisher::gap(const GapWindow& window) {

@@ -10,6 +10,7 @@
 #include <framewatch/gap_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config.h"
@@ -55,6 +56,8 @@ class Publisher {
   /// News of an alarm; lasting until it is cleared.
   void alarm(const Alarm& alarm, const ParameterTable& table);
   void event(const event_t& event);
+  /// What changes are judged against.
+  void watch(std::int64_t time_us, const Watch& watch);
   void gap(const GapWindow& window);
   void gap_news(const GapNews& news);
   /// Clears what is raised of a kind: nobody looks for it any more.
@@ -76,12 +79,14 @@ class Publisher {
 
   const Config& config_;
   MessageSink sink_;
-  std::string parameters_channel_, estimate_channel_, status_channel_, event_channel_, gap_channel_;
+  std::string parameters_channel_, estimate_channel_, status_channel_, event_channel_, gap_channel_,
+      watch_channel_;
   std::vector<std::string> other_channels_;
   framewatch::parameter_table_t parameters_{};
   framewatch::window_estimate_t estimate_{};
   framewatch::status_t status_{};
   framewatch::gap_t gap_{};
+  framewatch::watch_t watch_{};
   std::vector<std::uint8_t> bytes_;
   RaisedEvents raised_;
 };

@@ -1,6 +1,7 @@
 #include "daemon/status_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <numeric>
 #include <optional>
@@ -107,6 +108,38 @@ void print_estimates(const Heard& h) {
                             100 * h.gap->overall_nrmse, 100 * h.gap->noise_floor));
 }
 
+/// Median of what is known; empty when nothing is.
+std::optional<double> median(std::vector<double> values) {
+  std::erase_if(values, [](double v) { return std::isnan(v); });
+  if (values.empty()) return std::nullopt;
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// What changes are judged against.
+void print_watch(const Heard& h) {
+  if (!h.watch) return;
+  const watch_t& w = *h.watch;
+  const auto known = [&](const std::vector<double>& baseline) {
+    int count = 0;
+    for (std::size_t p = 0; p < w.watched.size(); ++p)
+      count += w.watched[p] != 0 && std::isfinite(baseline[p]) ? 1 : 0;
+    return count;
+  };
+  std::string text = fmt::format("{} of {} stiffnesses have a baseline", known(w.baseline),
+                                 std::count(w.watched.begin(), w.watched.end(), 1));
+  if (w.long_window_s > 0)
+    text += w.quiet_learned_ratio < 1
+                ? fmt::format(", the one of weak motion is {:.0f} % learned",
+                              100 * w.quiet_learned_ratio)
+                : fmt::format(", {} one of weak motion", known(w.quiet_baseline));
+  if (const auto slope = median(w.per_degc))
+    text += fmt::format("; {:+.2f} % per degC (median)", 100 * *slope);
+  if (std::isfinite(w.temperature_degc)) text += fmt::format("; {:.1f} degC", w.temperature_degc);
+  line("watch", text);
+}
+
 void print_history(const Heard& h) {
   if (!h.history) return;
   std::string text = fmt::format("{:.1f} GB in {}, {} samples lost to the disk",
@@ -160,6 +193,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   print_config(*h.service, config.path);
   print_samples(h);
   print_estimates(h);
+  print_watch(h);
   print_can(h);
   print_history(h);
   print_actions(h);
@@ -190,6 +224,20 @@ void print_json(const Heard& h, const Config& config, const std::vector<std::str
     out["windows"] = h.status->windows;
     out["latency_s"] = h.status->latency_s;
     out["lost"] = total(h.status->lost);
+  }
+  if (h.watch) {
+    const watch_t& w = *h.watch;
+    out["watch"] = {{"baseline", w.baseline},
+                    {"baseline_std_error", w.baseline_std_error},
+                    {"baseline_degc", w.baseline_degc},
+                    {"quiet_learned_ratio", w.quiet_learned_ratio},
+                    {"quiet_baseline", w.quiet_baseline},
+                    {"quiet_std_error", w.quiet_std_error},
+                    {"per_degc", w.per_degc},
+                    {"per_degc_std_error", w.per_degc_std_error},
+                    {"per_log_amplitude", w.per_log_amplitude},
+                    {"per_log_amplitude_std_error", w.per_log_amplitude_std_error},
+                    {"temperature_degc", w.temperature_degc}};
   }
   if (unit)
     out["systemd"] = {{"active", unit->active},

@@ -134,6 +134,10 @@ std::optional<service_t> decode_service(std::span<const std::uint8_t> payload) {
   return decode<service_t>(payload, "888884sss88s8s8888888n[888]n[s8]n[884sss]");
 }
 
+std::optional<watch_t> decode_watch(std::span<const std::uint8_t> payload) {
+  return decode<watch_t>(payload, "88888n[4888888888]");
+}
+
 std::optional<temperature_t> decode_temperature(std::span<const std::uint8_t> payload) {
   return decode<temperature_t>(payload, "888");
 }

@@ -20,6 +20,7 @@
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/temperature_t.hpp>
+#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 namespace framewatch::drivers {
@@ -36,6 +37,7 @@ std::optional<event_t> decode_event(std::span<const std::uint8_t> payload);
 std::optional<gap_t> decode_gap(std::span<const std::uint8_t> payload);
 std::optional<can_status_t> decode_can_status(std::span<const std::uint8_t> payload);
 std::optional<accel_counts_t> decode_accel_counts(std::span<const std::uint8_t> payload);
+std::optional<watch_t> decode_watch(std::span<const std::uint8_t> payload);
 std::optional<history_status_t> decode_history_status(std::span<const std::uint8_t> payload);
 std::optional<session_command_t> decode_session_command(std::span<const std::uint8_t> payload);
 std::optional<session_status_t> decode_session_status(std::span<const std::uint8_t> payload);

@@ -19,6 +19,7 @@
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/temperature_t.hpp>
+#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include <fmt/core.h>
@@ -29,8 +30,8 @@
 namespace framewatch::drivers {
 namespace {
 
-const std::array<std::pair<const char*, std::int64_t>, 17>& types() {
-  static const std::array<std::pair<const char*, std::int64_t>, 17> all{{
+const std::array<std::pair<const char*, std::int64_t>, 18>& types() {
+  static const std::array<std::pair<const char*, std::int64_t>, 18> all{{
       {"accel_t", accel_t::getHash()},
       {"channel_table_t", channel_table_t::getHash()},
       {"parameter_table_t", parameter_table_t::getHash()},
@@ -48,6 +49,7 @@ const std::array<std::pair<const char*, std::int64_t>, 17>& types() {
       {"action_status_t", action_status_t::getHash()},
       {"acknowledge_t", acknowledge_t::getHash()},
       {"acknowledged_t", acknowledged_t::getHash()},
+      {"watch_t", watch_t::getHash()},
   }};
   return all;
 }
@@ -72,6 +74,7 @@ const char* type_of_channel(const std::string& channel, const std::string& prefi
   if (rest == "STATUS") return "status_t";
   if (rest == "EVENT") return "event_t";
   if (rest == "GAP") return "gap_t";
+  if (rest == "WATCH") return "watch_t";
   if (rest == "CAN") return "can_status_t";
   if (rest == "SERVICE") return "service_t";
   if (rest == "HISTORY") return "history_status_t";

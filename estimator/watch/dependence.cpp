@@ -25,8 +25,17 @@ Dependence::Expected Dependence::change(std::size_t p, double from_degc, double 
   return {1 + slope_[2 * p] * step, std::sqrt(covariance_[3 * p]) * std::abs(step)};
 }
 
+Dependence::Slope Dependence::per_degc(std::size_t p) const {
+  return {slope_[2 * p], std::sqrt(covariance_[3 * p])};
+}
+
+Dependence::Slope Dependence::per_log(std::size_t p) const {
+  return {slope_[2 * p + 1], std::sqrt(covariance_[3 * p + 1])};
+}
+
 double Dependence::usual_per_degc(std::size_t p) const {
-  return std::hypot(slope_[2 * p], std::sqrt(covariance_[3 * p]));
+  const Slope slope = per_degc(p);
+  return std::hypot(slope.value, slope.std_error);
 }
 
 DependenceLearner::DependenceLearner(int parameters, const DependenceOptions& options)

@@ -29,6 +29,13 @@ class Dependence {
     double std_error;  ///< of that, from the slopes'; infinite when a condition is not known
   };
   Expected expected(std::size_t parameter, const Conditions& now) const;
+  /// Relative change per degC, and per unit of the logarithm of the amplitude; 0 +- 0 when it is
+  /// not followed.
+  struct Slope {
+    double value, std_error;
+  };
+  Slope per_degc(std::size_t parameter) const;
+  Slope per_log(std::size_t parameter) const;
   /// By how much the ratio usually changes per degC: the slope and its error.
   double usual_per_degc(std::size_t parameter) const;
   /// From one temperature to another.

@@ -61,6 +61,7 @@ class Watch {
 
   /// Of the parameters that are given or learned so far; null while there is none.
   const Baseline* baseline() const { return baseline_.known() > 0 ? &baseline_ : nullptr; }
+  int parameters() const { return static_cast<int>(watched_.size()); }
   /// The parameter's changes matter.
   bool watched(std::size_t parameter) const { return watched_[parameter].smallest > 0; }
   /// Of the long windows; null while it is being learned.
@@ -71,6 +72,9 @@ class Watch {
   double quiet_learned() const;
   /// Learns the baseline of the long windows anew: the amplitudes are measured otherwise.
   void forget_quiet();
+  /// Mean of the thermometer until a time; NaN: it is not heard.
+  double degc(Time now) const { return temperature_.mean(now, now); }
+  const WatchOptions& options() const { return options_; }
   /// Of every detector's sums: false alarms come at most as often as the options ask for.
   double threshold() const { return threshold_; }
 

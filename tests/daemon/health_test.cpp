@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <string>
@@ -66,6 +67,19 @@ std::string odd(const Heard& heard, const Config& config, std::int64_t now_us = 
 TEST(Health, AWellDaemonHasNothingOdd) {
   const Config config{};
   EXPECT_EQ(odd(well(config), config), "0 oddities");
+}
+
+TEST(Health, SaysThatTheThermometerIsSilent) {
+  Config config{};
+  config.watch.emplace();
+  Heard h = well(config);
+  h.watch.emplace();
+  h.watch->temperature_degc = std::nan("");
+  EXPECT_EQ(odd(h, config), "0 oddities");
+  config.watch->temperature_channel = "ROOF";
+  EXPECT_EQ(odd(h, config), "no temperature is heard on ROOF");
+  h.watch->temperature_degc = 4;
+  EXPECT_EQ(odd(h, config), "0 oddities");
 }
 
 TEST(Health, SaysWhatIsOdd) {

@@ -12,6 +12,7 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/live_times.h"
@@ -125,6 +126,42 @@ TEST(Metrics, AValueThatTheWindowDoesNotShowIsLeftOutAndSaidToBe) {
   // A quiet estimator's last window is not told for ever.
   give(metrics, "FRAMEWATCH_SERVICE", service(), 9 * kSecond_us);
   EXPECT_EQ(metrics.text(9 * kSecond_us, 0).find("framewatch_window_valid"), std::string::npos);
+}
+
+TEST(Metrics, SayWhatChangesAreJudgedAgainst) {
+  const Config config{};
+  Metrics metrics(config);
+  parameter_table_t table{};
+  table.parameters = 2;
+  table.name = {"kx_1_y1", "Gk_1_x1y1"};
+  table.unit = {"N/m", "N/rad"};
+  table.kind = {0, 1};
+  table.story = {1, 1};
+  table.design = {1000, 5};
+  watch_t watch{};
+  watch.long_window_s = 3600;
+  watch.quiet_learned_ratio = 1;
+  watch.temperature_degc = kNaN;
+  watch.parameters = 2;
+  watch.watched = {1, 1};
+  watch.baseline = {900, kNaN};
+  watch.baseline_std_error = {9, kNaN};
+  watch.baseline_degc = {8, kNaN};
+  watch.quiet_baseline = {1000, 5};
+  watch.quiet_std_error = {1, 1};
+  watch.per_degc = {-0.002, kNaN};
+  watch.per_degc_std_error = {1e-4, kNaN};
+  watch.per_log_amplitude = watch.per_log_amplitude_std_error = {kNaN, kNaN};
+  give(metrics, "FRAMEWATCH_PARAMETERS", table, 0);
+  give(metrics, "FRAMEWATCH_WATCH", watch, 0);
+  const std::string text = metrics.text(0, 0);
+  const std::string frame = R"({parameter="kx_1_y1",story="1"} )";
+  expect_line(text, "framewatch_baseline" + frame + "900");
+  expect_line(text, "framewatch_baseline_standard_error_ratio" + frame + "0.01");
+  expect_line(text, "framewatch_quiet_baseline_per_degree_celsius_ratio" + frame + "-0.002");
+  expect_line(text, "framewatch_quiet_baseline_learned_ratio 1");
+  EXPECT_EQ(text.find("framewatch_baseline{parameter=\"Gk"), std::string::npos);
+  EXPECT_EQ(text.find("framewatch_temperature_celsius "), std::string::npos);
 }
 
 TEST(Metrics, SayWhatTheDiskDoesNotTake) {

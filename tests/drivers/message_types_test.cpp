@@ -14,6 +14,7 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/temperature_t.hpp>
+#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "drivers/accel_codec.h"
@@ -292,6 +293,26 @@ history_status_t history_status() {
   return m;
 }
 
+watch_t watch() {
+  watch_t m{};
+  m.time_us = 140;
+  m.long_window_s = 3600;
+  m.quiet_learned_ratio = 0.25;
+  m.temperature_degc = 7;
+  m.parameters = 2;
+  m.watched = {1, 0};
+  m.baseline = {1e4, 2};
+  m.baseline_std_error = {30, 0.5};
+  m.baseline_degc = {8, 9};
+  m.quiet_baseline = {1.1e4, 3};
+  m.quiet_std_error = {20, 0.25};
+  m.per_degc = {-0.001, 0};
+  m.per_degc_std_error = {1e-4, 2e-4};
+  m.per_log_amplitude = {-0.02, 0.01};
+  m.per_log_amplitude_std_error = {1e-3, 2e-3};
+  return m;
+}
+
 temperature_t temperature() {
   temperature_t m{};
   m.time_us = 110;
@@ -355,7 +376,8 @@ std::vector<std::pair<std::string, std::vector<std::uint8_t>>> every_type() {
           {"TEMPERATURE", encoded(temperature())},
           {"FRAMEWATCH_ACTIONS", encoded(action_status())},
           {"FRAMEWATCH_ACKNOWLEDGE", encoded(acknowledge())},
-          {"FRAMEWATCH_ACKNOWLEDGED", encoded(acknowledged())}};
+          {"FRAMEWATCH_ACKNOWLEDGED", encoded(acknowledged())},
+          {"FRAMEWATCH_WATCH", encoded(watch())}};
 }
 
 TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
@@ -432,6 +454,12 @@ TEST(Schema, ALogOfTheFirstReleaseDecodesToWhatWasWritten) {
     }
     if (e.channel == "TEMPERATURE") {
       EXPECT_EQ(decode_temperature(e.data).value_or(temperature_t{}).temperature_degc, -12.5);
+    }
+    if (e.channel == "FRAMEWATCH_WATCH") {
+      const auto decoded = decode_watch(e.data);
+      ASSERT_TRUE(decoded);
+      EXPECT_EQ(decoded->watched, watch().watched);
+      EXPECT_EQ(decoded->per_log_amplitude_std_error, watch().per_log_amplitude_std_error);
     }
     if (e.channel == "FRAMEWATCH_ACKNOWLEDGE") {
       EXPECT_EQ(decode_acknowledge(e.data).value_or(acknowledge_t{}).comment, "a loose sensor");
