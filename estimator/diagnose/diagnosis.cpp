@@ -263,7 +263,8 @@ class Search {
       place(other);
       out_.effects.push_back(std::move(other));
     }
-    now = fit(best.model, now.motion, 0);
+    // To its end: what a fit left behind would be taken for one more effect.
+    now = fit(best.model, now.motion, kPolishSteps);
   }
 
   const Plant& plant_;

@@ -16,6 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double kLongestStep = 0.5;      ///< of a stiffness, relative to the design
 constexpr double kLeastStiffness = 0.02;  ///< the same
+constexpr double kNearNoise = 1.5;        ///< misfit over what noise explains
 constexpr int kTries = 7;
 
 double total_misfit(const std::vector<Whitened>& systems) {
@@ -151,6 +152,7 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
     const Linearised at = linearise(out.model, std::move(now), options.through_run);
     NormalEquations equations = normal_equations(at);
     // Weights stay those of `at` within a step: a wrong model must not gain by making itself soft.
+    // Near the noise their change is part of the gradient.
     const double before = at.level * prior_cost(out.model) + total_misfit(at.systems);
     equations.normal.diagonal() += at.prior;
     bool better = false;
@@ -164,14 +166,12 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
       }
       const Model trial = moved(out.model, at.unknowns, step);
       const std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems);
-      if (!then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before) {
-        better = true;
-        out.model = trial;
-        now = reweighted(trial, then);
-        damping = std::max(1e-9, damping / 10);
-      } else {
-        damping = std::max(1e-3, damping * 10);
-      }
+      const bool falls =
+          !then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before;
+      if (falls || (!then.empty() && at.level < kNearNoise)) now = reweighted(trial, then);
+      better = falls || (!now.empty() && total_misfit(now) + prior_cost(trial) < out.cost);
+      if (better) out.model = trial;
+      damping = better ? std::max(1e-9, damping / 10) : std::max(1e-3, damping * 10);
     }
     if (!better || now.empty()) break;
     take(now);
