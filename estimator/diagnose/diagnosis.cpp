@@ -31,6 +31,7 @@ constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
 constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
 /// Of the excess: what an arbitrary force must be better by than a law.
 constexpr double kOwnPrice = 1 - kTakesAway;
+constexpr double kStrangeMasses = 15;  ///< cost of masses, above what chance has
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 
 bool is_element(const Localisation& place) {
@@ -106,6 +107,16 @@ class Search {
     return fitter_.fit(model, motion, thorough(model, steps));
   }
 
+  /// To where neither kind of derivative leads on: what a fit leaves behind would be taken for one
+  /// more effect.
+  FitResult fit_to_the_end(const Model& model, const std::vector<MatrixXcd>& motion) const {
+    FitResult out = fit(model, motion, kPolishSteps);
+    FitOptions along = thorough(out.model, kPolishSteps);
+    along.through_run = false;
+    FitResult more = fitter_.fit(out.model, out.motion, along);
+    return more.good && more.cost < out.cost ? more : out;
+  }
+
   double ratio(const FitResult& now) const {
     return now.total_misfit() / fitter_.expected(now.model);
   }
@@ -114,7 +125,7 @@ class Search {
   void polish(FitResult& now) {
     Model start = now.model;
     free_shapes(start);
-    const FitResult better = fit(start, now.motion, kPolishSteps);
+    const FitResult better = fit_to_the_end(start, now.motion);
     if (better.good && better.cost < now.cost) now = better;
   }
 
@@ -168,7 +179,7 @@ class Search {
       out_.map = map_of(located);
     }
     const double needed = std::max(kLeastGain, kSignificant * std::sqrt(expected_now));
-    if (excess < needed) return false;
+    if (excess < needed) return find_mass(now, cost, located);
 
     double bound = 0;
     std::vector<Trial> trials = trials_of(now, located, begin, bound);
@@ -210,6 +221,33 @@ class Search {
       if (earlier.chosen.fraction < kOneLaw && !component) withdraw(now, i);
       return false;
     }
+    adopt(trials, now);
+    cost = now.cost;
+    return true;
+  }
+
+  /// A model may fit because masses have been taken farther from what is declared than chance
+  /// takes them: then one mass more, if it does away with that.
+  bool find_mass(FitResult& now, double& cost, const Located& located) {
+    const double sigma = options_.tolerances.mass;
+    if (sigma <= 0) return false;
+    const double declared = 0.5 * (now.model.mass_change / sigma).squaredNorm();
+    const double strange = declared - 0.5 * static_cast<double>(plant_.equations());
+    if (strange < kStrangeMasses) return false;
+    std::vector<Localisation> places;
+    for (const Localisation& l : located.once) {
+      if (l.suspects.front().kind != Suspect::Kind::crossing) continue;
+      places.push_back(l);
+      places.back().model = now.model;
+      places.back().motion = now.motion;
+    }
+    const TrialContext context{fitter_, now, options_.without, options_.parallel,
+                               [](const std::string&, double) {}};
+    std::vector<Trial> trials = try_places(context, places);
+    std::stable_sort(trials.begin(), trials.end(),
+                     [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
+    for (Trial& t : trials) t.fraction = (cost - t.cost) / strange;
+    if (trials.empty() || cost - trials.front().cost < kStrangeMasses) return false;
     adopt(trials, now);
     cost = now.cost;
     return true;
@@ -263,8 +301,7 @@ class Search {
       place(other);
       out_.effects.push_back(std::move(other));
     }
-    // To its end: what a fit left behind would be taken for one more effect.
-    now = fit(best.model, now.motion, kPolishSteps);
+    now = fit_to_the_end(best.model, now.motion);
   }
 
   const Plant& plant_;

@@ -164,19 +164,21 @@ double root_near(const Miss& miss, double start) {
 
 }  // namespace
 
-VectorXd upsampled(const VectorXd& signal, int ratio) {
-  if (ratio == 1) return signal;
+VectorXd upsampled(const VectorXd& signal, int ratio, double shift) {
+  if (ratio == 1 && shift == 0) return signal;
   const Index size = signal.size();
   VectorXd out = VectorXd::Zero(size * ratio);
   for (int phase = 0; phase < ratio; ++phase) {
+    const double at = static_cast<double>(phase) / ratio - shift;
+    const auto whole = static_cast<Index>(std::floor(at));
     std::vector<double> taps;
-    const double shift = static_cast<double>(phase) / ratio;
     double sum = 0;
     for (int k = -kSincHalf + 1; k <= kSincHalf; ++k) {
-      const double x = k - shift;
+      const double x = k - (at - static_cast<double>(whole));
       const double sinc = std::abs(x) < 1e-12 ? 1.0 : std::sin(M_PI * x) / (M_PI * x);
-      const double at = x / (kSincHalf + 0.5);
-      const double taper = 0.42 + 0.5 * std::cos(M_PI * at) + 0.08 * std::cos(2 * M_PI * at);
+      const double taper_at = x / (kSincHalf + 0.5);
+      const double taper =
+          0.42 + 0.5 * std::cos(M_PI * taper_at) + 0.08 * std::cos(2 * M_PI * taper_at);
       taps.push_back(sinc * taper);
       sum += taps.back();
     }
@@ -184,8 +186,8 @@ VectorXd upsampled(const VectorXd& signal, int ratio) {
     for (Index i = 0; i < size; ++i) {
       double value = 0;
       for (int k = -kSincHalf + 1; k <= kSincHalf; ++k) {
-        const Index at = std::clamp<Index>(i + k, 0, size - 1);
-        value += taps[static_cast<std::size_t>(k + kSincHalf - 1)] * signal[at];
+        const Index from = std::clamp<Index>(i + whole + k, 0, size - 1);
+        value += taps[static_cast<std::size_t>(k + kSincHalf - 1)] * signal[from];
       }
       out[i * ratio + phase] = value;
     }
@@ -216,7 +218,8 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
     signal.head(stretch.lead.rows()) = stretch.lead.col(base[i]);
     signal.tail(stretch.intervals()) = stretch.accel.col(base[i]).head(stretch.intervals());
     signal /= 1 + model.gain[base[i]];
-    ground.row(static_cast<Index>(i)) = upsampled(signal, ratio).transpose();
+    const double late = model.clock_s[base[i]] * stretch.rate_hz;
+    ground.row(static_cast<Index>(i)) = upsampled(signal, ratio, -late).transpose();
   }
 
   struct Active {

@@ -29,7 +29,7 @@ FreeRun free_run(const Plant& plant, const Model& model, const Stretch& stretch,
 /// Steps per sample that resolve the model's highest mode.
 int steps_per_sample(const Plant& plant, double rate_hz);
 
-/// The signal at ratio times its rate, by a windowed sinc.
-Eigen::VectorXd upsampled(const Eigen::VectorXd& signal, int ratio);
+/// The signal at ratio times its rate, later by `shift` samples, by a windowed sinc.
+Eigen::VectorXd upsampled(const Eigen::VectorXd& signal, int ratio, double shift = 0);
 
 }  // namespace framewatch

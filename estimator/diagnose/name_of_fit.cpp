@@ -24,11 +24,12 @@ EffectKind name_of_fit(const ModelEffect& effect, const Stretch& stretch) {
     case LawForm::gap_both:
       return EffectKind::two_sided_gap;
     case LawForm::changing: {
-      double longest = 0;
+      // How long a change takes shows only in records that shake while it goes on.
+      double shortest = 1e300;
       for (const std::vector<Knob>& knobs : effect.record_knobs)
-        longest = std::max(longest, knobs[1].plain());
-      return longest < 0.06 * stretch.seconds() ? EffectKind::stiffness_drop
-                                                : EffectKind::stiffness_drift;
+        shortest = std::min(shortest, knobs[1].plain());
+      return shortest < 0.06 * stretch.seconds() ? EffectKind::stiffness_drop
+                                                 : EffectKind::stiffness_drift;
     }
     case LawForm::mass:
       return EffectKind::extra_mass;
