@@ -8,6 +8,7 @@
 #include "estimator/diagnose/locate.h"
 #include "estimator/diagnose/parameter_errors.h"
 #include "estimator/diagnose/ramps.h"
+#include "estimator/diagnose/strange_masses.h"
 #include "estimator/diagnose/trials.h"
 #include "estimator/diagnose/verdict.h"
 #include "estimator/diagnose/where.h"
@@ -31,7 +32,7 @@ constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
 constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
 /// Of the excess: what an arbitrary force must be better by than a law.
 constexpr double kOwnPrice = 1 - kTakesAway;
-constexpr double kStrangeMasses = 15;  ///< cost of masses, above what chance has
+constexpr double kWorse = 1.02;  ///< misfit of a record, relative
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 
 bool is_element(const Localisation& place) {
@@ -81,10 +82,8 @@ class Search {
     }
     out_.linear = now.model;
     out_.ratio_before = ratio(now);
-    double cost = now.cost;
     bool more = true;
-    for (int round = 0; round < options_.rounds && more; ++round)
-      more = one_round(now, cost, round);
+    for (int round = 0; round < options_.rounds && more; ++round) more = one_round(now, round);
     tell("what stays", 0.92);
     if (!out_.effects.empty()) polish(now);
     out_.model = now.model;
@@ -119,6 +118,13 @@ class Search {
 
   double ratio(const FitResult& now) const {
     return now.total_misfit() / fitter_.expected(now.model);
+  }
+
+  /// Whether a trial explains any record less than the model does.
+  static bool worsens(const Trial& trial, const FitResult& now, double chance) {
+    for (std::size_t r = 0; r < now.misfit.size(); ++r)
+      if (trial.misfit[r] > kWorse * now.misfit[r] + chance) return true;
+    return false;
   }
 
   /// Everything together once more, with the shape of hysteresis free.
@@ -166,7 +172,8 @@ class Search {
     return trials;
   }
 
-  bool one_round(FitResult& now, double& cost, int round) {
+  bool one_round(FitResult& now, int round) {
+    const double cost = now.cost;
     const double begin = 0.06 + 0.28 * round;
     tell("where", begin);
     const Located located = locate(fitter_, now, options_.parallel);
@@ -179,7 +186,7 @@ class Search {
       out_.map = map_of(located);
     }
     const double needed = std::max(kLeastGain, kSignificant * std::sqrt(expected_now));
-    if (excess < needed) return find_mass(now, cost, located);
+    if (excess < needed) return find_mass(now, located);
 
     double bound = 0;
     std::vector<Trial> trials = trials_of(now, located, begin, bound);
@@ -207,10 +214,8 @@ class Search {
     const bool component = plant_.equations() == 1;
     const bool most = best.fraction >= (component ? kTakesMost : kTakesAway) ||
                       (best.fraction >= kTakesMost && best.cost - bound < needed);
-    bool holds = most && cost - best.cost > needed;
-    for (std::size_t r = 0; r < stretches_.size(); ++r)
-      if (best.misfit[r] > 1.02 * now.misfit[r] + needed) holds = false;
-    if (!holds) {
+    const bool holds = most && cost - best.cost > needed;
+    if (!holds || worsens(best, now, needed)) {
       out_.rejected = trials;
       return false;
     }
@@ -222,34 +227,16 @@ class Search {
       return false;
     }
     adopt(trials, now);
-    cost = now.cost;
     return true;
   }
 
-  /// A model may fit because masses have been taken farther from what is declared than chance
-  /// takes them: then one mass more, if it does away with that.
-  bool find_mass(FitResult& now, double& cost, const Located& located) {
-    const double sigma = options_.tolerances.mass;
-    if (sigma <= 0) return false;
-    const double declared = 0.5 * (now.model.mass_change / sigma).squaredNorm();
-    const double strange = declared - 0.5 * static_cast<double>(plant_.equations());
-    if (strange < kStrangeMasses) return false;
-    std::vector<Localisation> places;
-    for (const Localisation& l : located.once) {
-      if (l.suspects.front().kind != Suspect::Kind::crossing) continue;
-      places.push_back(l);
-      places.back().model = now.model;
-      places.back().motion = now.motion;
-    }
+  bool find_mass(FitResult& now, const Located& located) {
     const TrialContext context{fitter_, now, options_.without, options_.parallel,
                                [](const std::string&, double) {}};
-    std::vector<Trial> trials = try_places(context, places);
-    std::stable_sort(trials.begin(), trials.end(),
-                     [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
-    for (Trial& t : trials) t.fraction = (cost - t.cost) / strange;
-    if (trials.empty() || cost - trials.front().cost < kStrangeMasses) return false;
+    std::vector<Trial> trials = strange_masses(context, located);
+    std::erase_if(trials, [&](const Trial& t) { return worsens(t, now, kStrangeMasses); });
+    if (trials.empty()) return false;
     adopt(trials, now);
-    cost = now.cost;
     return true;
   }
 

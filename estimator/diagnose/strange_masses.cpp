@@ -1,0 +1,29 @@
+#include "estimator/diagnose/strange_masses.h"
+
+#include <algorithm>
+
+namespace framewatch {
+
+std::vector<Trial> strange_masses(const TrialContext& context, const Located& located) {
+  const Model& model = context.now.model;
+  const double sigma = context.fitter.tolerances().mass;
+  if (sigma <= 0) return {};
+  const double by_chance = 0.5 * static_cast<double>(model.mass_change.size());
+  const double strange = 0.5 * (model.mass_change / sigma).squaredNorm() - by_chance;
+  if (strange < kStrangeMasses) return {};
+  std::vector<Localisation> places;
+  for (const Localisation& l : located.once) {
+    if (l.suspects.front().kind != Suspect::Kind::crossing) continue;
+    places.push_back(l);
+    places.back().model = model;
+    places.back().motion = context.now.motion;
+  }
+  std::vector<Trial> out = try_places(context, places);
+  for (Trial& t : out) t.fraction = (context.now.cost - t.cost) / strange;
+  std::erase_if(out, [&](const Trial& t) { return context.now.cost - t.cost < kStrangeMasses; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
+  return out;
+}
+
+}  // namespace framewatch
