@@ -4,6 +4,8 @@
 
 namespace framewatch {
 
+constexpr double kDoesAway = 0.9;  ///< of what is strange
+
 std::vector<Trial> strange_masses(const TrialContext& context, const Located& located) {
   const Model& model = context.now.model;
   const double sigma = context.fitter.tolerances().mass;
@@ -19,8 +21,11 @@ std::vector<Trial> strange_masses(const TrialContext& context, const Located& lo
     places.back().motion = context.now.motion;
   }
   std::vector<Trial> out = try_places(context, places);
-  for (Trial& t : out) t.fraction = (context.now.cost - t.cost) / strange;
-  std::erase_if(out, [&](const Trial& t) { return context.now.cost - t.cost < kStrangeMasses; });
+  std::erase_if(out, [&](const Trial& t) {
+    return context.now.cost - t.cost < std::max(kStrangeMasses, kDoesAway * strange) ||
+           !(t.model.effects.back().knobs[0].plain() > 0);
+  });
+  for (Trial& t : out) t.fraction = std::min(1.0, (context.now.cost - t.cost) / strange);
   std::stable_sort(out.begin(), out.end(),
                    [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
   return out;
