@@ -1,8 +1,8 @@
 #include "daemon/accuracy_study.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "daemon/median.h"
 #include "daemon/paper_buildings.h"
 #include "daemon/paper_method.h"
 #include "daemon/random_building.h"
@@ -77,13 +77,6 @@ void add_bounds(const Structure& structure, const ParameterTable& table,
       result.bound[static_cast<std::size_t>(table[p].kind)].push_back(bound.std_error[p] /
                                                                       truth[p]);
   }
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return NAN;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 AccuracyRow merged(const std::string& name, std::vector<SeedResult> results) {

@@ -5,7 +5,6 @@
 #include "daemon/webhook.h"
 
 namespace framewatch::daemon {
-namespace {}  // namespace
 
 ActionReport::ActionReport(const Config& config, lcm::LCM& lcm) : config_(config), lcm_(lcm) {
   reconfigure();

@@ -1,11 +1,9 @@
 #include "daemon/baseline_keeper.h"
 
-#include <fstream>
-#include <iterator>
-
 #include <fmt/core.h>
 
 #include "daemon/baseline_file.h"
+#include "daemon/file_digest.h"
 #include "daemon/log.h"
 #include "drivers/text_output.h"
 
@@ -21,8 +19,8 @@ BaselineKeeper::BaselineKeeper(const Config& config)
 void BaselineKeeper::look(const Estimation& estimation) {
   const Baseline* baseline = estimation.baseline();
   if (path_.empty() || baseline == nullptr || written_.holds(*baseline)) return;
-  std::ifstream file(path_, std::ios::binary);
-  const std::string there{std::istreambuf_iterator<char>(file), {}};
+  std::string none;
+  const std::string there = read_text_file(path_, none).value_or("");
   const std::string text = there.empty()
                                ? baseline_text(*baseline, table_)
                                : extended_baseline_text(there, written_, *baseline, table_);

@@ -1,7 +1,8 @@
 #include "daemon/can_complaints.h"
 
-#include <fmt/core.h>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace framewatch::daemon {
 namespace {

@@ -29,6 +29,10 @@ void set_address(sockaddr& out, const char* address) {
   std::memcpy(&out, &in, sizeof in);
 }
 
+Descriptor datagram_socket() {
+  return Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+}
+
 bool bring_loopback_up(int fd) {
   ifreq request{};
   std::strcpy(request.ifr_name, "lo");
@@ -56,7 +60,7 @@ void keep_user(uid_t user, gid_t group) {
 
 /// Asked before LCM is, which prints a page of advice when there is none.
 bool has_multicast_route() {
-  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const Descriptor socket = datagram_socket();
   sockaddr group{};
   set_address(group, kGroup);
   return ::connect(socket.get(), &group, sizeof group) == 0;
@@ -77,7 +81,7 @@ bool enter_private_network(std::string& error) {
     error = std::strerror(errno);
     return false;
   }
-  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const Descriptor socket = datagram_socket();
   if (bring_loopback_up(socket.get()) && add_multicast_route(socket.get())) return true;
   error = std::strerror(errno);
   return false;

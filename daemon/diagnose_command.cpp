@@ -13,6 +13,7 @@
 #include "daemon/config_problems.h"
 #include "daemon/diagnose_output.h"
 #include "daemon/diagnose_records.h"
+#include "daemon/median.h"
 #include "daemon/workers.h"
 #include "drivers/text_output.h"
 #include "estimator/identify/design.h"
@@ -45,9 +46,7 @@ double signal_ratio(const Plant& plant, const Stretch& s) {
     if (plant.axes[static_cast<std::size_t>(a)].story > 0)
       ratios.push_back(std::sqrt(s.spectrum.row(a).squaredNorm() /
                                  (static_cast<double>(s.bins() * s.intervals()) * s.variance[a])));
-  std::nth_element(ratios.begin(), ratios.begin() + static_cast<long>(ratios.size() / 2),
-                   ratios.end());
-  return ratios[ratios.size() / 2];
+  return median(std::move(ratios));
 }
 
 /// The records in the band of the design's natural frequencies.

@@ -19,13 +19,15 @@ constexpr std::array<std::pair<const char*, const char*>, 4> kKinds = {{
     {"panel_damping_newton_seconds_per_radian_meter", "Damping of a floor panel."},
 }};
 
+MetricFamilies::Labels labels_of(const parameter_table_t& table, std::size_t p) {
+  return {{"parameter", table.name[p]}, {"story", std::to_string(table.story[p])}};
+}
+
 }  // namespace
 
 void add_estimate(MetricFamilies& out, const parameter_table_t& table, const window_estimate_t& e) {
   if (table.name.size() != e.value.size()) return;
-  const auto labels = [&](std::size_t p) -> MetricFamilies::Labels {
-    return {{"parameter", table.name[p]}, {"story", std::to_string(table.story[p])}};
-  };
+  const auto labels = [&](std::size_t p) { return labels_of(table, p); };
   const auto valid = [&](std::size_t p) { return e.reason[p] == 0 && std::isfinite(e.value[p]); };
   out.gauge("window_valid", "1: the newest window has values; 0: it is warming up or quiet.")
       .value(e.status == kValid ? 1 : 0);
@@ -55,9 +57,7 @@ void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_
   const auto each = [&](const char* name, const char* help, const auto& value) {
     out.gauge(name, help);
     for (std::size_t p = 0; p < w.watched.size(); ++p)
-      if (std::isfinite(value(p)))
-        out.value(value(p),
-                  {{"parameter", table.name[p]}, {"story", std::to_string(table.story[p])}});
+      if (std::isfinite(value(p))) out.value(value(p), labels_of(table, p));
   };
   each("baseline", "What changes are judged against, in the parameter's unit.",
        [&](std::size_t p) { return w.baseline[p]; });

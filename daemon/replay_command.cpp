@@ -31,10 +31,6 @@ int refuse(const std::string& message) {
   return kBadInput;
 }
 
-void print(const std::vector<ConfigProblem>& problems) {
-  print_problems(problems);
-}
-
 /// What can be said before any file is read.
 std::vector<std::string> argument_problems(const ReplayArguments& a) {
   std::vector<std::string> found;
@@ -293,7 +289,7 @@ int replay(const ReplayArguments& a) {
   if (!wrong.empty()) return kBadInput;
   std::vector<ConfigProblem> problems;
   std::optional<Config> config = load_config(a.config, problems);
-  print(problems);
+  print_problems(problems);
   if (!config) return kBadInput;
   const bool boxplots_are_read =
       !a.out.empty() || a.lcm || !a.save_state.empty() || !a.load_state.empty();
@@ -303,7 +299,7 @@ int replay(const ReplayArguments& a) {
     problems.clear();
     expectations =
         load_expectations(a.expect, ParameterTable(config->pipeline.structure), problems);
-    print(problems);
+    print_problems(problems);
     if (!expectations) return kBadInput;
   }
   return ReplayRun(a, *config, std::move(expectations)).run();

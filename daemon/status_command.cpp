@@ -16,6 +16,7 @@
 #include "daemon/config_problems.h"
 #include "daemon/file_digest.h"
 #include "daemon/health.h"
+#include "daemon/median.h"
 #include "daemon/unit_state.h"
 #include "drivers/lcm_source.h"
 
@@ -109,14 +110,6 @@ void print_estimates(const Heard& h) {
 }
 
 /// Median of what is known; empty when nothing is.
-std::optional<double> median(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return std::isnan(v); });
-  if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// What changes are judged against.
 void print_watch(const Heard& h) {
   if (!h.watch) return;
@@ -134,8 +127,8 @@ void print_watch(const Heard& h) {
                 ? fmt::format(", the one of weak motion is {:.0f} % learned",
                               100 * w.quiet_learned_ratio)
                 : fmt::format(", {} one of weak motion", known(w.quiet_baseline));
-  if (const auto slope = median(w.per_degc))
-    text += fmt::format("; {:+.2f} % per degC (median)", 100 * *slope);
+  if (const double slope = median(w.per_degc); std::isfinite(slope))
+    text += fmt::format("; {:+.2f} % per degC (median)", 100 * slope);
   if (std::isfinite(w.temperature_degc)) text += fmt::format("; {:.1f} degC", w.temperature_degc);
   line("watch", text);
 }

@@ -135,12 +135,16 @@ class Search {
     if (better.good && better.cost < now.cost) now = better;
   }
 
+  TrialContext context_of(const FitResult& now) const {
+    return {fitter_, now, options_.without, options_.parallel, [](const std::string&, double) {}};
+  }
+
   std::vector<Trial> trials_of(const FitResult& now, const Located& located, double begin,
                                double& bound) {
-    const auto progress = [&](const std::string& what, double share) {
+    TrialContext context = context_of(now);
+    context.progress = [&](const std::string& what, double share) {
       tell(what, begin + 0.05 + 0.2 * share);
     };
-    const TrialContext context{fitter_, now, options_.without, options_.parallel, progress};
     const Localisation& best = located.places.front();
     const double equations = static_cast<double>(plant_.equations());
     double left = best.misfit, unseen = static_cast<double>(best.suspects.front().size());
@@ -231,9 +235,7 @@ class Search {
   }
 
   bool find_mass(FitResult& now, const Located& located) {
-    const TrialContext context{fitter_, now, options_.without, options_.parallel,
-                               [](const std::string&, double) {}};
-    std::vector<Trial> trials = strange_masses(context, located);
+    std::vector<Trial> trials = strange_masses(context_of(now), located);
     std::erase_if(trials, [&](const Trial& t) { return worsens(t, now, kStrangeMasses); });
     if (trials.empty()) return false;
     adopt(trials, now);
@@ -241,8 +243,7 @@ class Search {
   }
 
   void sharpen(std::vector<Trial>& trials, const FitResult& now) const {
-    const auto progress = [&](const std::string&, double) {};
-    const TrialContext context{fitter_, now, options_.without, options_.parallel, progress};
+    const TrialContext context = context_of(now);
     const auto count = static_cast<int>(std::min(kSharpened, trials.size()));
     run_all(options_.parallel, count, [&](int i) {
       Trial& t = trials[static_cast<std::size_t>(i)];

@@ -74,14 +74,14 @@ MatrixXd without(const Square& whole, const Whitened& system,
 struct Reduced {
   MatrixXd normal;
   VectorXd gradient;
-  double misfit = 0, expected = 0, tolerated = 0;
+  double misfit = 0, expected = 0;
   std::vector<double> record_ratio;
 };
 
 Reduced reduce(const Fitter& fitter, const Linearised& at, const Model& model,
                const std::vector<Square>& squares, const std::vector<Suspect>& suspects) {
   const Index count = squares.front().columns.cols() - at.systems.front().ends.cols() - 1;
-  Reduced out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0, 0, 0, {}};
+  Reduced out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0, 0, {}};
   Index size = 0;
   for (const Suspect& s : suspects) size += s.size();
   const double n = static_cast<double>(fitter.plant().equations());
@@ -101,11 +101,6 @@ Reduced reduce(const Fitter& fitter, const Linearised& at, const Model& model,
     out.misfit += left;
     out.expected += expected;
     out.record_ratio.push_back(left / expected);
-  }
-  for (const Unknown& u : at.unknowns) {
-    if (u.sigma <= 0) continue;
-    const double away = (value_of(model, u) - u.centre) / u.sigma;
-    out.tolerated += 0.5 * away * away;
   }
   return out;
 }
@@ -156,6 +151,7 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   const std::vector<Index> kept = moving(at, false);
   std::vector<Square> squares;
   for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
+  const double prior = fitter.prior_cost(model);
   std::vector<Localisation> out(lists.size());
   run_all(parallel, static_cast<int>(lists.size()), [&](int i) {
     Localisation& one = out[static_cast<std::size_t>(i)];
@@ -169,7 +165,7 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     if (!step.allFinite()) return;
     const double left =
         reduced.misfit + step.dot(reduced.normal * step) + 2 * step.dot(reduced.gradient);
-    one.misfit = left + reduced.tolerated;
+    one.misfit = left + prior;
     one.ratio = left / reduced.expected;
     one.record_ratio = reduced.record_ratio;
     VectorXd whole = VectorXd::Zero(static_cast<Index>(at.unknowns.size()));
@@ -200,9 +196,10 @@ Localisation localise(const Fitter& fitter, const Model& start,
     std::vector<Suspect> current = suspects;
     follow(plant, model, current);
     const Reduced reduced = reduce(fitter, at, model, squares, current);
-    if (reduced.misfit + reduced.tolerated < out.misfit) {
+    const double misfit = reduced.misfit + fitter.prior_cost(model);
+    if (misfit < out.misfit) {
       out.suspects = current;
-      out.misfit = reduced.misfit + reduced.tolerated;
+      out.misfit = misfit;
       out.ratio = reduced.misfit / reduced.expected;
       out.record_ratio = reduced.record_ratio;
       out.model = model;
