@@ -88,7 +88,7 @@ void Estimation::look_for_gap(const SampleSet& instant) {
   const GapNews* news = gap_->news();
   if (news == nullptr) return;
   publisher_.gap_news(*news);
-  if (gap_tap_) gap_tap_(*news);
+  if (taps_.gap) taps_.gap(*news);
 }
 
 void Estimation::adopt(const GapModel& model) {
@@ -111,6 +111,7 @@ drivers::IntakeResult Estimation::temperature(const void* data, std::size_t size
   const auto message = drivers::decode_temperature({static_cast<const std::uint8_t*>(data), size});
   if (!message) return drivers::IntakeResult::malformed;
   if (watch_) watch_->temperature(from_microseconds(message->time_us), message->temperature_degc);
+  if (taps_.temperature) taps_.temperature(*message);
   return drivers::IntakeResult::table;
 }
 
@@ -120,7 +121,7 @@ void Estimation::notice(const drivers::CanNotice& notice) {
 
 void Estimation::sample(const AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
-  if (raw_tap_) raw_tap_(sample);
+  if (taps_.sample) taps_.sample(sample);
   pipeline_.push(sample);
 }
 

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include <framewatch/temperature_t.hpp>
+
 #include "daemon/can_events.h"
 #include "daemon/config.h"
 #include "daemon/publisher.h"
@@ -59,11 +61,13 @@ class Estimation {
   /// The input has ended: closes open instants, publishes the last table and status.
   void finish();
 
-  /// Who sees every raw sample, and what news there is of gaps, besides.
-  void tap(std::function<void(const AccelSample&)> raw, std::function<void(const GapNews&)> gap) {
-    raw_tap_ = std::move(raw);
-    gap_tap_ = std::move(gap);
-  }
+  /// Who else sees what comes in, and news of gaps; any may be empty.
+  struct Taps {
+    std::function<void(const AccelSample&)> sample;
+    std::function<void(const temperature_t&)> temperature;
+    std::function<void(const GapNews&)> gap;
+  };
+  void tap(Taps taps) { taps_ = std::move(taps); }
 
   /// Goes out with the next status.
   void set_live(const LiveState& live) { live_ = live; }
@@ -100,8 +104,7 @@ class Estimation {
 
   const Config& config_;
   Observer observer_;
-  std::function<void(const AccelSample&)> raw_tap_;
-  std::function<void(const GapNews&)> gap_tap_;
+  Taps taps_;
   Publisher publisher_;
   Pipeline pipeline_;
   std::optional<Watch> watch_;

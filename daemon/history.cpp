@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "drivers/encoded.h"
+
 namespace framewatch::daemon {
 
 History::History(const Config& config)
@@ -13,6 +15,11 @@ History::History(const Config& config)
 
 History::~History() {
   raw_.finish();
+}
+
+void History::temperature(const temperature_t& temperature) {
+  raw_.message(config_.watch->temperature_channel, temperature.time_us,
+               drivers::encoded(temperature));
 }
 
 void History::tick(std::int64_t now_us) {

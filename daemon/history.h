@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <framewatch/history_status_t.hpp>
+#include <framewatch/temperature_t.hpp>
 
 #include "daemon/config.h"
 #include "daemon/history_keeper.h"
@@ -25,6 +26,7 @@ class History {
   History& operator=(const History&) = delete;
 
   void sample(const AccelSample& sample) { raw_.sample(sample); }
+  void temperature(const temperature_t& temperature);
   /// What the estimation published.
   void message(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
     summaries_.message(channel, bytes);

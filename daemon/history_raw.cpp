@@ -94,7 +94,8 @@ class RawJob {
                                    ? std::numeric_limits<double>::quiet_NaN()
                                    : c.count * c.resolution_mps2;
           good = out.put(*place[c.channel], c.time_us, accel);
-        }};
+        },
+        [&](const drivers::LogEvent& event) { good = good && out.message(event); }};
     const bool read = read_raw_history(logs, request_.from_us, request_.to_us, visitor, notes, why);
     if (!read || !good || !out.close()) {
       problem(read ? fmt::format("{}: {}", a_.raw, out.error()) : why);

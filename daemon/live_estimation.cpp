@@ -45,10 +45,13 @@ void LiveEstimation::begin_estimation() {
         if (const auto event = drivers::decode_event(bytes)) tell_(*event);
       });
   if (!segments_ && config_.gap && !config_.gap->store.empty()) segments_.emplace(config_);
-  estimation_->tap([this](const AccelSample& sample) { on_sample(sample); },
-                   [this](const GapNews& news) {
-                     if (segments_ && news.state == AlarmState::raised) segments_->raised(news.id);
-                   });
+  estimation_->tap({[this](const AccelSample& sample) { on_sample(sample); },
+                    [this](const temperature_t& temperature) {
+                      if (history_ != nullptr) history_->temperature(temperature);
+                    },
+                    [this](const GapNews& news) {
+                      if (segments_ && news.state == AlarmState::raised) segments_->raised(news.id);
+                    }});
 }
 
 void LiveEstimation::reconfigure(Config& running, const Config& fresh, Reach reach) {

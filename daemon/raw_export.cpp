@@ -11,7 +11,6 @@
 #include "daemon/history_files.h"
 #include "daemon/miniseed_file.h"
 #include "drivers/accel_codec.h"
-#include "drivers/lcm_log.h"
 #include "drivers/record_csv_writer.h"
 
 namespace framewatch::daemon {
@@ -56,6 +55,9 @@ class LogExport : public RawExport {
     }
     open_->accel_abs_mps2[static_cast<std::size_t>(a.axis)] = accel_mps2;
     return true;
+  }
+  bool message(const drivers::LogEvent& e) override {
+    return send() && log_.write(e.timestamp_us, e.channel, e.data.data(), e.data.size());
   }
   bool close() override { return send() && log_.close(); }
   std::string error() const override { return log_.error(); }

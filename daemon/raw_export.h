@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "drivers/accel_messages.h"
+#include "drivers/lcm_log.h"
 
 namespace framewatch::daemon {
 
@@ -22,6 +23,8 @@ class RawExport {
   /// NaN: there was no valid value. False when it cannot be written; error() says why, here and
   /// below.
   [[nodiscard]] virtual bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) = 0;
+  /// What was heard beside samples, where the file has a place for it.
+  [[nodiscard]] virtual bool message(const drivers::LogEvent&) { return true; }
   /// The file appears under its name only now.
   [[nodiscard]] virtual bool close() = 0;
   virtual std::string error() const = 0;

@@ -31,6 +31,14 @@ void RawHistory::sample(const AccelSample& sample) {
   if (span_us >= kBlock_us || block_.size() >= kBlockSamples) end_block();
 }
 
+void RawHistory::message(const std::string& channel, std::int64_t time_us,
+                         const std::vector<std::uint8_t>& bytes) {
+  if (samples_ == 0) return;
+  end_block();
+  ready_log(time_us);
+  append(channel, time_us, bytes, 0);
+}
+
 void RawHistory::tick(std::int64_t now_us) {
   if (block_.empty()) return;
   if (!block_since_us_) block_since_us_ = now_us;
@@ -54,29 +62,31 @@ RawHistory::Counters RawHistory::counters() const {
 void RawHistory::end_block() {
   block_since_us_.reset();
   if (block_.empty()) return;
+  const std::int64_t time_us = block_.first_us();
+  ready_log(time_us);
+  const std::size_t samples = block_.size();
+  append(drivers::kCountsChannel, time_us, block_.encode(), samples);
+}
+
+void RawHistory::ready_log(std::int64_t time_us) {
   const auto rotate_us = static_cast<std::int64_t>(1e6 * config_.history->rotate_s);
   const std::int64_t slot = seconds_.newest_us() / rotate_us;
   const auto most_bytes = static_cast<std::int64_t>(1e6 * config_.history->rotate_mb);
   // While the disk refuses, what waits for it stays with the log that it belongs to.
   if (log_ && (slot != log_slot_ || log_bytes_ >= most_bytes) && log_->trouble().empty()) rotate();
-  const std::int64_t time_us = block_.first_us();
-  if (!log_) {
-    log_ = std::make_unique<drivers::DurableFile>(queue_bytes_);
-    log_->open_when_needed(
-        [directory = config_.history->directory, start_us = seconds_.newest_us()] {
-          return new_raw_log(directory, start_us);
-        });
-    log_slot_ = slot;
-    log_bytes_ = log_events_ = 0;
-    append(drivers::kCountsTableChannel, time_us,
-           drivers::count_table(channel_names(config_), config_.pipeline.options.rate_hz, time_us),
-           0);
-  }
-  const std::size_t samples = block_.size();
-  append(drivers::kCountsChannel, time_us, block_.encode(), samples);
+  if (log_) return;
+  log_ = std::make_unique<drivers::DurableFile>(queue_bytes_);
+  log_->open_when_needed([directory = config_.history->directory, start_us = seconds_.newest_us()] {
+    return new_raw_log(directory, start_us);
+  });
+  log_slot_ = slot;
+  log_bytes_ = log_events_ = 0;
+  append(drivers::kCountsTableChannel, time_us,
+         drivers::count_table(channel_names(config_), config_.pipeline.options.rate_hz, time_us),
+         0);
 }
 
-void RawHistory::append(const char* channel, std::int64_t time_us,
+void RawHistory::append(const std::string& channel, std::int64_t time_us,
                         const std::vector<std::uint8_t>& bytes, std::size_t samples) {
   event_.clear();
   // A number that is missing in the log is a block that was dropped.

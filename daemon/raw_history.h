@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "daemon/config.h"
 #include "daemon/estimation.h"
@@ -31,6 +32,9 @@ class RawHistory {
   RawHistory(const Config& config, Retire retire, std::size_t queue_bytes = kQueueBytes);
 
   void sample(const AccelSample& sample);
+  /// What belongs beside the samples, as it was received. Not stored before the first of them.
+  void message(const std::string& channel, std::int64_t time_us,
+               const std::vector<std::uint8_t>& bytes);
   /// Any clock that is never set, several times a second: what waits for its block to fill does not
   /// wait long.
   void tick(std::int64_t now_us);
@@ -43,9 +47,11 @@ class RawHistory {
 
  private:
   void end_block();
+  /// The log of now, with the channels' names.
+  void ready_log(std::int64_t time_us);
   void rotate();
-  void append(const char* channel, std::int64_t time_us, const std::vector<std::uint8_t>& bytes,
-              std::size_t samples);
+  void append(const std::string& channel, std::int64_t time_us,
+              const std::vector<std::uint8_t>& bytes, std::size_t samples);
 
   const Config& config_;
   Retire retire_;

@@ -7,7 +7,6 @@
 
 #include "drivers/channel_table.h"
 #include "drivers/count_block.h"
-#include "drivers/lcm_log.h"
 #include "drivers/message_check.h"
 
 namespace framewatch::daemon {
@@ -66,8 +65,13 @@ bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std
         std::vector<std::string> now;
         for (const auto& entry : table->entries) now.push_back(entry.name);
         if (now != names) visitor.channels(names = std::move(now), table->rate_hz);
+        continue;
       }
-      if (event.channel != drivers::kCountsChannel) continue;
+      if (event.channel != drivers::kCountsChannel) {
+        if (visitor.message && event.timestamp_us >= from_us && event.timestamp_us < to_us)
+          visitor.message(event);
+        continue;
+      }
       const auto block = drivers::decode_accel_counts(event.data);
       if (!block) continue;
       for (std::size_t i = 0; i < block->count.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/history_files.h"
+#include "drivers/lcm_log.h"
 
 namespace framewatch::daemon {
 
@@ -21,6 +22,8 @@ struct RawVisitor {
   /// Before the first sample, and whenever the channels become others.
   std::function<void(const std::vector<std::string>& names, double rate_hz)> channels;
   std::function<void(const RawCount&)> sample;
+  /// What else was heard; may be empty.
+  std::function<void(const drivers::LogEvent&)> message = {};
 };
 
 /// The raw logs of a directory that may hold samples from `from_us` on and before `to_us`, those

@@ -65,6 +65,8 @@ std::vector<std::string> Recorder::channels() const {
     out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));
   if (const double window_s = config_.pipeline.options.long_window_s; window_s > 0)
     out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));
+  if (config_.watch && !config_.watch->temperature_channel.empty())
+    out.push_back(config_.watch->temperature_channel);
   return out;
 }
 

@@ -16,7 +16,9 @@
 #include "daemon/summary_store.h"
 #include "drivers/accel_codec.h"
 #include "drivers/accel_log.h"
+#include "drivers/encoded.h"
 #include "drivers/lcm_log.h"
+#include "drivers/message_check.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
@@ -27,6 +29,7 @@ namespace {
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr int kRate_hz = 100, kAxes = 10, kInstants = 1000, kLostFrom = 500, kLostTo = 550;
+constexpr int kBetweenReadings = 300;  // of the thermometer, instants
 
 std::int32_t count(int instant, int axis) {
   return (instant * 7919 + axis * 104729) % 2'000'003 - 1'000'000;
@@ -42,9 +45,11 @@ class HistoryCommand : public testing::Test {
     RawHistory raw(config_, [&](auto log) { keeper.retire(std::move(log)); });
     for (int i = 0; i < kInstants; ++i) {
       if (i >= kLostFrom && i < kLostTo) continue;
+      const std::int64_t time_us = kStart_us + i * kSecond_us / kRate_hz;
+      if (i % kBetweenReadings == 0)
+        raw.message("TEMPERATURE", time_us, drivers::encoded(temperature_t{time_us, 0.01 * i}));
       for (int axis = 0; axis < kAxes; ++axis)
-        raw.sample({from_microseconds(kStart_us + i * kSecond_us / kRate_hz), axis,
-                    1e-6 * count(i, axis)});
+        raw.sample({from_microseconds(time_us), axis, 1e-6 * count(i, axis)});
     }
     raw.finish();
     write_summaries();
@@ -185,6 +190,27 @@ TEST_F(HistoryCommand, RawSamplesAsALogGoWhereTheConfigurationSays) {
   }
   EXPECT_EQ(samples, (kInstants - (kLostTo - kLostFrom)) * kAxes);
   EXPECT_EQ(jump, kLostTo - kLostFrom + 1) << "what was lost is missing in the sequence";
+}
+
+TEST_F(HistoryCommand, TemperaturesStandInALogWhereTheyWereHeard) {
+  HistoryArguments a = arguments();
+  a.raw = directory_.path("r.lcmlog");
+  const Ran ran = run(a);
+  ASSERT_EQ(ran.code, 0) << ran.problems;
+  drivers::LcmLogReader reader;
+  ASSERT_TRUE(reader.open(a.raw));
+  std::vector<double> degc;
+  std::int64_t newest_us = 0;
+  for (drivers::LogEvent e; reader.next(e) == drivers::LogRead::event;) {
+    if (const auto sample = drivers::decode_accel(e.data.data(), e.data.size()))
+      newest_us = to_microseconds(sample->time);
+    if (e.channel != "TEMPERATURE") continue;
+    const auto temperature = drivers::decode_temperature(e.data);
+    ASSERT_TRUE(temperature);
+    EXPECT_EQ(newest_us, temperature->time_us - kSecond_us / kRate_hz);
+    degc.push_back(temperature->temperature_degc);
+  }
+  EXPECT_EQ(degc, (std::vector<double>{3, 6, 9})) << "the first came before every sample";
 }
 
 TEST_F(HistoryCommand, RawSamplesAsCsvAreARecord) {

@@ -1,5 +1,6 @@
 #include "daemon/record_command.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "daemon/session_finish.h"
 #include "daemon/session_motion.h"
 #include "drivers/accel_log.h"
+#include "drivers/encoded.h"
 #include "drivers/lcm_log.h"
 #include "drivers/lcm_source.h"
 #include "drivers/message_check.h"
@@ -117,6 +119,31 @@ TEST(Recorder, ATriggerBringsTheSecondsBeforeItAndEndsAtItsLength) {
     EXPECT_EQ(nodes[t], 10) << t;
   EXPECT_NEAR(session->run[0].peak, 1, 0.01);
   EXPECT_LT(session->check[0].peak, 0.01);
+}
+
+TEST(Recorder, ATemperatureStandsAmongTheSamples) {
+  Bench b;
+  b.config.watch.emplace().temperature_channel = "OUTSIDE";
+  const auto channels = b.recorder.channels();
+  EXPECT_EQ(std::count(channels.begin(), channels.end(), "OUTSIDE"), 1);
+  ASSERT_EQ(b.recorder.begin({"t", "me", "", 0, 0, 0}, 0), "");
+  b.play(0, 1, at_rest);
+  const auto bytes = drivers::encoded(temperature_t{1'000'000, 21.5});
+  b.recorder.message("OUTSIDE", bytes.data(), bytes.size(), 1'000'500);
+  b.play(1, 2, at_rest);
+  ASSERT_EQ(b.recorder.stop("asked", 2'000'000), "");
+  b.recorder.tick(10'000'000);
+  LcmLogReader reader;
+  ASSERT_EQ(b.ended.size(), 1u);
+  ASSERT_TRUE(reader.open(b.ended[0] + "/raw.lcmlog"));
+  std::int64_t before = 0, after = 0, heard = 0;
+  for (LogEvent e; reader.next(e) == LogRead::event;) {
+    if (e.channel == "OUTSIDE") ++heard;
+    if (e.channel == "ACCEL") ++(heard == 0 ? before : after);
+  }
+  EXPECT_EQ(heard, 1);
+  EXPECT_EQ(before, 1000);
+  EXPECT_EQ(after, 1000);
 }
 
 TEST(Recorder, CommandsAreObeyedOnceAndRefusedWithAReason) {
