@@ -42,7 +42,9 @@ constexpr double kSame = 1e-11;
 constexpr std::int64_t kKept = 3000;  // instants that a second pipeline sees
 constexpr double kCompared[] = {0.12, 0.32, 0.48, 0.75, 0.99};  // shares of the duration
 constexpr std::int64_t kTemperature = 100 * 120;
-constexpr std::int64_t kSettled_us = 2'000'000;  // after a turn of the raw logs
+// From a turn of the raw logs to a look at memory: a step of the clock, which may be the turn, is
+// followed, and what the new log's queue has held is still little.
+constexpr std::int64_t kSettled = 30 * 100;
 constexpr std::chrono::minutes kPatience{1};
 constexpr std::int64_t kMostQueued = 1 << 20;
 constexpr int kReadings = 10;
@@ -83,7 +85,9 @@ class Soak {
             [this](std::int64_t, const std::string& channel,
                    const std::vector<std::uint8_t>& bytes) { published(channel, bytes); },
             [this](const WindowEstimate& e) { window(e); }) {
-    estimation_.tap([this](const AccelSample& sample) { history_->sample(sample); }, {});
+    estimation_.tap({[this](const AccelSample& sample) { history_->sample(sample); },
+                     [this](const temperature_t& t) { history_->temperature(t); },
+                     {}});
     for (const daemon::AxisSource& source : config_.sources)
       nodes_.emplace_back(source.node, source.axis);
   }
@@ -122,7 +126,7 @@ class Soak {
   std::vector<Node> nodes_;
   std::deque<std::pair<std::int64_t, std::vector<double>>> kept_;  ///< before a comparison
   std::size_t next_compared_ = 0;
-  std::int64_t at_ = 0, turn_ = 0, phase_ = 0;
+  std::int64_t at_ = 0, turn_ = 0, turned_at_ = 0, phase_ = 0;
   std::optional<Time> last_end_;
   SoakResult result_;
 };
@@ -156,9 +160,9 @@ void Soak::step(std::int64_t i) {
 }
 
 void Soak::look_at_memory(std::int64_t time_us) {
-  const std::int64_t since_us = time_us - kSettled_us;
-  const std::int64_t turn = since_us / (1'000'000 * options_.rotate_s);
-  if (turn == std::exchange(turn_, turn) || at_ * 100 < instants_) return;
+  const std::int64_t turn = time_us / (1'000'000 * options_.rotate_s);
+  if (turn != std::exchange(turn_, turn)) turned_at_ = at_;
+  if (at_ != turned_at_ + kSettled || at_ * 100 < instants_) return;
   // The log that was turned away is closed by a thread that has time when nobody else does.
   const auto open_logs = [&] {
     int count = 0;
