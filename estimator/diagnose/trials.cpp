@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/begin_gap.h"
+
 namespace framewatch {
 namespace {
 
@@ -71,6 +73,12 @@ double highest_hz(const Fitter& fitter) {
   return out;
 }
 
+/// Of what its values may be: there the law that is meant is another one.
+bool at_the_edge(const Knob& knob) {
+  constexpr double kNear = 1e-6;
+  return knob.value <= knob.low + kNear || knob.value >= knob.high - kNear;
+}
+
 /// Whether its names may be given. A slip zone in what hardly yields is another elastic law; a mass
 /// on a spring so stiff that it resonates above the band is a mass.
 bool is_named(const TrialContext& c, const Trial& t) {
@@ -79,7 +87,8 @@ bool is_named(const TrialContext& c, const Trial& t) {
     if (effect.form == LawForm::resonator && effect.knobs[1].plain() > highest_hz(c.fitter))
       return false;
     if (effect.form == LawForm::pinched &&
-        (dissipation(effect) < kDissipates || effect.knobs[5].plain() < kNarrowestSlip))
+        (dissipation(effect) < kDissipates || effect.knobs[5].plain() < kNarrowestSlip ||
+         at_the_edge(effect.knobs[4]) || at_the_edge(effect.knobs[5])))
       return false;
   }
   return !contains(c.without, t.kind) && !(t.second && contains(c.without, t.second->first));
@@ -117,7 +126,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   std::vector<FitResult> runs(kept.size());
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    const FitResult& from = kept[at].fit;
+    const FitResult from = begin_gap(c.fitter, kept[at].fit);
     FitOptions options = to_the_end(from.model);
     options.max_steps = kGlance;
     runs[at] = c.fitter.fit(from.model, from.motion, options);

@@ -17,11 +17,11 @@ constexpr double kSeconds = 20;
 constexpr double kNoise = 0.01;
 
 Outcome diagnosed(const std::string& group, const std::string& name, std::uint64_t seed,
-                  const std::vector<std::string>& without = {}) {
+                  double noise = kNoise, const std::vector<std::string>& without = {}) {
   const test::TemporaryDirectory folder;
   CaseOptions options;
   options.seconds = kSeconds;
-  options.noise_ratio = kNoise;
+  options.noise_ratio = noise;
   options.seed = seed;
   std::string why;
   const auto c = make_case(group, name, options, why);
@@ -44,6 +44,7 @@ Outcome diagnosed(const std::string& group, const std::string& name, std::uint64
 struct HiddenEffect {
   const char* name;
   std::uint64_t seed;
+  double noise = kNoise;
 };
 void PrintTo(const HiddenEffect& effect, std::ostream* out) {
   *out << "seed " << effect.seed;
@@ -60,7 +61,7 @@ class StudyEffects : public testing::TestWithParam<HiddenEffect> {};
 
 TEST_P(StudyEffects, AreNamedAtTheirPlaces) {
   FRAMEWATCH_OPTIMISED_OR_SKIP();
-  const Outcome o = diagnosed("catalogue", GetParam().name, GetParam().seed);
+  const Outcome o = diagnosed("catalogue", GetParam().name, GetParam().seed, GetParam().noise);
   EXPECT_TRUE(o.all_right()) << o.verdict;
 }
 
@@ -68,6 +69,8 @@ INSTANTIATE_TEST_SUITE_P(Subset, StudyEffects,
                          testing::Values(HiddenEffect{"cubic_stiffness", 4000},
                                          HiddenEffect{"tuned_mass_damper", 4002},
                                          HiddenEffect{"time_shift", 4003},
+                                         // so stiff that its run finds no way from a soft start
+                                         HiddenEffect{"one_sided_gap", 3300008, 0.05},
                                          HiddenEffect{"floor_flexibility", 4005}),
                          [](const auto& effect) { return std::string(effect.param.name); });
 
@@ -77,7 +80,7 @@ TEST(StudySubset, NothingHiddenIsAdequate) {
 
 TEST(StudySubset, AnEffectThatIsNotInTheCatalogueIsNotNamedConfidently) {
   FRAMEWATCH_OPTIMISED_OR_SKIP();
-  const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, {"two_sided_gap"});
+  const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, kNoise, {"two_sided_gap"});
   EXPECT_FALSE(o.confidently_wrong()) << (o.named.empty() ? "" : o.named.front());
   EXPECT_NE(o.verdict, "adequate");
 }
