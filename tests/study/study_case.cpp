@@ -82,6 +82,12 @@ std::vector<std::string> parts_of(const std::string& name) {
   return {name.substr(0, plus), name.substr(plus + 1)};
 }
 
+/// Whether softening lets the building stand through the record that sizes are not chosen by.
+bool stands(StudyCase c, const Hidden& hidden) {
+  c.hidden = hidden;
+  return clean_record(c, 1).allFinite();
+}
+
 }  // namespace
 
 std::optional<StudyCase> make_case(const std::string& group, const std::string& name,
@@ -117,8 +123,11 @@ std::optional<StudyCase> make_case(const std::string& group, const std::string& 
       double size = size_for(draw, wanted, c, share, gap);
       if (size == 0 && gap >= options.least_gap * floor) size = draw.largest;
       if (size == 0 || gap < options.least_gap * floor) continue;
+      Hidden with = all;
+      draw.make(size, with);
+      if (!stands(c, with)) continue;
       found = true;
-      draw.make(size, all);
+      all = with;
       c.gap_over_floor = std::min(c.gap_over_floor, gap / floor);
     }
     if (!found) {
