@@ -6,27 +6,16 @@
 #include <utility>
 
 #include "daemon/clocks.h"
+#include "daemon/heard_channels.h"
 #include "drivers/message_check.h"
 
 namespace framewatch::daemon {
-namespace {
-
-std::vector<std::string> channels_of(const Config& config) {
-  std::vector<std::string> channels = drivers::ChannelBinding(wanted_axes(config)).streams();
-  for (std::size_t i = 0, streams = channels.size(); i < streams; ++i)
-    channels.push_back(channels[i] + "_CHANNELS");
-  if (config.watch && !config.watch->temperature_channel.empty())
-    channels.push_back(config.watch->temperature_channel);
-  return channels;
-}
-
-}  // namespace
 
 LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::CanLogWriter* can_log)
     : config_(config),
       lcm_(lcm),
       can_log_(can_log),
-      source_(lcm, channels_of(config), config.lcm.queue_capacity,
+      source_(lcm, heard_channels(config), config.lcm.queue_capacity,
               [this](const std::string& channel, const void* data, std::size_t size,
                      std::int64_t received_us) { on_message(channel, data, size, received_us); }),
       can_(config.can, can_log != nullptr,

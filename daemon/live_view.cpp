@@ -13,6 +13,7 @@
 #include "daemon/acknowledge_command.h"
 #include "daemon/estimation.h"
 #include "daemon/event_words.h"
+#include "daemon/heard_channels.h"
 #include "drivers/encoded.h"
 #include "drivers/message_check.h"
 #include "estimator/structure/parameter_table.h"
@@ -139,9 +140,7 @@ LiveView::LiveView(const Config& config, MessageSink publish)
 }
 
 std::vector<std::string> LiveView::channels() const {
-  std::vector<std::string> out = drivers::ChannelBinding(wanted_axes(config_)).streams();
-  for (std::size_t i = 0, streams = out.size(); i < streams; ++i)
-    out.push_back(out[i] + "_CHANNELS");
+  std::vector<std::string> out = sample_channels(config_);
   const std::string& prefix = config_.lcm.prefix;
   for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "CAN", "SESSION",
                            "SERVICE", "ACKNOWLEDGED"})

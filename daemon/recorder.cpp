@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/estimation.h"
+#include "daemon/heard_channels.h"
 #include "daemon/log.h"
 #include "daemon/process_usage.h"
 #include "drivers/can/candump_line.h"
@@ -56,17 +57,13 @@ Recorder::Recorder(const Config& config, std::string sessions, Ended ended)
       polarity_(config.pipeline.axes.size(), 0) {}
 
 std::vector<std::string> Recorder::channels() const {
-  std::vector<std::string> out = drivers::ChannelBinding(wanted_axes(config_)).streams();
-  for (std::size_t i = 0, streams = out.size(); i < streams; ++i)
-    out.push_back(out[i] + "_CHANNELS");
+  std::vector<std::string> out = heard_channels(config_);
   for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "CAN"})
     out.push_back(config_.lcm.prefix + name);
   for (const double window_s : config_.pipeline.options.other_windows_s)
     out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));
   if (const double window_s = config_.pipeline.options.long_window_s; window_s > 0)
     out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));
-  if (config_.watch && !config_.watch->temperature_channel.empty())
-    out.push_back(config_.watch->temperature_channel);
   return out;
 }
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include <fmt/core.h>
 
+#include "daemon/median.h"
 #include "drivers/can/can_log.h"
 #include "drivers/count_block.h"
 #include "drivers/message_types.h"
@@ -295,9 +297,8 @@ void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::
         steps.push_back(static_cast<double>(time_step_us) / static_cast<double>(sequence_step));
     }
     if (steps.empty()) continue;
-    std::nth_element(steps.begin(), steps.begin() + std::ssize(steps) / 2, steps.end());
     check_rate(fmt::format("{}: {} node {}", path, node.first, node.second),
-               1e6 / steps[steps.size() / 2]);
+               1e6 / median(std::move(steps)));
   }
 }
 

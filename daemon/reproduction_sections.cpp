@@ -1,11 +1,12 @@
 #include "daemon/reproduction_sections.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "daemon/html_page.h"
+#include "daemon/median.h"
 #include "daemon/percent.h"
 #include "daemon/reproduction_plots.h"
 
@@ -20,14 +21,11 @@ std::vector<std::string> window_cells(const std::vector<double>& all, double ref
   if (values.empty()) return {"-", "-", "0"};
   double mean = 0;
   for (const double value : values) mean += value / static_cast<double>(values.size());
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  const double median = values[values.size() / 2];
   const auto cell = [&](double value) {
     return std::isfinite(reference) ? value_and_error(value, reference)
                                     : fmt::format("{:.5g}", 1e-3 * value);
   };
-  return {cell(mean), cell(median), fmt::format("{}", values.size())};
+  return {cell(mean), cell(median(values)), fmt::format("{}", values.size())};
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ bool ends_with_gap(const Model& model) {
 
 }  // namespace
 
-FitResult begin_gap(const Fitter& fitter, const FitResult& fit) {
+FitResult begin_gap(const Fitter& fitter, FitResult fit) {
   if (!ends_with_gap(fit.model) || fit.total_misfit() < kFits * fitter.expected(fit.model))
     return fit;
   FitOptions run;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimator/diagnose/begin_gap.h"
 
@@ -126,7 +127,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   std::vector<FitResult> runs(kept.size());
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    const FitResult from = begin_gap(c.fitter, kept[at].fit);
+    const FitResult from = begin_gap(c.fitter, std::move(kept[at].fit));
     FitOptions options = to_the_end(from.model);
     options.max_steps = kGlance;
     runs[at] = c.fitter.fit(from.model, from.motion, options);

@@ -83,7 +83,7 @@ std::vector<std::string> parts_of(const std::string& name) {
 }
 
 /// Whether softening lets the building stand through the record that sizes are not chosen by.
-bool stands(StudyCase c, const Hidden& hidden) {
+bool stands_through_holdout(StudyCase c, const Hidden& hidden) {
   c.hidden = hidden;
   return clean_record(c, 1).allFinite();
 }
@@ -125,7 +125,7 @@ std::optional<StudyCase> make_case(const std::string& group, const std::string& 
       if (size == 0 || gap < options.least_gap * floor) continue;
       Hidden with = all;
       draw.make(size, with);
-      if (!stands(c, with)) continue;
+      if (!stands_through_holdout(c, with)) continue;
       found = true;
       all = with;
       c.gap_over_floor = std::min(c.gap_over_floor, gap / floor);
