@@ -1,6 +1,7 @@
 # From ctest's JUnit file: one line per suite, "<preset>/<suite> passed failed skipped seconds", where
-# a test's suite is its name up to the first dot. Reasons for skipping are appended to `skips`.
-# Variables: preset, skips.
+# a test's suite is its name up to the first dot. Reasons for skipping are appended to `skips`; to
+# `failures`, what failed, each with twelve lines of its output: from its first failure on, or the last.
+# Variables: preset, skips, failures.
 function attribute(name,    text) {
   text = $0
   if (!sub(".*[ \t]" name "=\"", "", text)) return ""
@@ -15,7 +16,7 @@ function plain(text) {
   return text
 }
 /^[ \t]*<testcase / {
-  suite = attribute("name")
+  name = suite = attribute("name")
   sub(/\..*/, "", suite)
   status = attribute("status")
   if (!(suite in total)) order[++suites] = suite
@@ -25,6 +26,7 @@ function plain(text) {
   reason = skipped_here ? "disabled" : ""
   take_next = 0
   if (status == "run") ++passed[suite]
+  said = failed_here = 0
   next
 }
 /^[ \t]*<skipped message="SKIP_/ { skipped_here = 1; next }
@@ -32,14 +34,25 @@ function plain(text) {
   if (skipped_here) {
     ++skipped[suite]
     print plain(reason == "" ? last : reason) >> skips
+  } else if (status != "run") {
+    print preset "/" name >> failures
+    for (i = said > 12 ? said - 11 : 1; i <= said; ++i) print "    " plain(output[i % 12]) >> failures
   }
   last = ""
   next
 }
-skipped_here {
+status == "run" || /^[ \t]*<(failure|skipped)/ { next }
+{
   line = $0
   sub(/^[ \t]*<system-out>/, "", line)
   sub(/<\/system-out>.*/, "", line)
+  if (line ~ /: Failure$/ && !failed_here) {
+    failed_here = 1
+    said = 0
+  }
+  if (line != "" && !(failed_here && said == 12)) output[++said % 12] = line
+}
+skipped_here {
   if (take_next && reason == "") reason = line
   take_next = line ~ /: Skipped$/
   if (line != "") last = line
