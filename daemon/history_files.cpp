@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -15,6 +16,7 @@ namespace fs = std::filesystem;
 namespace ch = std::chrono;
 
 constexpr const char* kEnding = ".lcmlog";
+constexpr std::string_view kPartial = ".partial", kPacked = ".zst";
 constexpr std::size_t kStampLength = 16;  // 20261121T231500Z
 constexpr std::int64_t kSecond_us = 1'000'000;
 
@@ -81,15 +83,18 @@ std::optional<RawLog> raw_log(const fs::directory_entry& entry) {
     name.resize(name.size() - ending.size());
     return true;
   };
-  log.partial = take(".partial");
-  log.compressed = take(".zst");
+  log.partial = take(kPartial);
+  log.compressed = take(kPacked);
   if (!take(kEnding) || (log.partial && log.compressed)) return std::nullopt;
   const auto start_us = read_stamp(name);
   if (!start_us) return std::nullopt;
   log.start_us = *start_us;
-  std::error_code gone;
-  log.bytes = static_cast<std::int64_t>(entry.file_size(gone));
-  if (gone) return std::nullopt;
+  std::error_code failure;
+  log.bytes = static_cast<std::int64_t>(entry.file_size(failure));
+  if (failure == std::errc::no_such_file_or_directory)
+    log.bytes = 0;  // it has got its next name
+  else if (failure)
+    return std::nullopt;
   return log;
 }
 
@@ -130,15 +135,22 @@ std::vector<RawLog> raw_logs(const std::string& folder) {
   std::sort(out.begin(), out.end(), [](const RawLog& a, const RawLog& b) {
     return std::pair(a.start_us, a.path) < std::pair(b.start_us, b.path);
   });
+  const auto there = [&](const std::string& path) {
+    return std::any_of(out.begin(), out.end(), [&](const RawLog& log) { return log.path == path; });
+  };
   std::vector<RawLog> once;
   for (const RawLog& log : out) {
-    const bool packed_too = !log.compressed && !log.partial &&
-                            std::any_of(out.begin(), out.end(), [&](const RawLog& other) {
-                              return other.path == log.path + ".zst";
-                            });
-    if (!packed_too) once.push_back(log);
+    const std::string closed = closed_path(log);
+    const bool later =
+        !log.compressed && ((log.partial && there(closed)) || there(closed + ".zst"));
+    if (!later) once.push_back(log);
   }
   return once;
+}
+
+std::string closed_path(const RawLog& log) {
+  const std::size_t ending = log.partial ? kPartial.size() : log.compressed ? kPacked.size() : 0;
+  return log.path.substr(0, log.path.size() - ending);
 }
 
 std::string utc_text(std::int64_t time_us) {

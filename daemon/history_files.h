@@ -24,9 +24,11 @@ struct RawLog {
 /// Path of a raw log that is not there yet; makes the folders.
 std::string new_raw_log(const std::string& directory, std::int64_t start_us);
 
-/// The raw logs in a folder, in order of time; of one that is there plain and compressed the
-/// compressed one.
+/// The raw logs in a folder, in order of time; of one that is there under two names the later one:
+/// it is partial, then plain, then compressed. Who opens one may find that it has the next name.
 std::vector<RawLog> raw_logs(const std::string& folder);
+/// The name of a log that is or was partial, when it is closed and not yet compressed.
+std::string closed_path(const RawLog& log);
 
 /// "2026-11-21T23:15:00Z", by sensor time; "2026-11-21T23:15:00.250Z" when that is no whole second.
 std::string utc_text(std::int64_t time_us);

@@ -20,6 +20,16 @@ std::string stem(const RawLog& log) {
   return name.substr(0, name.find('.'));
 }
 
+/// Under the name it has by now: it may have been closed, and compressed, since it was listed.
+bool open_log(drivers::LcmLogReader& reader, const RawLog& log) {
+  const std::string closed = closed_path(log);
+  for (const std::string& path : {log.path, closed, closed + ".zst"}) {
+    if (reader.open(path)) return true;
+    if (std::error_code none; std::filesystem::exists(path, none)) return false;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<RawLog> raw_logs_between(const std::string& directory, std::int64_t from_us,
@@ -49,7 +59,7 @@ bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std
   for (const RawLog& log : logs) {
     drivers::LcmLogReader reader;
     drivers::LogEvent event;
-    auto read = reader.open(log.path) ? reader.next(event) : drivers::LogRead::error;
+    auto read = open_log(reader, log) ? reader.next(event) : drivers::LogRead::error;
     for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
          read = reader.next(event)) {
       if (read != drivers::LogRead::event) {

@@ -93,6 +93,36 @@ TEST(RawHistory, WhatWaitsForItsBlockToFillIsWrittenSoon) {
   raw.finish();
 }
 
+TEST(RawHistory, ALogThatGetsItsNextNameAfterItWasListedIsRead) {
+  const test::TemporaryDirectory directory;
+  Config config = test::table_with_history(directory.path("h"));
+  config.history->compress = false;
+  record(config, 0, 1);
+  const std::string path = raw_logs(raw_folder(config.history->directory)).at(0).path;
+  const auto listed = [&] { return raw_logs_between(config.history->directory, 0, INT64_MAX / 2); };
+  const auto samples = [](const std::vector<RawLog>& logs) {
+    int count = 0;
+    std::vector<std::string> notes;
+    std::string problem;
+    EXPECT_TRUE(read_raw_history(logs, 0, INT64_MAX / 2,
+                                 {[](auto&, double) {}, [&](auto&) { ++count; }}, notes, problem))
+        << problem;
+    return count;
+  };
+  fs::rename(path, path + ".partial");
+  const std::vector<RawLog> written = listed();
+  fs::rename(path + ".partial", path);
+  EXPECT_EQ(samples(written), kRate_hz * kAxes);
+  const std::vector<RawLog> closed = listed();
+  compress_raw_log(path, false);
+  ASSERT_FALSE(fs::exists(path));
+  EXPECT_EQ(samples(written), kRate_hz * kAxes);
+  EXPECT_EQ(samples(closed), kRate_hz * kAxes);
+  test::write_file(path + ".partial", "");  // listed in the middle of a step to the next name
+  test::write_file(path, "");
+  EXPECT_EQ(samples(listed()), kRate_hz * kAxes);
+}
+
 TEST(RawHistory, AStrayClockMakesNoFileOfItsOwn) {
   const test::TemporaryDirectory directory;
   const Config config = test::table_with_history(directory.path("h"));
