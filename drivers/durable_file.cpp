@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <future>
 #include <utility>
 
 namespace framewatch::drivers {
@@ -27,6 +28,13 @@ void sync_folder_of(const std::string& path) {
   ::close(file);
 }
 
+/// Onto the disk, and the name of `fresh` unless that is empty. Empty, or why not.
+std::string force(int file, const std::string& fresh) {
+  const std::string why = ::fsync(file) == 0 ? "" : std::strerror(errno);
+  if (!fresh.empty()) sync_folder_of(fresh);
+  return why;
+}
+
 }  // namespace
 
 DurableFile::~DurableFile() {
@@ -41,7 +49,6 @@ bool DurableFile::make(std::string& error) {
     return false;
   }
   ::flock(file_, LOCK_EX | LOCK_NB);
-  sync_folder_of(path_);
   return true;
 }
 
@@ -123,7 +130,16 @@ bool DurableFile::write_some() {
 
 void DurableFile::work() {
   Clock::time_point next_sync = Clock::now() + kSync;
-  for (bool dirty = false, last = false; !last;) {
+  bool dirty = false, fresh = true;
+  std::future<std::string> forcing;  // in a thread of its own: what comes meanwhile is written
+  const auto forced = [&] {
+    const std::string why = forcing.get();
+    if (why.empty()) return;
+    dirty = true;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    trouble_ = why;
+  };
+  for (bool last = false; !last;) {
     const bool done = write_some();
     {
       std::unique_lock<std::mutex> lock(mutex_);
@@ -140,15 +156,16 @@ void DurableFile::work() {
       last = closing_ && ((done && waiting_ == 0) || (!done && Clock::now() >= give_up_));
     }
     if (!done && !last) std::this_thread::sleep_for(kWrite / 5);
-    if (!last && Clock::now() < next_sync) continue;
+    if (forcing.valid() &&
+        (last || forcing.wait_for(std::chrono::seconds(0)) == std::future_status::ready))
+      forced();
+    if (!last && (forcing.valid() || Clock::now() < next_sync)) continue;
     next_sync = Clock::now() + kSync;
     if (!dirty || file_ < 0) continue;
-    const bool synced = ::fsync(file_) == 0;
-    dirty = !synced;
-    if (synced) continue;
-    const std::string why = std::strerror(errno);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    trouble_ = why;
+    dirty = false;
+    forcing = std::async(std::launch::async, &force, file_,
+                         std::exchange(fresh, false) ? path_ : std::string());
+    if (last) forced();
   }
 }
 
