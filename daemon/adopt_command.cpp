@@ -4,17 +4,14 @@
 
 #include "daemon/config.h"
 #include "daemon/config_problems.h"
+#include "daemon/exit_code.h"
 #include "daemon/file_digest.h"
 #include "daemon/gap_model.h"
 #include "drivers/text_output.h"
 #include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
-namespace {
-
-constexpr int kBadInput = 2;
-
-}  // namespace
+namespace {}  // namespace
 
 int adopt(const AdoptArguments& a) {
   std::vector<ConfigProblem> problems;

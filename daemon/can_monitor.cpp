@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <fstream>
-#include <limits>
 
 #include "drivers/can/bus_load.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
-namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 CanMonitor::CanMonitor(const Config& config, std::string statistics)
     : config_(config),

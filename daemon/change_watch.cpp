@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/core.h>
+
+#include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kWithinToClear = 10;
 
 }  // namespace

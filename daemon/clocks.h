@@ -5,6 +5,9 @@
 
 namespace framewatch::daemon {
 
+inline constexpr std::int64_t kSecond_us = 1'000'000;
+inline constexpr std::int64_t kDay_us = 86'400 * kSecond_us;
+
 /// The clock's time, microseconds since its epoch.
 template <typename Clock>
 std::int64_t clock_us() {

@@ -18,6 +18,7 @@
 
 #include "daemon/can_output.h"
 #include "daemon/config_problems.h"
+#include "daemon/clocks.h"
 #include "daemon/demo_can.h"
 #include "daemon/demo_files.h"
 #include "daemon/demo_network.h"
@@ -124,12 +125,6 @@ class DemoBus {
  private:
   std::unique_ptr<lcm::LCM> all_[4];
 };
-
-std::int64_t steady_clock_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 void introduce(const Scenario& s, const DemoNetwork& network, double seconds,
                const std::string& page) {

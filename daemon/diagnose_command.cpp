@@ -13,6 +13,7 @@
 #include "daemon/config_problems.h"
 #include "daemon/diagnose_output.h"
 #include "daemon/diagnose_records.h"
+#include "daemon/exit_code.h"
 #include "daemon/median.h"
 #include "daemon/workers.h"
 #include "drivers/text_output.h"
@@ -22,7 +23,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kGapRemains = 1;
-constexpr int kBadInput = 2;
 constexpr double kBandLow = 0.4, kBandHigh = 1.6;  ///< of the lowest and highest natural frequency
 constexpr double kComponentBandLow = 0.1;          ///< displacement is known far below too
 constexpr double kHighest = 0.4;                   ///< of the sampling rate

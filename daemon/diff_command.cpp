@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "daemon/estimate_diff.h"
+#include "daemon/exit_code.h"
 #include "daemon/replay_summary.h"
 #include "drivers/lcm_log.h"
 #include "drivers/message_check.h"
@@ -19,7 +20,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kDifferent = 1;
-constexpr int kBadInput = 2;
 
 struct Estimate {
   std::vector<std::uint8_t> bytes;

@@ -9,6 +9,7 @@
 #include <framewatch/temperature_t.hpp>
 
 #include "daemon/can_events.h"
+#include "daemon/clocks.h"
 #include "daemon/config.h"
 #include "daemon/publisher.h"
 #include "drivers/accel_intake.h"
@@ -31,7 +32,6 @@ class SensorSeconds {
   }
 
  private:
-  static constexpr std::int64_t kSecond_us = 1'000'000;
   static constexpr std::int64_t kLargestStep_us = 10 * kSecond_us;
   static constexpr int kStraysToFollow = 1000;  ///< in a row
 

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/clocks.h"
 #include "daemon/event_words.h"
 #include "drivers/message_check.h"
 
@@ -17,7 +18,6 @@ namespace {
 
 constexpr double kSilent_s = 5;
 constexpr std::int64_t kBehind_us = 2'000'000;
-constexpr std::int64_t kDay_us = 86'400'000'000;
 constexpr double kLoss_ratio = 1e-3;
 constexpr double kLate_ratio = 1e-2;
 constexpr std::int64_t kLittleDisk_bytes = 1'000'000'000;

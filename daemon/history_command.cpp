@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/exit_code.h"
 #include "daemon/history_files.h"
 #include "daemon/history_overview.h"
 #include "daemon/history_raw.h"
@@ -14,7 +15,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr int kBadInput = 2;
 constexpr std::int64_t kMostEvents = 1'000'000;
 
 void print_events(const HistoryRequest& r, SummaryQuery& summaries) {

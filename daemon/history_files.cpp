@@ -9,6 +9,8 @@
 
 #include <fmt/core.h>
 
+#include "daemon/clocks.h"
+
 namespace framewatch::daemon {
 namespace {
 
@@ -18,7 +20,6 @@ namespace ch = std::chrono;
 constexpr const char* kEnding = ".lcmlog";
 constexpr std::string_view kPartial = ".partial", kPacked = ".zst";
 constexpr std::size_t kStampLength = 16;  // 20261121T231500Z
-constexpr std::int64_t kSecond_us = 1'000'000;
 
 struct Civil {
   int year;

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/clocks.h"
 #include "daemon/event_words.h"
 #include "daemon/history_files.h"
 
@@ -15,7 +16,6 @@ namespace {
 
 constexpr std::size_t kMostParameters = 24, kMostChannels = 6;
 constexpr std::int64_t kMostEvents = 5;
-constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr std::int64_t kEver_us = INT64_MAX / 4;
 
 struct RawTotals {

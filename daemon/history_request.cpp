@@ -11,6 +11,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/clocks.h"
 #include "daemon/config_suggest.h"
 #include "daemon/history_files.h"
 #include "daemon/raw_export.h"
@@ -18,7 +19,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr std::size_t kScreenRows = 30;
 
 /// "90m", "2h", "3d", "45s" or "45" in microseconds.

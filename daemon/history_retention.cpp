@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/clocks.h"
 #include "daemon/history_files.h"
 #include "daemon/log.h"
 #include "daemon/raw_log_care.h"
@@ -16,7 +17,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kDay_us = 86400e6, kSecond_us = 1e6, kGigabyte = 1e9;
+constexpr double kGigabyte = 1e9;
 
 /// Times around events that show the building, not the instruments. Empty optional: not known.
 std::optional<std::vector<TimeSpan>> spans_of_events(const HistorySettings& settings) {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "daemon/clocks.h"
+
 namespace framewatch::daemon {
 
 /// What is due once a second of the host's clock, and again at once when that clock stepped back.
@@ -14,7 +16,6 @@ class OnceASecond {
   }
 
  private:
-  static constexpr std::int64_t kSecond_us = 1'000'000;
   std::int64_t next_us_ = INT64_MIN;
 };
 

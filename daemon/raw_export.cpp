@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/clocks.h"
 #include "daemon/history_files.h"
 #include "daemon/miniseed_file.h"
 #include "drivers/accel_codec.h"
@@ -17,7 +18,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr std::int64_t kSecond_us = 1'000'000;
 
 std::vector<std::string> names_of(const std::vector<RawChannel>& channels) {
   std::vector<std::string> out;

@@ -17,6 +17,7 @@
 #include "daemon/clocks.h"
 #include "daemon/config_problems.h"
 #include "daemon/descriptor.h"
+#include "daemon/exit_code.h"
 #include "daemon/log.h"
 #include "daemon/recorder.h"
 #include "daemon/session_command.h"
@@ -31,7 +32,7 @@ namespace framewatch::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kBadInput = 2, kFailed = 1, kPoll_ms = 50;
+constexpr int kPoll_ms = 50;
 constexpr std::int64_t kStatus_us = 1'000'000, kNoSamples_us = 10'000'000;
 
 /// A listener: it starts no node and sends no SYNC, which is the estimator's business.
@@ -296,11 +297,6 @@ class RecordCommand {
   std::vector<std::uint8_t> bytes_;
 };
 
-int refuse(const std::string& message) {
-  fmt::print(stderr, "framewatch record: {}\n", message);
-  return kBadInput;
-}
-
 }  // namespace
 
 int record(const RecordArguments& a) {
@@ -312,22 +308,22 @@ int record(const RecordArguments& a) {
   print_problems(config_problems);
   bool good = config.has_value();
   for (const std::string& p : problems(a.request)) {
-    (void)refuse(p);
+    (void)refuse("record", p);
     good = false;
   }
   if (a.standby && (!a.send.empty() || a.tap_s > 0)) {
-    (void)refuse("--standby waits for commands: leave --send and --tap-test out");
+    (void)refuse("record", "--standby waits for commands: leave --send and --tap-test out");
     good = false;
   }
   if (!good) return kBadInput;
   std::string error;
   const auto lcm = drivers::open_lcm(a.url.empty() ? config->lcm.url : a.url,
                                      config->lcm.receive_buffer_bytes, error);
-  if (!lcm) return refuse(error);
+  if (!lcm) return refuse("record", error);
   if (!a.send.empty()) return send_session_command(*lcm, config->lcm.prefix, a.send, a.request);
   FolderLock lock;
   error = lock.lock(a.out);
-  if (!error.empty()) return refuse(error);
+  if (!error.empty()) return refuse("record", error);
   catch_stop_signals();
   return RecordCommand(a, *config, *lcm).run();
 }

@@ -8,6 +8,7 @@
 
 #include "daemon/config_problems.h"
 #include "daemon/estimation.h"
+#include "daemon/exit_code.h"
 #include "daemon/replay_survey.h"
 #include "daemon/stored_samples.h"
 #include "daemon/stretch_collector.h"
@@ -19,7 +20,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kNotRefined = 1;
-constexpr int kBadInput = 2;
 using Json = nlohmann::ordered_json;
 
 /// Everything a person is told.

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/exit_code.h"
 #include "daemon/log_survey.h"
 #include "daemon/progress.h"
 #include "daemon/replay_summary.h"
@@ -12,12 +13,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kDamaged = 1;
-constexpr int kBadInput = 2;
-
-int refuse(const std::string& message) {
-  fmt::print(stderr, "framewatch repair: {}\n", message);
-  return kBadInput;
-}
 
 /// "night.repaired.lcmlog" of "night.lcmlog" and of "night.lcmlog.zst".
 std::string beside(const std::string& log) {
@@ -94,11 +89,12 @@ int repair(const RepairArguments& a) {
   const std::string out = a.check ? "" : a.out.empty() ? beside(a.log) : a.out;
   std::error_code none;
   if (!out.empty() && (out == a.log || std::filesystem::equivalent(out, a.log, none)))
-    return refuse(a.log + ": is input and output");
+    return refuse("repair", a.log + ": is input and output");
   drivers::LcmLogReader reader;
-  if (!reader.open(a.log)) return refuse(fmt::format("{}: {}", a.log, reader.error()));
+  if (!reader.open(a.log)) return refuse("repair", fmt::format("{}: {}", a.log, reader.error()));
   drivers::LcmLogWriter writer;
-  if (!out.empty() && !writer.open(out)) return refuse(fmt::format("{}: {}", out, writer.error()));
+  if (!out.empty() && !writer.open(out))
+    return refuse("repair", fmt::format("{}: {}", out, writer.error()));
 
   LogSurvey survey;
   drivers::LogEvent event;
@@ -106,19 +102,20 @@ int repair(const RepairArguments& a) {
   for (auto read = reader.next(event); read != drivers::LogRead::end; read = reader.next(event)) {
     progress(reader.position());
     if (read == drivers::LogRead::error)
-      return refuse(fmt::format("{}: byte {}: {}", a.log, reader.position(), reader.error()));
+      return refuse("repair",
+                    fmt::format("{}: byte {}: {}", a.log, reader.position(), reader.error()));
     if (read != drivers::LogRead::event) {
       survey.damaged(reader.damage(), read == drivers::LogRead::truncated);
       continue;
     }
     survey.intact(event);
     if (!out.empty() && !writer.copy(event))
-      return refuse(fmt::format("{}: {}", out, writer.error()));
+      return refuse("repair", fmt::format("{}: {}", out, writer.error()));
   }
-  if (survey.events() == 0) return refuse(a.log + ": holds no intact LCM event");
+  if (survey.events() == 0) return refuse("repair", a.log + ": holds no intact LCM event");
   const bool whole = survey.lost().empty();
   if (!out.empty() && !whole && !writer.close())
-    return refuse(fmt::format("{}: {}", out, writer.error()));
+    return refuse("repair", fmt::format("{}: {}", out, writer.error()));
   report(a, survey, whole ? "" : out);
   return !whole && a.check ? kDamaged : 0;
 }

@@ -12,6 +12,7 @@
 #include "daemon/baseline_file.h"
 #include "daemon/config_problems.h"
 #include "daemon/estimate_output.h"
+#include "daemon/exit_code.h"
 #include "daemon/expectation_check.h"
 #include "daemon/progress.h"
 #include "daemon/replay_summary.h"
@@ -23,13 +24,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kNotAsExpected = 1;
-constexpr int kBadInput = 2;
 using Clock = std::chrono::steady_clock;
-
-int refuse(const std::string& message) {
-  fmt::print(stderr, "framewatch replay: {}\n", message);
-  return kBadInput;
-}
 
 /// What can be said before any file is read.
 std::vector<std::string> argument_problems(const ReplayArguments& a) {
@@ -125,7 +120,7 @@ class ReplayRun {
     if (!a_.load_state.empty()) {
       bool touched = false;
       const LoadedState state = load_state(a_.load_state, config_, estimation_, touched);
-      if (!state.problem.empty()) return refuse(a_.load_state + ": " + state.problem);
+      if (!state.problem.empty()) return refuse("replay", a_.load_state + ": " + state.problem);
       events_before_ = state.events_before;
       survey_.goes_on();
     }
@@ -137,11 +132,11 @@ class ReplayRun {
     const std::int64_t events = outputs_.empty() ? events_before_ : outputs_.front()->events();
     for (const auto& output : outputs_)
       if (failed_.empty() && !output->close()) fail(*output);
-    if (!failed_.empty()) return refuse(failed_);
+    if (!failed_.empty()) return refuse("replay", failed_);
     if (!a_.save_state.empty()) {
       const std::string problem =
           write_state(a_.save_state, state_bytes(config_, estimation_, events));
-      if (!problem.empty()) return refuse(a_.save_state + ": " + problem);
+      if (!problem.empty()) return refuse("replay", a_.save_state + ": " + problem);
     }
     return conclude();
   }
@@ -162,7 +157,7 @@ class ReplayRun {
       if (output)
         outputs_.push_back(std::move(output));
       else
-        refuse(name.empty() ? error : fmt::format("{}: {}", name, error));
+        refuse("replay", name.empty() ? error : fmt::format("{}: {}", name, error));
       return error.empty();
     };
     return (a_.out.empty() ||
@@ -218,7 +213,7 @@ class ReplayRun {
     if (!a_.write_expect.empty())
       problem = drivers::write_text_file(a_.write_expect, written_expectations(outcome, command()));
     if (!a_.write_baseline.empty()) problem = write_baseline();
-    if (!problem.empty()) return refuse(problem);
+    if (!problem.empty()) return refuse("replay", problem);
 
     const std::chrono::duration<double> work = Clock::now() - start_;
     const ReplaySummary summary{series_, counts, survey_, estimation_.can(), work.count()};
@@ -285,7 +280,7 @@ class ReplayRun {
 
 int replay(const ReplayArguments& a) {
   const std::vector<std::string> wrong = argument_problems(a);
-  for (const std::string& problem : wrong) refuse(problem);
+  for (const std::string& problem : wrong) refuse("replay", problem);
   if (!wrong.empty()) return kBadInput;
   std::vector<ConfigProblem> problems;
   std::optional<Config> config = load_config(a.config, problems);

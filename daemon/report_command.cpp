@@ -4,19 +4,13 @@
 
 #include <fmt/core.h>
 
+#include "daemon/exit_code.h"
 #include "daemon/file_digest.h"
 #include "drivers/text_output.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr int kBadInput = 2;
-
-int refuse(const std::string& message) {
-  fmt::print(stderr, "framewatch report: {}\n", message);
-  return kBadInput;
-}
 
 std::string out_path(const ReportArguments& a) {
   return a.out.empty() ? std::filesystem::path(a.estimates).replace_extension(".html").string()
@@ -44,14 +38,14 @@ std::string write_report(SessionReport r,
 
 int report(const ReportArguments& a) {
   if (!a.raw.empty() && a.config.empty())
-    return refuse("--raw needs --config, which says what the channels are");
+    return refuse("report", "--raw needs --config, which says what the channels are");
   const std::string path = out_path(a);
   std::vector<std::string> inputs = a.raw;
   inputs.insert(inputs.end(), {a.estimates, a.config});
   for (const std::string& input : inputs) {
     std::error_code error;
     if (input == path || std::filesystem::equivalent(input, path, error))
-      return refuse(path + ": is input and output");
+      return refuse("report", path + ": is input and output");
   }
   SessionReport r;
   r.title = a.title;
@@ -89,7 +83,7 @@ int report(const ReportArguments& a) {
   if (!a.config.empty()) files.push_back({"configuration", a.config});
   for (const std::string& raw : a.raw) files.push_back({"raw samples", raw});
   const std::string problem = write_report(std::move(r), files, path);
-  if (!problem.empty()) return refuse(problem);
+  if (!problem.empty()) return refuse("report", problem);
   if (!a.quiet) fmt::print("{}\n", path);
   return 0;
 }

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "daemon/exit_code.h"
 #include "daemon/reproduction.h"
 #include "daemon/reproduction_report.h"
 #include "drivers/text_output.h"
@@ -19,7 +20,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kBroken = 1;
-constexpr int kBadInput = 2;
 
 /// Percent, rate and time left of what is being done, on stderr, when that is a terminal and the
 /// whole takes over 2 s.
@@ -50,11 +50,6 @@ class ProgressLine {
   Clock::time_point start_ = Clock::now(), part_ = start_;
 };
 
-int refuse(const std::string& message) {
-  fmt::print(stderr, "framewatch reproduce: {}\n", message);
-  return kBadInput;
-}
-
 std::string data_folder() {
   const char* set = std::getenv("FRAMEWATCH_DATA");
   return set != nullptr ? set : "";
@@ -74,7 +69,7 @@ void tell_what_is_missing(const Reproduction& all) {
 bool write(const std::string& path, const std::string& text) {
   drivers::TextOutput file;
   if (file.open(path) && file.write(text) && file.close()) return true;
-  refuse(path + ": " + file.error());
+  refuse("reproduce", path + ": " + file.error());
   return false;
 }
 
@@ -91,11 +86,11 @@ Reproduction measured(const ReproduceArguments& a) {
 int reproduce(const ReproduceArguments& a) {
   const auto& cases = reproduction_cases();
   if (!a.only.empty() && std::find(cases.begin(), cases.end(), a.only) == cases.end())
-    return refuse(
-        fmt::format("--case {}: there is no such case, only {}", a.only, fmt::join(cases, ", ")));
+    return refuse("reproduce", fmt::format("--case {}: there is no such case, only {}", a.only,
+                                           fmt::join(cases, ", ")));
   std::error_code error;
   std::filesystem::create_directories(a.out, error);
-  if (error) return refuse(fmt::format("{}: {}", a.out, error.message()));
+  if (error) return refuse("reproduce", fmt::format("{}: {}", a.out, error.message()));
   const Reproduction all = measured(a);
   if (!a.quiet) tell_what_is_missing(all);
   if (!write(a.out + "/report.html", reproduction_html(all, a.only))) return kBadInput;

@@ -11,7 +11,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr const char* kKinds[] = {"k", "G", "c", "G<sub>c</sub>"};
+constexpr const char* kSymbols[] = {"k", "G", "c", "G<sub>c</sub>"};
 
 std::string figure_of(const std::string& group) {
   if (group == "table1") return "Figure 3";
@@ -72,7 +72,7 @@ std::string row_table(const std::vector<const AccuracyRow*>& rows) {
   for (const AccuracyRow* row : rows)
     for (int kind = 0; kind < 4; ++kind) {
       const ErrorStatistics& ours = row->of(Method::matched, kind);
-      cells.push_back({kind == 0 ? html_text(row->name) : "", kKinds[kind],
+      cells.push_back({kind == 0 ? html_text(row->name) : "", kSymbols[kind],
                        percent(row->least_median(kind)), percent(ours.quantile(0.5)),
                        fmt::format("{:.2f}", ours.quantile(0.5) / row->least_median(kind)),
                        percent(row->of(Method::matched_unaware, kind).quantile(0.5)),

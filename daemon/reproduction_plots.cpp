@@ -6,11 +6,11 @@
 #include <fmt/core.h>
 
 #include "daemon/svg_plot.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kQuantity[] = {"frame stiffness, kN/m", "floor stiffness, kN/rad/m",
                                      "frame damping, kN s/m", "floor damping, kN s/rad/m"};
 constexpr const char* kSymbol[] = {"k", "G", "c"};

@@ -8,7 +8,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr const char* kKinds[] = {"k", "G", "c"};
+constexpr const char* kJudgedKinds[] = {"k", "G", "c"};
 constexpr double kLeastCoverage = 0.90, kMostCoverage = 0.98;
 constexpr double kMostWrong = 0.05;
 constexpr double kMostChangeByBias = 1e-4;
@@ -22,7 +22,7 @@ void judge_coverage(const AccuracyRow& row, Method method, const std::string& su
     if (s.published < kFewestToJudge) continue;
     const double share = s.coverage_ratio();
     out.push_back({fmt::format("{}{}: 95 % intervals of {} hold in 90 to 98 %", row.name, suffix,
-                               kKinds[kind]),
+                               kJudgedKinds[kind]),
                    percent_1(share), share >= kLeastCoverage && share <= kMostCoverage});
   }
 }
@@ -34,7 +34,7 @@ void judge_row(const AccuracyRow& row, std::vector<Promise>& out) {
       const double limit = c.limit[static_cast<std::size_t>(kind)];
       const double found = row.of(Method::matched, kind).quantile(0.5);
       out.push_back(
-          {fmt::format("{}: median error of {} at most {}", row.name, kKinds[kind], percent(limit)),
+          {fmt::format("{}: median error of {} at most {}", row.name, kJudgedKinds[kind], percent(limit)),
            percent(found), found <= limit});
     }
     if (c.bound_limited) {

@@ -15,6 +15,7 @@
 #include "daemon/can_monitor.h"
 #include "daemon/clocks.h"
 #include "daemon/config_problems.h"
+#include "daemon/exit_code.h"
 #include "daemon/file_digest.h"
 #include "daemon/gap_keeper.h"
 #include "daemon/history_report.h"
@@ -35,7 +36,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr int kBadInput = 2;
 constexpr int kPoll_ms = 100;
 constexpr std::int64_t kSilent_s = 2;
 

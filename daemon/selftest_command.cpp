@@ -6,11 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/config_problems.h"
+#include "daemon/exit_code.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr int kNotGood = 1, kBadInput = 2;
 
 void print_text(const std::vector<MachineCheck>& checks) {
   for (const MachineCheck& check : checks) {
@@ -48,7 +47,7 @@ int selftest(const SelftestArguments& a) {
     print_text(checks);
   const bool good =
       std::all_of(checks.begin(), checks.end(), [](const MachineCheck& c) { return c.good; });
-  return good ? 0 : kNotGood;
+  return good ? 0 : kFailed;
 }
 
 }  // namespace framewatch::daemon

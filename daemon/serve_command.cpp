@@ -8,6 +8,7 @@
 
 #include "daemon/clocks.h"
 #include "daemon/config_problems.h"
+#include "daemon/exit_code.h"
 #include "daemon/file_digest.h"
 #include "daemon/live_view.h"
 #include "daemon/log.h"
@@ -22,7 +23,6 @@ namespace framewatch::daemon {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kBadInput = 2;
 constexpr int kPoll_ms = 10;
 constexpr std::chrono::milliseconds kFlush{50};
 

@@ -6,12 +6,12 @@
 #include "daemon/html_page.h"
 #include "daemon/session_report.h"
 #include "daemon/svg_plot.h"
+#include "estimator/structure/nan.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostPerPlot = 24;  ///< parameters beside each other
 
 constexpr const char* kKindName[] = {"frame stiffness", "floor-panel stiffness", "frame damping",

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/exit_code.h"
 #include "drivers/encoded.h"
 #include "drivers/lcm_source.h"
 #include "drivers/message_check.h"
@@ -11,7 +12,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr int kFailed = 1, kTries = 10, kWait_ms = 300;
+constexpr int kTries = 10, kWait_ms = 300;
 
 }  // namespace
 

@@ -7,11 +7,11 @@
 
 #include "drivers/lcm_log.h"
 #include "drivers/message_check.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostNotes = 20, kMostEvents = 10000;
 
 class Reader {

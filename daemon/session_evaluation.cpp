@@ -2,12 +2,12 @@
 #include <cmath>
 
 #include "daemon/session_report.h"
+#include "estimator/structure/nan.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLoop_s = 10;
 
 const Stage* longest(const std::vector<Stage>& stages, StageKind kind) {

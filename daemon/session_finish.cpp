@@ -9,6 +9,7 @@
 
 #include "daemon/config.h"
 #include "daemon/config_problems.h"
+#include "daemon/exit_code.h"
 #include "daemon/repair_command.h"
 #include "daemon/replay_command.h"
 #include "daemon/report_command.h"
@@ -22,7 +23,6 @@ namespace framewatch::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kBadInput = 2;
 constexpr double kMissing_s = 2;  // more than this without an estimate, and they are made again
 constexpr const char* kReplayed = "estimates-replayed.lcmlog";
 

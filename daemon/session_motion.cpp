@@ -10,11 +10,11 @@
 #include "daemon/stored_samples.h"
 #include "drivers/accel_intake.h"
 #include "estimator/motion/acquisition.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kMostValues = 1LL << 26;
 
 /// Sample sets by their place on the common grid.

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/clocks.h"
 #include "daemon/estimate_table.h"
 #include "daemon/event_words.h"
 #include "daemon/html_page.h"
@@ -117,7 +118,7 @@ std::string health_section(const SessionReport& r) {
 }
 
 std::string sensor_time_text(std::int64_t time_us) {
-  constexpr std::int64_t kDay_us = 86'400'000'000, kYear2000_us = 946'684'800'000'000;
+  constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
   if (time_us < kYear2000_us) return fmt::format("{:.3f} s", 1e-6 * static_cast<double>(time_us));
   // Howard Hinnant's civil_from_days.
   const std::int64_t z = time_us / kDay_us + 719468, era = z / 146097, doe = z - era * 146097;

@@ -8,6 +8,7 @@
 
 #include "daemon/can_output.h"
 #include "daemon/config_problems.h"
+#include "daemon/exit_code.h"
 #include "daemon/progress.h"
 #include "daemon/scenario.h"
 #include "daemon/simulation.h"
@@ -17,20 +18,11 @@
 #include "drivers/text_output.h"
 
 namespace framewatch::daemon {
-namespace {
-
-constexpr int kBadInput = 2;
-
-int refuse(const std::string& message) {
-  fmt::print(stderr, "framewatch simulate: {}\n", message);
-  return kBadInput;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 int simulate(const SimulateArguments& a) {
   if (a.out.empty() && !a.lcm && !a.can)
-    return refuse("nowhere to put it: --out FILE, --lcm, --can or several");
+    return refuse("simulate", "nowhere to put it: --out FILE, --lcm, --can or several");
   std::vector<ConfigProblem> problems;
   std::optional<Scenario> scenario = load_scenario(a.scenario, problems);
   print_problems(problems);
@@ -42,19 +34,19 @@ int simulate(const SimulateArguments& a) {
   std::string error;
   if (!a.out.empty()) {
     outputs.push_back(file_output(*scenario, a.out, error));
-    if (!outputs.back()) return refuse(fmt::format("{}: {}", a.out, error));
+    if (!outputs.back()) return refuse("simulate", fmt::format("{}: {}", a.out, error));
   }
   Simulation simulation(*scenario);
   if (a.lcm) {
     const std::string& url = a.lcm_url.empty() ? scenario->config.lcm.url : a.lcm_url;
     lcm = drivers::open_lcm(url, scenario->config.lcm.receive_buffer_bytes, error);
-    if (!lcm) return refuse(error);
+    if (!lcm) return refuse("simulate", error);
     outputs.push_back(live_output(*scenario, *lcm, a.speed));
   }
 
   if (a.can) {
     outputs.push_back(can_output(*scenario, a.can_interface, a.speed, error));
-    if (!outputs.back()) return refuse(error);
+    if (!outputs.back()) return refuse("simulate", error);
   }
 
   const std::int64_t count = instants(*scenario);
@@ -63,19 +55,19 @@ int simulate(const SimulateArguments& a) {
     for (std::int64_t i = 0; i < count; ++i) {
       const std::vector<double>& raw = simulation.next();
       if (simulation.collapsed())
-        return refuse(
-            fmt::format("{}: the building collapses at {:.2f} s", a.scenario, simulation.time_s()));
+        return refuse("simulate", fmt::format("{}: the building collapses at {:.2f} s", a.scenario,
+                                              simulation.time_s()));
       for (const auto& output : outputs)
-        if (!output->put(simulation.time_s(), raw)) return refuse(output->error());
+        if (!output->put(simulation.time_s(), raw)) return refuse("simulate", output->error());
       progress(i + 1);
     }
   }
   for (const auto& output : outputs)
-    if (!output->close()) return refuse(output->error());
+    if (!output->close()) return refuse("simulate", output->error());
   drivers::TextOutput truth;
   if (!a.truth.empty() &&
       !(truth.open(a.truth) && truth.write(truth_json(*scenario)) && truth.close()))
-    return refuse(truth.error());
+    return refuse("simulate", truth.error());
   if (!a.quiet)
     fmt::print(stderr, "{}: {} channels, {} instants at {:g} Hz{}{}\n",
                scenario->config.pipeline.structure.name, scenario->config.pipeline.axes.size(),

@@ -16,7 +16,6 @@ namespace {
 constexpr std::chrono::milliseconds kLook{200};
 constexpr std::chrono::seconds kAgain{1};  // after a commit that failed
 constexpr std::chrono::hours kPrune{1};
-constexpr std::int64_t kSecond_us = 1'000'000;
 
 }  // namespace
 

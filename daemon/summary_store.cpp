@@ -5,15 +5,13 @@
 #include <filesystem>
 #include <limits>
 
+#include "daemon/clocks.h"
 #include "daemon/history_files.h"
 #include "daemon/history_schema.h"
 #include "daemon/session_estimates.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr std::int64_t kSecond_us = 1'000'000;
-constexpr double kDay_us = 86400e6;
 
 std::int64_t start_of(std::int64_t time_us, std::int64_t period_s) {
   const std::int64_t step_us = period_s * kSecond_us;

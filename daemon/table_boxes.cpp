@@ -6,11 +6,10 @@
 #include "daemon/reproduction_plots.h"
 #include "daemon/svg_plot.h"
 #include "estimator/identify/boxplot.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 BoxplotStatistics statistics(const std::vector<double>& values) {
   BoxplotWindow window(std::max(1, static_cast<int>(values.size())));

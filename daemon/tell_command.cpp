@@ -11,15 +11,12 @@
 #include "daemon/config_problems.h"
 #include "daemon/event_json.h"
 #include "daemon/event_words.h"
+#include "daemon/exit_code.h"
 #include "daemon/hook_command.h"
 #include "daemon/webhook.h"
 
 namespace framewatch::daemon {
-namespace {
-
-constexpr int kFailed = 1, kBadInput = 2;
-
-}  // namespace
+namespace {}  // namespace
 
 int tell_command(const TellArguments& a) {
   std::vector<ConfigProblem> problems;

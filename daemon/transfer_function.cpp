@@ -9,13 +9,13 @@
 
 #include "estimator/diagnose/fourier.h"
 #include "estimator/structure/matrices.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
 namespace {
 
 using Eigen::Index;
 using Complex = std::complex<double>;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSegment_s = 20, kShortest_s = 4, kLowest_hz = 0.3;
 constexpr double kFundamental = 0.3;  // of the highest peak: what the lowest mode has at least
 constexpr Index kMostUnknowns = 100;

@@ -1,19 +1,17 @@
 #include <cmath>
-#include <complex>
 
 #include "estimator/diagnose/run_columns.h"
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 namespace {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using Kind = Unknown::Kind;
-constexpr Complex kJ{0, 1};
 
 /// What one value of an effect changes, on the motion as it is.
 VectorXd knob_column(const Plant& plant, const Model& model, const Stretch& stretch,

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "estimator/structure/complex.h"
+
 namespace framewatch {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;

@@ -7,7 +7,7 @@ namespace framewatch {
 namespace {
 
 constexpr double kSharp = 20;         ///< exponents above: exactly bilinear
-constexpr double kLongestStep = 0.1;  ///< of z per integration step, in units of dy
+constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
 
 double power_of(double x, double p) {
   return p == 1 ? x : p == 2 ? x * x : p == 3 ? x * x * x : std::pow(x, p);
@@ -42,7 +42,7 @@ double LawMotion::advanced(double d) const {
         pinched ? 1 - values_.p[4] * std::exp(-(z / values_.p[5]) * (z / values_.p[5])) : 1.0;
     return slip * hysteresis_slope(z, direction, n, beta);
   };
-  const int steps = 1 + static_cast<int>(std::min(50.0, std::abs(travel) / kLongestStep));
+  const int steps = 1 + static_cast<int>(std::min(50.0, std::abs(travel) / kLongestSlide));
   const double h = travel / steps;
   double z = z_;
   for (int i = 0; i < steps; ++i) {

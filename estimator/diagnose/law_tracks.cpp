@@ -1,18 +1,16 @@
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <utility>
 
 #include "estimator/diagnose/whitened.h"
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr Complex kJ{0, 1};
 
 Equivalent equivalent_of(const LawTrack& track) {
   const double dd = track.d.squaredNorm(), vv = track.v.squaredNorm(), dv = track.d.dot(track.v);

@@ -1,16 +1,16 @@
 #include "estimator/diagnose/modal_system.h"
 
 #include <cmath>
-#include <complex>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "estimator/structure/complex.h"
+
 namespace framewatch {
 namespace {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;

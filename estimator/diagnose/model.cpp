@@ -1,19 +1,18 @@
 #include "estimator/diagnose/model.h"
 
 #include <cmath>
-#include <complex>
 
 #include <Eigen/LU>
+
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 namespace {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr Complex kJ{0, 1};
 
 /// Absolute motion of the ground under a frame, as a row over the axes.
 Eigen::RowVectorXd ground_row(const Plant& plant, int frame) {

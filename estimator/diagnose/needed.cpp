@@ -1,11 +1,10 @@
 #include <algorithm>
-#include <complex>
 
 #include "estimator/diagnose/propose_parts.h"
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::VectorXcd;

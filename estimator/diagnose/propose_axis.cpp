@@ -1,19 +1,17 @@
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include "estimator/diagnose/propose_parts.h"
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 namespace {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr Complex kJ{0, 1};
 int flat_samples(const Stretch& s, Index axis, double& level) {
   const VectorXd a = s.accel.col(axis);
   const double top = a.maxCoeff(), bottom = a.minCoeff();

@@ -1,19 +1,17 @@
 #include <cmath>
-#include <complex>
 #include <functional>
 
 #include "estimator/diagnose/propose_parts.h"
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 namespace {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr Complex kJ{0, 1};
 constexpr double kBilinear = 40;  ///< exponent that stands for a corner
 
 class ElementProposals {

@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <utility>
 
 #include "estimator/diagnose/propose_parts.h"
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 namespace {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
@@ -16,7 +15,6 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 constexpr double kFollows = 0.3;  ///< share of a force beyond noise that laws of a motion explain
 constexpr double kSlow = 0.3;     ///< of the rate: where friction has turned
-constexpr Complex kJ{0, 1};
 
 constexpr double kStationary = 0.25;  ///< share of the mean power that is there at rest, at least
 constexpr double kAsMuch = 0.5;     ///< the same, above which laws of the motion need not be asked

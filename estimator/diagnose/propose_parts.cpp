@@ -1,21 +1,20 @@
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 #include <Eigen/Cholesky>
+
+#include "estimator/structure/complex.h"
 
 #include "estimator/diagnose/propose_parts.h"
 
 namespace framewatch {
 namespace {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr Complex kJ{0, 1};
 
 }  // namespace
 

@@ -2,19 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <utility>
+
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 namespace {
 
-using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr Complex kJ{0, 1};
 constexpr Index kEndTerms = 4;
 constexpr double kNotBelieved = 1e6;   ///< variance of what may be anything, over that of noise
 constexpr Index kLeastNeighbours = 8;  ///< bins either side over which the misfit is averaged

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "estimator/identify/kernels.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch {
 namespace {
@@ -52,7 +53,6 @@ double BoxplotWindow::quartile(std::size_t q) const {
 }
 
 BoxplotStatistics BoxplotWindow::statistics() const {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   if (count_ == 0) return {kNaN, kNaN, kNaN, kNaN, kNaN, 0, 0};
   BoxplotStatistics out{quartile(1), quartile(2), quartile(3), 0, 0, 0, 0};
   const double reach = 1.5 * (out.q3 - out.q1);

@@ -1,11 +1,10 @@
 #include "estimator/identify/estimate.h"
 
-#include <limits>
+#include "estimator/structure/nan.h"
 
 namespace framewatch {
 
 WindowEstimate::WindowEstimate(std::size_t parameters) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (std::vector<double>* v : {&value, &std_error, &snr, &prior_share, &noise_share, &last_value,
                                  &last_std_error, &solution})
     v->assign(parameters, kNaN);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/structure/nan.h"
+
 namespace framewatch {
 namespace {
 
@@ -13,7 +15,6 @@ constexpr double kInflation = 4;  // information is overstated by correlated res
 constexpr double kSymmetric = 0.02;
 constexpr double kRounding = 1e-12;
 constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 

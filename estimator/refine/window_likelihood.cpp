@@ -1,9 +1,10 @@
 #include "estimator/refine/window_likelihood.h"
 
 #include <cmath>
-#include <complex>
 
 #include <Eigen/Cholesky>
+
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 namespace {
@@ -13,8 +14,6 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-using Complex = std::complex<double>;
-constexpr Complex kJ{0, 1};
 
 /// A z = b by a Cholesky factorisation of A brought to a unit diagonal.
 class ScaledCholesky {

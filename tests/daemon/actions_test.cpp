@@ -33,8 +33,6 @@ constexpr double kTimeToBegin_s = 3;  // of a shell and its child, on a busy mac
 constexpr double kGivenUp_s = 4;      // on a server that answers after six
 constexpr auto kSoon = 10s;           // for what takes a moment on a machine with time
 
-constexpr std::int64_t kSecond_us = 1'000'000;
-
 event_t event(std::int64_t id, int state = event_state::raised, int severity = severity::alarm) {
   event_t e{};
   e.id = id;

@@ -24,7 +24,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr std::int64_t kNow_us = 1'000'000 * kSecond_us;
 
 /// Two reports, one second apart, of a daemon that is well.

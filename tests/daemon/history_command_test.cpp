@@ -1,4 +1,5 @@
 #include "daemon/history_command.h"
+#include "daemon/clocks.h"
 
 #include <libmseed.h>
 #include <matio.h>
@@ -27,7 +28,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
-constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr int kRate_hz = 100, kAxes = 10, kInstants = 1000, kLostFrom = 500, kLostTo = 550;
 constexpr int kBetweenReadings = 300;  // of the thermometer, instants
 

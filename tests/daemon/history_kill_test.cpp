@@ -29,7 +29,6 @@ constexpr std::int64_t kOnTheWay_us = 60'000;  // what the last sample needs to 
 
 constexpr int kKills = 12;  // FRAMEWATCH_KILLS=200 is the whole storm
 constexpr unsigned kSeed = 20261121;
-constexpr std::int64_t kSecond_us = 1'000'000;
 
 int kills() {
   const char* count = std::getenv("FRAMEWATCH_KILLS");

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/clocks.h"
 #include "daemon/history_files.h"
 #include "daemon/history_keeper.h"
 #include "daemon/history_retention.h"
@@ -22,7 +23,6 @@ using test::comes_true;
 constexpr std::chrono::seconds kSoon{60};  // the keeper's thread runs when nothing else wants to
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
-constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr int kRate_hz = 100, kAxes = 10;
 
 /// Samples of `seconds` from `from_s` after the start on, all different.

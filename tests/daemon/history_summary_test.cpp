@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/clocks.h"
 #include "daemon/history_files.h"
 #include "daemon/history_schema.h"
 #include "daemon/session_estimates.h"
@@ -20,7 +21,7 @@ namespace {
 constexpr double kRounding = 1e-12;  // of sums over at most 10,000 values
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
-constexpr std::int64_t kHop_us = 10'000, kSecond_us = 1'000'000;
+constexpr std::int64_t kHop_us = 10'000;
 
 parameter_table_t table() {
   parameter_table_t t{};

@@ -1,4 +1,5 @@
 #include "daemon/metrics.h"
+#include "daemon/clocks.h"
 
 #include <limits>
 #include <string>
@@ -20,13 +21,11 @@
 #include "daemon/start_count.h"
 #include "drivers/encoded.h"
 #include "estimator/state/archive.h"
+#include "estimator/structure/nan.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr std::int64_t kSecond_us = 1'000'000;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 template <typename Message>
 void give(Metrics& metrics, const std::string& channel, const Message& message,

@@ -5,11 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "daemon/html_page.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::string> labels(const SvgAxis& axis, int wanted) {
   std::vector<std::string> out;

@@ -7,12 +7,12 @@
 
 #include "drivers/channel_table.h"
 #include "drivers/message_check.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch::drivers {
 namespace {
 
 constexpr double kStep = 1e-6;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 AccelSample sample(std::int64_t time_us, int axis, double accel) {
   return {from_microseconds(time_us), axis, accel};

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "estimator/simulate/random.h"
+#include "estimator/structure/nan.h"
 
 namespace framewatch {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// MATLAB's rule, straight from its words, over the values that are there.
 BoxplotStatistics by_definition(const std::deque<double>& window) {

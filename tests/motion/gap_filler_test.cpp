@@ -1,14 +1,12 @@
 #include "estimator/motion/gap_filler.h"
+#include "estimator/structure/nan.h"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
 namespace framewatch {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 SampleSet set_of(std::int64_t index, std::vector<double> accel) {
   return {from_microseconds(10000 * index), index, std::move(accel)};

@@ -1,4 +1,5 @@
 #include "estimator/motion/motion_filter.h"
+#include "estimator/structure/nan.h"
 
 #include <cmath>
 #include <limits>
@@ -8,7 +9,6 @@
 namespace framewatch {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRate = 100;
 
 MotionFilter make_filter(int axes) {

@@ -1,7 +1,8 @@
 #include "tests/soak/soak_night.h"
 
 #include <cmath>
-#include <limits>
+
+#include "estimator/structure/nan.h"
 
 namespace framewatch::soak {
 namespace {
@@ -22,7 +23,6 @@ struct ClockStep {
   std::int64_t step_us;
 };
 constexpr ClockStep kClockSteps_[] = {{0.4, 300'000}, {0.6, -1'500'000}, {0.8, 3'600'000'000}};
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 

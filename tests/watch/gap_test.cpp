@@ -2,7 +2,6 @@
 // event, and failing sensors are neither.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,12 +9,12 @@
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"
 #include "estimator/state/archive.h"
+#include "estimator/structure/nan.h"
 #include "estimator/watch/gap_monitor.h"
 
 namespace framewatch {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRate_hz = 100, kNoise = 5e-3;  // m/s^2/sqrt(Hz): the floor lies above all else
 constexpr double kSeconds = 90;
 constexpr double kFloorOff = 0.15;  // relative: 10-s windows of narrow-band noise

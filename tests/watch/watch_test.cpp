@@ -1,4 +1,5 @@
 #include "estimator/watch/watch.h"
+#include "estimator/structure/nan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,6 @@
 namespace framewatch {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWindow_s = 2.5;
 constexpr double kError = 0.01;
