@@ -17,8 +17,8 @@
 #include <fmt/core.h>
 
 #include "daemon/can_output.h"
-#include "daemon/config_problems.h"
 #include "daemon/clocks.h"
+#include "daemon/config_problems.h"
 #include "daemon/demo_can.h"
 #include "daemon/demo_files.h"
 #include "daemon/demo_network.h"

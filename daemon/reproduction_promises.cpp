@@ -33,9 +33,9 @@ void judge_row(const AccuracyRow& row, std::vector<Promise>& out) {
     for (int kind = 0; kind < 3; ++kind) {
       const double limit = c.limit[static_cast<std::size_t>(kind)];
       const double found = row.of(Method::matched, kind).quantile(0.5);
-      out.push_back(
-          {fmt::format("{}: median error of {} at most {}", row.name, kJudgedKinds[kind], percent(limit)),
-           percent(found), found <= limit});
+      out.push_back({fmt::format("{}: median error of {} at most {}", row.name, kJudgedKinds[kind],
+                                 percent(limit)),
+                     percent(found), found <= limit});
     }
     if (c.bound_limited) {
       const double ratio = row.of(Method::matched, 0).quantile(0.5) / row.least_median(0);

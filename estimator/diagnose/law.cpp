@@ -6,7 +6,7 @@
 namespace framewatch {
 namespace {
 
-constexpr double kSharp = 20;         ///< exponents above: exactly bilinear
+constexpr double kSharp = 20;          ///< exponents above: exactly bilinear
 constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
 
 double power_of(double x, double p) {
