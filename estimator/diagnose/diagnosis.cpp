@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "estimator/diagnose/declared.h"
 #include "estimator/diagnose/known_effects.h"
@@ -61,6 +62,11 @@ bool same_spot(const EffectPlace& a, const EffectPlace& b) {
   const bool alike = a.kind == b.kind || (a.story == 1 && b.story == 1);
   return element_or_node(a) && element_or_node(b) && alike && a.story == b.story &&
          a.frame == b.frame;
+}
+
+void append(std::vector<Trial>& list, std::vector<Trial> more) {
+  list.insert(list.end(), std::make_move_iterator(more.begin()),
+              std::make_move_iterator(more.end()));
 }
 
 class Search {
@@ -139,52 +145,58 @@ class Search {
     return {fitter_, now, options_.without, options_.parallel, [](const std::string&, double) {}};
   }
 
-  std::vector<Trial> trials_of(const FitResult& now, const Located& located, double begin,
-                               double& bound) {
+  /// What tells how far a step is; `from` of its share of the whole.
+  TrialContext context_of(const FitResult& now, double from) const {
     TrialContext context = context_of(now);
-    context.progress = [&](const std::string& what, double share) {
-      tell(what, begin + 0.05 + 0.2 * share);
+    context.progress = [this, from](const std::string& what, double share) {
+      tell(what, from + 0.2 * share);
     };
+    return context;
+  }
+
+  /// Misfit that effects at these places should leave if their forces may be anything.
+  double bound_of(const Localisation& places) const {
+    const auto equations = static_cast<double>(plant_.equations());
+    double unseen = 0;
+    for (const Suspect& s : places.suspects) unseen += static_cast<double>(s.size());
+    return places.misfit * equations / std::max(equations - unseen, 1.0);
+  }
+
+  /// Two laws at two places, where two explain what one does not.
+  std::vector<Trial> trials_of_pairs(const FitResult& now, const Located& located, double begin,
+                                     double& bound) {
+    tell("two places", begin + 0.02);
     const Localisation& best = located.places.front();
-    const double equations = static_cast<double>(plant_.equations());
-    double left = best.misfit, unseen = static_cast<double>(best.suspects.front().size());
-    std::vector<Trial> trials;
-    // What is left beside laws that fit may be a small linear effect, or their shape: no law more.
-    const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
-    if (small && is_element(best)) return {};
-    if (best.ratio > kOnePlace) {
-      tell("two places", begin + 0.02);
-      const std::vector<Localisation> pairs =
-          locate_pairs(fitter_, now, located.once, options_.parallel);
-      if (!pairs.empty() && pairs.front().ratio - 1 < kPairShare * (best.ratio - 1)) {
-        left = pairs.front().misfit;
-        unseen = 2;
-        for (std::size_t i = 0; i < std::min<std::size_t>(2, pairs.size()); ++i) {
-          if (pairs[i].ratio > 2 * pairs.front().ratio) break;
-          const std::vector<Trial> more = try_pair(context, pairs[i]);
-          trials.insert(trials.end(), more.begin(), more.end());
-        }
-      }
+    const std::vector<Localisation> pairs =
+        locate_pairs(fitter_, now, located.once, options_.parallel);
+    const double limit = best.ratio > kOnePlace ? 1 + kPairShare * (best.ratio - 1) : kOnePlace;
+    std::vector<Trial> out;
+    if (pairs.empty() || pairs.front().ratio >= limit) return out;
+    bound = std::min(now.cost, bound_of(pairs.front()));
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, pairs.size()); ++i) {
+      if (pairs[i].ratio > 2 * pairs.front().ratio) break;
+      append(out, try_pair(context_of(now, begin + 0.05), pairs[i]));
     }
+    return out;
+  }
+
+  std::vector<Trial> trials_of_places(const FitResult& now, const Located& located, bool small,
+                                      double begin) {
     std::vector<Localisation> places = contenders(located.places);
     if (small) std::erase_if(places, is_element);
     const std::vector<Localisation> more = as_likely(fitter_, now, located, options_.parallel);
     places.insert(places.end(), more.begin(), more.end());
-    const std::vector<Trial> single = try_places(context, places);
-    trials.insert(trials.end(), single.begin(), single.end());
-    bound = left * equations / std::max(equations - unseen, 1.0);
-    return trials;
+    return try_places(context_of(now, begin + 0.05), places);
   }
 
   bool one_round(FitResult& now, int round) {
-    const double cost = now.cost;
     const double begin = 0.06 + 0.28 * round;
     tell("where", begin);
     const Located located = locate(fitter_, now, options_.parallel);
     if (located.places.empty()) return false;
+    const Localisation& place = located.places.front();
     const double expected_now = fitter_.expected(now.model);
-    const double noise = std::clamp(located.places.front().ratio, 0.5, 1.0);
-    const double excess = now.total_misfit() - noise * expected_now;
+    const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;
     if (out_.where.empty()) {
       out_.where = where_of(fitter_, located.places);
       out_.map = map_of(located);
@@ -192,23 +204,55 @@ class Search {
     const double needed = std::max(kLeastGain, kSignificant * std::sqrt(expected_now));
     if (excess < needed) return find_mass(now, located);
 
-    double bound = 0;
-    std::vector<Trial> trials = trials_of(now, located, begin, bound);
+    // What is left beside laws that fit may be a small linear effect, or their shape: no law more.
+    const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
+    if (small && is_element(place)) return false;
+    std::vector<Trial> trials;
+    double bound = std::min(now.cost, bound_of(place));
+    const bool pairs = place.ratio > kOnePlace;
+    if (pairs) trials = trials_of_pairs(now, located, begin, bound);
+    append(trials, trials_of_places(now, located, small, begin));
+    bool holds = settle(trials, now, bound, needed);
+    // Several forces at one place may be those of two effects.
+    if (!holds && !pairs && place.suspects.front().size() > 1) {
+      append(trials, trials_of_pairs(now, located, begin, bound));
+      holds = settle(trials, now, bound, needed);
+    }
     if (trials.empty()) return false;
-    bound = std::min(bound, cost);
+    if (!holds) {
+      out_.rejected = trials;
+      return false;
+    }
+    const Trial& best = trials.front();
+    for (std::size_t i = 0; i < out_.effects.size(); ++i) {
+      const FoundEffect& earlier = out_.effects[i];
+      if (!same_spot(earlier.chosen.place, best.place)) continue;
+      // Two laws at one place are one that the catalogue does not have.
+      if (earlier.chosen.fraction < kOneLaw && plant_.equations() > 1) withdraw(now, i);
+      return false;
+    }
+    adopt(trials, now);
+    return true;
+  }
+
+  /// Sorts trials, best first, with their shares of what is to be explained. Whether the best one
+  /// explains enough of it.
+  bool settle(std::vector<Trial>& trials, const FitResult& now, double bound, double needed) {
+    if (trials.empty()) return false;
+    const double to_explain = now.cost - bound;
     // Two effects must beat one by more than chance, a law what any force would do, and every
     // value that is fitted what values fit of noise.
-    const double of_value = 0.5 * std::log(expected_now);
+    const double of_value = 0.5 * std::log(fitter_.expected(now.model));
     const auto price = [&](const Trial& t) {
       const bool any = t.model.effects.size() > now.model.effects.size() &&
                        t.model.effects.back().form == LawForm::broadband;
       return t.cost + of_value * fitted_values(t.model) + (t.second ? needed : 0.0) +
-             (any ? needed + kOwnPrice * std::max(cost - bound, 0.0) : 0.0);
+             (any ? needed + kOwnPrice * std::max(to_explain, 0.0) : 0.0);
     };
     const auto rank = [&] {
       std::stable_sort(trials.begin(), trials.end(),
                        [&](const Trial& a, const Trial& b) { return price(a) < price(b); });
-      for (Trial& t : trials) t.fraction = (cost - t.cost) / std::max(cost - bound, 1e-9);
+      for (Trial& t : trials) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1e-9);
     };
     rank();
     sharpen(trials, now);
@@ -218,20 +262,7 @@ class Search {
     const bool component = plant_.equations() == 1;
     const bool most = best.fraction >= (component ? kTakesMost : kTakesAway) ||
                       (best.fraction >= kTakesMost && best.cost - bound < needed);
-    const bool holds = most && cost - best.cost > needed;
-    if (!holds || worsens(best, now, needed)) {
-      out_.rejected = trials;
-      return false;
-    }
-    for (std::size_t i = 0; i < out_.effects.size(); ++i) {
-      const FoundEffect& earlier = out_.effects[i];
-      if (!same_spot(earlier.chosen.place, best.place)) continue;
-      // Two laws at one place are one that the catalogue does not have.
-      if (earlier.chosen.fraction < kOneLaw && !component) withdraw(now, i);
-      return false;
-    }
-    adopt(trials, now);
-    return true;
+    return most && now.cost - best.cost > needed && !worsens(best, now, needed);
   }
 
   bool find_mass(FitResult& now, const Located& located) {
@@ -290,6 +321,25 @@ class Search {
       out_.effects.push_back(std::move(other));
     }
     now = fit_to_the_end(best.model, now.motion);
+    take_out_needless(now);
+  }
+
+  /// An earlier mass, spring or damper whose work what was found later does is none.
+  void take_out_needless(FitResult& now) {
+    for (std::size_t i = 0; i + 1 < out_.effects.size(); ++i) {
+      const int index = out_.effects[i].index;
+      if (index < 0 || now.model.effects[static_cast<std::size_t>(index)].element_law()) continue;
+      Model start = now.model;
+      start.effects.erase(start.effects.begin() + index);
+      const FitResult less = fit_to_the_end(start, now.motion);
+      if (!less.good || less.cost > now.cost + kLeastGain) continue;
+      now = less;
+      out_.effects[i + 1].before = out_.effects[i].before;
+      out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(i));
+      for (FoundEffect& e : out_.effects) e.index -= e.index > index;
+      out_.effects.back().chosen.model = now.model;
+      --i;
+    }
   }
 
   const Plant& plant_;
