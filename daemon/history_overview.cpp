@@ -15,7 +15,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kMostParameters = 24, kMostChannels = 6;
-constexpr std::int64_t kMostEvents = 5;
+constexpr std::int64_t kEventsTold = 5;
 constexpr std::int64_t kEver_us = INT64_MAX / 4;
 
 struct RawTotals {
@@ -122,7 +122,7 @@ std::string history_overview(const std::string& directory, SummaryQuery& summari
   if (periods.empty()) out += fmt::format("{:<12}none\n", "summaries");
   out += parameter_lines(summaries, newest_of(periods));
   out += channel_lines(summaries);
-  const std::vector<event_t> events = summaries.events(-kEver_us, kEver_us, kMostEvents);
+  const std::vector<event_t> events = summaries.events(-kEver_us, kEver_us, kEventsTold);
   if (!events.empty()) out += "\nLast events (--events for all):\n";
   for (const event_t& e : events) out += "  " + event_line(e) + "\n";
   return out;
