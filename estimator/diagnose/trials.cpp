@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/diagnose/begin_gap.h"
+#include "estimator/diagnose/begin_run.h"
 
 namespace framewatch {
 namespace {
@@ -13,7 +13,6 @@ constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
 constexpr double kRoundest = 20;  ///< exponent of hysteresis; above it has a corner
 constexpr double kDissipates = 0.15;
 constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
-constexpr double kLeastDamping = 0.2;    ///< of the design, where a free run begins again
 constexpr int kSharpSteps = 12;
 constexpr int kGlance = 3;      ///< steps of a free run's fit after which it is seen what leads
 constexpr double kStillIn = 4;  ///< times the least cost: what is worse then is not fitted on
@@ -67,15 +66,6 @@ double dissipation(const ModelEffect& effect) {
     peak = std::max(peak, std::abs(f[i]));
   }
   return work / std::max(4 * peak * effect.deformation, 1e-300);
-}
-
-/// A model that a fit bent until it gains energy where it moves runs away when it runs by itself.
-Model dissipating(const Plant& plant, const Model& model) {
-  Model out = model;
-  const auto elements = plant.element_count();
-  out.theta.tail(elements) =
-      model.theta.tail(elements).cwiseMax(kLeastDamping * plant.design.tail(elements));
-  return out;
 }
 
 double highest_hz(const Fitter& fitter) {
@@ -137,12 +127,10 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   std::vector<FitResult> runs(kept.size());
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    const FitResult from = begin_gap(c.fitter, std::move(kept[at].fit));
+    const FitResult from = begin_run(c.fitter, std::move(kept[at].fit));
     FitOptions options = to_the_end(from.model);
     options.max_steps = kGlance;
     runs[at] = c.fitter.fit(from.model, from.motion, options);
-    if (!runs[at].good)
-      runs[at] = c.fitter.fit(dissipating(c.fitter.plant(), from.model), from.motion, options);
   });
   double least = 1e300;
   for (const FitResult& r : runs)
