@@ -9,6 +9,7 @@
 #include "estimator/diagnose/locate.h"
 #include "estimator/diagnose/parameter_errors.h"
 #include "estimator/diagnose/ramps.h"
+#include "estimator/diagnose/settle.h"
 #include "estimator/diagnose/strange_masses.h"
 #include "estimator/diagnose/trials.h"
 #include "estimator/diagnose/verdict.h"
@@ -20,37 +21,17 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXcd;
 
-constexpr double kTakesAway = 0.97;  ///< of the misfit beyond noise, else a law is not named
-constexpr double kTakesMost = 0.9;   ///< the same where the rest is within chance
-constexpr double kSharp = 0.995;     ///< share above which a fit need not be sharpened
 constexpr double kOneLaw =
-    0.99;  ///< share above which a second law at a place is no sign of another
-constexpr std::size_t kSharpened = 3;
+    0.99;                    ///< share above which a second law at a place is no sign of another
 constexpr double kSame = 8;  ///< difference of misfits that decides nothing
 constexpr double kLeastGain = 50;
 constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
 constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
 constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
-/// Of the excess: what an arbitrary force must be better by than a law.
-constexpr double kOwnPrice = 1 - kTakesAway;
-constexpr double kWorse = 1.02;  ///< misfit of a record, relative
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 
 bool is_element(const Localisation& place) {
   return place.suspects.front().kind == Suspect::Kind::element;
-}
-
-/// How many values of a model are fitted beyond those of the linear building.
-double fitted_values(const Model& model) {
-  const auto free = [](const std::vector<Knob>& knobs) {
-    return std::count_if(knobs.begin(), knobs.end(), [](const Knob& k) { return k.free; });
-  };
-  auto out = static_cast<double>(model.free_gain.size() + model.free_clock.size());
-  for (const ModelEffect& e : model.effects) {
-    out += static_cast<double>(free(e.knobs));
-    for (const std::vector<Knob>& knobs : e.record_knobs) out += static_cast<double>(free(knobs));
-  }
-  return out;
 }
 
 /// A force on the lowest story of a frame is one at its floor.
@@ -124,13 +105,6 @@ class Search {
 
   double ratio(const FitResult& now) const {
     return now.total_misfit() / fitter_.expected(now.model);
-  }
-
-  /// Whether a trial explains any record less than the model does.
-  static bool worsens(const Trial& trial, const FitResult& now, double chance) {
-    for (std::size_t r = 0; r < now.misfit.size(); ++r)
-      if (trial.misfit[r] > kWorse * now.misfit[r] + chance) return true;
-    return false;
   }
 
   /// Everything together once more, with the shape of hysteresis free.
@@ -212,11 +186,11 @@ class Search {
     const bool pairs = place.ratio > kOnePlace;
     if (pairs) trials = trials_of_pairs(now, located, begin, bound);
     append(trials, trials_of_places(now, located, small, begin));
-    bool holds = settle(trials, now, bound, needed);
+    bool holds = settle(context_of(now), bound, needed, trials);
     // Several forces at one place may be those of two effects.
     if (!holds && !pairs && place.suspects.front().size() > 1) {
       append(trials, trials_of_pairs(now, located, begin, bound));
-      holds = settle(trials, now, bound, needed);
+      holds = settle(context_of(now), bound, needed, trials);
     }
     if (trials.empty()) return false;
     if (!holds) {
@@ -235,51 +209,12 @@ class Search {
     return true;
   }
 
-  /// Sorts trials, best first, with their shares of what is to be explained. Whether the best one
-  /// explains enough of it.
-  bool settle(std::vector<Trial>& trials, const FitResult& now, double bound, double needed) {
-    if (trials.empty()) return false;
-    const double to_explain = now.cost - bound;
-    // Two effects must beat one by more than chance, a law what any force would do, and every
-    // value that is fitted what values fit of noise.
-    const double of_value = 0.5 * std::log(fitter_.expected(now.model));
-    const auto price = [&](const Trial& t) {
-      const bool any = t.model.effects.size() > now.model.effects.size() &&
-                       t.model.effects.back().form == LawForm::broadband;
-      return t.cost + of_value * fitted_values(t.model) + (t.second ? needed : 0.0) +
-             (any ? needed + kOwnPrice * std::max(to_explain, 0.0) : 0.0);
-    };
-    const auto rank = [&] {
-      std::stable_sort(trials.begin(), trials.end(),
-                       [&](const Trial& a, const Trial& b) { return price(a) < price(b); });
-      for (Trial& t : trials) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1e-9);
-    };
-    rank();
-    sharpen(trials, now);
-    rank();
-    const Trial& best = trials.front();
-    // In a component test the place is no question, and real parts follow no law to the end.
-    const bool component = plant_.equations() == 1;
-    const bool most = best.fraction >= (component ? kTakesMost : kTakesAway) ||
-                      (best.fraction >= kTakesMost && best.cost - bound < needed);
-    return most && now.cost - best.cost > needed && !worsens(best, now, needed);
-  }
-
   bool find_mass(FitResult& now, const Located& located) {
     std::vector<Trial> trials = strange_masses(context_of(now), located);
     std::erase_if(trials, [&](const Trial& t) { return worsens(t, now, kStrangeMasses); });
     if (trials.empty()) return false;
     adopt(trials, now);
     return true;
-  }
-
-  void sharpen(std::vector<Trial>& trials, const FitResult& now) const {
-    const TrialContext context = context_of(now);
-    const auto count = static_cast<int>(std::min(kSharpened, trials.size()));
-    run_all(options_.parallel, count, [&](int i) {
-      Trial& t = trials[static_cast<std::size_t>(i)];
-      if (t.fraction < kSharp && t.fraction > kPairShare) t = sharpened(context, t);
-    });
   }
 
   /// Back to before the effect `first` was added.
