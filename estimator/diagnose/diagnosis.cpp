@@ -163,11 +163,27 @@ class Search {
     return try_places(context_of(now, begin + 0.05), places);
   }
 
+  /// Where the best place is that of a law and does not do alone: the places beside it.
+  void look_beside(const FitResult& now, Located& located) const {
+    const Localisation& place = located.places.front();
+    const bool of_law =
+        std::any_of(out_.effects.begin(), out_.effects.end(), [&](const FoundEffect& e) {
+          return e.chosen.place == place.suspects.front().place && is_element(place);
+        });
+    const double chance = kSignificant / std::sqrt(fitter_.expected(now.model));
+    if (!of_law || place.ratio < 1 + chance) return;
+    std::vector<Localisation> beside =
+        locate_beside(fitter_, now, located.once, place.suspects.front(), options_.parallel);
+    if (!beside.empty() && beside.front().ratio - 1 < kPairShare * (place.ratio - 1))
+      located.places = std::move(beside);
+  }
+
   bool one_round(FitResult& now, int round) {
     const double begin = 0.06 + 0.28 * round;
     tell("where", begin);
-    const Located located = locate(fitter_, now, options_.parallel);
+    Located located = locate(fitter_, now, options_.parallel);
     if (located.places.empty()) return false;
+    look_beside(now, located);
     const Localisation& place = located.places.front();
     const double expected_now = fitter_.expected(now.model);
     const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;

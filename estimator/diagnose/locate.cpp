@@ -60,6 +60,27 @@ std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
   return out;
 }
 
+std::vector<Suspect> of_one_direction(const std::vector<Localisation>& once) {
+  std::vector<Suspect> out;
+  for (const Localisation& l : once)
+    if (l.suspects.front().size() == 1) out.push_back(l.suspects.front());
+  return out;
+}
+
+/// The lists that leave least after one step, iterated. Best first.
+std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
+                                     const std::vector<std::vector<Suspect>>& lists,
+                                     const Parallel& parallel) {
+  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, Forcing::measured);
+  if (systems.empty()) return {};
+  const Linearised at = fitter.linearise(now.model, std::move(systems));
+  std::vector<Localisation> all = localise_once(fitter, at, now.model, lists, parallel);
+  sort_by_ratio(all);
+  std::vector<const Localisation*> starts;
+  for (std::size_t i = 0; i < std::min(kPairs, all.size()); ++i) starts.push_back(&all[i]);
+  return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
+}
+
 bool is_global(const Suspect& s) {
   return s.kind == Suspect::Kind::rocking || s.kind == Suspect::Kind::floor;
 }
@@ -90,23 +111,23 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
 std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
                                        const std::vector<Localisation>& once,
                                        const Parallel& parallel) {
-  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, Forcing::measured);
-  if (systems.empty()) return {};
-  const Linearised at = fitter.linearise(now.model, std::move(systems));
-  std::vector<Suspect> all;
-  for (const Localisation& l : once)
-    if (l.suspects.front().size() == 1) all.push_back(l.suspects.front());
+  const std::vector<Suspect> all = of_one_direction(once);
   std::vector<std::vector<Suspect>> lists;
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j)
       if (i < kPairLeaders ||
           (all[i].kind == Suspect::Kind::axis && all[j].kind == Suspect::Kind::axis))
         lists.push_back({all[i], all[j]});
-  std::vector<Localisation> pairs = localise_once(fitter, at, now.model, lists, parallel);
-  sort_by_ratio(pairs);
-  std::vector<const Localisation*> starts;
-  for (std::size_t i = 0; i < std::min(kPairs, pairs.size()); ++i) starts.push_back(&pairs[i]);
-  return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
+  return best_lists(fitter, now, lists, parallel);
+}
+
+std::vector<Localisation> locate_beside(const Fitter& fitter, const FitResult& now,
+                                        const std::vector<Localisation>& once, const Suspect& known,
+                                        const Parallel& parallel) {
+  std::vector<std::vector<Suspect>> lists;
+  for (const Suspect& s : of_one_direction(once))
+    if (!(s.place == known.place)) lists.push_back({s, known});
+  return best_lists(fitter, now, lists, parallel);
 }
 
 std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
