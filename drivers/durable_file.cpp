@@ -157,13 +157,14 @@ void DurableFile::work() {
     }
     if (!done && !last) std::this_thread::sleep_for(kWrite / 5);
     if (forcing.valid() &&
-        (last || forcing.wait_for(std::chrono::seconds(0)) == std::future_status::ready))
+        (last || forcing.wait_for(std::chrono::seconds(0)) != std::future_status::timeout))
       forced();
     if (!last && (forcing.valid() || Clock::now() < next_sync)) continue;
     next_sync = Clock::now() + kSync;
     if (!dirty || file_ < 0) continue;
     dirty = false;
-    forcing = std::async(std::launch::async, &force, file_,
+    // Deferred, hence here, when the system has no thread left.
+    forcing = std::async(std::launch::async | std::launch::deferred, &force, file_,
                          std::exchange(fresh, false) ? path_ : std::string());
     if (last) forced();
   }

@@ -28,8 +28,8 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
 /// Places that leave least if `known`, too, may do anything: what acts beside a law whose force the
 /// measured, noisy motion does not tell well enough. Best first.
 std::vector<Localisation> locate_beside(const Fitter& fitter, const FitResult& now,
-                                        const std::vector<Localisation>& once,
-                                        const Suspect& known, const Parallel& parallel);
+                                        const std::vector<Localisation>& once, const Suspect& known,
+                                        const Parallel& parallel);
 
 /// Those of the places whose laws are worth a fit: near the best, few of a kind.
 std::vector<Localisation> contenders(const std::vector<Localisation>& places);
