@@ -74,6 +74,13 @@ INSTANTIATE_TEST_SUITE_P(Subset, StudyEffects,
                                          HiddenEffect{"floor_flexibility", 4005}),
                          [](const auto& effect) { return std::string(effect.param.name); });
 
+// One mass would act along the same two directions.
+TEST(StudySubset, TwoEffectsAtOneCrossingAreBothFound) {
+  FRAMEWATCH_OPTIMISED_OR_SKIP();
+  const Outcome o = diagnosed("two_effects", "tuned_mass_damper+two_sided_gap", 2300049, 0.02);
+  EXPECT_TRUE(o.all_right()) << o.verdict;
+}
+
 TEST(StudySubset, NothingHiddenIsAdequate) {
   EXPECT_EQ(diagnosed("nothing", "none", 4100).verdict, "adequate");
 }
