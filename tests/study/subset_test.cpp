@@ -77,6 +77,9 @@ INSTANTIATE_TEST_SUITE_P(Subset, StudyEffects,
 // One mass would act along the same two directions.
 TEST(StudySubset, TwoEffectsAtOneCrossingAreBothFound) {
   FRAMEWATCH_OPTIMISED_OR_SKIP();
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "takes minutes under the sanitizers; the debug and release builds run it";
+#endif
   const Outcome o = diagnosed("two_effects", "tuned_mass_damper+two_sided_gap", 2300049, 0.02);
   EXPECT_TRUE(o.all_right()) << o.verdict;
 }
