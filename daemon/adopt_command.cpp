@@ -11,8 +11,6 @@
 #include "estimator/structure/effect.h"
 
 namespace framewatch::daemon {
-namespace {}  // namespace
-
 int adopt(const AdoptArguments& a) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(a.config, problems);

@@ -7,8 +7,6 @@
 #include "estimator/structure/nan.h"
 
 namespace framewatch::daemon {
-namespace {}  // namespace
-
 CanMonitor::CanMonitor(const Config& config, std::string statistics)
     : config_(config),
       statistics_(std::move(statistics)),

@@ -10,8 +10,6 @@
 #include "drivers/encoded.h"
 
 namespace framewatch::daemon {
-namespace {}  // namespace
-
 HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(config), lcm_(lcm) {
   if (!config.history) return;
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a disk that is full

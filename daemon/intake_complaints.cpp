@@ -5,8 +5,6 @@
 #include "daemon/log.h"
 
 namespace framewatch::daemon {
-namespace {}  // namespace
-
 void IntakeComplaints::look(const Estimation& estimation, const LiveState& state,
                             std::int64_t now_us) {
   if (!second_.due(now_us)) return;

@@ -18,8 +18,6 @@
 #include "drivers/text_output.h"
 
 namespace framewatch::daemon {
-namespace {}  // namespace
-
 int simulate(const SimulateArguments& a) {
   if (a.out.empty() && !a.lcm && !a.can)
     return refuse("simulate", "nowhere to put it: --out FILE, --lcm, --can or several");

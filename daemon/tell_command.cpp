@@ -16,8 +16,6 @@
 #include "daemon/webhook.h"
 
 namespace framewatch::daemon {
-namespace {}  // namespace
-
 int tell_command(const TellArguments& a) {
   std::vector<ConfigProblem> problems;
   const std::optional<Config> config = load_config(a.config, problems);

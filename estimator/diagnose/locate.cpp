@@ -67,15 +67,23 @@ std::vector<Suspect> of_one_direction(const std::vector<Localisation>& once) {
   return out;
 }
 
+/// What every list leaves after one step. Best first; none when the model cannot be computed.
+std::vector<Localisation> one_step(const Fitter& fitter, const FitResult& now,
+                                   const std::vector<std::vector<Suspect>>& lists,
+                                   const Parallel& parallel) {
+  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, Forcing::measured);
+  if (systems.empty()) return {};
+  const Linearised at = fitter.linearise(now.model, std::move(systems));
+  std::vector<Localisation> out = localise_once(fitter, at, now.model, lists, parallel);
+  sort_by_ratio(out);
+  return out;
+}
+
 /// The lists that leave least after one step, iterated. Best first.
 std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
                                      const std::vector<std::vector<Suspect>>& lists,
                                      const Parallel& parallel) {
-  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, Forcing::measured);
-  if (systems.empty()) return {};
-  const Linearised at = fitter.linearise(now.model, std::move(systems));
-  std::vector<Localisation> all = localise_once(fitter, at, now.model, lists, parallel);
-  sort_by_ratio(all);
+  const std::vector<Localisation> all = one_step(fitter, now, lists, parallel);
   std::vector<const Localisation*> starts;
   for (std::size_t i = 0; i < std::min(kPairs, all.size()); ++i) starts.push_back(&all[i]);
   return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
@@ -89,13 +97,9 @@ bool is_global(const Suspect& s) {
 
 Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel) {
   Located out;
-  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, Forcing::measured);
-  if (systems.empty()) return out;
-  const Linearised at = fitter.linearise(now.model, std::move(systems));
   std::vector<std::vector<Suspect>> lists;
   for (const Suspect& s : suspects_of(fitter.plant(), now.model)) lists.push_back({s});
-  out.once = localise_once(fitter, at, now.model, lists, parallel);
-  sort_by_ratio(out.once);
+  out.once = one_step(fitter, now, lists, parallel);
   std::vector<const Localisation*> starts;
   std::size_t global = 0;
   for (std::size_t i = 0; i < out.once.size(); ++i) {

@@ -3,9 +3,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "estimator/structure/complex.h"
-
 #include "estimator/diagnose/propose_parts.h"
+#include "estimator/structure/complex.h"
 
 namespace framewatch {
 namespace {

@@ -1,5 +1,4 @@
 #include "daemon/history_command.h"
-#include "daemon/clocks.h"
 
 #include <libmseed.h>
 #include <matio.h>
@@ -11,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/clocks.h"
 #include "daemon/history_files.h"
 #include "daemon/history_keeper.h"
 #include "daemon/raw_history.h"

@@ -1,5 +1,4 @@
 #include "daemon/metrics.h"
-#include "daemon/clocks.h"
 
 #include <limits>
 #include <string>
@@ -16,6 +15,7 @@
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
+#include "daemon/clocks.h"
 #include "daemon/live_times.h"
 #include "daemon/raised_events.h"
 #include "daemon/start_count.h"

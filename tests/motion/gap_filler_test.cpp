@@ -1,9 +1,10 @@
 #include "estimator/motion/gap_filler.h"
-#include "estimator/structure/nan.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "estimator/structure/nan.h"
 
 namespace framewatch {
 namespace {

@@ -1,10 +1,11 @@
 #include "estimator/motion/motion_filter.h"
-#include "estimator/structure/nan.h"
 
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
+
+#include "estimator/structure/nan.h"
 
 namespace framewatch {
 namespace {

@@ -1,5 +1,4 @@
 #include "estimator/watch/watch.h"
-#include "estimator/structure/nan.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "daemon/paper_buildings.h"
 #include "estimator/simulate/random.h"
+#include "estimator/structure/nan.h"
 #include "tests/support/shaken_minute.h"
 
 namespace framewatch {
