@@ -48,7 +48,7 @@ void set_broadband(Effect& out, const Plant& plant, const std::vector<Stretch>& 
   Eigen::VectorXd power(s.bins());
   Eigen::VectorXcd r(n);
   for (Eigen::Index b = 0; b < s.bins(); ++b) {
-    const Eigen::VectorXcd u = system.whitener[static_cast<std::size_t>(b)] * direction;
+    const Eigen::VectorXcd u = system.weights->whitener(b) * direction;
     r.real() = system.rest.segment(2 * n * b, n);
     r.imag() = system.rest.segment(2 * n * b + n, n);
     const double weight = u.squaredNorm();

@@ -14,9 +14,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLongestStep = 0.5;      ///< of a stiffness, relative to the design
-constexpr double kLeastStiffness = 0.02;  ///< the same
-constexpr double kNearNoise = 1.5;        ///< misfit over what noise explains
+constexpr double kLongestStep = 0.5;  ///< of a stiffness, relative to the design
 constexpr int kTries = 7;
 
 double total_misfit(const std::vector<Whitened>& systems) {
@@ -83,7 +81,7 @@ std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<Matr
                   r < motion.size() ? motion[r] : MatrixXcd(), ratio_[r]);
     if (!tracks) return {};
     out.push_back(whiten(plant_, model, stretches_[r], r, std::move(*tracks), ratio_[r],
-                         weights ? &(*weights)[r] : nullptr));
+                         weights ? (*weights)[r].weights : nullptr));
     if (!out.back().good) return {};
   }
   return out;
@@ -110,22 +108,6 @@ Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
   out.level = std::max(1.0, total_misfit(out.systems) / expected(model));
   out.prior *= out.level;
   out.pull *= out.level;
-  return out;
-}
-
-NormalEquations normal_equations(const Linearised& at) {
-  const auto count = static_cast<Index>(at.unknowns.size());
-  NormalEquations out{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
-  for (std::size_t r = 0; r < at.systems.size(); ++r) {
-    const Whitened& system = at.systems[r];
-    const MatrixXd& columns = at.columns[r];
-    MatrixXd square = MatrixXd::Zero(count, count);
-    square.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-    const MatrixXd cross = columns.transpose() * system.ends;
-    out.normal += MatrixXd(square.selfadjointView<Eigen::Lower>()) -
-                  cross * system.ends_factor.solve(cross.transpose());
-    out.gradient += columns.transpose() * system.rest;
-  }
   return out;
 }
 
@@ -159,7 +141,8 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
     for (int i = 0; i < kTries && !better; ++i) {
       MatrixXd damped = equations.normal;
       damped.diagonal().array() += 1e-12 + damping * equations.normal.diagonal().array();
-      const VectorXd step = damped.ldlt().solve(at.pull - equations.gradient);
+      const VectorXd step =
+          bounded_step(damped, at.pull - equations.gradient, out.model, at.unknowns);
       if (!step.allFinite()) {
         damping = std::max(1e-4, damping * 20);
         continue;
@@ -197,8 +180,8 @@ Model Fitter::moved(const Model& model, const std::vector<Unknown>& unknowns,
           std::min(share, kLongestStep / std::max(std::abs(step[static_cast<Index>(u)]), 1e-300));
   Model out = model;
   for (std::size_t u = 0; u < unknowns.size(); ++u) {
-    const double to = value_of(out, unknowns[u]) + share * step[static_cast<Index>(u)];
-    set_value(out, unknowns[u], is_stiffness(unknowns[u]) ? std::max(to, kLeastStiffness) : to);
+    const double from = value_of(model, unknowns[u]);
+    set_value(out, unknowns[u], from + share * step[static_cast<Index>(u)]);
   }
   return out;
 }

@@ -5,51 +5,9 @@
 
 #include <Eigen/Core>
 
-#include "estimator/diagnose/whitened.h"
+#include "estimator/diagnose/linearised.h"
 
 namespace framewatch {
-
-/// How far things may be off that nobody measures exactly, one standard deviation.
-struct Tolerances {
-  double mass = 0.01;        ///< relative, of the mass at every degree of freedom
-  double gain = 0.005;       ///< relative, of every axis
-  double clock_s = 0.25e-3;  ///< of every axis
-};
-
-/// Which member of a model one unknown of a fit is.
-struct Unknown {
-  enum class Kind { theta, mass, gain, clock, knob, record_knob } kind;
-  int index = 0;  ///< of theta, coordinate, axis; of the effect for knobs
-  int knob = 0;
-  int record = 0;
-  double scale = 1;  ///< one unit of the unknown in the member
-  double sigma = 0;  ///< of the prior, in units of the unknown; 0: none
-  double centre = 0;
-};
-
-std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
-                                 const Tolerances& tolerances);
-double value_of(const Model& model, const Unknown& unknown);
-void set_value(Model& model, const Unknown& unknown, double value);
-
-/// The whitened equations of all stretches around one model.
-struct Linearised {
-  std::vector<Unknown> unknowns;
-  std::vector<Whitened> systems;         ///< of each stretch
-  std::vector<Eigen::MatrixXd> columns;  ///< of each stretch: d(rows)/d(unknowns)
-  /// Misfit over what noise explains, at least 1: a model that does not fit must not bend what is
-  /// only tolerated, so the prior weighs as much more.
-  double level = 1;
-  Eigen::VectorXd prior, pull;  ///< level / (2 sigma^2); the same times (centre - value)
-};
-
-/// Of all stretches together, end terms eliminated, prior not included.
-struct NormalEquations {
-  Eigen::MatrixXd normal;
-  Eigen::VectorXd gradient;  ///< columns' * rest
-};
-
-NormalEquations normal_equations(const Linearised& at);
 
 struct FitOptions {
   Forcing forcing = Forcing::measured;
@@ -93,7 +51,7 @@ class Fitter {
   Linearised linearise(const Model& model, std::vector<Whitened> systems,
                        bool through_run = false) const;
   double prior_cost(const Model& model) const;
-  /// The model a step of the unknowns on, stiffnesses neither far nor below nothing.
+  /// The model a step of the unknowns on, within their bounds and stiffnesses not far.
   Model moved(const Model& model, const std::vector<Unknown>& unknowns,
               const Eigen::VectorXd& step) const;
   /// Degrees of freedom of a stretch: what the misfit is when nothing but noise is left.
@@ -113,10 +71,5 @@ class Fitter {
   Tolerances tolerances_;
   std::vector<int> ratio_;
 };
-
-/// What the unknowns change in a whitened stretch: rows x unknowns.
-Eigen::MatrixXd columns_of(const Plant& plant, const Model& model, const Stretch& stretch,
-                           std::size_t record, const Whitened& system,
-                           const std::vector<Unknown>& unknowns, int ratio, bool through_run);
 
 }  // namespace framewatch

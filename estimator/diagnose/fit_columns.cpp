@@ -1,6 +1,8 @@
 #include <cmath>
 
+#include "estimator/diagnose/linear_operation.h"
 #include "estimator/diagnose/run_columns.h"
+#include "estimator/identify/kernels.h"
 #include "estimator/structure/complex.h"
 
 namespace framewatch {
@@ -41,54 +43,86 @@ VectorXd knob_column(const Plant& plant, const Model& model, const Stretch& stre
     const VectorXcd raw = own * std::cos(a) + std::sin(a) * other;
     return whiten_axis(system, e.place.channel, (raw - std::sin(b) * other) / std::cos(b) - own);
   }
+  const LinearOperation from(plant, model, e), then(plant, moved, to);
   MatrixXcd change(plant.equations(), system.bins());
   for (Index b = 0; b < system.bins(); ++b)
-    change.col(b) = (linear_operation(plant, moved, to, stretch.w[b]) -
-                     linear_operation(plant, model, e, stretch.w[b])) *
-                    system.motion.col(b);
+    change.col(b) = (then.at(stretch.w[b]) - from.at(stretch.w[b])) * system.motion.col(b);
   return whiten_rows(system, change);
 }
 
-/// Columns of stiffnesses, dampings, masses, gains and clocks.
+/// Which direction of force an unknown acts in, and its size in every bin.
+struct Acting {
+  Index direction = -1;  ///< of an element, then of an axis, then of a coordinate's mass
+  VectorXcd size;
+};
+
+Acting acting(const Plant& plant, const Model& model, const Stretch& stretch,
+              const Whitened& system, const Unknown& unknown) {
+  const Index i = unknown.index, elements = plant.element_count(), axes = plant.axis_count();
+  const auto w = stretch.w.array();
+  const auto motion_of = [&](const MatrixXd& rows, Index row) {
+    return (unknown.scale * rows.row(row) * system.motion).transpose().array().eval();
+  };
+  switch (unknown.kind) {
+    case Kind::theta: {
+      const Eigen::ArrayXcd d = motion_of(plant.building.sense, i % elements) / w.square();
+      if (i < elements) return {i, -d};
+      return {i - elements, -kJ * w * d};
+    }
+    case Kind::gain:
+      return {elements + i,
+              -unknown.scale / (1 + model.gain[i]) * system.motion.row(i).transpose()};
+    case Kind::clock:
+      return {elements + i,
+              (unknown.scale * kJ * w * system.motion.row(i).transpose().array()).matrix()};
+    case Kind::mass:
+      return {elements + axes + i, motion_of(plant.building.mass, i).matrix()};
+    case Kind::knob:
+    case Kind::record_knob:
+      return {};
+  }
+  return {};
+}
+
+/// Columns of stiffnesses, dampings, masses, gains and clocks; zero elsewhere.
 void put_linear_columns(const Plant& plant, const Model& model, const Stretch& stretch,
                         const Whitened& system, const std::vector<Unknown>& unknowns,
-                        MatrixXd& out) {
-  const Index n = plant.equations(), elements = plant.element_count();
-  const MatrixXcd sensed = plant.building.sense * system.motion;
-  const MatrixXcd inertia = plant.building.mass * system.motion;
-  const MatrixXcd act = plant.building.act.cast<Complex>();
+                        RowMatrix& out) {
+  const Index n = plant.equations(), elements = plant.element_count(), axes = plant.axis_count();
+  const auto count = static_cast<Index>(unknowns.size());
+  std::vector<Index> direction(unknowns.size(), 0);
+  MatrixXd re = MatrixXd::Zero(count, system.bins()), im = re;  // of the sizes
+  for (Index u = 0; u < count; ++u) {
+    const Acting one = acting(plant, model, stretch, system, unknowns[static_cast<std::size_t>(u)]);
+    if (one.direction < 0) continue;
+    direction[static_cast<std::size_t>(u)] = one.direction;
+    re.row(u) = one.size.real().transpose();
+    im.row(u) = one.size.imag().transpose();
+  }
+  // Rows: real parts, then imaginary parts; columns: elements, axes, coordinates.
+  const Index columns = padded(static_cast<int>(elements + axes + n));
+  RowMatrix along = RowMatrix::Zero(2 * n, columns), whitened(2 * n, columns),
+            whitener(2 * n, 2 * n);
+  along.topLeftCorner(n, elements) = plant.building.act;
+  along.block(0, elements + axes, n, n).setIdentity();
   for (Index b = 0; b < system.bins(); ++b) {
-    const double w = stretch.w[b];
-    const MatrixXcd& whitener = system.whitener[static_cast<std::size_t>(b)];
-    const MatrixXcd of_elements = whitener * act;
-    const MatrixXcd of_axes = whitener * system.operation[static_cast<std::size_t>(b)];
-    const auto put = [&](Index u, const auto& direction, Complex signal) {
-      const VectorXcd value = signal * direction;
-      out.col(u).segment(2 * n * b, n) = value.real();
-      out.col(u).segment(2 * n * b + n, n) = value.imag();
-    };
-    for (Index u = 0; u < out.cols(); ++u) {
-      const Unknown& unknown = unknowns[static_cast<std::size_t>(u)];
-      const Index i = unknown.index;
-      switch (unknown.kind) {
-        case Kind::theta: {
-          const Index e = i % elements;
-          put(u, of_elements.col(e),
-              unknown.scale * sensed(e, b) * (i < elements ? Complex(-1 / (w * w)) : -kJ / w));
-          break;
-        }
-        case Kind::mass:
-          put(u, whitener.col(i), unknown.scale * inertia(i, b));
-          break;
-        case Kind::gain:
-          put(u, of_axes.col(i), -unknown.scale / (1 + model.gain[i]) * system.motion(i, b));
-          break;
-        case Kind::clock:
-          put(u, of_axes.col(i), unknown.scale * w * kJ * system.motion(i, b));
-          break;
-        case Kind::knob:
-        case Kind::record_knob:
-          break;
+    const MatrixXcd& operation = system.operation[static_cast<std::size_t>(b)];
+    const MatrixXcd& own = system.weights->whitener(b);
+    along.block(0, elements, n, axes) = operation.real();
+    along.block(n, elements, n, axes) = operation.imag();
+    whitener << own.real(), -own.imag(), own.imag(), own.real();
+    whitened.setZero();
+    kernels::in_use->multiply_add(whitener.data(), static_cast<int>(2 * n), static_cast<int>(2 * n),
+                                  static_cast<int>(2 * n), along.data(), whitened.data(),
+                                  static_cast<int>(columns));
+    for (Index i = 0; i < n; ++i) {
+      const double *x = &whitened(i, 0), *y = &whitened(n + i, 0);
+      double *real = &out(2 * n * b + i, 0), *imag = &out(2 * n * b + n + i, 0);
+      const double *a = re.col(b).data(), *c = im.col(b).data();
+      for (Index u = 0; u < count; ++u) {
+        const Index k = direction[static_cast<std::size_t>(u)];
+        real[u] = x[k] * a[u] - y[k] * c[u];
+        imag[u] = x[k] * c[u] + y[k] * a[u];
       }
     }
   }
@@ -96,10 +130,10 @@ void put_linear_columns(const Plant& plant, const Model& model, const Stretch& s
 
 }  // namespace
 
-MatrixXd columns_of(const Plant& plant, const Model& model, const Stretch& stretch,
-                    std::size_t record, const Whitened& system,
-                    const std::vector<Unknown>& unknowns, int ratio, bool through_run) {
-  MatrixXd out(system.residual.size(), static_cast<Index>(unknowns.size()));
+RowMatrix columns_of(const Plant& plant, const Model& model, const Stretch& stretch,
+                     std::size_t record, const Whitened& system,
+                     const std::vector<Unknown>& unknowns, int ratio, bool through_run) {
+  RowMatrix out(system.residual.size(), static_cast<Index>(unknowns.size()));
   put_linear_columns(plant, model, stretch, system, unknowns, out);
   const bool runs = through_run && !system.tracks.empty() && !plant.prescribed;
   for (Index u = 0; u < out.cols(); ++u) {

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "estimator/diagnose/linear_operation.h"
 #include "estimator/diagnose/modal_system.h"
 
 namespace framewatch {
@@ -84,7 +85,7 @@ System assemble_system(const Plant& plant, const Model& model, const std::vector
                                            act.col(at) * act.col(at).transpose();
       }
     } else if (e.form == LawForm::rocking || e.form == LawForm::bending) {
-      const Eigen::MatrixXcd change = linear_operation(plant, model, e, 1.0);
+      const Eigen::MatrixXcd change = LinearOperation(plant, model, e).at(1.0);
       const MatrixXd back =
           plant.motion.transpose() * (plant.motion * plant.motion.transpose()).inverse();
       out.stiffness.topLeftCorner(n, n) -= (change * back.cast<std::complex<double>>()).real();

@@ -59,7 +59,7 @@ Gap force_gap(const Plant& plant, const Model& model, const Stretch& stretch,
     VectorXcd e(n);
     e.real() = system.rest.segment(2 * n * b, n);
     e.imag() = system.rest.segment(2 * n * b + n, n);
-    system.whitener[at].triangularView<Eigen::Lower>().solveInPlace(e);
+    system.weights->whitener(b).triangularView<Eigen::Lower>().solveInPlace(e);
     out.difference(axis, b) = plant.push.col(axis).cast<Complex>().dot(e);
     const VectorXcd row = system.operation[at].adjoint() * plant.push.col(axis).cast<Complex>();
     error += std::norm(out.difference(axis, b));
@@ -104,7 +104,7 @@ Gap gap_of(const Plant& plant, const Model& model, const Stretch& stretch, const
     VectorXcd e(n);
     e.real() = system.rest.segment(2 * n * b, n);
     e.imag() = system.rest.segment(2 * n * b + n, n);
-    system.whitener[at].triangularView<Eigen::Lower>().solveInPlace(e);
+    system.weights->whitener(b).triangularView<Eigen::Lower>().solveInPlace(e);
     if (pushed.cols() > 0)
       take_forces(pushed,
                   system.operation[at] * variance.asDiagonal() * system.operation[at].adjoint(), e);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <span>
 
 #include <Eigen/Cholesky>
 
@@ -14,13 +15,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSettled = 1e-3;  ///< change of the misfit, relative
-
-/// Squares and products of unknowns, end terms and residual of one stretch.
-struct Square {
-  MatrixXd columns;  ///< unknowns, end terms, residual
-  MatrixXd square;
-};
+constexpr double kSettled = 1e-3;     ///< change of the misfit, relative
+constexpr std::size_t kTogether = 8;  ///< lists that go through the rows at once
 
 /// Which unknowns may move; masses, gains and clocks only when `tolerances`.
 std::vector<Index> moving(const Linearised& at, bool tolerances) {
@@ -35,94 +31,84 @@ std::vector<Index> moving(const Linearised& at, bool tolerances) {
   return out;
 }
 
-Square square_of(const Linearised& at, std::size_t record, const std::vector<Index>& kept) {
-  Square out;
+/// The square of some unknowns, end terms and residual without what lies along the directions of
+/// suspects, of each list.
+std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std::size_t record,
+                              const std::vector<Index>& kept,
+                              std::span<const std::vector<Suspect>> lists) {
   const Whitened& system = at.systems[record];
-  out.columns.resize(system.residual.size(),
-                     static_cast<Index>(kept.size()) + system.ends.cols() + 1);
-  for (std::size_t u = 0; u < kept.size(); ++u)
-    out.columns.col(static_cast<Index>(u)) = at.columns[record].col(kept[u]);
-  out.columns.middleCols(static_cast<Index>(kept.size()), system.ends.cols()) = system.ends;
-  out.columns.rightCols(1) = system.residual;
-  out.square = MatrixXd::Zero(out.columns.cols(), out.columns.cols());
-  out.square.selfadjointView<Eigen::Lower>().rankUpdate(out.columns.transpose());
-  out.square = MatrixXd(out.square.selfadjointView<Eigen::Lower>());
+  const Index n = system.weights->equations();
+  std::vector<Gram> along(lists.size(), Gram(square.cols()));
+  Gram here(square.cols());
+  for (Index b = 0; b < system.bins(); ++b) {
+    put_rows(at, record, kept, b, here.rows(2 * n));
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      const MatrixXcd basis = suspect_basis(system, b, lists[i]);
+      RowMatrix directions(2 * basis.cols(), 2 * n);
+      directions << basis.real().transpose(), basis.imag().transpose(), -basis.imag().transpose(),
+          basis.real().transpose();
+      along[i].add_combined(directions, here);
+    }
+  }
+  std::vector<MatrixXd> out;
+  for (const Gram& g : along) out.push_back(square - g.sum());
   return out;
 }
 
-/// The square without what lies along the suspects' directions.
-MatrixXd without(const Square& whole, const Whitened& system,
-                 const std::vector<Suspect>& suspects) {
-  const Index n = system.operation.front().rows(), columns = whole.columns.cols();
-  Index size = 0;
-  for (const Suspect& s : suspects) size += s.size();
-  MatrixXd along(2 * size * system.bins(), columns);
-  for (Index b = 0; b < system.bins(); ++b) {
-    const MatrixXcd basis = suspect_basis(system, b, suspects);
-    const auto real = whole.columns.middleRows(2 * n * b, n);
-    const auto imag = whole.columns.middleRows(2 * n * b + n, n);
-    along.middleRows(2 * size * b, size).noalias() =
-        basis.real().transpose() * real + basis.imag().transpose() * imag;
-    along.middleRows(2 * size * b + size, size).noalias() =
-        basis.real().transpose() * imag - basis.imag().transpose() * real;
-  }
-  MatrixXd out = MatrixXd::Zero(columns, columns);
-  out.selfadjointView<Eigen::Lower>().rankUpdate(along.transpose(), -1.0);
-  return whole.square + MatrixXd(out.selfadjointView<Eigen::Lower>());
-}
-
 struct Reduced {
-  MatrixXd normal;
-  VectorXd gradient;
-  double misfit = 0, expected = 0;
+  NormalEquations equations;
+  double expected = 0;
   std::vector<double> record_ratio;
 };
 
-Reduced reduce(const Fitter& fitter, const Linearised& at, const Model& model,
-               const std::vector<Square>& squares, const std::vector<Suspect>& suspects) {
-  const Index count = squares.front().columns.cols() - at.systems.front().ends.cols() - 1;
-  Reduced out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0, 0, {}};
-  Index size = 0;
-  for (const Suspect& s : suspects) size += s.size();
+Index size_of(const std::vector<Suspect>& suspects) {
+  Index out = 0;
+  for (const Suspect& s : suspects) out += s.size();
+  return out;
+}
+
+/// Of each list of suspects. squares: of each stretch.
+std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Model& model,
+                            const std::vector<Index>& kept, const std::vector<MatrixXd>& squares,
+                            std::span<const std::vector<Suspect>> lists) {
+  const auto count = static_cast<Index>(kept.size());
   const double n = static_cast<double>(fitter.plant().equations());
+  std::vector<Reduced> out(lists.size(),
+                           {{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0}, 0, {}});
   for (std::size_t r = 0; r < at.systems.size(); ++r) {
-    const Index ends = at.systems[r].ends.cols();
-    const MatrixXd square = without(squares[r], at.systems[r], suspects);
-    MatrixXd inner = square.block(count, count, ends, ends);
-    inner.diagonal().array() += 1e-9;
-    const Eigen::LDLT<MatrixXd> factor(inner);
-    const MatrixXd cross = square.block(0, count, count, ends);
-    const VectorXd last = square.block(count, count + ends, ends, 1);
-    const VectorXd solved = factor.solve(last);
-    out.normal += square.topLeftCorner(count, count) - cross * factor.solve(cross.transpose());
-    out.gradient += square.block(0, count + ends, count, 1) - cross * solved;
-    const double left = square(count + ends, count + ends) - last.dot(solved);
-    const double expected = fitter.expected(r, model) * (1 - static_cast<double>(size) / n);
-    out.misfit += left;
-    out.expected += expected;
-    out.record_ratio.push_back(left / expected);
+    const std::vector<MatrixXd> rest = without(squares[r], at, r, kept, lists);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      const NormalEquations one = without_ends(rest[i], at.systems[r].weights->ends());
+      const double expected =
+          fitter.expected(r, model) * (1 - static_cast<double>(size_of(lists[i])) / n);
+      out[i].equations.normal += one.normal;
+      out[i].equations.gradient += one.gradient;
+      out[i].equations.misfit += one.misfit;
+      out[i].expected += expected;
+      out[i].record_ratio.push_back(one.misfit / expected);
+    }
   }
   return out;
 }
 
 /// Change of the unknowns `kept`.
-VectorXd step_of(const Reduced& reduced, const Linearised& at, double level,
+VectorXd step_of(const Reduced& reduced, const Linearised& at, const Model& model, double level,
                  const std::vector<Index>& kept) {
-  MatrixXd normal = reduced.normal;
-  VectorXd right = -reduced.gradient;
+  std::vector<Unknown> unknowns;
+  for (const Index u : kept) unknowns.push_back(at.unknowns[static_cast<std::size_t>(u)]);
+  MatrixXd normal = reduced.equations.normal;
+  VectorXd right = -reduced.equations.gradient;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     const auto c = static_cast<Index>(i);
     normal(c, c) += level / at.level * at.prior[kept[i]];
     right[c] += level / at.level * at.pull[kept[i]];
   }
   normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().array();
-  return normal.ldlt().solve(right);
+  return bounded_step(normal, right, model, unknowns);
 }
 
 bool takes_everything(const Fitter& fitter, const std::vector<Suspect>& suspects) {
-  Index size = 0;
-  for (const Suspect& s : suspects) size += s.size();
-  return size >= fitter.plant().equations();
+  return size_of(suspects) >= fitter.plant().equations();
 }
 
 /// Of places that could explain everything whatever it is: as if they did.
@@ -149,28 +135,35 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
                                         const std::vector<std::vector<Suspect>>& lists,
                                         const Parallel& parallel) {
   const std::vector<Index> kept = moving(at, false);
-  std::vector<Square> squares;
+  std::vector<MatrixXd> squares;
   for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
   const double prior = fitter.prior_cost(model);
   std::vector<Localisation> out(lists.size());
-  run_all(parallel, static_cast<int>(lists.size()), [&](int i) {
-    Localisation& one = out[static_cast<std::size_t>(i)];
-    one.suspects = lists[static_cast<std::size_t>(i)];
+  const auto take = [&](std::size_t i, const Reduced& reduced) {
+    Localisation& one = out[i];
+    one.suspects = lists[i];
     if (takes_everything(fitter, one.suspects)) {
       one = everything(fitter, model, one.suspects, at.systems);
       return;
     }
-    const Reduced reduced = reduce(fitter, at, model, squares, one.suspects);
-    const VectorXd step = step_of(reduced, at, 1.0, kept);
+    const VectorXd step = step_of(reduced, at, model, 1.0, kept);
     if (!step.allFinite()) return;
-    const double left =
-        reduced.misfit + step.dot(reduced.normal * step) + 2 * step.dot(reduced.gradient);
+    const double left = reduced.equations.misfit + step.dot(reduced.equations.normal * step) +
+                        2 * step.dot(reduced.equations.gradient);
     one.misfit = left + prior;
     one.ratio = left / reduced.expected;
     one.record_ratio = reduced.record_ratio;
     VectorXd whole = VectorXd::Zero(static_cast<Index>(at.unknowns.size()));
     whole(kept) = step;
     one.model = fitter.moved(model, at.unknowns, whole);
+  };
+  const std::size_t groups = (lists.size() + kTogether - 1) / kTogether;
+  run_all(parallel, static_cast<int>(groups), [&](int group) {
+    const std::size_t first = static_cast<std::size_t>(group) * kTogether;
+    const std::span together =
+        std::span(lists).subspan(first, std::min(kTogether, lists.size() - first));
+    const std::vector<Reduced> reduced = reduce(fitter, at, model, kept, squares, together);
+    for (std::size_t i = 0; i < reduced.size(); ++i) take(first + i, reduced[i]);
   });
   return out;
 }
@@ -191,26 +184,27 @@ Localisation localise(const Fitter& fitter, const Model& start,
     const Linearised at = fitter.linearise(model, std::move(systems));
     if (takes_everything(fitter, suspects)) return everything(fitter, model, suspects, at.systems);
     const std::vector<Index> kept = moving(at, true);
-    std::vector<Square> squares;
+    std::vector<MatrixXd> squares;
     for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
     std::vector<Suspect> current = suspects;
     follow(plant, model, current);
-    const Reduced reduced = reduce(fitter, at, model, squares, current);
-    const double misfit = reduced.misfit + fitter.prior_cost(model);
+    const Reduced reduced =
+        reduce(fitter, at, model, kept, squares, std::span(&current, 1)).front();
+    const double left = reduced.equations.misfit, misfit = left + fitter.prior_cost(model);
     if (misfit < out.misfit) {
       out.suspects = current;
       out.misfit = misfit;
-      out.ratio = reduced.misfit / reduced.expected;
+      out.ratio = left / reduced.expected;
       out.record_ratio = reduced.record_ratio;
       out.model = model;
       out.motion.clear();
       for (const Whitened& system : at.systems) out.motion.push_back(system.calibrated);
     }
-    out.settled = std::abs(before - reduced.misfit) < kSettled * reduced.misfit;
+    out.settled = std::abs(before - left) < kSettled * left;
     if (step == steps || out.settled) break;
-    before = reduced.misfit;
+    before = left;
     const VectorXd change =
-        step_of(reduced, at, std::max(1.0, reduced.misfit / reduced.expected), kept);
+        step_of(reduced, at, model, std::max(1.0, left / reduced.expected), kept);
     if (!change.allFinite()) break;
     model = fitter.moved(model, at.unknowns, change);
     for (std::size_t r = 0; r < at.systems.size(); ++r) driving[r] = at.systems[r].calibrated;

@@ -54,8 +54,4 @@ int element_of(const Plant& plant, const EffectPlace& place);
 /// Coordinate a node names (flexible floors).
 Eigen::VectorXd node_direction(const Plant& plant, int story, int frame);
 
-/// What a linear effect adds to the operation D(w) on the axes' motion: equations x axes.
-Eigen::MatrixXcd linear_operation(const Plant& plant, const Model& model, const ModelEffect& effect,
-                                  double w);
-
 }  // namespace framewatch

@@ -26,8 +26,9 @@ std::vector<Needed> needed_of(const Fitter& fitter, const Localisation& place) {
     VectorXcd rest(n);
     for (Index b = 0; b < s.bins(); ++b) {
       const auto at = static_cast<std::size_t>(b);
-      VectorXcd u = system.whitener[at] * (axis ? VectorXcd(system.operation[at].col(suspect.axis))
-                                                : suspect.directions.col(0).cast<Complex>());
+      VectorXcd u =
+          system.weights->whitener(b) * (axis ? VectorXcd(system.operation[at].col(suspect.axis))
+                                              : suspect.directions.col(0).cast<Complex>());
       if (!others.empty()) {  // what the other places do is not counted
         const MatrixXcd basis = suspect_basis(system, b, others);
         u -= (basis * (basis.adjoint() * u)).eval();

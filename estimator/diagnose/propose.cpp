@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <complex>
 
+#include "estimator/diagnose/linear_operation.h"
 #include "estimator/diagnose/propose_parts.h"
 
 namespace framewatch {
@@ -57,13 +58,13 @@ ScalarFit fit_of(const Fitter& fitter, const Localisation& place, const std::vec
   effect.knobs[0].value = 1;
   const Eigen::VectorXcd along =
       place.suspects.front().directions.col(0).cast<std::complex<double>>();
+  const LinearOperation operation(fitter.plant(), place.model, effect);
   std::vector<std::vector<Eigen::VectorXcd>> columns(needed.size());
   for (std::size_t r = 0; r < needed.size(); ++r) {
     const Stretch& s = fitter.stretches()[r];
     Eigen::VectorXcd force(s.bins());
     for (Index b = 0; b < s.bins(); ++b)
-      force[b] = along.dot(linear_operation(fitter.plant(), place.model, effect, s.w[b]) *
-                           place.motion[r].col(b));
+      force[b] = along.dot(operation.at(s.w[b]) * place.motion[r].col(b));
     columns[r].push_back(force / along.squaredNorm());
   }
   return scalar_fit(needed, columns);

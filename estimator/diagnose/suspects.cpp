@@ -137,7 +137,7 @@ MatrixXcd suspect_basis(const Whitened& system, Index bin, const std::vector<Sus
       out.col(next++) = system.operation[at].col(s.axis);
     }
   }
-  out = (system.whitener[at] * out).eval();
+  out = (system.weights->whitener(bin) * out).eval();
   for (Index c = 0; c < count; ++c) {
     const double before = out.col(c).norm();
     for (Index b = 0; b < c; ++b) out.col(c) -= out.col(b) * out.col(b).dot(out.col(c));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "estimator/diagnose/fit.h"
 
@@ -7,6 +8,11 @@ namespace {
 
 constexpr double kTightK = 0.6, kTightG = 1.0, kTightC = 3.0;  ///< weak priors, relative
 constexpr double kMostSigmas = 4;                              ///< of what is only tolerated
+/// Of the design, a stiffness or a damping: what does not dissipate is no structure, and a mode
+/// that neither dissipates nor is driven from the base would have no noise in its equation.
+constexpr double kLeast = 0.02;
+constexpr double kLooseGain = 0.05, kLooseClock_s = 1e-3;  ///< units
+constexpr double kAny = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -20,27 +26,32 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
     if (panel && plant.stiff_floors) continue;
     const double sigma = (p < elements ? (panel ? kTightG : kTightK) : kTightC);
     const double scale = plant.design[p];
-    out.push_back({Kind::theta, p, 0, 0, scale, sigma, 1.0});
+    out.push_back({Kind::theta, p, 0, 0, scale, sigma, 1.0, kLeast, kAny});
   }
   if (tolerances.mass > 0)
     for (int i = 0; i < static_cast<int>(plant.equations()); ++i)
-      out.push_back({Kind::mass, i, 0, 0, tolerances.mass, 1.0, 0.0});
+      out.push_back({Kind::mass, i, 0, 0, tolerances.mass, 1.0, 0.0, -kMostSigmas, kMostSigmas});
   const auto freed = [](const std::vector<int>& list, int axis) {
     for (const int i : list)
       if (i == axis) return true;
     return false;
   };
+  // An axis' error that is an effect may be anything.
+  const auto add_axis = [&](Kind kind, int axis, bool loose, double scale, double centre) {
+    out.push_back(loose ? Unknown{kind, axis, 0, 0, scale, 0.0, centre, -kAny, kAny}
+                        : Unknown{kind, axis, 0, 0, scale, 1.0, centre, centre - kMostSigmas,
+                                  centre + kMostSigmas});
+  };
   for (int a = 0; a < static_cast<int>(plant.axis_count()); ++a) {
     const bool loose = freed(model.free_gain, a);
     if (loose || tolerances.gain > 0)
-      out.push_back({Kind::gain, a, 0, 0, loose ? 0.05 : tolerances.gain, loose ? 0.0 : 1.0, 0.0});
+      add_axis(Kind::gain, a, loose, loose ? kLooseGain : tolerances.gain, 0.0);
   }
   for (int a = 0; a < static_cast<int>(plant.axis_count()); ++a) {
     const bool loose = freed(model.free_clock, a);
-    if (loose || tolerances.clock_s > 0)
-      out.push_back(
-          {Kind::clock, a, 0, 0, loose ? 1e-3 : tolerances.clock_s, loose ? 0.0 : 1.0,
-           plant.axes[static_cast<std::size_t>(a)].delay / (loose ? 1e-3 : tolerances.clock_s)});
+    const double scale = loose ? kLooseClock_s : tolerances.clock_s;
+    if (scale > 0)
+      add_axis(Kind::clock, a, loose, scale, plant.axes[static_cast<std::size_t>(a)].delay / scale);
   }
   for (std::size_t e = 0; e < model.effects.size(); ++e) {
     const ModelEffect& effect = model.effects[e];
@@ -48,7 +59,7 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
       if (knob.free)
         out.push_back({kind, static_cast<int>(e), static_cast<int>(index), static_cast<int>(record),
                        knob.step, knob.sigma > 0 ? knob.sigma / knob.step : 0.0,
-                       knob.centre / knob.step});
+                       knob.centre / knob.step, knob.low / knob.step, knob.high / knob.step});
     };
     for (std::size_t k = 0; k < effect.knobs.size(); ++k) add(effect.knobs[k], Kind::knob, k, 0);
     for (std::size_t r = 0; r < effect.record_knobs.size(); ++r)
@@ -90,20 +101,7 @@ double value_of(const Model& model, const Unknown& u) {
 }
 
 void set_value(Model& model, const Unknown& u, double value) {
-  double to = value * u.scale;
-  const bool tolerated = u.kind == Unknown::Kind::mass || u.kind == Unknown::Kind::gain ||
-                         u.kind == Unknown::Kind::clock;
-  if (tolerated && u.sigma > 0)
-    to = std::clamp(to, (u.centre - kMostSigmas) * u.scale, (u.centre + kMostSigmas) * u.scale);
-  if (u.kind == Unknown::Kind::knob || u.kind == Unknown::Kind::record_knob) {
-    const ModelEffect& e = model.effects[static_cast<std::size_t>(u.index)];
-    const Knob& knob =
-        u.kind == Unknown::Kind::knob
-            ? e.knobs[static_cast<std::size_t>(u.knob)]
-            : e.record_knobs[static_cast<std::size_t>(u.record)][static_cast<std::size_t>(u.knob)];
-    to = std::clamp(to, knob.low, knob.high);
-  }
-  member(model, u) = to;
+  member(model, u) = std::clamp(value, u.low, u.high) * u.scale;
 }
 
 }  // namespace framewatch

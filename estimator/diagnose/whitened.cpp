@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/diagnose/linear_operation.h"
+#include "estimator/diagnose/whiteners.h"
 #include "estimator/structure/complex.h"
 
 namespace framewatch {
@@ -14,7 +16,6 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-constexpr Index kEndTerms = 4;
 constexpr double kNotBelieved = 1e6;   ///< variance of what may be anything, over that of noise
 constexpr Index kLeastNeighbours = 8;  ///< bins either side over which the misfit is averaged
 
@@ -46,15 +47,14 @@ MatrixXcd calibrated(const Model& model, const Stretch& stretch) {
 
 VectorXd whiten_rows(const Whitened& s, const MatrixXcd& forces) {
   VectorXd out(2 * forces.size());
-  for (Index b = 0; b < forces.cols(); ++b)
-    put(out, b, s.whitener[static_cast<std::size_t>(b)] * forces.col(b));
+  for (Index b = 0; b < forces.cols(); ++b) put(out, b, s.weights->whitener(b) * forces.col(b));
   return out;
 }
 
 VectorXd whiten_rows(const Whitened& s, const VectorXd& direction, const VectorXcd& signal) {
   VectorXd out(2 * direction.size() * signal.size());
   for (Index b = 0; b < signal.size(); ++b)
-    put(out, b, s.whitener[static_cast<std::size_t>(b)] * (direction.cast<Complex>() * signal[b]));
+    put(out, b, s.weights->whitener(b) * (direction.cast<Complex>() * signal[b]));
   return out;
 }
 
@@ -63,13 +63,14 @@ VectorXd whiten_axis(const Whitened& s, Index axis, const VectorXcd& signal) {
   VectorXd out(2 * n * signal.size());
   for (Index b = 0; b < signal.size(); ++b) {
     const auto at = static_cast<std::size_t>(b);
-    put(out, b, s.whitener[at] * (s.operation[at].col(axis) * signal[b]));
+    put(out, b, s.weights->whitener(b) * (s.operation[at].col(axis) * signal[b]));
   }
   return out;
 }
 
 VectorXd bin_noise(const Model& model, const Stretch& stretch, Index bin) {
   VectorXd out = static_cast<double>(stretch.intervals()) * stretch.variance;
+  out.array() /= (1 + model.gain.array()).square();
   for (Index a = 0; a < out.size(); ++a)
     if (stretch.is_displaced(a)) out[a] *= std::pow(stretch.w[bin], 4);
   for (const ModelEffect& e : model.effects)
@@ -87,51 +88,39 @@ VectorXd believed_noise(const Model& model, const Stretch& stretch, Index bin) {
   return out;
 }
 
-/// Columns of the end terms at one bin, r its frequency over the band's middle.
-void put_ends(const Plant& plant, const MatrixXcd& whitener, double w, double r,
-              const std::vector<const ModelEffect*>& hidden, Eigen::Block<MatrixXd> rows) {
-  const Index n = whitener.rows();
-  rows.block(0, 0, n, n) = whitener.real() / (r * r);
-  rows.block(n, 0, n, n) = whitener.imag() / (r * r);
-  rows.block(0, n, n, n) = whitener.imag() / r;  // 1/(j r)
-  rows.block(n, n, n, n) = -whitener.real() / r;
-  rows.block(0, 2 * n, n, n) = whitener.real();
-  rows.block(n, 2 * n, n, n) = whitener.imag();
-  rows.block(0, 3 * n, n, n) = -whitener.imag() * r;
-  rows.block(n, 3 * n, n, n) = whitener.real() * r;
-  Index column = kEndTerms * n;
-  for (const ModelEffect* h : hidden) {
-    const double wr = 2 * M_PI * h->knobs[1].plain();
-    const Complex spring = wr * wr + 2.0 * h->knobs[2].plain() * wr * w * kJ;
-    const VectorXcd at = whitener * (node_direction(plant, h->place.story, h->place.frame) *
-                                     (spring / (spring - w * w)));
-    rows.block(0, column, n, 1) = at.real();
-    rows.block(n, column, n, 1) = at.imag();
-    rows.block(0, column + 1, n, 1) = -at.imag() * r;
-    rows.block(n, column + 1, n, 1) = at.real() * r;
-    column += 2;
-  }
+/// Of every bin.
+MatrixXd noise_of(const Model& model, const Stretch& stretch) {
+  MatrixXd out(model.gain.size(), stretch.bins());
+  for (Index b = 0; b < out.cols(); ++b) out.col(b) = believed_noise(model, stretch, b);
+  return out;
 }
 
-/// Motion with the part of the sensors' noise taken off that the equations show, less of it where
-/// the model does not fit.
+HiddenOscillator hidden_oscillator(const Plant& plant, const ModelEffect& e, const VectorXd& w) {
+  HiddenOscillator out{node_direction(plant, e.place.story, e.place.frame), VectorXcd(w.size())};
+  for (Index b = 0; b < w.size(); ++b) out.passes[b] = passed_on(e, w[b]);
+  return out;
+}
+
+/// The likeliest motion, docs/equations.md (34), with which the gradient is exact. Of a model that
+/// does not fit, less is taken off where it does not: that is not noise.
 MatrixXcd shown_motion(const Model& model, const Stretch& stretch, const Whitened& system) {
   MatrixXcd out = system.calibrated;
   const Index bins = stretch.bins(), n = system.rest.size() / (2 * bins);
   VectorXd level(bins);
   for (Index b = 0; b < bins; ++b) level[b] = system.rest.segment(2 * n * b, 2 * n).squaredNorm();
+  const bool fits = level.mean() < kNearNoise * static_cast<double>(n);
   const Index around = std::max<Index>(kLeastNeighbours, bins / 60);
   for (Index b = 0; b < bins; ++b) {
     const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
     const double local = level.segment(from, to - from).mean() / static_cast<double>(n);
-    const double share = std::min(1.0, 1 / std::max(local, 1e-300));
+    const double share = fits ? 1.0 : std::min(1.0, 1 / std::max(local, 1e-300));
     VectorXcd r(n);
     r.real() = system.rest.segment(2 * n * b, n);
     r.imag() = system.rest.segment(2 * n * b + n, n);
     const std::size_t at = static_cast<std::size_t>(b);
     const VectorXd noise = believed_noise(model, stretch, b);
-    out.col(b) -= share * (noise.asDiagonal() *
-                           (system.operation[at].adjoint() * (system.whitener[at].adjoint() * r)));
+    out.col(b) -= share * (noise.asDiagonal() * (system.operation[at].adjoint() *
+                                                 (system.weights->whitener(b).adjoint() * r)));
   }
   return out;
 }
@@ -146,7 +135,7 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
 }
 
 Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
-                std::vector<LawTrack> tracks, int ratio, const Whitened* weights) {
+                std::vector<LawTrack> tracks, int ratio, std::shared_ptr<const Weights> weights) {
   Whitened out;
   const Index n = plant.equations(), bins = stretch.bins(), elements = plant.element_count();
   out.calibrated = calibrated(model, stretch);
@@ -154,8 +143,9 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
 
   VectorXd theta = model.theta;
   MatrixXcd forces = MatrixXcd::Zero(n, bins);
-  MatrixXd pushed = MatrixXd::Zero(n, n);  // covariance of forces that may be anything
-  std::vector<const ModelEffect*> hidden;  // oscillators, whose motion does not end at rest either
+  MatrixXd pushed;  // covariance of forces that may be anything
+  std::vector<HiddenOscillator> hidden;
+  std::vector<LinearOperation> additions;
   std::size_t law = 0;
   for (const ModelEffect& e : model.effects) {
     if (e.element_law()) {
@@ -175,9 +165,11 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
                 harmonic_bins(e, stretch, record).transpose();
     } else if (e.form == LawForm::broadband) {
       const VectorXd at = node_direction(plant, e.place.story, e.place.frame);
+      if (pushed.size() == 0) pushed = MatrixXd::Zero(n, n);
       pushed += at * at.transpose() / at.squaredNorm();
-    } else if (e.form == LawForm::resonator) {
-      hidden.push_back(&e);
+    } else {
+      additions.emplace_back(plant, model, e);
+      if (e.form == LawForm::resonator) hidden.push_back(hidden_oscillator(plant, e, stretch.w));
     }
   }
 
@@ -188,47 +180,27 @@ Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, 
   const MatrixXd stiffness = act * theta.head(elements).asDiagonal() * sense;
   const MatrixXd damping = act * theta.tail(elements).asDiagonal() * sense;
   out.operation.resize(static_cast<std::size_t>(bins));
-  out.residual.resize(2 * n * bins);
-  if (weights) {
-    out.whitener = weights->whitener;
-    out.ends = weights->ends;
-    out.ends_factor = weights->ends_factor;
-  } else {
-    out.whitener.resize(static_cast<std::size_t>(bins));
-    out.ends.resize(2 * n * bins, kEndTerms * n + 2 * static_cast<Index>(hidden.size()));
-  }
-  const double middle = std::sqrt(stretch.w[0] * stretch.w[bins - 1]);
   for (Index b = 0; b < bins; ++b) {
     const double w = stretch.w[b];
     MatrixXcd& d = out.operation[static_cast<std::size_t>(b)];
     d.resize(n, plant.axis_count());
     d.real() = mass - stiffness / (w * w);
     d.imag() = damping / -w;
-    for (const ModelEffect& effect : model.effects)
-      if (!effect.element_law()) d += linear_operation(plant, model, effect, w);
-    MatrixXcd& whitener = out.whitener[static_cast<std::size_t>(b)];
-    if (!weights) {
-      MatrixXcd covariance = d * believed_noise(model, stretch, b).asDiagonal() * d.adjoint();
-      const double size = kNotBelieved * covariance.trace().real() / static_cast<double>(n);
-      covariance += (size * pushed).cast<Complex>();
-      const Eigen::LLT<MatrixXcd> llt(covariance);
-      if (llt.info() != Eigen::Success) return out;
-      whitener = MatrixXcd::Identity(n, n);
-      llt.matrixL().solveInPlace(whitener);
-      put_ends(plant, whitener, w, w / middle, hidden,
-               out.ends.block(2 * n * b, 0, 2 * n, out.ends.cols()));
-    }
-    put(out.residual, b, whitener * (d * out.calibrated.col(b) + forces.col(b)));
+    for (const LinearOperation& l : additions) l.add_to(w, d);
   }
   if (!weights) {
-    for (Index c = 0; c < out.ends.cols(); ++c)
-      out.ends.col(c) /= std::max(out.ends.col(c).norm(), 1e-300);
-    MatrixXd normal = MatrixXd::Zero(out.ends.cols(), out.ends.cols());
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(out.ends.transpose());
-    normal.diagonal().array() += 1e-12;
-    out.ends_factor.compute(normal);
+    std::vector<MatrixXcd> own =
+        whiteners(out.operation, noise_of(model, stretch), kNotBelieved * pushed);
+    if (own.empty()) return out;
+    weights = std::make_shared<const Weights>(std::move(own), stretch.w, std::move(hidden));
   }
-  out.rest = out.residual - out.ends * out.ends_factor.solve(out.ends.transpose() * out.residual);
+  out.weights = std::move(weights);
+  out.residual.resize(2 * n * bins);
+  for (Index b = 0; b < bins; ++b)
+    put(out.residual, b,
+        out.weights->whitener(b) *
+            (out.operation[static_cast<std::size_t>(b)] * out.calibrated.col(b) + forces.col(b)));
+  out.rest = out.weights->without_ends(out.residual);
   out.misfit = out.rest.squaredNorm();
   if (!std::isfinite(out.misfit)) return out;
   out.motion = shown_motion(model, stretch, out);

@@ -1,16 +1,20 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "estimator/diagnose/free_run.h"
 #include "estimator/diagnose/model.h"
 #include "estimator/diagnose/stretch.h"
+#include "estimator/diagnose/weights.h"
 
 namespace framewatch {
+
+/// Misfit over what noise explains below which the weights are those of the model itself.
+inline constexpr double kNearNoise = 1.5;
 
 /// Whose motion drives the laws of a model: what was measured (equation by equation), or what the
 /// model itself does under the measured motion of the base.
@@ -22,22 +26,19 @@ struct Equivalent {
 };
 
 /// The equations of one stretch under one model, D A + forces, whitened by the noise that the
-/// sensors put into them: docs/equations.md (33). Rows: real parts, then imaginary parts of every
-/// equation, bin by bin.
+/// sensors put into them: docs/equations.md (33).
 struct Whitened {
   bool good = false;
   std::vector<Eigen::MatrixXcd> operation;  ///< D of every bin, equations x axes
-  std::vector<Eigen::MatrixXcd> whitener;   ///< inverse of L of every bin, L L^H = N D S D^H
-  Eigen::MatrixXcd calibrated;              ///< axes x bins: spectra without the model's errors
-  Eigen::MatrixXcd motion;                  ///< the same with less noise where the model fits
-  std::vector<LawTrack> tracks;             ///< of the element laws
-  std::vector<Equivalent> linear;           ///< of the element laws
-  std::vector<Eigen::VectorXcd> force;      ///< of the element laws: spectrum, N
-  Eigen::VectorXd residual;                 ///< before end terms
-  Eigen::MatrixXd ends;                     ///< columns of the end terms
-  Eigen::LDLT<Eigen::MatrixXd> ends_factor;
-  Eigen::VectorXd rest;  ///< residual without what end terms explain
-  double misfit = 0;     ///< sum of squares of `rest`
+  std::shared_ptr<const Weights> weights;
+  Eigen::MatrixXcd calibrated;          ///< axes x bins: spectra without the model's errors
+  Eigen::MatrixXcd motion;              ///< the same with less noise where the model fits
+  std::vector<LawTrack> tracks;         ///< of the element laws
+  std::vector<Equivalent> linear;       ///< of the element laws
+  std::vector<Eigen::VectorXcd> force;  ///< of the element laws: spectrum, N
+  Eigen::VectorXd residual;             ///< before end terms
+  Eigen::VectorXd rest;                 ///< residual without what end terms explain
+  double misfit = 0;                    ///< sum of squares of `rest`
 
   Eigen::Index bins() const { return calibrated.cols(); }
 };
@@ -56,9 +57,10 @@ std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& 
                                                int ratio);
 
 /// tracks: of the model's element laws.
-/// weights: whose whitener and end terms are taken; null: the model's own.
+/// weights: null: the model's own.
 Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
-                std::vector<LawTrack> tracks, int ratio, const Whitened* weights = nullptr);
+                std::vector<LawTrack> tracks, int ratio,
+                std::shared_ptr<const Weights> weights = nullptr);
 /// The same of tracks_of(); not good when there are none.
 Whitened whiten(const Plant& plant, const Model& model, const Stretch& stretch, std::size_t record,
                 Forcing forcing, const Eigen::MatrixXcd& motion, int ratio);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The inner loops of the per-sample path, compiled for several instruction sets. Arithmetic in a
-// fixed order and no fused multiply-add: all of them give the same bits
+// The inner loops of the per-sample path and of diagnose, compiled for several instruction sets.
+// Arithmetic in a fixed order and no fused multiply-add: all of them give the same bits
 // (tests/identify/kernels_test).
 
 namespace framewatch {
@@ -26,6 +26,10 @@ namespace framewatch::kernels {
 inline constexpr int kGuideStep = 16;
 /// Its own length is a multiple of this.
 inline constexpr int kGuidePadding = 8;
+
+/// So many frequencies are worked on at once. A complex number of all of them is their real parts,
+/// then their imaginary parts.
+inline constexpr int kBins = 8;
 
 struct Table {
   /// One step of a floor's row filters: per row, s = gain x - a1 s1 - a2 s2; s2 = s1; s1 = s;
@@ -82,6 +86,15 @@ struct Table {
   /// Infinity fills what is unused.
   void (*replace_sorted)(double* sorted, int size, double* guide, int guide_size, double leaving,
                          double entering);
+
+  /// covariance = sum_a noise_a d_a d_a^H at kBins frequencies, its lower triangle. d: n x axes and
+  /// covariance: n x n complex numbers, row-major; noise: axes x kBins.
+  void (*noise_covariance)(const double* d, const double* noise, int n, int axes,
+                           double* covariance);
+
+  /// In place, n x n complex numbers at kBins frequencies, lower triangles: a Hermitian matrix
+  /// becomes the inverse of its Cholesky factor. Not finite where it is not positive definite.
+  void (*inverse_cholesky)(double* matrix, int n);
 };
 
 /// Null where the machine or the compiler does not have the instruction set.

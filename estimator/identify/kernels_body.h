@@ -5,39 +5,11 @@
 #include <type_traits>
 
 #include "estimator/identify/kernels.h"
-
-#define FRAMEWATCH_INLINE __attribute__((always_inline))
+#include "estimator/identify/kernels_bins.h"
+#include "estimator/identify/kernels_vector.h"
 
 namespace framewatch::kernels {
 namespace {
-
-/// A vector of doubles as g++ and clang offer it on every architecture, at any address.
-template <int kBytes>
-struct VectorOf {
-  typedef double Type __attribute__((vector_size(kBytes)));
-  typedef double Anywhere __attribute__((vector_size(kBytes), aligned(8), may_alias));
-  static constexpr int kLength = kBytes / 8;
-};
-/// As wide as the registers: wider ones the compiler would take apart through memory.
-using Wide = VectorOf<FRAMEWATCH_VECTOR_BYTES>;
-using Lane = VectorOf < FRAMEWATCH_VECTOR_BYTES<8 * kLane ? FRAMEWATCH_VECTOR_BYTES : 8 * kLane>;
-
-template <typename Vector>
-inline FRAMEWATCH_INLINE void load(typename Vector::Type& v, const double* from) {
-  v = *reinterpret_cast<const typename Vector::Anywhere*>(from);
-}
-template <typename Vector>
-inline FRAMEWATCH_INLINE void store(double* to, const typename Vector::Type& v) {
-  *reinterpret_cast<typename Vector::Anywhere*>(to) = v;
-}
-
-/// body(vector, j) for j = begin, ... in steps of a vector; begin and end multiples of a lane.
-template <typename Body>
-inline FRAMEWATCH_INLINE void for_lanes(int begin, int end, Body body) {
-  int j = begin;
-  for (; j + Wide::kLength <= end; j += Wide::kLength) body(Wide{}, j);
-  if (j < end) body(Lane{}, j);
-}
 
 void filter_rows(const double* x, const double* response, int at, const double* gain,
                  const double* a1, const double* a2, double* s1, double* s2, const double* beta,
@@ -414,7 +386,8 @@ void replace_sorted(double* sorted, int size, double* guide, int guide_size, dou
 constexpr Table kTable = {filter_rows,      add_rows,         add,
                           sum_into_front,   partial_cholesky, substitute_back,
                           forward_columns,  backward_columns, multiply_add,
-                          subtract_product, replace_sorted};
+                          subtract_product, replace_sorted,   noise_covariance,
+                          inverse_cholesky};
 
 }  // namespace
 }  // namespace framewatch::kernels

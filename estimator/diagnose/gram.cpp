@@ -1,0 +1,50 @@
+#include "estimator/diagnose/gram.h"
+
+#include "estimator/identify/kernels.h"
+
+namespace framewatch {
+
+using Eigen::Index;
+
+Gram::Gram(Index columns) : columns_(columns) {
+  const int front = static_cast<int>(columns);
+  std::size_t size = 0;
+  for (int i = 0; i < front; ++i)
+    size += static_cast<std::size_t>(padded(front) - packed_row_begin(i));
+  packed_.assign(size, 0.0);
+}
+
+Eigen::Block<RowMatrix> Gram::rows(Index count) {
+  if (rows_.rows() != count) rows_ = RowMatrix::Zero(count, padded(static_cast<int>(columns_)));
+  return rows_.leftCols(columns_);
+}
+
+void Gram::add() {
+  kernels::in_use->add_rows(packed_.data(), packed_.data(), rows_.data(),
+                            static_cast<int>(rows_.rows()), static_cast<int>(columns_),
+                            static_cast<int>(rows_.cols()));
+}
+
+void Gram::add_combined(const RowMatrix& coefficients, const Gram& other) {
+  rows(coefficients.rows());
+  rows_.setZero();
+  kernels::in_use->multiply_add(coefficients.data(), static_cast<int>(coefficients.cols()),
+                                static_cast<int>(coefficients.rows()),
+                                static_cast<int>(coefficients.cols()), other.rows_.data(),
+                                rows_.data(), static_cast<int>(rows_.cols()));
+  add();
+}
+
+Eigen::MatrixXd Gram::sum() const {
+  Eigen::MatrixXd out(columns_, columns_);
+  const int front = static_cast<int>(columns_), stride = padded(front);
+  const double* row = packed_.data();
+  for (int i = 0; i < front; ++i) {
+    const int first = packed_row_begin(i);
+    for (int j = i; j < front; ++j) out(i, j) = out(j, i) = row[j - first];
+    row += stride - first;
+  }
+  return out;
+}
+
+}  // namespace framewatch

@@ -1,0 +1,99 @@
+#include "estimator/diagnose/linearised.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <Eigen/Cholesky>
+
+namespace framewatch {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+void put_rows(const Linearised& at, std::size_t record, const std::vector<Index>& kept, Index bin,
+              Eigen::Block<RowMatrix> out) {
+  const Whitened& system = at.systems[record];
+  const Index rows = out.rows(), count = static_cast<Index>(kept.size());
+  for (Index i = 0; i < rows; ++i) {
+    const double* from = &at.columns[record](rows * bin + i, 0);
+    double* to = &out(i, 0);
+    for (Index u = 0; u < count; ++u) to[u] = from[kept[static_cast<std::size_t>(u)]];
+  }
+  system.weights->put_ends(bin, out.middleCols(count, system.weights->ends()));
+  out.rightCols(1) = system.residual.segment(rows * bin, rows);
+}
+
+MatrixXd square_of(const Linearised& at, std::size_t record, const std::vector<Index>& kept) {
+  const Whitened& system = at.systems[record];
+  Gram gram(static_cast<Index>(kept.size()) + system.weights->ends() + 1);
+  for (Index b = 0; b < system.bins(); ++b) {
+    put_rows(at, record, kept, b, gram.rows(2 * system.weights->equations()));
+    gram.add();
+  }
+  return gram.sum();
+}
+
+NormalEquations without_ends(const MatrixXd& square, Index ends) {
+  const Index count = square.cols() - ends - 1;
+  MatrixXd inner = square.block(count, count, ends, ends);
+  inner.diagonal().array() += 1e-9;
+  const Eigen::LDLT<MatrixXd> factor(inner);
+  const MatrixXd cross = square.block(0, count, count, ends);
+  const VectorXd last = square.block(count, count + ends, ends, 1);
+  const VectorXd solved = factor.solve(last);
+  NormalEquations out;
+  out.normal = square.topLeftCorner(count, count) - cross * factor.solve(cross.transpose());
+  out.gradient = square.block(0, count + ends, count, 1) - cross * solved;
+  out.misfit = square(count + ends, count + ends) - last.dot(solved);
+  return out;
+}
+
+VectorXd bounded_step(const MatrixXd& normal, const VectorXd& right, const Model& model,
+                      const std::vector<Unknown>& unknowns) {
+  VectorXd step = normal.ldlt().solve(right);
+  std::vector<char> held(unknowns.size(), 0);
+  VectorXd to_bound = VectorXd::Zero(right.size());
+  for (bool more = step.allFinite(); more;) {
+    more = false;
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      const Unknown& u = unknowns[i];
+      const auto at = static_cast<Index>(i);
+      const double from = value_of(model, u), to = from + step[at];
+      if (held[i] || (to >= u.low && to <= u.high)) continue;
+      held[i] = true;
+      to_bound[at] = std::clamp(to, u.low, u.high) - from;
+      more = true;
+    }
+    if (!more) break;
+    MatrixXd rest = normal;
+    VectorXd left = right - normal * to_bound;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      if (!held[i]) continue;
+      const auto at = static_cast<Index>(i);
+      rest.row(at).setZero();
+      rest.col(at).setZero();
+      rest(at, at) = 1;
+      left[at] = to_bound[at];
+    }
+    step = rest.ldlt().solve(left);
+    more = step.allFinite();
+  }
+  return step;
+}
+
+NormalEquations normal_equations(const Linearised& at) {
+  std::vector<Index> all(at.unknowns.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  const auto count = static_cast<Index>(all.size());
+  NormalEquations out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0};
+  for (std::size_t r = 0; r < at.systems.size(); ++r) {
+    const NormalEquations one = without_ends(square_of(at, r, all), at.systems[r].weights->ends());
+    out.normal += one.normal;
+    out.gradient += one.gradient;
+    out.misfit += one.misfit;
+  }
+  return out;
+}
+
+}  // namespace framewatch
