@@ -7,7 +7,6 @@ namespace framewatch {
 namespace {
 
 constexpr double kStiffer[] = {1, 1.6, 2.5, 4}, kNarrower[] = {1, 0.9, 0.8};
-constexpr double kLeastDamping = 0.2;  ///< of the design
 constexpr double kFits = 1.5;  ///< misfit over the expected, below which a start is near enough
 
 bool ends_with_gap(const Model& model) {
@@ -17,24 +16,14 @@ bool ends_with_gap(const Model& model) {
          form == LawForm::gap_both;
 }
 
-Model dissipating(const Plant& plant, const Model& model) {
-  Model out = model;
-  const auto elements = plant.element_count();
-  out.theta.tail(elements) =
-      model.theta.tail(elements).cwiseMax(kLeastDamping * plant.design.tail(elements));
-  return out;
-}
-
 }  // namespace
 
 FitResult begin_run(const Fitter& fitter, FitResult fit) {
+  if (!ends_with_gap(fit.model) || fit.total_misfit() < kFits * fitter.expected(fit.model))
+    return fit;
   FitOptions run;
   run.forcing = forcing_of(fit.model);
   run.max_steps = 0;
-  if (run.forcing == Forcing::simulated && !fitter.fit(fit.model, fit.motion, run).good)
-    fit.model = dissipating(fitter.plant(), fit.model);
-  if (!ends_with_gap(fit.model) || fit.total_misfit() < kFits * fitter.expected(fit.model))
-    return fit;
   FitResult best;
   for (const double stiffer : kStiffer)
     for (const double narrower : kNarrower) {

@@ -7,75 +7,23 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/free_run.h"
-#include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"
-#include "estimator/structure/matrices.h"
-#include "tests/support/noisy_stretch.h"
-#include "tests/support/paper_buildings.h"
+#include "tests/diagnose/small_building.h"
 
 namespace framewatch {
 namespace {
 
-constexpr double kRate_hz = 50;
-constexpr double kNoise_mps2 = 0.01;
-constexpr double kSeconds = 24;
+using test::Small;
 
-/// One story of one bay, small enough for sanitizers: x-parallel frames y1, y2, y-parallel x1, x2.
-struct Small {
-  Structure structure = one_story();
-  ParameterTable table{structure};
-  std::vector<SensorAxis> axes;
-  Eigen::VectorXd truth, design;
-
-  Small() {
-    truth = Eigen::VectorXd::Zero(table.size());
-    const double frames[] = {9e6, 6e6, 8e6, 5e6};
-    for (int f = 0; f < 4; ++f) truth[table.frame_stiffness(1, f)] = frames[f];
-    truth[table.panel_stiffness(1, 0)] = 2e6;
-    truth = with_proportional_damping(structure, table, truth, 0.02);
-    design = 1.05 * truth;
-    for (int f = 0; f < 4; ++f)
-      axes.push_back({structure.frame_name(f), 1, structure.direction(f), f});
-    axes.push_back({"base-x", 0, Direction::x, -1});
-    axes.push_back({"base-y", 0, Direction::y, -1});
-  }
-
-  static Structure one_story() {
-    Structure s = test::table1();
-    s.stories = 1;
-    s.story_height.resize(1);
-    s.node_mass.resize(static_cast<std::size_t>(s.nodes()));
-    return s;
-  }
-
-  /// What the axes read with these effects.
-  Eigen::MatrixXd record(const std::vector<Effect>& effects, std::uint64_t seed) const {
-    ResponseStream stream(structure, table, truth, test::oblique_motion(seed), {kRate_hz}, {}, {},
-                          effects);
-    Random random(seed + 1000);
-    Eigen::MatrixXd out(static_cast<Eigen::Index>(kSeconds * kRate_hz), 6);
-    for (Eigen::Index i = 0; i < out.rows(); ++i) {
-      const Eigen::VectorXd& exact = stream.next();
-      for (Eigen::Index a = 0; a < 6; ++a) out(i, a) = exact[a] + kNoise_mps2 * random.normal();
-    }
-    return out;
-  }
-
-  Diagnosis diagnosis_of(const std::vector<Eigen::MatrixXd>& records) const {
-    const auto plant = make_plant(structure, axes, design, kRate_hz);
-    const std::vector<double> hz = natural_frequencies_hz(structure, table, design);
-    std::vector<Stretch> stretches;
-    for (const Eigen::MatrixXd& record : records)
-      stretches.push_back(make_stretch(record, kRate_hz, Eigen::VectorXd::Constant(6, kNoise_mps2),
-                                       {0.4 * hz.front(), 1.6 * hz.back()}));
-    return diagnose(*plant, stretches, {});
-  }
-};
+Diagnosis diagnosis_of(const Small& small, const std::vector<Eigen::MatrixXd>& records) {
+  const Plant plant = small.plant();
+  return diagnose(plant, small.stretches(records), {});
+}
 
 TEST(Diagnose, NothingHiddenIsAdequate) {
   constexpr double kLow = 0.85, kHigh = 1.15;
   const Small small;
-  const Diagnosis d = small.diagnosis_of({small.record({}, 1), small.record({}, 2)});
+  const Diagnosis d = diagnosis_of(small, {small.record({}, 1), small.record({}, 2)});
   EXPECT_EQ(d.verdict, Verdict::adequate);
   EXPECT_TRUE(d.effects.empty());
   EXPECT_GT(d.ratio_before, kLow);
@@ -92,7 +40,7 @@ TEST(Diagnose, CubicFrameIsPlacedNamedAndSized) {
   place.frame = 2;
   Effect cubic = make_effect(EffectKind::cubic_stiffness, place);
   cubic.set("k3_npm3", 8e10);
-  const Diagnosis d = small.diagnosis_of({small.record({cubic}, 1), small.record({cubic}, 2)});
+  const Diagnosis d = diagnosis_of(small, {small.record({cubic}, 1), small.record({cubic}, 2)});
   EXPECT_EQ(d.verdict, Verdict::explained);
   ASSERT_EQ(d.effects.size(), 1U);
   EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::cubic_stiffness);
@@ -106,7 +54,7 @@ TEST(Diagnose, GainOfOneChannelIsNotPhysics) {
   const Small small;
   std::vector<Eigen::MatrixXd> records{small.record({}, 1), small.record({}, 2)};
   for (Eigen::MatrixXd& record : records) record.col(1) *= 1.08;
-  const Diagnosis d = small.diagnosis_of(records);
+  const Diagnosis d = diagnosis_of(small, records);
   ASSERT_EQ(d.effects.size(), 1U);
   EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::gain_error);
   EXPECT_EQ(d.effects[0].chosen.place.channel, 1);
@@ -118,7 +66,7 @@ TEST(Diagnose, RecordsOfDifferentBuildingsAreSaidToBe) {
   Small other;
   for (int f = 0; f < 4; ++f)
     other.truth[other.table.frame_stiffness(1, f)] *= f % 2 == 0 ? 1.4 : 0.75;
-  const Diagnosis d = small.diagnosis_of({small.record({}, 1), other.record({}, 2)});
+  const Diagnosis d = diagnosis_of(small, {small.record({}, 1), other.record({}, 2)});
   EXPECT_EQ(d.verdict, Verdict::unexplained);
   EXPECT_TRUE(d.effects.empty());
   EXPECT_NE(d.reason.find("different buildings"), std::string::npos) << d.reason;
@@ -134,7 +82,7 @@ TEST(Diagnose, ARecordWithoutCommonTimeIsNotNamedAsPhysics) {
     const Eigen::MatrixXd late = record.block(0, 0, rows - kLate, 2);
     record.block(kLate, 0, rows - kLate, 2) = late;
   }
-  const Diagnosis d = small.diagnosis_of(records);
+  const Diagnosis d = diagnosis_of(small, records);
   for (const FoundEffect& f : d.effects) EXPECT_EQ(f.chosen.kind, EffectKind::time_shift);
   if (d.effects.size() < 2) {
     EXPECT_NE(d.verdict, Verdict::explained);
@@ -173,7 +121,7 @@ TEST(Stretch, BandGoesToTimeAndBack) {
   Random random(3);
   Eigen::MatrixXd a(1001, 1);
   for (Eigen::Index i = 0; i < a.rows(); ++i) a(i, 0) = random.normal();
-  const Stretch s = make_stretch(a, kRate_hz, Eigen::VectorXd::Constant(1, 1.0), {1, 10});
+  const Stretch s = make_stretch(a, test::kRate_hz, Eigen::VectorXd::Constant(1, 1.0), {1, 10});
   const Eigen::VectorXcd bins = s.spectrum.row(0).transpose();
   EXPECT_LT((band_of(signal_of(bins, s, 4), s, 4) - bins).norm(), 1e-9 * bins.norm());
 }
