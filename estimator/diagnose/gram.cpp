@@ -6,6 +6,13 @@ namespace framewatch {
 
 using Eigen::Index;
 
+void multiply(const RowMatrix& a, const RowMatrix& b, RowMatrix& out) {
+  out.setZero(a.rows(), b.cols());
+  kernels::in_use->multiply_add(a.data(), static_cast<int>(a.cols()), static_cast<int>(a.rows()),
+                                static_cast<int>(b.rows()), b.data(), out.data(),
+                                static_cast<int>(b.cols()));
+}
+
 Gram::Gram(Index columns) : columns_(columns) {
   const int front = static_cast<int>(columns);
   std::size_t size = 0;
@@ -23,16 +30,6 @@ void Gram::add() {
   kernels::in_use->add_rows(packed_.data(), packed_.data(), rows_.data(),
                             static_cast<int>(rows_.rows()), static_cast<int>(columns_),
                             static_cast<int>(rows_.cols()));
-}
-
-void Gram::add_combined(const RowMatrix& coefficients, const Gram& other) {
-  rows(coefficients.rows());
-  rows_.setZero();
-  kernels::in_use->multiply_add(coefficients.data(), static_cast<int>(coefficients.cols()),
-                                static_cast<int>(coefficients.rows()),
-                                static_cast<int>(coefficients.cols()), other.rows_.data(),
-                                rows_.data(), static_cast<int>(rows_.cols()));
-  add();
 }
 
 Eigen::MatrixXd Gram::sum() const {

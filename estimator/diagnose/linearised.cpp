@@ -20,32 +20,40 @@ void put_rows(const Linearised& at, std::size_t record, const std::vector<Index>
     double* to = &out(i, 0);
     for (Index u = 0; u < count; ++u) to[u] = from[kept[static_cast<std::size_t>(u)]];
   }
-  system.weights->put_ends(bin, out.middleCols(count, system.weights->ends()));
   out.rightCols(1) = system.residual.segment(rows * bin, rows);
 }
 
 MatrixXd square_of(const Linearised& at, std::size_t record, const std::vector<Index>& kept) {
   const Whitened& system = at.systems[record];
-  Gram gram(static_cast<Index>(kept.size()) + system.weights->ends() + 1);
+  const Weights& weights = *system.weights;
+  const Index own = static_cast<Index>(kept.size()) + 1, ends = weights.ends();
+  Gram gram(own);
+  AlongEnds along(weights);
   for (Index b = 0; b < system.bins(); ++b) {
-    put_rows(at, record, kept, b, gram.rows(2 * system.weights->equations()));
+    put_rows(at, record, kept, b, gram.rows(2 * weights.equations()));
     gram.add();
+    along.add(b, gram.written());
   }
-  return gram.sum();
+  MatrixXd out(own + ends, own + ends);
+  out.topLeftCorner(own, own) = gram.sum();
+  out.bottomLeftCorner(ends, own) = along.sum().leftCols(own);
+  out.topRightCorner(own, ends) = along.sum().leftCols(own).transpose();
+  out.bottomRightCorner(ends, ends) = weights.ends_square();
+  return out;
 }
 
 NormalEquations without_ends(const MatrixXd& square, Index ends) {
   const Index count = square.cols() - ends - 1;
-  MatrixXd inner = square.block(count, count, ends, ends);
+  MatrixXd inner = square.bottomRightCorner(ends, ends);
   inner.diagonal().array() += 1e-9;
   const Eigen::LDLT<MatrixXd> factor(inner);
-  const MatrixXd cross = square.block(0, count, count, ends);
-  const VectorXd last = square.block(count, count + ends, ends, 1);
+  const MatrixXd cross = square.topRightCorner(count, ends);
+  const VectorXd last = square.row(count).tail(ends).transpose();
   const VectorXd solved = factor.solve(last);
   NormalEquations out;
   out.normal = square.topLeftCorner(count, count) - cross * factor.solve(cross.transpose());
-  out.gradient = square.block(0, count + ends, count, 1) - cross * solved;
-  out.misfit = square(count + ends, count + ends) - last.dot(solved);
+  out.gradient = square.col(count).head(count) - cross * solved;
+  out.misfit = square(count, count) - last.dot(solved);
   return out;
 }
 

@@ -51,10 +51,10 @@ RowMatrix columns_of(const Plant& plant, const Model& model, const Stretch& stre
                      std::size_t record, const Whitened& system,
                      const std::vector<Unknown>& unknowns, int ratio, bool through_run);
 
-/// Rows of one bin: some unknowns, the end terms and the residual.
+/// Rows of one bin: some unknowns and the residual.
 void put_rows(const Linearised& at, std::size_t record, const std::vector<Eigen::Index>& kept,
               Eigen::Index bin, Eigen::Block<RowMatrix> out);
-/// Squares and products of all of them.
+/// Squares and products of some unknowns, the residual and the end terms, in this order.
 Eigen::MatrixXd square_of(const Linearised& at, std::size_t record,
                           const std::vector<Eigen::Index>& kept);
 

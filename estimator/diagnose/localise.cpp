@@ -31,7 +31,7 @@ std::vector<Index> moving(const Linearised& at, bool tolerances) {
   return out;
 }
 
-/// The square of some unknowns, end terms and residual without what lies along the directions of
+/// The square of some unknowns, residual and end terms without what lies along the directions of
 /// suspects, of each list.
 std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std::size_t record,
                               const std::vector<Index>& kept,
@@ -39,7 +39,9 @@ std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std:
   const Whitened& system = at.systems[record];
   const Index n = system.weights->equations();
   std::vector<Gram> along(lists.size(), Gram(square.cols()));
-  Gram here(square.cols());
+  const Index own = static_cast<Index>(kept.size()) + 1;
+  Gram here(own);
+  RowMatrix part;
   for (Index b = 0; b < system.bins(); ++b) {
     put_rows(at, record, kept, b, here.rows(2 * n));
     for (std::size_t i = 0; i < lists.size(); ++i) {
@@ -47,7 +49,11 @@ std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std:
       RowMatrix directions(2 * basis.cols(), 2 * n);
       directions << basis.real().transpose(), basis.imag().transpose(), -basis.imag().transpose(),
           basis.real().transpose();
-      along[i].add_combined(directions, here);
+      auto rows = along[i].rows(directions.rows());
+      multiply(directions, here.written(), part);
+      rows.leftCols(own) = part.leftCols(own);
+      rows.rightCols(rows.cols() - own) = system.weights->times_ends(b, directions);
+      along[i].add();
     }
   }
   std::vector<MatrixXd> out;

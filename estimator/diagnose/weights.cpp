@@ -4,14 +4,13 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/structure/complex.h"
+#include "estimator/identify/kernels.h"
 
 namespace framewatch {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
-using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr Index kEndTerms = 4;
@@ -23,59 +22,102 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
       hidden_(std::move(hidden)) {
   const Index n = equations();
   scale_ = VectorXd::Ones(kEndTerms * n + 2 * static_cast<Index>(hidden_.size()));
-  Gram gram(ends());
+  RowMatrix sum = RowMatrix::Zero(ends(), ends());
+  RowMatrix forces, transposed, square, along, turned;
   for (Index b = 0; b < bins(); ++b) {
-    put_ends(b, gram.rows(2 * n));
-    gram.add();
+    put_unit_forces(b, false, forces);
+    put_unit_forces(b, true, transposed);
+    multiply(transposed, forces, square);
+    along.setZero(ends(), square.cols());
+    add_shares(b, square, along);
+    turned = along.leftCols(2 * n).transpose();
+    add_shares(b, turned, sum);
   }
-  MatrixXd square = gram.sum();
-  scale_ = square.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  square = scale_.asDiagonal() * square * scale_.asDiagonal();
-  square.diagonal().array() += 1e-12;
-  factor_.compute(square);
+  scale_ = sum.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  square_ = scale_.asDiagonal() * sum * scale_.asDiagonal();
+  MatrixXd regular = square_;
+  regular.diagonal().array() += 1e-12;
+  factor_.compute(regular);
 }
 
-void Weights::put_ends(Index bin, Eigen::Ref<RowMatrix, 0, Eigen::OuterStride<>> out) const {
-  const MatrixXcd& whitener = this->whitener(bin);
-  const Index n = whitener.rows();
+void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const {
+  const MatrixXcd& w = whitener(bin);
+  const Index n = w.rows();
+  out.setZero(2 * n, padded(static_cast<int>(2 * n)));
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j <= i; ++j) {
+      const Index row = transposed ? j : i, column = transposed ? i : j;
+      out(row, column) = w(i, j).real();
+      out(n + row, n + column) = -w(i, j).real();
+      out(n + row, column) = out(row, n + column) = w(i, j).imag();
+    }
+}
+
+/// With r the relative frequency the terms are r^-2, -j/r, 1 and j r at every equation.
+void Weights::add_shares(Index bin, const RowMatrix& along, RowMatrix& sum) const {
+  const Index n = equations();
   const double r = relative_[bin];
-  const auto re = whitener.real();
-  const auto im = whitener.imag();
-  out.topRows(n).leftCols(n) = re / (r * r);
-  out.bottomRows(n).leftCols(n) = im / (r * r);
-  out.topRows(n).middleCols(n, n) = im / r;  // 1/(j r)
-  out.bottomRows(n).middleCols(n, n) = -re / r;
-  out.topRows(n).middleCols(2 * n, n) = re;
-  out.bottomRows(n).middleCols(2 * n, n) = im;
-  out.topRows(n).middleCols(3 * n, n) = -im * r;
-  out.bottomRows(n).middleCols(3 * n, n) = re * r;
-  Index column = kEndTerms * n;
+  const double share[] = {1 / (r * r), 1 / r, 1, -r};
+  for (Index term = 0; term < kEndTerms; ++term)
+    for (Index i = 0; i < n; ++i)
+      sum.row(term * n + i) += (share[term] * scale_[term * n + i]) * along.row(term % 2 * n + i);
+  Index row = kEndTerms * n;
   for (const HiddenOscillator& h : hidden_) {
-    const VectorXcd at = whitener * (h.direction * h.passes[bin]);
-    out.col(column).head(n) = at.real();
-    out.col(column).tail(n) = at.imag();
-    out.col(column + 1).head(n) = -at.imag() * r;
-    out.col(column + 1).tail(n) = at.real() * r;
-    column += 2;
+    const double re = h.passes[bin].real(), im = h.passes[bin].imag();
+    const Eigen::RowVectorXd x = h.direction.transpose() * along.topRows(n),
+                             y = h.direction.transpose() * along.middleRows(n, n);
+    sum.row(row) += scale_[row] * (re * x - im * y);
+    sum.row(row + 1) -= scale_[row + 1] * r * (im * x + re * y);
+    row += 2;
   }
-  out.array().rowwise() *= scale_.transpose().array();
+}
+
+VectorXd Weights::shared(Index bin, const VectorXd& size) const {
+  const Index n = equations();
+  const double r = relative_[bin];
+  const auto of = [&](Index term) { return size.segment(term * n, n); };
+  VectorXd out(2 * n);
+  out.head(n) = of(0) / (r * r) + of(2);
+  out.tail(n) = of(1) / r - r * of(3);
+  Index row = kEndTerms * n;
+  for (const HiddenOscillator& h : hidden_) {
+    const double re = h.passes[bin].real(), im = h.passes[bin].imag();
+    out.head(n) += (re * size[row] - r * im * size[row + 1]) * h.direction;
+    out.tail(n) -= (im * size[row] + r * re * size[row + 1]) * h.direction;
+    row += 2;
+  }
+  return out;
+}
+
+RowMatrix Weights::times_ends(Index bin, const RowMatrix& left) const {
+  RowMatrix forces, along, out = RowMatrix::Zero(ends(), left.rows());
+  put_unit_forces(bin, false, forces);
+  multiply(left, forces, along);
+  add_shares(bin, along.transpose(), out);
+  return out.transpose();
 }
 
 VectorXd Weights::without_ends(const VectorXd& rows) const {
   const Index n = equations();
-  RowMatrix here(2 * n, ends());
-  VectorXd along = VectorXd::Zero(ends());
+  RowMatrix forces, sum = RowMatrix::Zero(ends(), 1);
   for (Index b = 0; b < bins(); ++b) {
-    put_ends(b, here);
-    along.noalias() += here.transpose() * rows.segment(2 * n * b, 2 * n);
+    put_unit_forces(b, true, forces);
+    add_shares(b, forces.leftCols(2 * n) * rows.segment(2 * n * b, 2 * n), sum);
   }
-  const VectorXd size = factor_.solve(along);
+  const VectorXd size = scale_.cwiseProduct(VectorXd(factor_.solve(sum)));
   VectorXd out = rows;
   for (Index b = 0; b < bins(); ++b) {
-    put_ends(b, here);
-    out.segment(2 * n * b, 2 * n).noalias() -= here * size;
+    put_unit_forces(b, false, forces);
+    out.segment(2 * n * b, 2 * n).noalias() -= forces.leftCols(2 * n) * shared(b, size);
   }
   return out;
+}
+
+void AlongEnds::add(Index bin, const RowMatrix& rows) {
+  if (sum_.size() == 0) sum_ = RowMatrix::Zero(weights_.ends(), rows.cols());
+  weights_.put_unit_forces(bin, true, forces_);
+  multiply(forces_, rows, along_);
+  weights_.add_shares(bin, along_, sum_);
 }
 
 }  // namespace framewatch

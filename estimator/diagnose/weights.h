@@ -31,18 +31,46 @@ class Weights {
     return whitener_[static_cast<std::size_t>(bin)];
   }
 
+  /// How many end terms. E: their columns, rows x ends(), each of length one.
   Eigen::Index ends() const { return scale_.size(); }
-  /// Columns of the end terms at one bin: its rows x ends().
-  void put_ends(Eigen::Index bin, Eigen::Ref<RowMatrix, 0, Eigen::OuterStride<>> out) const;
+  /// E'E.
+  const Eigen::MatrixXd& ends_square() const { return square_; }
+  /// left E of one bin; left: any x the bin's rows.
+  RowMatrix times_ends(Eigen::Index bin, const RowMatrix& left) const;
   /// rows - E (E'E)^-1 E' rows.
   Eigen::VectorXd without_ends(const Eigen::VectorXd& rows) const;
 
+  /// What forces of unit size do to the rows of one bin, X: n of them, then n of size -j. n: the
+  /// equations. transposed: of X'; padded with zeros to whole lanes.
+  void put_unit_forces(Eigen::Index bin, bool transposed, RowMatrix& out) const;
+  /// sum += F along, E being X F' in a bin. along: the 2 n rows of X' times anything.
+  void add_shares(Eigen::Index bin, const RowMatrix& along, RowMatrix& sum) const;
+
  private:
+  /// F' size, sizes of the unscaled terms.
+  Eigen::VectorXd shared(Eigen::Index bin, const Eigen::VectorXd& size) const;
+
   std::vector<Eigen::MatrixXcd> whitener_;
   Eigen::VectorXd relative_;  ///< frequency of every bin over the band's middle
   std::vector<HiddenOscillator> hidden_;
   Eigen::VectorXd scale_;  ///< of the columns
+  Eigen::MatrixXd square_;
   Eigen::LDLT<Eigen::MatrixXd> factor_;
+};
+
+/// E' rows, summed over bins.
+class AlongEnds {
+ public:
+  explicit AlongEnds(const Weights& weights) : weights_(weights) {}
+
+  /// rows of one bin, always of as many columns, a multiple of kLane.
+  void add(Eigen::Index bin, const RowMatrix& rows);
+  /// ends x columns.
+  const RowMatrix& sum() const { return sum_; }
+
+ private:
+  const Weights& weights_;
+  RowMatrix forces_, along_, sum_;
 };
 
 }  // namespace framewatch

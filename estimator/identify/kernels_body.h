@@ -241,19 +241,29 @@ inline FRAMEWATCH_INLINE void backward_some(const double* factor, int stride, in
   }
 }
 
+template <typename Vector, int kRows, int kCount>
+inline FRAMEWATCH_INLINE void multiply_rows(const double* a, int a_stride, int inner,
+                                            const double* b, double* out, int columns) {
+  typename Vector::Type sum[kRows][kCount], part;
+  for (int k = 0; k < kRows; ++k) load_some<Vector, kCount>(sum[k], out + k * columns);
+  for (int j = 0; j < inner; ++j)
+    for (int c = 0; c < kCount; ++c) {
+      load<Vector>(part, b + j * columns + c * Vector::kLength);
+      for (int k = 0; k < kRows; ++k) sum[k][c] += a[k * a_stride + j] * part;
+    }
+  for (int k = 0; k < kRows; ++k) store_some<Vector, kCount>(out + k * columns, sum[k]);
+}
+
 template <typename Vector, int kCount>
 inline FRAMEWATCH_INLINE void multiply_some(const double* a, int a_stride, int rows, int inner,
                                             const double* b, double* out, int columns) {
-  typename Vector::Type sum[kCount], part[kCount];
-  for (int r = 0; r < rows; ++r) {
-    load_some<Vector, kCount>(sum, out + r * columns);
-    for (int j = 0; j < inner; ++j) {
-      const double f = a[r * a_stride + j];
-      load_some<Vector, kCount>(part, b + j * columns);
-      for (int c = 0; c < kCount; ++c) sum[c] += f * part[c];
-    }
-    store_some<Vector, kCount>(out + r * columns, sum);
-  }
+  int r = 0;
+  for (; r + 2 <= rows; r += 2)
+    multiply_rows<Vector, 2, kCount>(a + r * a_stride, a_stride, inner, b, out + r * columns,
+                                     columns);
+  if (r < rows)
+    multiply_rows<Vector, 1, kCount>(a + r * a_stride, a_stride, inner, b, out + r * columns,
+                                     columns);
 }
 
 /// body(vector, count, column) for as many vectors of columns as stay in registers at a time.
@@ -265,6 +275,8 @@ inline FRAMEWATCH_INLINE void for_columns(int columns, Body body) {
   for (; c + kWide <= columns; c += kWide) body(Wide{}, std::integral_constant<int, kAtOnce>{}, c);
   for (; c + kNarrow <= columns; c += kNarrow)
     body(Lane{}, std::integral_constant<int, kAtOnce>{}, c);
+  for (; c + 3 * Lane::kLength <= columns; c += 3 * Lane::kLength)
+    body(Lane{}, std::integral_constant<int, 3>{}, c);
   for (; c < columns; c += Lane::kLength) body(Lane{}, std::integral_constant<int, 1>{}, c);
 }
 
