@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kSharp = 20;          ///< exponents above: exactly bilinear
 constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
+constexpr double kNothing = 1e-12;     ///< of z: a loop that has closed goes no further
 
 double power_of(double x, double p) {
   return p == 1 ? x : p == 2 ? x * x : p == 3 ? x * x * x : std::pow(x, p);
@@ -46,7 +47,9 @@ double LawMotion::advanced(double d) const {
   const double h = travel / steps;
   double z = z_;
   for (int i = 0; i < steps; ++i) {
-    const double middle = z + 0.5 * h * slope(z);
+    const double at_start = slope(z);
+    if (z * direction > 0 && at_start * h * (steps - i) * direction < kNothing) break;
+    const double middle = z + 0.5 * h * at_start;
     z = std::clamp(z + h * slope(middle), -1.0, 1.0);
   }
   return z;

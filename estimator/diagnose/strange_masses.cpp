@@ -15,7 +15,8 @@ std::vector<Trial> strange_masses(const TrialContext& context, const Located& lo
   if (strange < kStrangeMasses) return {};
   std::vector<Localisation> places;
   for (const Localisation& l : located.once) {
-    if (l.suspects.front().kind != Suspect::Kind::crossing) continue;
+    const Suspect::Kind kind = l.suspects.front().kind;
+    if (kind != Suspect::Kind::crossing && kind != Suspect::Kind::link) continue;
     places.push_back(l);
     places.back().model = model;
     places.back().motion = context.now.motion;

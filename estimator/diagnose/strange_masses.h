@@ -7,11 +7,12 @@
 
 namespace framewatch {
 
-/// Cost of masses off what is declared, above what chance has, that one mass more has to explain.
+/// Cost of masses off what is declared, above what chance has, that one effect has to explain.
 constexpr double kStrangeMasses = 15;
 
 /// A model may fit because masses have been taken farther from what is declared than chance takes
-/// them: one extra mass at every node, those that do away with it, best first.
+/// them: one extra mass at every node, one spring or damper between floors, those that do away with
+/// it, best first.
 std::vector<Trial> strange_masses(const TrialContext& context, const Located& located);
 
 }  // namespace framewatch
