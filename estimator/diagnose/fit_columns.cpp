@@ -99,22 +99,18 @@ void put_linear_columns(const Plant& plant, const Model& model, const Stretch& s
     re.row(u) = one.size.real().transpose();
     im.row(u) = one.size.imag().transpose();
   }
-  // Rows: real parts, then imaginary parts; columns: elements, axes, coordinates.
-  const Index columns = padded(static_cast<int>(elements + axes + n));
-  RowMatrix along = RowMatrix::Zero(2 * n, columns), whitened(2 * n, columns),
-            whitener(2 * n, 2 * n);
-  along.topLeftCorner(n, elements) = plant.building.act;
-  along.block(0, elements + axes, n, n).setIdentity();
+  // Columns: elements, axes, coordinates. Rows: shares of unit forces, real, then of those of size
+  // -j.
+  RowMatrix acting_along = RowMatrix::Zero(2 * n, padded(static_cast<int>(elements + axes + n)));
+  acting_along.topLeftCorner(n, elements) = plant.building.act;
+  acting_along.block(0, elements + axes, n, n).setIdentity();
+  RowMatrix forces, whitened;
   for (Index b = 0; b < system.bins(); ++b) {
     const MatrixXcd& operation = system.operation[static_cast<std::size_t>(b)];
-    const MatrixXcd& own = system.weights->whitener(b);
-    along.block(0, elements, n, axes) = operation.real();
-    along.block(n, elements, n, axes) = operation.imag();
-    whitener << own.real(), -own.imag(), own.imag(), own.real();
-    whitened.setZero();
-    kernels::in_use->multiply_add(whitener.data(), static_cast<int>(2 * n), static_cast<int>(2 * n),
-                                  static_cast<int>(2 * n), along.data(), whitened.data(),
-                                  static_cast<int>(columns));
+    acting_along.block(0, elements, n, axes) = operation.real();
+    acting_along.block(n, elements, n, axes) = -operation.imag();
+    system.weights->put_unit_forces(b, false, forces);
+    multiply(forces, acting_along, whitened);
     for (Index i = 0; i < n; ++i) {
       const double *x = &whitened(i, 0), *y = &whitened(n + i, 0);
       double *real = &out(2 * n * b + i, 0), *imag = &out(2 * n * b + n + i, 0);
