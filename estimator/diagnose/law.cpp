@@ -9,6 +9,7 @@ namespace {
 constexpr double kSharp = 20;          ///< exponents above: exactly bilinear
 constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
 constexpr double kNothing = 1e-12;     ///< of z: a loop that has closed goes no further
+constexpr double kMostSlides = 5000;
 
 double power_of(double x, double p) {
   return p == 1 ? x : p == 2 ? x * x : p == 3 ? x * x * x : std::pow(x, p);
@@ -43,14 +44,13 @@ double LawMotion::advanced(double d) const {
         pinched ? 1 - values_.p[4] * std::exp(-(z / values_.p[5]) * (z / values_.p[5])) : 1.0;
     return slip * hysteresis_slope(z, direction, n, beta);
   };
-  const int steps = 1 + static_cast<int>(std::min(50.0, std::abs(travel) / kLongestSlide));
-  const double h = travel / steps;
+  const double longest = std::max(kLongestSlide, std::abs(travel) / kMostSlides);
   double z = z_;
-  for (int i = 0; i < steps; ++i) {
+  for (double left = std::abs(travel); left > 0; left -= longest) {
     const double at_start = slope(z);
-    if (z * direction > 0 && at_start * h * (steps - i) * direction < kNothing) break;
-    const double middle = z + 0.5 * h * at_start;
-    z = std::clamp(z + h * slope(middle), -1.0, 1.0);
+    if (z * direction > 0 && at_start * left < kNothing) break;
+    const double h = direction * std::min(left, longest);
+    z = std::clamp(z + h * slope(z + 0.5 * h * at_start), -1.0, 1.0);
   }
   return z;
 }

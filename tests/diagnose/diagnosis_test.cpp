@@ -98,6 +98,22 @@ TEST(LawMotion, HysteresisClosesItsLoopAtTheYieldForce) {
   EXPECT_NEAR(motion.force(0.02, -1, 0), 0.0, 0.01);
 }
 
+TEST(LawMotion, HysteresisSlidesFarInOneStep) {
+  constexpr double kYields_m = 1e-6, kFar_m = 5e-4;
+  for (const double n : {1.0, 2.0, 7.5}) {
+    LawMotion motion({LawForm::hysteresis, {1e6, kYields_m, n, 0.5}, 1, 1});
+    EXPECT_NEAR(motion.force(kFar_m, 1, 0), 1.0, 1e-9) << n;
+    motion.accept(kFar_m, 1, 0);
+    double before = 1;
+    for (double back = 0.1 * kYields_m; back < kFar_m; back *= 1.5) {
+      const double force = motion.force(kFar_m - back, -1, 0);
+      EXPECT_LE(force, before) << n << " " << back;
+      before = force;
+    }
+    EXPECT_NEAR(before, -1.0, 1e-9) << n;
+  }
+}
+
 TEST(LawMotion, LawsOppose) {
   for (const LawForm form : {LawForm::friction, LawForm::power_damping}) {
     LawMotion motion({form, {5.0, 2.0}, 1, 1});
