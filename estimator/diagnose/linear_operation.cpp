@@ -9,7 +9,6 @@ namespace framewatch {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -141,7 +140,7 @@ Complex LinearOperation::factor(Shape::Factor of, double w) const {
   return 0;
 }
 
-void LinearOperation::add_to(double w, MatrixXcd& operation) const {
+void LinearOperation::add_to(double w, Eigen::MatrixXcd& operation) const {
   for (const Shape& shape : shapes_) {
     const Complex f = factor(shape.factor, w);
     operation.real() += f.real() * shape.of_axes;
@@ -149,8 +148,8 @@ void LinearOperation::add_to(double w, MatrixXcd& operation) const {
   }
 }
 
-MatrixXcd LinearOperation::at(double w) const {
-  MatrixXcd out = MatrixXcd::Zero(rows_, cols_);
+Eigen::MatrixXcd LinearOperation::at(double w) const {
+  Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(rows_, cols_);
   add_to(w, out);
   return out;
 }

@@ -11,11 +11,11 @@
 namespace framewatch {
 namespace {
 
+using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Complex = std::complex<double>;
 
 constexpr Index kEquations = 3, kBins = 40;
 
