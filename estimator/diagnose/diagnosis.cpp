@@ -226,8 +226,6 @@ class Search {
   }
 
   bool find_mass(FitResult& now, const Located& located) {
-    // Derivatives by masses do not go through a law's run: it leaves them where they are not.
-    if (forcing_of(now.model) == Forcing::simulated) return false;
     std::vector<Trial> trials = strange_masses(context_of(now), located);
     std::erase_if(trials, [&](const Trial& t) { return worsens(t, now, kStrangeMasses); });
     if (trials.empty()) return false;

@@ -16,13 +16,20 @@ constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
 bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
   using Kind = Unknown::Kind;
   if (unknown.kind == Kind::knob || unknown.kind == Kind::record_knob) return true;
-  if (unknown.kind != Kind::theta || unknown.index >= plant.element_count()) return false;
-  const int frame = plant.table[unknown.index].frame;
-  if (frame < 0) return false;
   const Structure& s = plant.structure;
+  int frame = -1;  // none: of all directions
+  if (unknown.kind == Kind::theta) {
+    if (unknown.index >= plant.element_count()) return false;
+    frame = plant.table[unknown.index].frame;
+    if (frame < 0) return false;
+  } else if (unknown.kind == Kind::mass) {
+    if (plant.equations() == s.degrees_of_freedom()) frame = unknown.index % s.frames();
+  } else {
+    return false;
+  }
   return std::any_of(model.effects.begin(), model.effects.end(), [&](const ModelEffect& e) {
     return e.element_law() &&
-           (e.place.frame < 0 || s.direction(e.place.frame) == s.direction(frame));
+           (e.place.frame < 0 || frame < 0 || s.direction(e.place.frame) == s.direction(frame));
   });
 }
 

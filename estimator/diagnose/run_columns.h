@@ -7,7 +7,7 @@
 namespace framewatch {
 
 /// Whether an unknown changes the motion of a free run so much that a fit has to know it: the
-/// stiffness of the frames along a law's, and what effects have.
+/// stiffness and mass of the frames along a law's, and what effects have.
 bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown);
 
 /// What one unknown changes in the whitened equations through the forces of the laws, which act on

@@ -4,7 +4,21 @@
 
 namespace framewatch {
 
+namespace {
+
 constexpr double kDoesAway = 0.9;  ///< of what is strange
+constexpr double kBeyond = 2;      ///< standard deviations of a frame's mass
+
+/// A mass within what is tolerated of both its frames' is none that is missing.
+bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
+  if (effect.form != LawForm::mass) return false;
+  const int story = effect.place.story, crossing = effect.place.crossing;
+  const double lighter = std::min(s.frame_mass(story, crossing / s.m()),
+                                  s.frame_mass(story, s.n() + crossing % s.m()));
+  return effect.knobs[0].plain() < kBeyond * sigma * lighter;
+}
+
+}  // namespace
 
 std::vector<Trial> strange_masses(const TrialContext& context, const Located& located) {
   const Model& model = context.now.model;
@@ -24,7 +38,8 @@ std::vector<Trial> strange_masses(const TrialContext& context, const Located& lo
   std::vector<Trial> out = try_places(context, places);
   std::erase_if(out, [&](const Trial& t) {
     return context.now.cost - t.cost < std::max(kStrangeMasses, kDoesAway * strange) ||
-           !(t.model.effects.back().knobs[0].plain() > 0);
+           !(t.model.effects.back().knobs[0].plain() > 0) ||
+           is_tolerated(context.fitter.plant().structure, t.model.effects.back(), sigma);
   });
   for (Trial& t : out) t.fraction = std::min(1.0, (context.now.cost - t.cost) / strange);
   std::stable_sort(out.begin(), out.end(),
