@@ -62,11 +62,7 @@ System assemble_system(const Plant& plant, const Model& model, const std::vector
     }
     // Constant matrices of the other linear effects, read off their operation at two frequencies.
     if (e.form == LawForm::mass) {
-      const int columns = std::max(plant.structure.m(), 1);
-      for (const int frame :
-           {plant.structure.n() > 0 ? e.place.crossing / columns : -1,
-            plant.structure.m() > 0 ? plant.structure.n() + e.place.crossing % columns : -1}) {
-        if (frame < 0) continue;
+      for (const int frame : frames_at(plant.structure, e.place.crossing)) {
         const VectorXd at = node_direction(plant, e.place.story, frame);
         out.mass.topLeftCorner(n, n) += size * at * at.transpose();
       }
@@ -106,11 +102,7 @@ System assemble_system(const Plant& plant, const Model& model, const std::vector
   for (const ModelEffect& e : model.effects) {
     if (e.form != LawForm::mass) continue;
     for (std::size_t i = 0; i < base.size(); ++i) {
-      const int columns = std::max(plant.structure.m(), 1);
-      for (const int frame :
-           {plant.structure.n() > 0 ? e.place.crossing / columns : -1,
-            plant.structure.m() > 0 ? plant.structure.n() + e.place.crossing % columns : -1}) {
-        if (frame < 0) continue;
+      for (const int frame : frames_at(plant.structure, e.place.crossing)) {
         out.inputs.col(static_cast<Index>(i)).head(n) -=
             e.knobs[0].plain() * node_direction(plant, e.place.story, frame) *
             plant.ground(plant.structure.dof(e.place.story, frame), base[i]);

@@ -59,11 +59,8 @@ LinearOperation::LinearOperation(const Plant& plant, const Model& model, const M
   const double size = effect.knobs.empty() ? 0 : effect.knobs[0].plain();
   switch (effect.form) {
     case LawForm::mass: {
-      const int columns = std::max(s.m(), 1);
-      const int y = place.crossing / columns, x = place.crossing % columns;
       MatrixXd inertia = MatrixXd::Zero(rows_, cols_);
-      for (const int frame : {s.n() > 0 ? y : -1, s.m() > 0 ? s.n() + x : -1}) {
-        if (frame < 0) continue;
+      for (const int frame : frames_at(s, place.crossing)) {
         const VectorXd at = node_direction(plant, place.story, frame);
         inertia += size * at * (at.transpose() * plant.motion);
       }

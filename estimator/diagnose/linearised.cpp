@@ -90,17 +90,20 @@ VectorXd bounded_step(const MatrixXd& normal, const VectorXd& right, const Model
   return step;
 }
 
+NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
+  normal += other.normal;
+  gradient += other.gradient;
+  misfit += other.misfit;
+  return *this;
+}
+
 NormalEquations normal_equations(const Linearised& at) {
   std::vector<Index> all(at.unknowns.size());
   std::iota(all.begin(), all.end(), Index{0});
   const auto count = static_cast<Index>(all.size());
   NormalEquations out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0};
-  for (std::size_t r = 0; r < at.systems.size(); ++r) {
-    const NormalEquations one = without_ends(square_of(at, r, all), at.systems[r].weights->ends());
-    out.normal += one.normal;
-    out.gradient += one.gradient;
-    out.misfit += one.misfit;
-  }
+  for (std::size_t r = 0; r < at.systems.size(); ++r)
+    out += without_ends(square_of(at, r, all), at.systems[r].weights->ends());
   return out;
 }
 

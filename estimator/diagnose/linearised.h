@@ -63,6 +63,8 @@ struct NormalEquations {
   Eigen::MatrixXd normal;
   Eigen::VectorXd gradient;  ///< columns' * rest
   double misfit = 0;         ///< rest' * rest
+
+  NormalEquations& operator+=(const NormalEquations& other);
 };
 
 /// Solves normal * step = right within bounds: unknowns that would leave them go as far as they

@@ -5,8 +5,6 @@
 #include <complex>
 #include <span>
 
-#include <Eigen/Cholesky>
-
 namespace framewatch {
 namespace {
 
@@ -87,9 +85,7 @@ std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Mo
       const NormalEquations one = without_ends(rest[i], at.systems[r].weights->ends());
       const double expected =
           fitter.expected(r, model) * (1 - static_cast<double>(size_of(lists[i])) / n);
-      out[i].equations.normal += one.normal;
-      out[i].equations.gradient += one.gradient;
-      out[i].equations.misfit += one.misfit;
+      out[i].equations += one;
       out[i].expected += expected;
       out[i].record_ratio.push_back(one.misfit / expected);
     }

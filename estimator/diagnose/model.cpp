@@ -1,5 +1,6 @@
 #include "estimator/diagnose/model.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace framewatch {
@@ -33,6 +34,14 @@ Model initial_model(const Plant& plant) {
 int element_of(const Plant& plant, const EffectPlace& place) {
   return place.kind == PlaceKind::panel ? plant.table.panel_stiffness(place.story, place.panel)
                                         : plant.table.frame_stiffness(place.story, place.frame);
+}
+
+std::vector<int> frames_at(const Structure& s, int crossing) {
+  const int columns = std::max(s.m(), 1);
+  std::vector<int> out;
+  if (s.n() > 0) out.push_back(crossing / columns);
+  if (s.m() > 0) out.push_back(s.n() + crossing % columns);
+  return out;
 }
 
 VectorXd node_direction(const Plant& plant, int story, int frame) {

@@ -51,6 +51,9 @@ Model initial_model(const Plant& plant);
 /// Index in theta of the element a frame or panel place names.
 int element_of(const Plant& plant, const EffectPlace& place);
 
+/// The frames that meet at a crossing; one of a plane building.
+std::vector<int> frames_at(const Structure& structure, int crossing);
+
 /// Coordinate a node names (flexible floors).
 Eigen::VectorXd node_direction(const Plant& plant, int story, int frame);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 namespace framewatch {
-
 namespace {
 
 constexpr double kDoesAway = 0.9;  ///< of what is strange
@@ -12,10 +11,10 @@ constexpr double kBeyond = 2;      ///< standard deviations of a frame's mass
 /// A mass within what is tolerated of both its frames' is none that is missing.
 bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
   if (effect.form != LawForm::mass) return false;
-  const int story = effect.place.story, crossing = effect.place.crossing;
-  const double lighter = std::min(s.frame_mass(story, crossing / s.m()),
-                                  s.frame_mass(story, s.n() + crossing % s.m()));
-  return effect.knobs[0].plain() < kBeyond * sigma * lighter;
+  const std::vector<int> frames = frames_at(s, effect.place.crossing);
+  return std::all_of(frames.begin(), frames.end(), [&](int frame) {
+    return effect.knobs[0].plain() < kBeyond * sigma * s.frame_mass(effect.place.story, frame);
+  });
 }
 
 }  // namespace

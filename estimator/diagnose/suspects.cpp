@@ -106,8 +106,9 @@ std::vector<Suspect> suspects_of(const Plant& plant, const Model& model) {
         mass.place.story = story;
         mass.place.crossing = crossing;
         mass.directions.resize(plant.equations(), 2);
-        mass.directions << node_direction(plant, story, crossing / s.m()),
-            node_direction(plant, story, s.n() + crossing % s.m());
+        const std::vector<int> frames = frames_at(s, crossing);
+        mass.directions << node_direction(plant, story, frames[0]),
+            node_direction(plant, story, frames[1]);
         add_forces(out, mass);
       }
   for (const Direction direction : {Direction::x, Direction::y}) {

@@ -1,6 +1,5 @@
 #include "estimator/diagnose/weights.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
