@@ -102,14 +102,16 @@ void sum_into_front(const double* __restrict a, const double* __restrict b,
   }
 }
 
-/// kCount pivots from `p` on: their rows become the factor's.
+/// kCount pivots from `p` on: the factor's rows.
 template <int kCount>
-inline FRAMEWATCH_INLINE void take_pivots(double* rows, int p, int front, int stride,
-                                          const double* floor, unsigned char* usable) {
-  double* row[kCount];
+inline FRAMEWATCH_INLINE void take_pivots(const double* rows, double* factor_rows, int p, int front,
+                                          int stride, const double* floor, unsigned char* usable) {
+  const double* row[kCount];
+  double* to[kCount];
   double inverse[kCount];
   double factor[kCount][kCount];
   for (int k = 0; k < kCount; ++k) row[k] = rows + (p + k) * stride;
+  for (int k = 0; k < kCount; ++k) to[k] = factor_rows + (p + k) * stride;
   for (int k = 0; k < kCount; ++k) {
     double diagonal = row[k][p + k];
     for (int l = 0; l < k; ++l) diagonal -= factor[l][k] * factor[l][k];
@@ -128,18 +130,17 @@ inline FRAMEWATCH_INLINE void take_pivots(double* rows, int p, int front, int st
       load<Vector>(done[k], row[k] + j);
       for (int l = 0; l < k; ++l) done[k] -= factor[l][k] * done[l];
       done[k] *= inverse[k];
-      store<Vector>(row[k] + j, done[k]);
+      store<Vector>(to[k] + j, done[k]);
     }
   });
   for (int k = 0; k < kCount; ++k)
     if (usable[p + k] == 0)
-      for (int j = p; j < front; ++j) row[k][j] = 0;
+      for (int j = p; j < front; ++j) to[k][j] = 0;
 }
 
-/// kRows rows from `q` on, all starting in the same lane, see kCount pivots from `p` on.
+/// kRows rows from `q` on, all starting in the same lane, see kCount pivots' rows of the factor.
 template <int kCount, int kRows>
-inline FRAMEWATCH_INLINE void eliminate(double* rows, int p, int q, int stride) {
-  const double* pivot = rows + p * stride;
+inline FRAMEWATCH_INLINE void eliminate(double* rows, const double* pivot, int q, int stride) {
   double* to = rows + q * stride;
   for_lanes(packed_row_begin(q), stride, [&](auto of, int j) FRAMEWATCH_INLINE {
     using Vector = decltype(of);
@@ -155,24 +156,43 @@ inline FRAMEWATCH_INLINE void eliminate(double* rows, int p, int q, int stride) 
 }
 
 template <int kCount>
-inline FRAMEWATCH_INLINE void sweep(double* rows, int p, int front, int stride, const double* floor,
-                                    unsigned char* usable) {
-  take_pivots<kCount>(rows, p, front, stride, floor, usable);
+inline FRAMEWATCH_INLINE void sweep(double* rows, double* factor, int p, int front, int stride,
+                                    const double* floor, unsigned char* usable) {
+  take_pivots<kCount>(rows, factor, p, front, stride, floor, usable);
+  const double* pivot = factor + p * stride;
   int q = p + kCount;
-  for (; q % kLane != 0 && q < front; ++q) eliminate<kCount, 1>(rows, p, q, stride);
-  for (; q + kLane <= front; q += kLane) eliminate<kCount, kLane>(rows, p, q, stride);
-  if (front - q == 3) eliminate<kCount, 3>(rows, p, q, stride);
-  if (front - q == 2) eliminate<kCount, 2>(rows, p, q, stride);
-  if (front - q == 1) eliminate<kCount, 1>(rows, p, q, stride);
+  for (; q % kLane != 0 && q < front; ++q) eliminate<kCount, 1>(rows, pivot, q, stride);
+  for (; q + kLane <= front; q += kLane) eliminate<kCount, kLane>(rows, pivot, q, stride);
+  if (front - q == 3) eliminate<kCount, 3>(rows, pivot, q, stride);
+  if (front - q == 2) eliminate<kCount, 2>(rows, pivot, q, stride);
+  if (front - q == 1) eliminate<kCount, 1>(rows, pivot, q, stride);
 }
 
-void partial_cholesky(double* front_rows, int pivots, int front, int stride, const double* floor,
-                      unsigned char* usable) {
+void partial_cholesky(double* front_rows, double* factor, int pivots, int front, int stride,
+                      const double* floor, unsigned char* usable) {
   int p = 0;
-  for (; p + 4 <= pivots; p += 4) sweep<4>(front_rows, p, front, stride, floor, usable);
-  if (pivots - p == 3) sweep<3>(front_rows, p, front, stride, floor, usable);
-  if (pivots - p == 2) sweep<2>(front_rows, p, front, stride, floor, usable);
-  if (pivots - p == 1) sweep<1>(front_rows, p, front, stride, floor, usable);
+  for (; p + 4 <= pivots; p += 4) sweep<4>(front_rows, factor, p, front, stride, floor, usable);
+  if (pivots - p == 3) sweep<3>(front_rows, factor, p, front, stride, floor, usable);
+  if (pivots - p == 2) sweep<2>(front_rows, factor, p, front, stride, floor, usable);
+  if (pivots - p == 1) sweep<1>(front_rows, factor, p, front, stride, floor, usable);
+}
+
+/// kCount unknowns from `p` on, and what they take from those before them.
+template <int kCount>
+inline FRAMEWATCH_INLINE void substitute(const double* factor, int stride, int p, double* x) {
+  double known[kCount];
+  for (int k = 0; k < kCount; ++k) known[k] = x[p + k];
+  for (int k = kCount - 1; k >= 0; --k) {
+    const double pivot = factor[(p + k) * stride + p + k];
+    known[k] = pivot > 0 ? known[k] * (1 / pivot) : 1.0;
+    for (int l = 0; l < k; ++l) known[l] -= factor[(p + l) * stride + p + k] * known[k];
+  }
+  for (int k = 0; k < kCount; ++k) x[p + k] = known[k];
+  for (int q = 0; q < p; ++q) {
+    double left = x[q];
+    for (int k = kCount - 1; k >= 0; --k) left -= factor[q * stride + p + k] * known[k];
+    x[q] = left;
+  }
 }
 
 void substitute_back(const double* factor, int stride, int own, int next, double* x) {
@@ -185,11 +205,11 @@ void substitute_back(const double* factor, int stride, int own, int next, double
     for (; j < next; ++j) sum[0] += row[j] * x[own + j];
     x[p] = row[next] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
   }
-  for (int p = own - 1; p >= 0; --p) {
-    const double pivot = factor[p * stride + p];
-    x[p] = pivot > 0 ? x[p] * (1 / pivot) : 1.0;
-    for (int q = 0; q < p; ++q) x[q] -= factor[q * stride + p] * x[p];
-  }
+  int p = own;
+  for (; p >= 4; p -= 4) substitute<4>(factor, stride, p - 4, x);
+  if (p == 3) substitute<3>(factor, stride, 0, x);
+  if (p == 2) substitute<2>(factor, stride, 0, x);
+  if (p == 1) substitute<1>(factor, stride, 0, x);
 }
 
 /// So many vectors of columns stay in registers at a time.

@@ -1,6 +1,5 @@
 #include "estimator/identify/story_solver.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "estimator/identify/kernels.h"
@@ -78,9 +77,9 @@ void StorySolver::factor(const WindowParts& sums, const std::vector<double>& pri
       pivot_floor_[static_cast<std::size_t>(p)] =
           kSmallestPivot * (information_[unknown] + prior[unknown]);
     }
-    kernels::in_use->partial_cholesky(a, own, shape.front, stride, pivot_floor_.data(),
+    kernels::in_use->partial_cholesky(a, factor_.rows(floor), own, shape.front, stride,
+                                      pivot_floor_.data(),
                                       &usable_[static_cast<std::size_t>(floor * own)]);
-    std::copy(a, a + own * stride, factor_.rows(floor));
     if (floor + 1 == layout_.floors()) residual_energy_ = a[last * stride + last] + prior_energy;
   }
   for (int floor = layout_.floors() - 1; floor >= 0; --floor)
