@@ -12,6 +12,7 @@ namespace framewatch::study {
 namespace {
 
 constexpr double kChange = 0.01;  ///< of a parameter, for its derivative
+constexpr double kMassError = 0.01;
 constexpr double kRidge = 1e-9;
 constexpr int kSteps = 6;          ///< of Gauss-Newton
 constexpr double kDamping = 1e-3;  ///< of it
@@ -58,22 +59,19 @@ Peaks find_peaks(const StudyCase& c) {
 
 }  // namespace
 
-LinearShare::LinearShare(const StudyCase& c) : peaks_(find_peaks(c)), case_(c) {
+LinearShare::LinearShare(const StudyCase& c) : case_(c), peaks_(find_peaks(c)) {
   for (const SensorAxis& axis : c.building.axes) base_axes_ += axis.story == 0;
   linear_ = clean_record(c, 0);
   const Eigen::Index above = linear_.cols() - base_axes_;
-  derivatives_.resize(linear_.rows() * above, c.building.theta.size());
-  norms_ = Eigen::VectorXd::Zero(c.building.theta.size());
-  for (Eigen::Index p = 0; p < c.building.theta.size(); ++p) {
+  derivatives_.resize(linear_.rows() * above, unknowns());
+  norms_ = Eigen::VectorXd::Zero(unknowns());
+  for (Eigen::Index u = 0; u < unknowns(); ++u) {
     StudyCase changed = c;
-    changed.hidden.theta[p] *= 1 + kChange;
-    derivatives_.col(p) = stacked((clean_record(changed, 0) - linear_).rightCols(above)) / kChange;
-    const double norm = derivatives_.col(p).norm();
-    norms_[p] = norm;
-    if (norm > 0) derivatives_.col(p) /= norm;
+    value(changed, u) *= 1 + kChange;
+    derivatives_.col(u) = stacked((clean_record(changed, 0) - linear_).rightCols(above)) / kChange;
+    norms_[u] = derivatives_.col(u).norm();
+    if (norms_[u] > 0) derivatives_.col(u) /= norms_[u];
   }
-  gram_ = derivatives_.transpose() * derivatives_;
-  gram_.diagonal().array() += kRidge;
 
   StudyCase shaken = c;
   Random random(c.options.seed, 77);
@@ -88,6 +86,27 @@ LinearShare::LinearShare(const StudyCase& c) : peaks_(find_peaks(c)), case_(c) {
     for (double& value : motion.accel) value = rms * random.normal();
   }
   amplified_ = clean_record(shaken, 0).rightCols(above).norm() / linear_.rightCols(above).norm();
+
+  hold_masses();
+  gram_ = derivatives_.transpose() * derivatives_;
+  gram_.diagonal() += held_;
+  gram_.diagonal().array() += kRidge;
+}
+
+double& LinearShare::value(StudyCase& c, Eigen::Index unknown) const {
+  const Eigen::Index parameters = case_.building.theta.size();
+  return unknown < parameters
+             ? c.hidden.theta[unknown]
+             : c.building.truth.node_mass[static_cast<std::size_t>(unknown - parameters)];
+}
+
+void LinearShare::hold_masses() {
+  held_ = Eigen::VectorXd::Zero(unknowns());
+  const Eigen::Index above = linear_.cols() - base_axes_;
+  const double noise = noise_floor(case_.options.noise_ratio) * linear_.rightCols(above).norm() /
+                       std::sqrt(static_cast<double>(derivatives_.rows()));
+  for (Eigen::Index u = case_.building.theta.size(); u < unknowns(); ++u)
+    if (norms_[u] > 0) held_[u] = std::pow(noise / (kMassError * norms_[u]), 2);
 }
 
 double LinearShare::noise_floor(double ratio) const {
@@ -102,22 +121,25 @@ double LinearShare::unexplained(const Eigen::MatrixXd& accel, bool worst_channel
   const double base =
       (accel - linear_).leftCols(base_axes_).norm() / linear_.leftCols(base_axes_).norm();
   const Eigen::LDLT<Eigen::MatrixXd> solver(gram_);
-  Eigen::VectorXd rest =
-      difference - derivatives_ * solver.solve(derivatives_.transpose() * difference);
   Eigen::MatrixXd damped = gram_;
   damped.diagonal().array() += kDamping;
   const Eigen::LDLT<Eigen::MatrixXd> cautious(damped);
   StudyCase fitted = case_;
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(unknowns());
+  const auto pull = [&] {
+    return Eigen::VectorXd(derivatives_.transpose() * difference - held_.cwiseProduct(moved));
+  };
+  Eigen::VectorXd rest = difference - derivatives_ * solver.solve(pull());
   for (int i = 0; i < kSteps && rest.norm() > enough * accel.rightCols(above).norm(); ++i) {
-    const Eigen::VectorXd fit = cautious.solve(derivatives_.transpose() * difference);
-    for (Eigen::Index p = 0; p < fit.size(); ++p)
-      if (norms_[p] > 0)
-        fitted.hidden.theta[p] =
-            std::max(0.1 * case_.hidden.theta[p],
-                     fitted.hidden.theta[p] + case_.hidden.theta[p] * fit[p] / norms_[p]);
+    const Eigen::VectorXd fit = cautious.solve(pull());
+    StudyCase start = case_;
+    for (Eigen::Index u = 0; u < unknowns(); ++u) {
+      if (norms_[u] == 0) continue;
+      moved[u] = std::max(-0.9 * norms_[u], moved[u] + fit[u]);
+      value(fitted, u) = value(start, u) * (1 + moved[u] / norms_[u]);
+    }
     difference = stacked((accel - clean_record(fitted, 0)).rightCols(above));
-    const Eigen::VectorXd now =
-        difference - derivatives_ * solver.solve(derivatives_.transpose() * difference);
+    const Eigen::VectorXd now = difference - derivatives_ * solver.solve(pull());
     if (now.norm() < rest.norm()) rest = now;
   }
   if (!worst_channel) return std::hypot(rest.norm() / accel.rightCols(above).norm(), base);

@@ -6,9 +6,9 @@
 
 namespace framewatch::study {
 
-/// What the stiffness and damping of a linear building can explain of a train record: Gauss-Newton
-/// with the response's derivatives by every parameter of the true building. This sizes effects;
-/// nothing of it is diagnose's.
+/// What the stiffness and damping of a linear building can explain of a train record, and masses as
+/// far as their tolerance and the noise let them: Gauss-Newton with the response's derivatives by
+/// every parameter and mass of the true building. This sizes effects; nothing of it is diagnose's.
 class LinearShare {
  public:
   explicit LinearShare(const StudyCase& c);
@@ -22,13 +22,23 @@ class LinearShare {
   double unexplained(const Eigen::MatrixXd& accel, bool worst_channel, double enough) const;
 
  private:
+  /// Parameters, then node masses; changes are relative to their values.
+  Eigen::Index unknowns() const {
+    return case_.building.theta.size() +
+           static_cast<Eigen::Index>(case_.building.truth.node_mass.size());
+  }
+  double& value(StudyCase& c, Eigen::Index unknown) const;
+  /// Weight of a mass's distance from what is declared.
+  void hold_masses();
+
+  StudyCase case_;               ///< with nothing hidden
   Eigen::MatrixXd linear_;       ///< instants x axes
-  Eigen::MatrixXd derivatives_;  ///< (instants x axes above the base) x parameters
+  Eigen::MatrixXd derivatives_;  ///< (instants x axes above the base) x unknowns, of norm 1
+  Eigen::VectorXd norms_;        ///< of the derivatives
+  Eigen::VectorXd held_;         ///< for each unknown, in the gram matrix's units; 0 = free
   Eigen::MatrixXd gram_;
-  Eigen::VectorXd norms_;  ///< of the derivatives
   int base_axes_ = 0;
   Peaks peaks_;
-  StudyCase case_;  ///< with nothing hidden
   double amplified_ = 0;
 };
 
