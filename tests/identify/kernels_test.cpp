@@ -138,8 +138,8 @@ TEST(Kernels, PartialCholeskyIsFactorAndSchurComplement) {
       auto rows = stored(a);
       const std::vector<double> least(static_cast<std::size_t>(pivots), 0.0);
       std::vector<unsigned char> usable(static_cast<std::size_t>(pivots), 0);
-      kernels::in_use->partial_cholesky(rows.data(), rows.data(), pivots, front, padded(front), least.data(),
-                                        usable.data());
+      kernels::in_use->partial_cholesky(rows.data(), rows.data(), pivots, front, padded(front),
+                                        least.data(), usable.data());
       const Eigen::MatrixXd u =
           a.topLeftCorner(pivots, pivots).llt().matrixL().transpose().toDenseMatrix();
       const int rest = front - pivots;
@@ -168,8 +168,8 @@ TEST(Kernels, GivenUpPivotLeavesTheOthersAlone) {
     auto rows = stored(a);
     const std::vector<double> least(pivots, 1e-12);
     std::vector<unsigned char> usable(pivots, 2);
-    kernels::in_use->partial_cholesky(rows.data(), rows.data(), pivots, front, padded(front), least.data(),
-                                      usable.data());
+    kernels::in_use->partial_cholesky(rows.data(), rows.data(), pivots, front, padded(front),
+                                      least.data(), usable.data());
     for (int p = 0; p < pivots; ++p) EXPECT_EQ(usable[static_cast<std::size_t>(p)], p != bad);
     for (int j = bad; j < front; ++j)
       EXPECT_EQ(rows[static_cast<std::size_t>(bad * padded(front) + j)], 0);
@@ -192,7 +192,8 @@ TEST(Kernels, SubstituteBackSolvesWithTheFactor) {
     auto rows = stored(positive(front));
     const std::vector<double> least(static_cast<std::size_t>(own), 0.0);
     std::vector<unsigned char> usable(static_cast<std::size_t>(own), 0);
-    kernels::in_use->partial_cholesky(rows.data(), rows.data(), own, front, stride, least.data(), usable.data());
+    kernels::in_use->partial_cholesky(rows.data(), rows.data(), own, front, stride, least.data(),
+                                      usable.data());
     auto x = random_values(static_cast<std::size_t>(own + next), 12);
     kernels::in_use->substitute_back(rows.data(), stride, own, next, x.data());
     for (int p = 0; p < own; ++p) {
@@ -257,7 +258,8 @@ std::vector<double> all_results(const kernels::Table& table) {
     auto rows = stored(positive(front));
     const std::vector<double> least(static_cast<std::size_t>(own), 0.0);
     std::vector<unsigned char> usable(static_cast<std::size_t>(own), 0);
-    table.partial_cholesky(rows.data(), rows.data(), own, front, stride, least.data(), usable.data());
+    table.partial_cholesky(rows.data(), rows.data(), own, front, stride, least.data(),
+                           usable.data());
     keep(rows);
     auto x = random_values(static_cast<std::size_t>(front), 34);
     table.substitute_back(rows.data(), stride, own, next, x.data());
