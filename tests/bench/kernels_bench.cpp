@@ -50,7 +50,8 @@ void partial_cholesky(benchmark::State& state, const kernels::Table& table, cons
   for (int p = 0; p < front.own; ++p) flops += 1.0 * (front.size() - p) * (front.size() - p + 1);
   for (auto _ : state) {
     a = start;
-    table.partial_cholesky(a.data(), a.data(), front.own, front.size(), stride, least.data(), usable.data());
+    table.partial_cholesky(a.data(), a.data(), front.own, front.size(), stride, least.data(),
+                           usable.data());
     benchmark::ClobberMemory();
   }
   state.counters["flops"] =
