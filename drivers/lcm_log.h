@@ -128,6 +128,7 @@ class LcmLogWriter {
  private:
   void discard();
 
+  std::vector<char> buffer_;
   std::FILE* file_ = nullptr;
   std::string path_;
   std::int64_t number_ = 0;

@@ -10,6 +10,7 @@ namespace framewatch::drivers {
 namespace {
 
 constexpr std::size_t kHeaderBytes = 28;
+constexpr std::size_t kBufferBytes = 1 << 18;
 
 template <typename Integer>
 std::uint8_t* put_big_endian(std::uint8_t* out, Integer value) {
@@ -53,7 +54,9 @@ bool LcmLogWriter::open(const std::string& path) {
     error_ = std::strerror(errno);
     return false;
   }
-  std::setvbuf(file_, nullptr, _IOFBF, 1 << 18);
+  // With a buffer of its own making glibc ignores the size.
+  buffer_.resize(kBufferBytes);
+  std::setvbuf(file_, buffer_.data(), _IOFBF, buffer_.size());
   return true;
 }
 
