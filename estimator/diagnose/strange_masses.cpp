@@ -17,6 +17,12 @@ bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
   });
 }
 
+/// Where a linear effect that is no element's stiffness or damping may act.
+bool is_linear_place(const Suspect& s) {
+  return s.kind == Suspect::Kind::crossing || s.kind == Suspect::Kind::link ||
+         s.kind == Suspect::Kind::rocking || (s.kind == Suspect::Kind::node && s.place.story >= 2);
+}
+
 }  // namespace
 
 std::vector<Trial> strange_masses(const TrialContext& context, const Located& located) {
@@ -28,13 +34,16 @@ std::vector<Trial> strange_masses(const TrialContext& context, const Located& lo
   if (strange < kStrangeMasses) return {};
   std::vector<Localisation> places;
   for (const Localisation& l : located.once) {
-    const Suspect::Kind kind = l.suspects.front().kind;
-    if (kind != Suspect::Kind::crossing && kind != Suspect::Kind::link) continue;
+    if (!is_linear_place(l.suspects.front())) continue;
     places.push_back(l);
     places.back().model = model;
     places.back().motion = context.now.motion;
   }
-  std::vector<Trial> out = try_places(context, places);
+  std::vector<EffectKind> without = context.without;
+  without.insert(without.end(), {EffectKind::tuned_mass_damper, EffectKind::unmeasured_force});
+  const TrialContext linear{context.fitter, context.now, without, context.parallel,
+                            context.progress};
+  std::vector<Trial> out = try_places(linear, places);
   std::erase_if(out, [&](const Trial& t) {
     return context.now.cost - t.cost < std::max(kStrangeMasses, kDoesAway * strange) ||
            !(t.model.effects.back().knobs[0].plain() > 0) ||
