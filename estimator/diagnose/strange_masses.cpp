@@ -6,6 +6,7 @@ namespace framewatch {
 namespace {
 
 constexpr double kDoesAway = 0.9;  ///< of what is strange
+constexpr double kAsWell = 0.8;    ///< of the best one's gain, which leaves open what it is
 constexpr double kBeyond = 2;      ///< standard deviations of a frame's mass
 
 /// A mass within what is tolerated of both its frames' is none that is missing.
@@ -52,6 +53,8 @@ std::vector<Trial> strange_masses(const TrialContext& context, const Located& lo
   for (Trial& t : out) t.fraction = std::min(1.0, (context.now.cost - t.cost) / strange);
   std::stable_sort(out.begin(), out.end(),
                    [](const Trial& a, const Trial& b) { return a.cost < b.cost; });
+  if (out.size() > 1 && context.now.cost - out[1].cost > kAsWell * (context.now.cost - out[0].cost))
+    return {};
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "tests/study/linear_share.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -16,6 +17,8 @@ constexpr double kMassError = 0.01;
 constexpr double kRidge = 1e-9;
 constexpr int kSteps = 6;          ///< of Gauss-Newton
 constexpr double kDamping = 1e-3;  ///< of it
+constexpr int kStepsToTheEnd = 8, kTries = 5;
+constexpr double kEnded = 0.98;  ///< a step that leaves more of the cost is the last
 
 Eigen::VectorXd stacked(const Eigen::MatrixXd& m) {
   return Eigen::Map<const Eigen::VectorXd>(m.data(), m.size());
@@ -63,15 +66,10 @@ LinearShare::LinearShare(const StudyCase& c) : case_(c), peaks_(find_peaks(c)) {
   for (const SensorAxis& axis : c.building.axes) base_axes_ += axis.story == 0;
   linear_ = clean_record(c, 0);
   const Eigen::Index above = linear_.cols() - base_axes_;
-  derivatives_.resize(linear_.rows() * above, unknowns());
-  norms_ = Eigen::VectorXd::Zero(unknowns());
-  for (Eigen::Index u = 0; u < unknowns(); ++u) {
-    StudyCase changed = c;
-    value(changed, u) *= 1 + kChange;
-    derivatives_.col(u) = stacked((clean_record(changed, 0) - linear_).rightCols(above)) / kChange;
-    norms_[u] = derivatives_.col(u).norm();
+  derivatives_ = derivatives_at(c, stacked(linear_.rightCols(above)));
+  norms_ = derivatives_.colwise().norm();
+  for (Eigen::Index u = 0; u < unknowns(); ++u)
     if (norms_[u] > 0) derivatives_.col(u) /= norms_[u];
-  }
 
   StudyCase shaken = c;
   Random random(c.options.seed, 77);
@@ -91,6 +89,22 @@ LinearShare::LinearShare(const StudyCase& c) : case_(c), peaks_(find_peaks(c)) {
   gram_ = derivatives_.transpose() * derivatives_;
   gram_.diagonal() += held_;
   gram_.diagonal().array() += kRidge;
+}
+
+Eigen::VectorXd LinearShare::response(const StudyCase& c) const {
+  return stacked(clean_record(c, 0).rightCols(linear_.cols() - base_axes_));
+}
+
+/// By relative changes.
+Eigen::MatrixXd LinearShare::derivatives_at(const StudyCase& c,
+                                            const Eigen::VectorXd& response) const {
+  Eigen::MatrixXd out(response.size(), unknowns());
+  for (Eigen::Index u = 0; u < unknowns(); ++u) {
+    StudyCase changed = c;
+    value(changed, u) *= 1 + kChange;
+    out.col(u) = (this->response(changed) - response) / kChange;
+  }
+  return out;
 }
 
 double& LinearShare::value(StudyCase& c, Eigen::Index unknown) const {
@@ -117,9 +131,6 @@ double LinearShare::unexplained(const Eigen::MatrixXd& accel, bool worst_channel
                                 double enough) const {
   const Eigen::Index above = linear_.cols() - base_axes_;
   Eigen::VectorXd difference = stacked((accel - linear_).rightCols(above));
-  // A wrong base channel is a wrong input: counted as what it would be on the channels above.
-  const double base =
-      (accel - linear_).leftCols(base_axes_).norm() / linear_.leftCols(base_axes_).norm();
   const Eigen::LDLT<Eigen::MatrixXd> solver(gram_);
   Eigen::MatrixXd damped = gram_;
   damped.diagonal().array() += kDamping;
@@ -142,6 +153,58 @@ double LinearShare::unexplained(const Eigen::MatrixXd& accel, bool worst_channel
     const Eigen::VectorXd now = difference - derivatives_ * solver.solve(pull());
     if (now.norm() < rest.norm()) rest = now;
   }
+  return share_of(rest, accel, worst_channel);
+}
+
+double LinearShare::unexplained_at_the_end(const Eigen::MatrixXd& accel, bool worst_channel) const {
+  const Eigen::VectorXd measured = stacked(accel.rightCols(linear_.cols() - base_axes_));
+  Eigen::VectorXd changes = Eigen::VectorXd::Zero(unknowns());  // relative
+  // A mass weighs what hold_masses says, in relative changes.
+  const Eigen::VectorXd held = held_.cwiseProduct(norms_.cwiseAbs2());
+  const auto building_of = [&](const Eigen::VectorXd& by) {
+    StudyCase out = case_;
+    for (Eigen::Index u = 0; u < unknowns(); ++u) value(out, u) *= std::clamp(1 + by[u], 0.1, 10.0);
+    return out;
+  };
+  const auto cost_of = [&](const Eigen::VectorXd& rest, const Eigen::VectorXd& by) {
+    return rest.squaredNorm() + held.dot(by.cwiseAbs2());
+  };
+  Eigen::VectorXd rest = measured - response(case_);
+  double cost = cost_of(rest, changes), damping = kDamping;
+  for (int i = 0; i < kStepsToTheEnd; ++i) {
+    const StudyCase at = building_of(changes);
+    // Of factors on what the building is there, to those on what it was.
+    Eigen::MatrixXd d = derivatives_at(at, measured - rest);
+    for (Eigen::Index u = 0; u < unknowns(); ++u) d.col(u) /= std::clamp(1 + changes[u], 0.1, 10.0);
+    Eigen::MatrixXd normal = d.transpose() * d;
+    normal.diagonal() += held;
+    const Eigen::VectorXd right = d.transpose() * rest - held.cwiseProduct(changes);
+    const double before = cost;
+    for (int tries = 0; tries < kTries; ++tries) {
+      Eigen::MatrixXd damped = normal;
+      damped.diagonal() *= 1 + damping;
+      damped.diagonal().array() += kRidge * normal.diagonal().maxCoeff();
+      const Eigen::VectorXd next = changes + damped.ldlt().solve(right);
+      const Eigen::VectorXd left = measured - response(building_of(next));
+      if (left.allFinite() && cost_of(left, next) < cost) {
+        changes = next;
+        rest = left;
+        cost = cost_of(left, next);
+        damping *= 0.1;
+        break;
+      }
+      damping *= 10;
+    }
+    if (cost > kEnded * before) break;
+  }
+  return share_of(rest, accel, worst_channel);
+}
+
+double LinearShare::share_of(const Eigen::VectorXd& rest, const Eigen::MatrixXd& accel,
+                             bool worst_channel) const {
+  const Eigen::Index above = linear_.cols() - base_axes_;
+  const double base =
+      (accel - linear_).leftCols(base_axes_).norm() / linear_.leftCols(base_axes_).norm();
   if (!worst_channel) return std::hypot(rest.norm() / accel.rightCols(above).norm(), base);
   double worst = base;
   for (Eigen::Index i = 0; i < above; ++i) {

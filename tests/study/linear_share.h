@@ -18,8 +18,11 @@ class LinearShare {
   /// by the building.
   double noise_floor(double ratio) const;
   /// What they cannot, as a share of the record: of all channels above the base, or of the worst.
-  /// Below `enough` the first step's.
+  /// Below `enough` the first step's. Quick, and too large where the fit goes far: derivatives stay
+  /// those of the true building.
   double unexplained(const Eigen::MatrixXd& accel, bool worst_channel, double enough) const;
+  /// The same with derivatives anew in every step, to where the fit ends.
+  double unexplained_at_the_end(const Eigen::MatrixXd& accel, bool worst_channel) const;
 
  private:
   /// Parameters, then node masses; changes are relative to their values.
@@ -28,8 +31,14 @@ class LinearShare {
            static_cast<Eigen::Index>(case_.building.truth.node_mass.size());
   }
   double& value(StudyCase& c, Eigen::Index unknown) const;
+  /// Response above the base of a linear building, stacked by axes, and its derivatives.
+  Eigen::VectorXd response(const StudyCase& c) const;
+  Eigen::MatrixXd derivatives_at(const StudyCase& c, const Eigen::VectorXd& response) const;
   /// Weight of a mass's distance from what is declared.
   void hold_masses();
+  /// A wrong base channel is a wrong input: counted as what it would be on the channels above.
+  double share_of(const Eigen::VectorXd& rest, const Eigen::MatrixXd& accel,
+                  bool worst_channel) const;
 
   StudyCase case_;               ///< with nothing hidden
   Eigen::MatrixXd linear_;       ///< instants x axes
