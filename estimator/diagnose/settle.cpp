@@ -31,7 +31,15 @@ double fitted_values(const Model& model) {
 void sharpen(const TrialContext& context, std::vector<Trial>& trials) {
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
-    if (t.fraction < kSharp && t.fraction > kBlunt) t = sharpened(context, t);
+    if (t.fraction < kSharp && t.fraction > kBlunt) t = sharpened(context, t, t.model);
+  });
+}
+
+/// The leading ones once more by way of the weakest record.
+void approach(const TrialContext& context, std::vector<Trial>& trials) {
+  run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
+    Trial& t = trials[static_cast<std::size_t>(i)];
+    if (t.fraction > kBlunt) t = sharpened(context, t, fitted_to_the_weakest(context, t.model));
   });
 }
 
@@ -64,6 +72,10 @@ bool settle(const TrialContext& context, double bound, double needed, std::vecto
   rank();
   sharpen(context, trials);
   rank();
+  if (trials.front().fraction < kTakesAway) {
+    approach(context, trials);
+    rank();
+  }
   const Trial& best = trials.front();
   // In a component test the place is no question, and real parts follow no law to the end.
   const bool component = context.fitter.plant().equations() == 1;

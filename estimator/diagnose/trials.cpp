@@ -190,8 +190,25 @@ void free_shapes(Model& model) {
   }
 }
 
-Trial sharpened(const TrialContext& c, const Trial& trial) {
-  Model start = trial.model;
+Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
+  const bool of_records = std::any_of(model.effects.begin(), model.effects.end(),
+                                      [](const ModelEffect& e) { return !e.record_knobs.empty(); });
+  const std::vector<Stretch>& all = c.fitter.stretches();
+  if (all.size() < 2 || of_records) return model;
+  const auto strength = [&](std::size_t r) {
+    return c.now.misfit[r] / c.fitter.expected(r, c.now.model);
+  };
+  std::size_t weakest = 0;
+  for (std::size_t r = 1; r < all.size(); ++r)
+    if (strength(r) < strength(weakest)) weakest = r;
+  const std::vector<Stretch> one{all[weakest]};
+  const Fitter alone(c.fitter.plant(), one, c.fitter.tolerances());
+  const FitResult run = alone.fit(model, {}, thorough(model, kSharpSteps));
+  return run.good ? run.model : model;
+}
+
+Trial sharpened(const TrialContext& c, const Trial& trial, const Model& from) {
+  Model start = from;
   free_shapes(start);
   const FitResult run = c.fitter.fit(start, {}, thorough(start, kSharpSteps));
   if (!run.good) return trial;

@@ -21,8 +21,13 @@ bool is_axis_error(EffectKind kind);
 /// Misfit that a model is spared because it does not look at what may be anything.
 double spared(const Fitter& fitter, const Model& model);
 
-/// The same with the shape of hysteresis free and more steps; as it was when that is no better.
-Trial sharpened(const TrialContext& context, const Trial& trial);
+/// The same fitted on from a model of its kind, with the shape of hysteresis free; as it was when
+/// that is no better.
+Trial sharpened(const TrialContext& context, const Trial& trial, const Model& from);
+
+/// A model fitted to the one record that shows least of what is missing: a law that bends the
+/// motion strongly finds its way there, where all records together have none.
+Model fitted_to_the_weakest(const TrialContext& context, const Model& model);
 
 /// Lets the exponent and the unloading of round hysteresis move in a fit.
 void free_shapes(Model& model);

@@ -53,9 +53,9 @@ struct Table {
                          const double* noise, double* front_rows, int front, int stride);
 
   /// Right-looking partial Cholesky of the first `pivots` unknowns of an upper front: their rows of
-  /// the factor go to `factor`, pivots x stride, which may be the front's own; the rest of the front
-  /// becomes the Schur complement. A pivot not above floor[i] is given up: its row becomes zero and
-  /// usable[i] false.
+  /// the factor go to `factor`, pivots x stride, which may be the front's own; the rest of the
+  /// front becomes the Schur complement. A pivot not above floor[i] is given up: its row becomes
+  /// zero and usable[i] false.
   void (*partial_cholesky)(double* front_rows, double* factor, int pivots, int front, int stride,
                            const double* floor, unsigned char* usable);
 
