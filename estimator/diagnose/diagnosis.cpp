@@ -245,6 +245,7 @@ class Search {
   }
 
   void adopt(const std::vector<Trial>& trials, FitResult& now) {
+    const std::size_t known = out_.effects.size();
     const Trial& best = trials.front();
     FoundEffect found;
     found.chosen = best;
@@ -271,8 +272,26 @@ class Search {
       place(other);
       out_.effects.push_back(std::move(other));
     }
+    const Model before = now.model;
     now = fit_to_the_end(best.model, now.motion);
+    if (known > 0 && !does_anything(before, now)) {
+      out_.effects.resize(known);
+      return;
+    }
     take_out_needless(now);
+  }
+
+  /// Whether the model before an effect was added, fitted on from where that led, does worse than
+  /// with it; else it takes its place. A fit that had not ended makes a needless effect look good.
+  bool does_anything(const Model& before, FitResult& now) const {
+    Model start = now.model;
+    start.effects.resize(before.effects.size());
+    start.free_gain = before.free_gain;
+    start.free_clock = before.free_clock;
+    const FitResult less = fit_to_the_end(start, now.motion);
+    if (!less.good || less.cost > now.cost + kLeastGain) return true;
+    now = less;
+    return false;
   }
 
   /// An earlier mass, spring or damper whose work what was found later does is none.
