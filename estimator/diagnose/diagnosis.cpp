@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "estimator/diagnose/declared.h"
 #include "estimator/diagnose/known_effects.h"
@@ -274,24 +275,29 @@ class Search {
     }
     const Model before = now.model;
     now = fit_to_the_end(best.model, now.motion);
-    if (known > 0 && !does_anything(before, now)) {
+    if (known > 0 && went_needless(before, now)) {
       out_.effects.resize(known);
       return;
     }
     take_out_needless(now);
   }
 
-  /// Whether the model before an effect was added, fitted on from where that led, does worse than
-  /// with it; else it takes its place. A fit that had not ended makes a needless effect look good.
-  bool does_anything(const Model& before, FitResult& now) const {
+  /// Takes a smaller model's fit, begun where `now` is, unless it does worse; whether it did so.
+  bool does_as_well(const Model& smaller, FitResult& now) const {
+    FitResult less = fit_to_the_end(smaller, now.motion);
+    if (!less.good || less.cost > now.cost + kLeastGain) return false;
+    now = std::move(less);
+    return true;
+  }
+
+  /// What was added to the model `before` goes again where that, fitted on from here, does as well:
+  /// a fit that had not ended makes a needless effect look good.
+  bool went_needless(const Model& before, FitResult& now) const {
     Model start = now.model;
     start.effects.resize(before.effects.size());
     start.free_gain = before.free_gain;
     start.free_clock = before.free_clock;
-    const FitResult less = fit_to_the_end(start, now.motion);
-    if (!less.good || less.cost > now.cost + kLeastGain) return true;
-    now = less;
-    return false;
+    return does_as_well(start, now);
   }
 
   /// An earlier mass, spring or damper whose work what was found later does is none.
@@ -301,9 +307,7 @@ class Search {
       if (index < 0 || now.model.effects[static_cast<std::size_t>(index)].element_law()) continue;
       Model start = now.model;
       start.effects.erase(start.effects.begin() + index);
-      const FitResult less = fit_to_the_end(start, now.motion);
-      if (!less.good || less.cost > now.cost + kLeastGain) continue;
-      now = less;
+      if (!does_as_well(start, now)) continue;
       out_.effects[i + 1].before = out_.effects[i].before;
       out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(i));
       for (FoundEffect& e : out_.effects) e.index -= e.index > index;

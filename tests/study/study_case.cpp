@@ -45,18 +45,22 @@ Draw draw_hidden(const std::string& name, const StudyBuilding& b, const Peaks& p
   return draw_law(name, b, peaks, random);
 }
 
+/// Train record of the case with an effect of a size; empty when the building does not stand it.
+std::optional<Eigen::MatrixXd> record_with(const Draw& draw, double size, StudyCase c) {
+  c.hidden = {{}, {}, c.building.theta};
+  draw.make(size, c.hidden);
+  if (!stands(c.building.truth, c.building.table(), c.hidden.theta, c.hidden.effects)) return {};
+  Eigen::MatrixXd accel = clean_record(c, 0);
+  if (!accel.allFinite()) return {};
+  return accel;
+}
+
 /// Smallest size, of a geometric ladder, whose gap reaches `wanted`; 0 when none does.
 double size_for(const Draw& draw, double wanted, const StudyCase& c, const LinearShare& share,
                 double& gap) {
   const auto gap_of = [&](double size) {
-    StudyCase trial = c;
-    trial.hidden = {{}, {}, c.building.theta};
-    draw.make(size, trial.hidden);
-    if (!stands(trial.building.truth, trial.building.table(), trial.hidden.theta,
-                trial.hidden.effects))
-      return -1.0;
-    const Eigen::MatrixXd accel = clean_record(trial, 0);
-    return accel.allFinite() ? share.unexplained(accel, draw.of_channel, 0.5 * wanted) : -1.0;
+    const auto accel = record_with(draw, size, c);
+    return accel ? share.unexplained(*accel, draw.of_channel, 0.5 * wanted) : -1.0;
   };
   if (draw.sizeless) return gap = gap_of(1), gap >= 0 ? 1.0 : 0.0;
   double low = 0, high = draw.largest;
@@ -81,15 +85,9 @@ double size_for(const Draw& draw, double wanted, const StudyCase& c, const Linea
 double settled(const Draw& draw, double size, double least, const StudyCase& c,
                const LinearShare& share, double& gap) {
   for (int i = 0; i < kGrowths; ++i) {
-    StudyCase trial = c;
-    trial.hidden = {{}, {}, c.building.theta};
-    draw.make(size, trial.hidden);
-    if (!stands(trial.building.truth, trial.building.table(), trial.hidden.theta,
-                trial.hidden.effects))
-      return 0;
-    const Eigen::MatrixXd accel = clean_record(trial, 0);
-    if (!accel.allFinite()) return 0;
-    gap = std::min(gap, share.unexplained_at_the_end(accel, draw.of_channel));
+    const auto accel = record_with(draw, size, c);
+    if (!accel) return 0;
+    gap = std::min(gap, share.unexplained_at_the_end(*accel, draw.of_channel));
     if (gap >= least) return size;
     if (draw.sizeless || size >= draw.largest) return 0;
     size = std::min(draw.largest, size * std::clamp(1.1 * least / gap, 1.2, 1.7));
