@@ -71,22 +71,11 @@ class ElementProposals {
   }
 
  private:
-  /// Of every record: those of a linear element, and the law's.
-  std::vector<std::vector<VectorXcd>> columns_with(const ModelEffect& effect) const {
-    std::vector<std::vector<VectorXcd>> out;
-    for (std::size_t r = 0; r < needed_.size(); ++r) {
-      out.push_back(linear_columns(needed_[r], fitter_.stretches()[r].w));
-      out.back().push_back(law_bins(effect, r));
-    }
-    return out;
-  }
-
-  VectorXcd law_bins(const ModelEffect& effect, std::size_t r) const {
-    const Stretch& s = fitter_.stretches()[r];
-    const int ratio = fitter_.ratio(r);
-    return band_of(
-        law_force(effect.law(r), needed_[r].d_t, needed_[r].v_t, 1 / (s.rate_hz * ratio)), s,
-        ratio);
+  ScalarFit fit_of(const ModelEffect& effect) const {
+    std::vector<std::vector<VectorXcd>> columns;
+    for (std::size_t r = 0; r < needed_.size(); ++r)
+      columns.push_back(columns_with(effect, fitter_, needed_, r));
+    return scalar_fit(needed_, columns);
   }
 
   ModelEffect effect_of(LawForm form, std::vector<Knob> knobs) const {
@@ -116,7 +105,7 @@ class ElementProposals {
     ModelEffect chosen;
     for (const double value : grid) {
       const ModelEffect effect = effect_of(form, knobs(value));
-      const ScalarFit fit = scalar_fit(needed_, columns_with(effect));
+      const ScalarFit fit = fit_of(effect);
       const bool dissipates = form == LawForm::friction || form == LawForm::power_damping ||
                               form == LawForm::hysteresis || form == LawForm::pinched;
       if (dissipates && fit.coefficients[2] < 0) continue;
@@ -128,33 +117,12 @@ class ElementProposals {
     if (least.misfit < 1e299) add(std::move(chosen), kind, least);
   }
 
-  /// Onset and duration are each record's own; one change for all.
   void changing(double k) {
     for (const bool sudden : {true, false}) {
-      ModelEffect effect = effect_of(LawForm::changing, {linear_knob(1, 0.01 * k)});
-      effect.record_knobs.resize(needed_.size());
-      for (std::size_t r = 0; r < needed_.size(); ++r) {
-        const double seconds = fitter_.stretches()[r].seconds();
-        double lowest = 1e300;
-        std::vector<double> lengths{0.05};
-        if (!sudden) lengths = {0.3 * seconds, 0.6 * seconds, seconds};
-        for (const double length : lengths)
-          for (double t0 = 0; t0 < seconds - 0.5 * length; t0 += 0.025 * seconds) {
-            ModelEffect one = effect;
-            one.record_knobs[r] = {bounded_knob(t0, 0.1, -0.2 * seconds, seconds),
-                                   logarithmic_knob(length, 0.02, 2 * seconds)};
-            std::vector<VectorXcd> columns = linear_columns(needed_[r], fitter_.stretches()[r].w);
-            columns.push_back(law_bins(one, r));
-            const ScalarFit fit = scalar_fit({needed_[r]}, {columns});
-            if (fit.misfit < lowest) {
-              lowest = fit.misfit;
-              effect.record_knobs[r] = one.record_knobs[r];
-            }
-          }
-        effect.record_knobs[r][1].free = !sudden;
-      }
+      const ModelEffect start = effect_of(LawForm::changing, {linear_knob(1, 0.01 * k)});
+      const ModelEffect effect = timed_change(fitter_, needed_, start, sudden);
       add(effect, sudden ? EffectKind::stiffness_drop : EffectKind::stiffness_drift,
-          scalar_fit(needed_, columns_with(effect)));
+          fit_of(effect));
     }
   }
 

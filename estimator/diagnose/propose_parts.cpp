@@ -7,15 +7,11 @@
 #include "estimator/structure/complex.h"
 
 namespace framewatch {
-namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
-
-}  // namespace
 
 Knob linear_knob(double value, double step) {
   Knob out;
@@ -46,25 +42,42 @@ std::vector<VectorXcd> linear_columns(const Needed& needed, const VectorXd& w) {
   return {needed.d, needed.d.array() * w.array() * kJ};
 }
 
-ScalarFit scalar_fit(const std::vector<Needed>& needed,
-                     const std::vector<std::vector<VectorXcd>>& columns) {
-  const auto count = static_cast<Index>(columns.front().size());
-  MatrixXd normal = MatrixXd::Zero(count, count);
-  VectorXd right = VectorXd::Zero(count);
-  double total = 0;
-  for (std::size_t r = 0; r < needed.size(); ++r) {
-    const VectorXd& w = needed[r].weight;
-    for (Index i = 0; i < count; ++i) {
-      const VectorXcd& a = columns[r][static_cast<std::size_t>(i)];
-      right[i] += (w.array() * (a.conjugate().array() * needed[r].force.array()).real()).sum();
-      for (Index j = 0; j <= i; ++j) {
-        const VectorXcd& b = columns[r][static_cast<std::size_t>(j)];
-        normal(i, j) += (w.array() * (a.conjugate().array() * b.array()).real()).sum();
-        normal(j, i) = normal(i, j);
-      }
+std::vector<VectorXcd> columns_with(const ModelEffect& effect, const Fitter& fitter,
+                                    const std::vector<Needed>& needed, std::size_t record) {
+  const Stretch& s = fitter.stretches()[record];
+  const Needed& n = needed[record];
+  const int ratio = fitter.ratio(record);
+  std::vector<VectorXcd> out = linear_columns(n, s.w);
+  const VectorXd force = law_force(effect.law(record), n.d_t, n.v_t, 1 / (s.rate_hz * ratio));
+  out.push_back(band_of(force, s, ratio));
+  return out;
+}
+
+ScalarSums scalar_sums(const Needed& needed, const std::vector<VectorXcd>& columns) {
+  const auto count = static_cast<Index>(columns.size());
+  const VectorXd& w = needed.weight;
+  ScalarSums out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0};
+  for (Index i = 0; i < count; ++i) {
+    const VectorXcd& a = columns[static_cast<std::size_t>(i)];
+    out.right[i] = (w.array() * (a.conjugate().array() * needed.force.array()).real()).sum();
+    for (Index j = 0; j <= i; ++j) {
+      const VectorXcd& b = columns[static_cast<std::size_t>(j)];
+      out.normal(i, j) = (w.array() * (a.conjugate().array() * b.array()).real()).sum();
+      out.normal(j, i) = out.normal(i, j);
     }
-    total += (w.array() * needed[r].force.array().abs2()).sum();
   }
+  out.total = (w.array() * needed.force.array().abs2()).sum();
+  return out;
+}
+
+ScalarSums& ScalarSums::operator+=(const ScalarSums& more) {
+  normal += more.normal;
+  right += more.right;
+  total += more.total;
+  return *this;
+}
+
+ScalarFit ScalarSums::fit() const {
   const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
   scaled.diagonal().array() += 1e-10;
@@ -72,6 +85,13 @@ ScalarFit scalar_fit(const std::vector<Needed>& needed,
   out.coefficients = scale.asDiagonal() * scaled.ldlt().solve(scale.asDiagonal() * right);
   out.misfit = total - out.coefficients.dot(right);
   return out;
+}
+
+ScalarFit scalar_fit(const std::vector<Needed>& needed,
+                     const std::vector<std::vector<VectorXcd>>& columns) {
+  ScalarSums sums = scalar_sums(needed.front(), columns.front());
+  for (std::size_t r = 1; r < needed.size(); ++r) sums += scalar_sums(needed[r], columns[r]);
+  return sums.fit();
 }
 
 }  // namespace framewatch

@@ -31,15 +31,35 @@ struct ScalarFit {
   Eigen::VectorXd coefficients;
 };
 
+/// What one record says about the coefficients; of several they add up.
+struct ScalarSums {
+  Eigen::MatrixXd normal;
+  Eigen::VectorXd right;
+  double total = 0;  ///< misfit of no column
+
+  ScalarSums& operator+=(const ScalarSums& more);
+  ScalarFit fit() const;
+};
+
+ScalarSums scalar_sums(const Needed& needed, const std::vector<Eigen::VectorXcd>& columns);
 ScalarFit scalar_fit(const std::vector<Needed>& needed,
                      const std::vector<std::vector<Eigen::VectorXcd>>& columns);
 
 /// The signal that the first suspect of a localisation needs, of every stretch.
 std::vector<Needed> needed_of(const Fitter& fitter, const Localisation& place);
 
+/// Columns of one record for an element: those of a linear one, and that of a law on the motion
+/// that is needed.
+std::vector<Eigen::VectorXcd> columns_with(const ModelEffect& effect, const Fitter& fitter,
+                                           const std::vector<Needed>& needed, std::size_t record);
+
 /// Every law of an element.
 std::vector<Proposal> element_proposals(const Fitter& fitter, const Localisation& place,
                                         const std::vector<Needed>& needed, int element);
+/// Since when a stiffness is another one and how long it took to become so, in every record: those
+/// two of an effect of the form `changing`, its amplitude shared by the records.
+ModelEffect timed_change(const Fitter& fitter, const std::vector<Needed>& needed,
+                         ModelEffect effect, bool sudden);
 /// A hidden oscillator, and forces from outside.
 void add_node_proposals(const Fitter& fitter, const Localisation& place,
                         const std::vector<Needed>& needed, const EffectPlace& node,

@@ -61,6 +61,25 @@ TEST(Diagnose, GainOfOneChannelIsNotPhysics) {
   EXPECT_NEAR(d.model.gain[1], 0.08, 0.01);
 }
 
+TEST(Diagnose, ADropIsTimedByAllRecordsTogether) {
+  const Small small;
+  EffectPlace place;
+  place.story = 1;
+  place.frame = 3;
+  Effect drop = make_effect(EffectKind::stiffness_drop, place);
+  const double change = -0.03 * small.truth[small.table.frame_stiffness(1, 3)];
+  drop.set("dk_npm", change);
+  drop.set("at_s", 14);
+  Effect long_ago = drop;
+  long_ago.set("at_s", 0);
+  const Diagnosis d = diagnosis_of(small, {small.record({drop}, 1), small.record({long_ago}, 2)});
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::stiffness_drop);
+  EXPECT_EQ(d.effects[0].chosen.place, place);
+  EXPECT_NEAR(d.model.effects[0].knobs[0].plain() / change, 1, 0.1);
+  EXPECT_NEAR(d.model.effects[0].record_knobs[0][0].plain(), 14, 0.5);
+}
+
 TEST(Diagnose, RecordsOfDifferentBuildingsAreSaidToBe) {
   const Small small;
   Small other;
