@@ -58,11 +58,26 @@ Json effect_json(const DiagnoseOutput& o, const FoundEffect& f) {
           {"parameters", parameters}};
 }
 
+const char* fate_word(Fate fate) {
+  switch (fate) {
+    case Fate::fitted:
+      return "fitted";
+    case Fate::outrun:
+      return "outrun";
+    case Fate::ran_away:
+      return "ran_away";
+    case Fate::other_law:
+      break;
+  }
+  return "other_law";
+}
+
 Json trial_json(const DiagnoseOutput& o, const Trial& t) {
   return {{"effect", std::string(name_of(t.kind))},
           {"location", location_json(t.place, o.plant.structure, o.plant.axes)},
           {"explained_share", number(t.fraction)},
-          {"misfit", number(t.cost)}};
+          {"misfit", number(t.cost)},
+          {"fate", fate_word(t.fate)}};
 }
 
 }  // namespace
@@ -84,6 +99,7 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
                     {"holdout_nrmse_after", number(f.after)},
                     {"explained_share", number(f.chosen.fraction)},
                     {"confidence", number(f.confidence)},
+                    {"approximate", f.approximate},
                     {"alternatives", Json::array()},
                     {"indistinguishable_from", Json::array()}});
     for (const Trial& t : f.alternatives) one["alternatives"].push_back(trial_json(o, t));

@@ -12,6 +12,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kForceDeformationPoints = 4000;
+constexpr std::size_t kRanked = 15;
 
 std::string percent(double share) {
   return fmt::format("{:.2f} %", 100 * share);
@@ -165,13 +166,33 @@ std::string where_section(const DiagnoseOutput& o) {
          html_table({"place", "misfit left, 1 is noise", "when", "frequencies", "largest"}, rows);
 }
 
+const char* why_it_lost(Fate fate) {
+  switch (fate) {
+    case Fate::fitted:
+      return "leaves more unexplained";
+    case Fate::outrun:
+      return "others of its place do better when the measured motion drives the law";
+    case Fate::ran_away:
+      return "its free run comes to no end";
+    case Fate::other_law:
+      break;
+  }
+  return "its values make another law of it";
+}
+
+/// The likeliest ones.
 std::string ranking(const DiagnoseOutput& o, const std::vector<Trial>& trials, double best) {
   std::vector<std::vector<std::string>> rows;
-  for (const Trial& t : trials)
+  for (const Trial& t : trials) {
+    if (rows.size() == kRanked) break;
     rows.push_back({html_text(std::string(name_of(t.kind))), place(o, t.place), percent(t.fraction),
-                    fmt::format("{:.0f}", t.cost - best)});
-  return html_table(
-      {"candidate", "place", "explains of the excess", "log-likelihood below the best"}, rows);
+                    fmt::format("{:.0f}", t.cost - best), why_it_lost(t.fate)});
+  }
+  const std::size_t more = trials.size() - rows.size();
+  return html_table({"candidate", "place", "explains of the excess",
+                     "log-likelihood below the best", "why it lost"},
+                    rows) +
+         (more > 0 ? fmt::format("<p>{} more are in diagnosis.json.</p>\n", more) : "");
 }
 
 std::string effects_section(const DiagnoseOutput& o) {
@@ -191,14 +212,16 @@ std::string effects_section(const DiagnoseOutput& o) {
     if (!rows.empty()) out += html_table({"parameter", "value", "standard error", "unit"}, rows);
     out += fmt::format("<p>Held-out gap {} before, {} after.</p>\n", percent(f.before),
                        percent(f.after));
+    if (f.approximate)
+      out +=
+          "<p>More than noise is left: what acts there is not quite this law, whose name is that "
+          "of "
+          "the nearest one in the catalogue.</p>\n";
     for (const EffectKind kind : f.like)
       out += "<p>Cannot be told from " + html_text(std::string(name_of(kind))) +
              " with these records: a motion of another strength would tell.</p>\n";
     if (!f.alternatives.empty())
-      out +=
-          "<h3>Runners-up</h3>\n<p>Fitted as fully as the one that was chosen; they lost by what "
-          "they leave unexplained.</p>\n" +
-          ranking(o, f.alternatives, f.chosen.cost);
+      out += "<h3>Runners-up</h3>\n" + ranking(o, f.alternatives, f.chosen.cost);
   }
   if (!o.diagnosis.rejected.empty())
     out +=
@@ -224,7 +247,8 @@ std::string diagnosis_text(const DiagnoseOutput& o) {
   std::string out = fmt::format("{}: misfit {:.3g} of noise before, {:.3g} after\n",
                                 verdict_word(d.verdict), d.ratio_before, d.ratio_after);
   for (const FoundEffect& f : d.effects)
-    out += fmt::format("  {} at {}: held-out gap {} -> {}\n", name_of(f.chosen.kind),
+    out += fmt::format("  {}{} at {}: held-out gap {} -> {}\n", f.approximate ? "about " : "",
+                       name_of(f.chosen.kind),
                        place_text(f.chosen.place, o.plant.structure, o.plant.axes),
                        percent(f.before), percent(f.after));
   if (d.effects.empty() && d.verdict == Verdict::unexplained && !d.where.empty())

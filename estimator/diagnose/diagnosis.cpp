@@ -25,6 +25,7 @@ using Eigen::MatrixXcd;
 constexpr double kOneLaw =
     0.99;                    ///< share above which a second law at a place is no sign of another
 constexpr double kSame = 8;  ///< difference of misfits that decides nothing
+constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong
 constexpr double kLeastGain = 50;
 constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
 constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
@@ -77,6 +78,7 @@ class Search {
     out_.model = now.model;
     out_.declared = declared_model(plant_, stretches_, now.model, {&out_.known, &out_.effects});
     out_.ratio_after = ratio(now);
+    doubt(now.model);
     set_errors(fitter_, now.model, now.motion, out_.effects);
     set_errors(fitter_, now.model, now.motion, out_.known);
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
@@ -106,6 +108,16 @@ class Search {
 
   double ratio(const FitResult& now) const {
     return now.total_misfit() / fitter_.expected(now.model);
+  }
+
+  /// A law that leaves more than noise is what it resembles at best.
+  void doubt(const Model& model) {
+    if (out_.ratio_after < kAdequate) return;
+    for (FoundEffect& e : out_.effects) {
+      if (e.index < 0 || !model.effects[static_cast<std::size_t>(e.index)].element_law()) continue;
+      e.approximate = true;
+      e.confidence = std::min(e.confidence, kDoubtful);
+    }
   }
 
   /// Everything together once more, with the shape of hysteresis free.
@@ -209,7 +221,7 @@ class Search {
       append(trials, trials_of_pairs(now, located, begin, bound));
       holds = settle(context_of(now), bound, needed, trials);
     }
-    if (trials.empty()) return false;
+    if (trials.empty() || trials.front().fate != Fate::fitted) return false;
     if (!holds) {
       out_.rejected = trials;
       return false;
@@ -254,12 +266,15 @@ class Search {
     found.after = mean_gap(gaps_of(fitter_, best.model), options_.holdout_from);
     for (std::size_t i = 1; i < trials.size(); ++i) {
       found.alternatives.push_back(trials[i]);
-      if (trials[i].cost < best.cost + kSame && trials[i].kind != best.kind &&
+      if (trials[i].fate == Fate::fitted && trials[i].cost < best.cost + kSame &&
+          trials[i].kind != best.kind &&
           std::find(found.like.begin(), found.like.end(), trials[i].kind) == found.like.end())
         found.like.push_back(trials[i].kind);
     }
-    const double margin = trials.size() > 1 ? trials[1].cost - best.cost : 1e3;
-    found.confidence = found.like.empty() ? std::min(0.999, 1 - 0.5 * std::exp(-margin / 20)) : 0.5;
+    const bool rival = trials.size() > 1 && trials[1].fate == Fate::fitted;
+    const double margin = rival ? std::max(0.0, trials[1].cost - best.cost) : 1e3;
+    found.confidence =
+        found.like.empty() ? std::min(0.999, 1 - kDoubtful * std::exp(-margin / 20)) : kDoubtful;
     auto next = static_cast<int>(now.model.effects.size());
     const auto place = [&](FoundEffect& effect) {
       effect.index = is_axis_error(effect.chosen.kind) ? -1 : next++;

@@ -17,8 +17,18 @@ namespace framewatch {
 enum class Verdict { adequate, explained, partly_explained, unexplained };
 const char* verdict_word(Verdict verdict);
 
-/// A candidate that was fitted to the end.
+/// How far a candidate came.
+enum class Fate {
+  fitted,     ///< to the end, as a free run
+  outrun,     ///< not run: others of its place were better when the measured motion drove the law
+  ran_away,   ///< its free run came to no end
+  other_law,  ///< its values make another law of it, or a name that must not be given
+};
+
+/// A candidate. Only one that was fitted to the end is ever chosen; the cost of `outrun` and
+/// `ran_away` is that under the measured motion.
 struct Trial {
+  Fate fate = Fate::fitted;
   EffectKind kind = EffectKind::cubic_stiffness;
   EffectPlace place;
   double cost = 0;      ///< misfit of the free run over all records, with the prior
@@ -34,7 +44,9 @@ struct FoundEffect {
   Trial chosen;
   std::vector<Trial> alternatives;  ///< best first
   std::vector<EffectKind> like;     ///< names that the data do not tell from it
-  double confidence = 0;
+  double confidence = 0;            ///< 0 to 1 in the name
+  /// More than noise is left with it: something acts that its law only resembles.
+  bool approximate = false;
   double before = 0, after = 0;   ///< held-out free-run NRMSE
   int index = -1;                 ///< in the model's effects; -1: of an axis
   std::vector<double> ramp_mps3;  ///< bias_drift: slope in every stretch

@@ -31,7 +31,8 @@ double fitted_values(const Model& model) {
 void sharpen(const TrialContext& context, std::vector<Trial>& trials) {
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
-    if (t.fraction < kSharp && t.fraction > kBlunt) t = sharpened(context, t, t.model);
+    if (t.fate == Fate::fitted && t.fraction < kSharp && t.fraction > kBlunt)
+      t = sharpened(context, t, t.model);
   });
 }
 
@@ -39,7 +40,8 @@ void sharpen(const TrialContext& context, std::vector<Trial>& trials) {
 void approach(const TrialContext& context, std::vector<Trial>& trials) {
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
-    if (t.fraction > kBlunt) t = sharpened(context, t, fitted_to_the_weakest(context, t.model));
+    if (t.fate == Fate::fitted && t.fraction > kBlunt)
+      t = sharpened(context, t, fitted_to_the_weakest(context, t.model));
   });
 }
 
@@ -52,7 +54,9 @@ bool worsens(const Trial& trial, const FitResult& now, double chance) {
 }
 
 bool settle(const TrialContext& context, double bound, double needed, std::vector<Trial>& trials) {
-  if (trials.empty()) return false;
+  if (std::none_of(trials.begin(), trials.end(),
+                   [](const Trial& t) { return t.fate == Fate::fitted; }))
+    return false;
   const FitResult& now = context.now;
   const double to_explain = now.cost - bound;
   // Two effects must beat one by more than chance, a law what any force would do, and every value
@@ -65,8 +69,10 @@ bool settle(const TrialContext& context, double bound, double needed, std::vecto
            (any ? needed + kOwnPrice * std::max(to_explain, 0.0) : 0.0);
   };
   const auto rank = [&] {
-    std::stable_sort(trials.begin(), trials.end(),
-                     [&](const Trial& a, const Trial& b) { return price(a) < price(b); });
+    std::stable_sort(trials.begin(), trials.end(), [&](const Trial& a, const Trial& b) {
+      const bool run_a = a.fate == Fate::fitted, run_b = b.fate == Fate::fitted;
+      return run_a != run_b ? run_a : price(a) < price(b);
+    });
     for (Trial& t : trials) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1e-9);
   };
   rank();

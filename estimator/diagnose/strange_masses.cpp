@@ -46,7 +46,8 @@ std::vector<Trial> strange_masses(const TrialContext& context, const Located& lo
                             context.progress};
   std::vector<Trial> out = try_places(linear, places);
   std::erase_if(out, [&](const Trial& t) {
-    return context.now.cost - t.cost < std::max(kStrangeMasses, kDoesAway * strange) ||
+    return t.fate != Fate::fitted ||
+           context.now.cost - t.cost < std::max(kStrangeMasses, kDoesAway * strange) ||
            !(t.model.effects.back().knobs[0].plain() > 0) ||
            is_tolerated(context.fitter.plant().structure, t.model.effects.back(), sigma);
   });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "estimator/diagnose/begin_run.h"
@@ -102,6 +103,41 @@ FitOptions to_the_end(const Model& model) {
   return options;
 }
 
+Trial trial_of(const TrialContext& c, const Candidate& candidate, const FitResult& fit, Fate fate) {
+  Trial out;
+  out.fate = fate;
+  out.kind = candidate.kind;
+  out.place = candidate.place;
+  out.second = candidate.second;
+  take(c, fit, out);
+  return out;
+}
+
+/// The best of each place, and as many of those whose names could be given; the others are outrun.
+std::vector<Fitted> worth_running(const TrialContext& c, std::vector<Fitted> first,
+                                  std::vector<Trial>& outrun) {
+  std::stable_sort(first.begin(), first.end(), [](const Fitted& a, const Fitted& b) {
+    return a.candidate->from != b.candidate->from ? a.candidate->from < b.candidate->from
+                                                  : a.fit.cost < b.fit.cost;
+  });
+  std::vector<Fitted> out;
+  std::size_t place = 0, of_place = 0, named_of_place = 0;
+  for (Fitted& f : first) {
+    if (f.candidate->from != place) of_place = named_of_place = 0;
+    place = f.candidate->from;
+    Trial driven = trial_of(c, *f.candidate, f.fit, Fate::outrun);
+    const bool named = is_named(c, driven);
+    if (!f.candidate->second && of_place >= kLawsRun && (!named || named_of_place >= kLawsRun)) {
+      outrun.push_back(std::move(driven));
+      continue;
+    }
+    ++of_place;
+    named_of_place += named;
+    out.push_back(std::move(f));
+  }
+  return out;
+}
+
 /// Fits all at once: first with the measured motion, the best of each place then as free runs.
 std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& candidates) {
   std::vector<Fitted> first(candidates.size());
@@ -113,18 +149,11 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
                                           &candidate};
   });
   std::erase_if(first, [](const Fitted& f) { return !f.fit.good; });
-  std::stable_sort(first.begin(), first.end(), [](const Fitted& a, const Fitted& b) {
-    return a.candidate->from != b.candidate->from ? a.candidate->from < b.candidate->from
-                                                  : a.fit.cost < b.fit.cost;
-  });
-  std::vector<Fitted> kept;
-  for (const Fitted& f : first) {
-    const auto same = std::count_if(kept.begin(), kept.end(), [&](const Fitted& k) {
-      return k.candidate->from == f.candidate->from;
-    });
-    if (f.candidate->second || static_cast<std::size_t>(same) < kLawsRun) kept.push_back(f);
-  }
+  std::vector<Trial> trials;
+  std::vector<Fitted> kept = worth_running(c, std::move(first), trials);
   std::vector<FitResult> runs(kept.size());
+  std::vector<Trial> out;
+  for (const Fitted& f : kept) out.push_back(trial_of(c, *f.candidate, f.fit, Fate::ran_away));
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     const FitResult from = begin_run(c.fitter, std::move(kept[at].fit));
@@ -135,8 +164,6 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   double least = 1e300;
   for (const FitResult& r : runs)
     if (r.good) least = std::min(least, r.cost);
-  std::vector<Trial> out(kept.size());
-  std::vector<char> good(kept.size());
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     if (!runs[at].good) return;
@@ -145,17 +172,11 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
           c.fitter.fit(runs[at].model, runs[at].motion, to_the_end(runs[at].model));
       if (on.good && on.cost < runs[at].cost) runs[at] = on;
     }
-    const Fitted& f = kept[at];
-    Trial& t = out[at];
-    t.kind = f.candidate->kind;
-    t.place = f.candidate->place;
-    t.second = f.candidate->second;
-    take(c, runs[at], t);
-    good[at] = is_named(c, t);
+    Trial& t = out[at] = trial_of(c, *kept[at].candidate, runs[at], Fate::fitted);
+    if (!is_named(c, t)) t.fate = Fate::other_law;
   });
-  std::vector<Trial> trials;
-  for (std::size_t i = 0; i < out.size(); ++i)
-    if (good[i]) trials.push_back(std::move(out[i]));
+  trials.insert(trials.end(), std::make_move_iterator(out.begin()),
+                std::make_move_iterator(out.end()));
   return trials;
 }
 

@@ -11,6 +11,7 @@ namespace framewatch::study {
 namespace {
 
 using Json = nlohmann::json;
+constexpr double kSure = 0.9;  ///< confidence
 
 Json read_json(const std::string& path) {
   std::ifstream in(path);
@@ -123,7 +124,18 @@ void compare(const Json& truths, const Json& found, Outcome& out) {
     out.right += right;
     out.exact += exact;
   }
-  out.extra = std::count(explained.begin(), explained.end(), false) > 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (explained[i]) continue;
+    out.extra = true;
+    out.confidently_wrong = out.confidently_wrong || found[i].value("confidence", 1.0) > kSure;
+  }
+}
+
+/// Where nothing was named, the likeliest place is the one that is claimed.
+void place_unnamed(const Json& truths, const Json& where, Outcome& out) {
+  if (where.empty()) return;
+  for (const Json& truth : truths)
+    out.places_right += same_place(truth["location"], where.front()["location"]);
 }
 
 }  // namespace
@@ -153,6 +165,7 @@ std::optional<Outcome> score(const std::string& directory) {
   const Json found = diagnosis.value("effects", Json::array());
   for (const Json& effect : found) out.named.push_back(text_of(effect, "effect"));
   compare(truth["effects"], found, out);
+  if (found.empty()) place_unnamed(truth["effects"], diagnosis.value("where", Json::array()), out);
   out.gap_before = first_of({number(diagnosis, {"gap", "before", "holdout", "overall"}),
                              number(diagnosis, {"gap", "holdout", "before", "overall"})});
   out.gap_after = first_of({number(diagnosis, {"gap", "after", "holdout", "overall"}),

@@ -13,17 +13,18 @@ struct Outcome {
   std::string verdict;             ///< refused: no diagnosis.json
   std::vector<std::string> named;  ///< effects adopted
   int truths = 0;                  ///< effects hidden
-  int places_right = 0;            ///< of those, at whose place something was adopted
-  int right = 0;                   ///< of those, with their name or that of their family too
-  int exact = 0;                   ///< with their very name
-  bool told_apart = true;          ///< false: right only among those that cannot be told apart
-  bool extra = false;              ///< something was adopted that is not there
+  int places_right = 0;    ///< of those, at whose place something was adopted; of none, that which
+                           ///< is the likeliest
+  int right = 0;           ///< of those, with their name or that of their family too
+  int exact = 0;           ///< with their very name
+  bool told_apart = true;  ///< false: right only among those that cannot be told apart
+  bool extra = false;      ///< something was adopted that is not there
+  bool confidently_wrong = false;  ///< and the diagnosis is sure of its name
   std::optional<double> gap_before, gap_after, noise_floor;  ///< held out, overall
   std::vector<double> parameter_errors;  ///< relative, of what was named exactly
 
   bool abstained() const { return named.empty(); }
   bool all_right() const { return right == truths && !extra; }
-  bool confidently_wrong() const { return verdict == "explained" && !all_right(); }
   /// Share of what exceeds the noise floor that is gone.
   std::optional<double> removed() const;
 };

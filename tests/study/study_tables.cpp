@@ -63,7 +63,7 @@ void add_summary(const std::vector<Outcome>& outcomes, std::string& out) {
                       [](const Outcome& o) { return o.truths > 0 && o.places_right == o.truths; }),
                 all),
         percent(count(group, [](const Outcome& o) { return o.abstained(); }), all),
-        percent(count(group, [](const Outcome& o) { return o.confidently_wrong(); }), all),
+        percent(count(group, [](const Outcome& o) { return o.confidently_wrong; }), all),
         percent(count(group, [](const Outcome& o) { return o.verdict == "adequate"; }), all),
         removed(group), errors(group));
   }

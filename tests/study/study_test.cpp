@@ -113,7 +113,8 @@ TEST(StudyScore, JudgesNamePlaceAndGap) {
   ASSERT_TRUE(write_case(c, directory, error)) << error;
   std::filesystem::create_directory(directory + "/out");
   const EffectPlace& place = c.hidden.effects.front().place;
-  const auto diagnosed = [&](const std::string& verdict, const std::string& name, int story) {
+  const auto diagnosed = [&](const std::string& verdict, const std::string& name, int story,
+                             double confidence = 0.999) {
     const std::string where = place.kind == PlaceKind::panel
                                   ? "\"kind\": \"panel\", \"panel\": \"x1y1\""
                                   : "\"kind\": \"frame\", \"frame\": \"" +
@@ -122,8 +123,8 @@ TEST(StudyScore, JudgesNamePlaceAndGap) {
         << "{\"verdict\": \"" << verdict << "\", \"effects\": [{\"effect\": \"" << name
         << "\", \"location\": {" << where << ", \"story\": " << story
         << "}, \"parameters\": {\"kh_npm\": {\"value\": "
-        << 1.2 * c.hidden.effects.front().value("kh_npm")
-        << "}}}], \"gap\": {\"before\": {\"holdout\": {\"overall\": 0.2}}, \"after\": "
+        << 1.2 * c.hidden.effects.front().value("kh_npm") << "}}, \"confidence\": " << confidence
+        << "}], \"gap\": {\"before\": {\"holdout\": {\"overall\": 0.2}}, \"after\": "
            "{\"holdout\": "
            "{\"overall\": 0.04}}, \"noise_floor\": {\"holdout\": {\"overall\": 0.02}}}}";
     return score(directory).value();
@@ -140,13 +141,15 @@ TEST(StudyScore, JudgesNamePlaceAndGap) {
   EXPECT_EQ(family.exact, 0);
 
   const Outcome elsewhere = diagnosed("explained", "bouc_wen", 3 - place.story);
-  EXPECT_TRUE(elsewhere.confidently_wrong());
+  EXPECT_TRUE(elsewhere.confidently_wrong);
   EXPECT_EQ(elsewhere.places_right, 0);
 
   const Outcome otherwise = diagnosed("partly_explained", "cubic_stiffness", place.story);
   EXPECT_FALSE(otherwise.all_right());
   EXPECT_EQ(otherwise.places_right, 1);
-  EXPECT_FALSE(otherwise.confidently_wrong());
+  EXPECT_TRUE(otherwise.confidently_wrong);
+  EXPECT_FALSE(
+      diagnosed("partly_explained", "cubic_stiffness", place.story, 0.5).confidently_wrong);
 
   const std::string table = tables({right, elsewhere});
   EXPECT_NE(table.find("| bouc_wen | 2 | 1 | 1 |"), std::string::npos) << table;

@@ -91,7 +91,7 @@ TEST(StudySubset, NothingHiddenIsAdequate) {
 TEST(StudySubset, AnEffectThatIsNotInTheCatalogueIsNotNamedConfidently) {
   FRAMEWATCH_OPTIMISED_OR_SKIP();
   const Outcome o = diagnosed("catalogue", "two_sided_gap", 4200, kNoise, {"two_sided_gap"});
-  EXPECT_FALSE(o.confidently_wrong()) << (o.named.empty() ? "" : o.named.front());
+  EXPECT_FALSE(o.confidently_wrong) << (o.named.empty() ? "" : o.named.front());
   EXPECT_NE(o.verdict, "adequate");
 }
 
