@@ -159,9 +159,11 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   std::vector<Localisation> out;
   std::map<Suspect::Kind, int> of_kind;
   if (places.empty()) return out;
-  const double limit = margin_of(places.front());
+  const double limit = margin_of(places.front()), wide = wide_margin_of(places.front());
   for (const Localisation& place : places) {
-    if (place.ratio > limit || out.size() >= kMostContenders) break;
+    // Frames that bend do more than a moment at the base, by which they are located.
+    const bool moment = place.suspects.front().kind == Suspect::Kind::rocking;
+    if (place.ratio > (moment ? wide : limit) || out.size() >= kMostContenders) continue;
     const bool another_kind = of_kind[place.suspects.front().kind]++ == 0;
     if (out.size() < kContenders || another_kind) out.push_back(place);
   }
