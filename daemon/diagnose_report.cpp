@@ -177,7 +177,7 @@ const char* why_it_lost(Fate fate) {
     case Fate::other_law:
       break;
   }
-  return "its values make another law of it";
+  return "as fitted it is not the law of this name";
 }
 
 /// The likeliest ones.
@@ -225,8 +225,9 @@ std::string effects_section(const DiagnoseOutput& o) {
   }
   if (!o.diagnosis.rejected.empty())
     out +=
-        "<h2>What did not earn its place</h2>\n<p>None explains 97 % of what an arbitrary "
-        "force at the best place would, without worsening a record.</p>\n" +
+        "<h2>What did not earn its place</h2>\n<p>None that is what its name says explains 97 % of "
+        "what an "
+        "arbitrary force at the best place would, without worsening a record.</p>\n" +
         ranking(o, o.diagnosis.rejected, o.diagnosis.rejected.front().cost);
   return out;
 }

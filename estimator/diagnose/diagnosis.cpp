@@ -7,12 +7,11 @@
 
 #include "estimator/diagnose/declared.h"
 #include "estimator/diagnose/known_effects.h"
-#include "estimator/diagnose/locate.h"
 #include "estimator/diagnose/parameter_errors.h"
 #include "estimator/diagnose/ramps.h"
+#include "estimator/diagnose/round_trials.h"
 #include "estimator/diagnose/settle.h"
 #include "estimator/diagnose/strange_masses.h"
-#include "estimator/diagnose/trials.h"
 #include "estimator/diagnose/verdict.h"
 #include "estimator/diagnose/where.h"
 
@@ -27,14 +26,7 @@ constexpr double kOneLaw =
 constexpr double kSame = 8;  ///< difference of misfits that decides nothing
 constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong
 constexpr double kLeastGain = 50;
-constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
-constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
-constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
 constexpr int kPolishSteps = 6, kBackSteps = 8;
-
-bool is_element(const Localisation& place) {
-  return place.suspects.front().kind == Suspect::Kind::element;
-}
 
 /// A force on the lowest story of a frame is one at its floor.
 bool same_spot(const EffectPlace& a, const EffectPlace& b) {
@@ -141,62 +133,12 @@ class Search {
     return context;
   }
 
-  /// Misfit that effects at these places should leave if their forces may be anything.
-  double bound_of(const Localisation& places) const {
-    const auto equations = static_cast<double>(plant_.equations());
-    double unseen = 0;
-    for (const Suspect& s : places.suspects) unseen += static_cast<double>(s.size());
-    return places.misfit * equations / std::max(equations - unseen, 1.0);
-  }
-
-  /// Two laws at two places, where two explain what one does not.
-  std::vector<Trial> trials_of_pairs(const FitResult& now, const Located& located, double begin,
-                                     double& bound) {
-    tell("two places", begin + 0.02);
-    const Localisation& best = located.places.front();
-    const std::vector<Localisation> pairs =
-        locate_pairs(fitter_, now, located.once, options_.parallel);
-    const double limit = best.ratio > kOnePlace ? 1 + kPairShare * (best.ratio - 1) : kOnePlace;
-    std::vector<Trial> out;
-    if (pairs.empty() || pairs.front().ratio >= limit) return out;
-    bound = std::min(now.cost, bound_of(pairs.front()));
-    for (std::size_t i = 0; i < std::min<std::size_t>(2, pairs.size()); ++i) {
-      if (pairs[i].ratio > 2 * pairs.front().ratio) break;
-      append(out, try_pair(context_of(now, begin + 0.05), pairs[i]));
-    }
-    return out;
-  }
-
-  std::vector<Trial> trials_of_places(const FitResult& now, const Located& located, bool small,
-                                      double begin) {
-    std::vector<Localisation> places = contenders(located.places);
-    if (small) std::erase_if(places, is_element);
-    const std::vector<Localisation> more = as_likely(fitter_, now, located, options_.parallel);
-    places.insert(places.end(), more.begin(), more.end());
-    return try_places(context_of(now, begin + 0.05), places);
-  }
-
-  /// Where the best place is that of a law and does not do alone: the places beside it.
-  void look_beside(const FitResult& now, Located& located) const {
-    const Localisation& place = located.places.front();
-    const bool of_law =
-        std::any_of(out_.effects.begin(), out_.effects.end(), [&](const FoundEffect& e) {
-          return e.chosen.place == place.suspects.front().place && is_element(place);
-        });
-    const double chance = kSignificant / std::sqrt(fitter_.expected(now.model));
-    if (!of_law || place.ratio < 1 + chance) return;
-    std::vector<Localisation> beside =
-        locate_beside(fitter_, now, located.once, place.suspects.front(), options_.parallel);
-    if (!beside.empty() && beside.front().ratio - 1 < kPairShare * (place.ratio - 1))
-      located.places = std::move(beside);
-  }
-
   bool one_round(FitResult& now, int round) {
     const double begin = 0.06 + 0.28 * round;
     tell("where", begin);
     Located located = locate(fitter_, now, options_.parallel);
     if (located.places.empty()) return false;
-    look_beside(now, located);
+    look_beside(context_of(now), out_.effects, located);
     const Localisation& place = located.places.front();
     const double expected_now = fitter_.expected(now.model);
     const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;
@@ -211,15 +153,16 @@ class Search {
     const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
     if (small && is_element(place)) return false;
     std::vector<Trial> trials;
-    double bound = std::min(now.cost, bound_of(place));
+    double bound = std::min(now.cost, bound_of(plant_, place));
     const bool pairs = place.ratio > kOnePlace;
-    if (pairs) trials = trials_of_pairs(now, located, begin, bound);
-    append(trials, trials_of_places(now, located, small, begin));
-    bool holds = settle(context_of(now), bound, needed, trials);
+    const TrialContext context = context_of(now, begin + 0.05);
+    if (pairs) trials = trials_of_pairs(context, located, bound);
+    append(trials, trials_of_places(context, located, small));
+    bool holds = settle(context, bound, needed, trials);
     // Several forces at one place may be those of two effects.
     if (!holds && !pairs && place.suspects.front().size() > 1) {
-      append(trials, trials_of_pairs(now, located, begin, bound));
-      holds = settle(context_of(now), bound, needed, trials);
+      append(trials, trials_of_pairs(context, located, bound));
+      holds = settle(context, bound, needed, trials);
     }
     if (trials.empty() || trials.front().fate != Fate::fitted) return false;
     if (!holds) {
