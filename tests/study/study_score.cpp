@@ -145,18 +145,18 @@ std::optional<double> Outcome::removed() const {
   return 1 - std::max(*gap_after - *noise_floor, 0.0) / (*gap_before - *noise_floor);
 }
 
-std::optional<Outcome> score(const std::string& directory) {
+std::optional<Outcome> score(const std::string& directory, const std::string& folder) {
   const Json truth = read_json(directory + "/truth.json");
   if (truth.is_discarded() || !truth.contains("effects")) return std::nullopt;
   Outcome out;
   out.directory = directory;
   const Json study = truth.value("study", Json::object());
-  out.group = text_of(study, "group");
+  out.group = folder == "out" ? text_of(study, "group") : folder;
   out.building = text_of(study, "building");
   out.hidden = text_of(study, "name");
   out.noise_ratio = study.value("noise_ratio", 0.0);
   out.truths = static_cast<int>(truth["effects"].size());
-  const Json diagnosis = read_json(directory + "/out/diagnosis.json");
+  const Json diagnosis = read_json(directory + "/" + folder + "/diagnosis.json");
   if (diagnosis.is_discarded()) {
     out.verdict = "refused";
     return out;

@@ -29,10 +29,23 @@ struct Outcome {
   std::optional<double> removed() const;
 };
 
-/// From DIRECTORY/truth.json and DIRECTORY/out/diagnosis.json; empty when there is no truth.
-std::optional<Outcome> score(const std::string& directory);
+/// Group of a case of the catalogue that was diagnosed without its effect in the catalogue.
+inline constexpr const char* kTakenOut = "taken_out";
 
-/// Rates, confusion matrix and shrinking of the gap, as Markdown.
+/// From DIRECTORY/truth.json and DIRECTORY/out/diagnosis.json, or that of another folder, which is
+/// the name of its group then; empty when there is no truth.
+std::optional<Outcome> score(const std::string& directory, const std::string& folder = "out");
+
+/// A rate that is asked for.
+struct Bound {
+  std::string what, asked, measured;
+  bool holds = false;
+};
+
+/// Of what there are cases of.
+std::vector<Bound> bounds_of(const std::vector<Outcome>& outcomes);
+
+/// Rates, confusion matrix, shrinking of the gap and what is asked, as Markdown.
 std::string tables(const std::vector<Outcome>& outcomes);
 
 }  // namespace framewatch::study

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <map>
 
 #include <fmt/core.h>
@@ -73,7 +74,10 @@ void add_confusion(const std::vector<Outcome>& outcomes, std::string& out) {
   out +=
       "\n| hidden | cases | right | place right | named instead, or first of several |\n"
       "| --- | --- | --- | --- | --- |\n";
-  const auto rows = grouped(outcomes, [](const Outcome& o) { return o.hidden; });
+  std::vector<Outcome> looked_for;
+  std::copy_if(outcomes.begin(), outcomes.end(), std::back_inserter(looked_for),
+               [](const Outcome& o) { return o.group != kTakenOut; });
+  const auto rows = grouped(looked_for, [](const Outcome& o) { return o.hidden; });
   for (const auto& [hidden, group] : rows) {
     std::map<std::string, int> instead;
     for (const Outcome* o : group)
@@ -111,6 +115,10 @@ std::string tables(const std::vector<Outcome>& outcomes) {
   add_summary(outcomes, out);
   add_confusion(outcomes, out);
   add_by_noise(outcomes, out);
+  out += "\n| asked | | measured | |\n| --- | --- | --- | --- |\n";
+  for (const Bound& b : bounds_of(outcomes))
+    out += fmt::format("| {} | {} | {} | {} |\n", b.what, b.asked, b.measured,
+                       b.holds ? "yes" : "**no**");
   return out;
 }
 

@@ -151,6 +151,13 @@ TEST(StudyScore, JudgesNamePlaceAndGap) {
   EXPECT_FALSE(
       diagnosed("partly_explained", "cubic_stiffness", place.story, 0.5).confidently_wrong);
 
+  EXPECT_FALSE(score(directory, kTakenOut)->confidently_wrong) << "it was not diagnosed so";
+  const std::vector<Bound> bounds = bounds_of({right, elsewhere});
+  ASSERT_FALSE(bounds.empty());
+  EXPECT_EQ(bounds.front().measured, "1 of 2 (50.0 %)") << bounds.front().what;
+  EXPECT_FALSE(bounds.front().holds);
+  EXPECT_TRUE(bounds_of({right}).front().holds);
+
   const std::string table = tables({right, elsewhere});
   EXPECT_NE(table.find("| bouc_wen | 2 | 1 | 1 |"), std::string::npos) << table;
 }
