@@ -7,7 +7,6 @@ namespace framewatch {
 namespace {
 
 constexpr double kStiffer[] = {1, 1.6, 2.5, 4}, kNarrower[] = {1, 0.9, 0.8};
-constexpr int kBeginSteps = 3;
 constexpr double kFits = 1.5;  ///< misfit over the expected, below which a start is near enough
 
 bool ends_with_gap(const Model& model) {
@@ -17,29 +16,9 @@ bool ends_with_gap(const Model& model) {
          form == LawForm::gap_both;
 }
 
-bool ends_with_harmonic(const Model& model) {
-  return !model.effects.empty() && model.effects.back().form == LawForm::harmonic;
-}
-
-/// A force that acts from where the record begins: its first part cannot be told from what the
-/// record's ends leave, and was perhaps lost.
-FitResult from_the_beginning(const Fitter& fitter, FitResult fit) {
-  for (std::size_t r = 0; r < fitter.stretches().size(); ++r) {
-    if (fit.model.effects.back().onset_s[r] == 0) continue;
-    Model model = fit.model;
-    model.effects.back().onset_s[r] = 0;
-    FitOptions options;
-    options.max_steps = kBeginSteps;
-    FitResult whole = fitter.fit(model, fit.motion, options);
-    if (whole.good && whole.cost < fit.cost) fit = std::move(whole);
-  }
-  return fit;
-}
-
 }  // namespace
 
 FitResult begin_run(const Fitter& fitter, FitResult fit) {
-  if (ends_with_harmonic(fit.model)) return from_the_beginning(fitter, std::move(fit));
   if (!ends_with_gap(fit.model) || fit.total_misfit() < kFits * fitter.expected(fit.model))
     return fit;
   FitOptions run;

@@ -72,6 +72,14 @@ void add_resonator(const Fitter& fitter, const Localisation& place,
   }
 }
 
+/// A force without what the element that it may as well be of would do linearly.
+VectorXcd beyond_linear(const Stretch& s, const Needed& needed) {
+  if (needed.d.size() == 0) return needed.force;
+  const std::vector<VectorXcd> columns = linear_columns(needed, s.w);
+  const VectorXd fit = scalar_fit({needed}, {columns}).coefficients;
+  return needed.force - fit[0] * columns[0] - fit[1] * columns[1];
+}
+
 /// One frequency from outside: the line that stands out most in the needed force.
 void add_harmonic(const Fitter& fitter, const Localisation& place,
                   const std::vector<Needed>& needed, const EffectPlace& node,
@@ -81,6 +89,9 @@ void add_harmonic(const Fitter& fitter, const Localisation& place,
   double best_gain = 0, best_hz = 0;
   const Stretch& first = fitter.stretches()[0];
   const double seconds = first.seconds();
+  std::vector<VectorXcd> force;
+  for (std::size_t r = 0; r < needed.size(); ++r)
+    force.push_back(beyond_linear(fitter.stretches()[r], needed[r]));
   for (double hz = band.low_hz; hz < band.high_hz; hz += 0.2 / seconds) {
     double gain = 0;
     for (std::size_t r = 0; r < needed.size(); ++r) {
@@ -103,7 +114,7 @@ void add_harmonic(const Fitter& fitter, const Localisation& place,
         const Complex up = geometric(w0 - w), down = geometric(-w0 - w);
         shape(rows, 0) = 0.5 * (up + down);
         shape(rows, 1) = 0.5 * (up - down) / kJ;
-        value[rows] = needed[r].force[b];
+        value[rows] = force[r][b];
         weight[rows++] = needed[r].weight[b];
       }
       if (rows < 5) continue;
@@ -180,14 +191,6 @@ Seconds seconds_of(const Plant& plant, const Stretch& s, const VectorXcd& force)
     out.ground.push_back(ground);
   }
   return out;
-}
-
-/// A force without what the element that it may as well be of would do linearly.
-VectorXcd beyond_linear(const Stretch& s, const Needed& needed) {
-  if (needed.d.size() == 0) return needed.force;
-  const std::vector<VectorXcd> columns = linear_columns(needed, s.w);
-  const VectorXd fit = scalar_fit({needed}, {columns}).coefficients;
-  return needed.force - fit[0] * columns[0] - fit[1] * columns[1];
 }
 
 /// Share of a force's mean power that is there when the ground is at rest: no law of the building

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/onset.h"
+
 namespace framewatch {
 namespace {
 
@@ -28,11 +30,13 @@ double fitted_values(const Model& model) {
   return out;
 }
 
-void sharpen(const TrialContext& context, std::vector<Trial>& trials) {
+/// enough: cost beyond which more than chance is left.
+void sharpen(const TrialContext& context, double enough, std::vector<Trial>& trials) {
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
-    if (t.fate == Fate::fitted && t.fraction < kSharp && t.fraction > kBlunt)
-      t = sharpened(context, t, t.model);
+    if (t.fate != Fate::fitted || t.fraction <= kBlunt) return;
+    const bool late = ends_with_harmonic(t.model) && t.cost > enough;
+    if (late || t.fraction < kSharp) t = sharpened(context, t, t.model);
   });
 }
 
@@ -76,7 +80,7 @@ bool settle(const TrialContext& context, double bound, double needed, std::vecto
     for (Trial& t : trials) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1e-9);
   };
   rank();
-  sharpen(context, trials);
+  sharpen(context, bound + needed, trials);
   rank();
   if (trials.front().fraction < kTakesAway) {
     approach(context, trials);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimator/diagnose/begin_run.h"
+#include "estimator/diagnose/onset.h"
 
 namespace framewatch {
 namespace {
@@ -231,8 +232,9 @@ Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
 Trial sharpened(const TrialContext& c, const Trial& trial, const Model& from) {
   Model start = from;
   free_shapes(start);
-  const FitResult run = c.fitter.fit(start, {}, thorough(start, kSharpSteps));
+  FitResult run = c.fitter.fit(start, {}, thorough(start, kSharpSteps));
   if (!run.good) return trial;
+  if (ends_with_harmonic(run.model)) run = with_onsets(c.fitter, std::move(run));
   Trial out = trial;
   take(c, run, out);
   return out.cost < trial.cost && is_named(c, out) ? out : trial;

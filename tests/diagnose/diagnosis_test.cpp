@@ -80,6 +80,29 @@ TEST(Diagnose, ADropIsTimedByAllRecordsTogether) {
   EXPECT_NEAR(d.model.effects[0].record_knobs[0][0].plain(), 14, 0.5);
 }
 
+TEST(Diagnose, AHarmonicForceBeginsWhenItDoes) {
+  constexpr double kFrom_s = 6.3, kForce_n = 2000, kNear_s = 0.2;
+  const Small small;
+  EffectPlace place;
+  place.kind = PlaceKind::node;
+  place.story = 1;
+  place.frame = 1;
+  Effect force = make_effect(EffectKind::unmeasured_force, place);
+  force.set("amplitude_n", kForce_n);
+  force.set("frequency_hz", 3.3);
+  force.set("rms_n", 0);
+  Effect late = force;
+  late.set("from_s", kFrom_s);
+  const Diagnosis d = diagnosis_of(small, {small.record({force}, 1), small.record({late}, 2)});
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::unmeasured_force);
+  const ModelEffect& e = d.model.effects[0];
+  EXPECT_LT(e.onset_s[0], kNear_s);
+  EXPECT_NEAR(e.onset_s[1], kFrom_s, kNear_s);
+  for (const std::vector<Knob>& waves : e.record_knobs)
+    EXPECT_NEAR(std::hypot(waves[0].plain(), waves[1].plain()) / kForce_n, 1, 0.02);
+}
+
 TEST(Diagnose, RecordsOfDifferentBuildingsAreSaidToBe) {
   const Small small;
   Small other;
