@@ -7,22 +7,17 @@
 
 #include "estimator/diagnose/begin_run.h"
 #include "estimator/diagnose/onset.h"
+#include "estimator/diagnose/trial_names.h"
 
 namespace framewatch {
 namespace {
 
 constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
 constexpr double kRoundest = 20;  ///< exponent of hysteresis; above it has a corner
-constexpr double kDissipates = 0.15;
-constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
 constexpr int kSharpSteps = 12;
 constexpr int kGlance = 3;      ///< steps of a free run's fit after which it is seen what leads
 constexpr double kStillIn = 4;  ///< times the least cost: what is worse then is not fitted on
 constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
-
-bool contains(const std::vector<EffectKind>& list, EffectKind kind) {
-  return std::find(list.begin(), list.end(), kind) != list.end();
-}
 
 /// A model with what it is called.
 struct Candidate {
@@ -39,63 +34,6 @@ struct Fitted {
   FitResult fit;
   const Candidate* candidate;
 };
-
-/// What a fit has become, and its name.
-void take(const TrialContext& c, const FitResult& run, Trial& t) {
-  std::size_t next = c.now.model.effects.size();
-  const auto name = [&](EffectKind guess) {
-    return !is_axis_error(guess) && next < run.model.effects.size()
-               ? name_of_fit(run.model.effects[next++], c.fitter.stretches().front())
-               : guess;
-  };
-  t.kind = name(t.kind);
-  if (t.second) t.second->first = name(t.second->first);
-  t.cost = run.cost + spared(c.fitter, run.model) - spared(c.fitter, c.now.model);
-  t.misfit = run.misfit;
-  t.model = run.model;
-}
-
-/// Energy that a cycle to the peak deformation takes, over that of the box around its loop.
-double dissipation(const ModelEffect& effect) {
-  constexpr int kSteps = 400, kCycles = 2;
-  Eigen::VectorXd d(kSteps * kCycles);
-  for (Eigen::Index i = 0; i < d.size(); ++i)
-    d[i] = effect.deformation * std::sin(2 * M_PI * static_cast<double>(i) / kSteps);
-  const Eigen::VectorXd f = law_force(effect.law(0), d, Eigen::VectorXd::Zero(d.size()), 1);
-  double work = 0, peak = 0;
-  for (Eigen::Index i = kSteps; i < d.size(); ++i) {
-    work += 0.5 * (f[i] + f[i - 1]) * (d[i] - d[i - 1]);
-    peak = std::max(peak, std::abs(f[i]));
-  }
-  return work / std::max(4 * peak * effect.deformation, 1e-300);
-}
-
-double highest_hz(const Fitter& fitter) {
-  double out = 0;
-  for (const Stretch& s : fitter.stretches()) out = std::max(out, s.w.maxCoeff() / (2 * M_PI));
-  return out;
-}
-
-/// Of what its values may be: there the law that is meant is another one.
-bool at_the_edge(const Knob& knob) {
-  constexpr double kNear = 1e-6;
-  return knob.value <= knob.low + kNear || knob.value >= knob.high - kNear;
-}
-
-/// Whether its names may be given. A slip zone in what hardly yields is another elastic law; a mass
-/// on a spring so stiff that it resonates above the band is a mass.
-bool is_named(const TrialContext& c, const Trial& t) {
-  for (std::size_t e = c.now.model.effects.size(); e < t.model.effects.size(); ++e) {
-    const ModelEffect& effect = t.model.effects[e];
-    if (effect.form == LawForm::resonator && effect.knobs[1].plain() > highest_hz(c.fitter))
-      return false;
-    if (effect.form == LawForm::pinched &&
-        (dissipation(effect) < kDissipates || effect.knobs[5].plain() < kNarrowestSlip ||
-         at_the_edge(effect.knobs[4]) || at_the_edge(effect.knobs[5])))
-      return false;
-  }
-  return !contains(c.without, t.kind) && !(t.second && contains(c.without, t.second->first));
-}
 
 FitOptions to_the_end(const Model& model) {
   FitOptions options;
@@ -266,7 +204,7 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
     std::size_t count = 0;
     for (const Proposal& p : proposals[i]) {
       // A family that has other names too is judged by the name after its fit.
-      if (contains(c.without, p.kind) && p.kind != EffectKind::cubic_stiffness &&
+      if (is_taken_out(c, p.kind) && p.kind != EffectKind::cubic_stiffness &&
           p.kind != EffectKind::bilinear_hysteresis && p.kind != EffectKind::bouc_wen)
         continue;
       if (!axis && count++ >= kLawsFitted) break;
@@ -296,7 +234,7 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
       return p.kind == EffectKind::clipping || p.kind == EffectKind::misalignment ||
              (p.model.effects.size() > pair.model.effects.size() &&
               p.model.effects.back().form == LawForm::broadband) ||
-             contains(c.without, p.kind);
+             is_taken_out(c, p.kind);
     });
     if (list->size() > kPairLaws) list->resize(kPairLaws);
   }
