@@ -73,11 +73,16 @@ const char* fate_word(Fate fate) {
 }
 
 Json trial_json(const DiagnoseOutput& o, const Trial& t) {
-  return {{"effect", std::string(name_of(t.kind))},
-          {"location", location_json(t.place, o.plant.structure, o.plant.axes)},
-          {"explained_share", number(t.fraction)},
-          {"misfit", number(t.cost)},
-          {"fate", fate_word(t.fate)}};
+  Json out{{"effect", std::string(name_of(t.kind))},
+           {"location", location_json(t.place, o.plant.structure, o.plant.axes)},
+           {"explained_share", number(t.fraction)},
+           {"misfit", number(t.cost)},
+           {"fate", fate_word(t.fate)}};
+  if (t.second)
+    out["together_with"] = {
+        {"effect", std::string(name_of(t.second->first))},
+        {"location", location_json(t.second->second, o.plant.structure, o.plant.axes)}};
+  return out;
 }
 
 }  // namespace

@@ -185,7 +185,12 @@ std::string ranking(const DiagnoseOutput& o, const std::vector<Trial>& trials, d
   std::vector<std::vector<std::string>> rows;
   for (const Trial& t : trials) {
     if (rows.size() == kRanked) break;
-    rows.push_back({html_text(std::string(name_of(t.kind))), place(o, t.place), percent(t.fraction),
+    std::string name(name_of(t.kind)), where = place(o, t.place);
+    if (t.second) {
+      name += " and " + std::string(name_of(t.second->first));
+      where += " and " + place(o, t.second->second);
+    }
+    rows.push_back({html_text(name), where, percent(t.fraction),
                     fmt::format("{:.0f}", t.cost - best), why_it_lost(t.fate)});
   }
   const std::size_t more = trials.size() - rows.size();

@@ -39,6 +39,28 @@ bool same_spot(const EffectPlace& a, const EffectPlace& b) {
          a.frame == b.frame;
 }
 
+bool is_same(const Trial& a, const Trial& b) {
+  return a.kind == b.kind && a.place == b.place && a.second == b.second;
+}
+
+/// The first of every name and place: others are what another start led to.
+std::vector<Trial> one_of_each(const std::vector<Trial>& trials) {
+  std::vector<Trial> out;
+  for (const Trial& t : trials)
+    if (std::none_of(out.begin(), out.end(), [&](const Trial& o) { return is_same(o, t); }))
+      out.push_back(t);
+  return out;
+}
+
+/// Whether a trial says something else than the best one, not the same and more. A force that may
+/// be anything does as well as any law, and says nothing.
+bool is_rival(const Trial& t, const Trial& best) {
+  const bool any = !t.model.effects.empty() && t.model.effects.back().form == LawForm::broadband;
+  const bool first = t.kind == best.kind && t.place == best.place;
+  const bool second = t.second == std::pair(best.kind, best.place);
+  return t.fate == Fate::fitted && !any && !(best.second ? is_same(t, best) : first || second);
+}
+
 void append(std::vector<Trial>& list, std::vector<Trial> more) {
   list.insert(list.end(), std::make_move_iterator(more.begin()),
               std::make_move_iterator(more.end()));
@@ -166,7 +188,7 @@ class Search {
     }
     if (trials.empty() || trials.front().fate != Fate::fitted) return false;
     if (!holds) {
-      out_.rejected = trials;
+      out_.rejected = one_of_each(trials);
       return false;
     }
     const Trial& best = trials.front();
@@ -207,15 +229,15 @@ class Search {
     found.chosen = best;
     found.before = mean_gap(gaps_of(fitter_, now.model), options_.holdout_from);
     found.after = mean_gap(gaps_of(fitter_, best.model), options_.holdout_from);
-    for (std::size_t i = 1; i < trials.size(); ++i) {
-      found.alternatives.push_back(trials[i]);
-      if (trials[i].fate == Fate::fitted && trials[i].cost < best.cost + kSame &&
-          trials[i].kind != best.kind &&
-          std::find(found.like.begin(), found.like.end(), trials[i].kind) == found.like.end())
-        found.like.push_back(trials[i].kind);
-    }
-    const bool rival = trials.size() > 1 && trials[1].fate == Fate::fitted;
-    const double margin = rival ? std::max(0.0, trials[1].cost - best.cost) : 1e3;
+    found.alternatives = one_of_each(trials);
+    found.alternatives.erase(found.alternatives.begin());
+    for (const Trial& t : found.alternatives)
+      if (is_rival(t, best) && t.cost < best.cost + kSame && t.kind != best.kind &&
+          std::find(found.like.begin(), found.like.end(), t.kind) == found.like.end())
+        found.like.push_back(t.kind);
+    const auto rival = std::find_if(trials.begin(), trials.end(),
+                                    [&](const Trial& t) { return is_rival(t, best); });
+    const double margin = rival == trials.end() ? 1e3 : std::max(0.0, rival->cost - best.cost);
     found.confidence =
         found.like.empty() ? std::min(0.999, 1 - kDoubtful * std::exp(-margin / 20)) : kDoubtful;
     auto next = static_cast<int>(now.model.effects.size());
