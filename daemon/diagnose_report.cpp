@@ -219,9 +219,8 @@ std::string effects_section(const DiagnoseOutput& o) {
                        percent(f.after));
     if (f.approximate)
       out +=
-          "<p>More than noise is left: what acts there is not quite this law, whose name is that "
-          "of "
-          "the nearest one in the catalogue.</p>\n";
+          "<p>More than noise is left: what acts is not quite this, the nearest name in the "
+          "catalogue, or something else acts besides.</p>\n";
     for (const EffectKind kind : f.like)
       out += "<p>Cannot be told from " + html_text(std::string(name_of(kind))) +
              " with these records: a motion of another strength would tell.</p>\n";

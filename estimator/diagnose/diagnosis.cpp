@@ -92,7 +92,7 @@ class Search {
     out_.model = now.model;
     out_.declared = declared_model(plant_, stretches_, now.model, {&out_.known, &out_.effects});
     out_.ratio_after = ratio(now);
-    doubt(now.model);
+    doubt();
     set_errors(fitter_, now.model, now.motion, out_.effects);
     set_errors(fitter_, now.model, now.motion, out_.known);
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
@@ -124,11 +124,10 @@ class Search {
     return now.total_misfit() / fitter_.expected(now.model);
   }
 
-  /// A law that leaves more than noise is what it resembles at best.
-  void doubt(const Model& model) {
+  /// What leaves more than noise is what it resembles at best.
+  void doubt() {
     if (out_.ratio_after < kAdequate) return;
     for (FoundEffect& e : out_.effects) {
-      if (e.index < 0 || !model.effects[static_cast<std::size_t>(e.index)].element_law()) continue;
       e.approximate = true;
       e.confidence = std::min(e.confidence, kDoubtful);
     }

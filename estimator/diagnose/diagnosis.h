@@ -45,7 +45,7 @@ struct FoundEffect {
   std::vector<Trial> alternatives;  ///< best first
   std::vector<EffectKind> like;     ///< names that the data do not tell from it
   double confidence = 0;            ///< 0 to 1 in the name
-  /// More than noise is left with it: something acts that its law only resembles.
+  /// More than noise is left: what acts is not quite it, or something else acts besides.
   bool approximate = false;
   double before = 0, after = 0;   ///< held-out free-run NRMSE
   int index = -1;                 ///< in the model's effects; -1: of an axis

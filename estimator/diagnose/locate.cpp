@@ -52,7 +52,9 @@ std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
   const double limit = limit_of(out.front());
   run_all(parallel, static_cast<int>(out.size()), [&](int i) {
     Localisation& one = out[static_cast<std::size_t>(i)];
-    if (one.settled || one.ratio > limit) return;
+    // A reading that is far wrong comes late to its end, and is looked at before physics.
+    const bool axis = one.suspects.front().kind == Suspect::Kind::axis;
+    if (one.settled || (one.ratio > limit && !axis)) return;
     const Localisation on = localise(fitter, one.model, one.motion, one.suspects, steps - kGlance);
     if (on.misfit < one.misfit) one = on;
   });

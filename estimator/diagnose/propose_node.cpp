@@ -17,7 +17,8 @@ constexpr double kFollows = 0.3;  ///< share of a force beyond noise that laws o
 constexpr double kSlow = 0.3;     ///< of the rate: where friction has turned
 
 constexpr double kStationary = 0.25;  ///< share of the mean power that is there at rest, at least
-constexpr double kAsMuch = 0.5;     ///< the same, above which laws of the motion need not be asked
+constexpr double kAsMuch = 0.5;     ///< the same, above which a law must explain most of the force
+constexpr double kMostly = 0.6;     ///< instead of kFollows then
 constexpr double kStandsOut = 3;    ///< power of a force over its noise
 constexpr double kEnds_s = 2;       ///< of a stretch, where what goes on beyond it shows
 constexpr double kQuietest = 0.15;  ///< share of the seconds that count as rest
@@ -217,8 +218,8 @@ double share_at_rest(const Plant& plant, const Stretch& s, const Needed& needed)
 }
 
 /// Whether a force goes with the deformation of the element it may as well be of, otherwise than
-/// linearly: then it is a law of the element, whatever that law is called.
-bool follows_motion(const Stretch& s, const Needed& needed, int ratio) {
+/// linearly, by a share of it: then it is a law of the element, whatever that law is called.
+bool follows_motion(const Stretch& s, const Needed& needed, int ratio, double share) {
   if (needed.d_t.size() == 0) return false;
   std::vector<VectorXcd> columns = linear_columns(needed, s.w);
   const double linear = scalar_fit({needed}, {columns}).misfit;
@@ -230,7 +231,7 @@ bool follows_motion(const Stretch& s, const Needed& needed, int ratio) {
     columns.push_back(band_of(law, s, ratio));
   const double curved = scalar_fit({needed}, {columns}).misfit;
   const auto noise = static_cast<double>(s.bins());
-  return linear - curved > kFollows * std::max(linear - noise, 0.0) + noise;
+  return linear - curved > share * std::max(linear - noise, 0.0) + noise;
 }
 
 }  // namespace
@@ -244,7 +245,8 @@ void add_node_proposals(const Fitter& fitter, const Localisation& place,
     const Stretch& s = fitter.stretches()[r];
     const double at_rest = share_at_rest(fitter.plant(), s, needed[r]);
     if (at_rest < kStationary) return;
-    if (at_rest < kAsMuch && follows_motion(s, needed[r], fitter.ratio(r))) return;
+    const double share = at_rest < kAsMuch ? kFollows : kMostly;
+    if (follows_motion(s, needed[r], fitter.ratio(r), share)) return;
   }
   ModelEffect e;
   e.form = LawForm::broadband;

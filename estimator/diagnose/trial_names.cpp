@@ -36,6 +36,22 @@ bool at_the_edge(const Knob& knob) {
   return knob.value <= knob.low + kNear || knob.value >= knob.high - kNear;
 }
 
+/// A hidden oscillator that is none: its frequency is not seen, its mass more than the frame's that
+/// it is on, or its damping has no end.
+bool is_no_oscillator(const TrialContext& c, const ModelEffect& effect) {
+  const EffectPlace& place = effect.place;
+  return effect.knobs[1].plain() > highest_hz(c.fitter) || at_the_edge(effect.knobs[2]) ||
+         effect.knobs[0].plain() > c.fitter.plant().structure.frame_mass(place.story, place.frame);
+}
+
+/// A spring that pushes, a damper that drives, a base or frames stiffer than rigid.
+bool has_wrong_sign(const ModelEffect& effect) {
+  using F = LawForm;
+  const bool positive = effect.form == F::spring || effect.form == F::damper ||
+                        effect.form == F::rocking || effect.form == F::bending;
+  return positive && effect.knobs[0].plain() < 0;
+}
+
 }  // namespace
 
 bool is_taken_out(const TrialContext& c, EffectKind kind) {
@@ -59,8 +75,8 @@ void take(const TrialContext& c, const FitResult& run, Trial& t) {
 bool is_named(const TrialContext& c, const Trial& t) {
   for (std::size_t e = c.now.model.effects.size(); e < t.model.effects.size(); ++e) {
     const ModelEffect& effect = t.model.effects[e];
-    if (effect.form == LawForm::resonator && effect.knobs[1].plain() > highest_hz(c.fitter))
-      return false;
+    if (has_wrong_sign(effect)) return false;
+    if (effect.form == LawForm::resonator && is_no_oscillator(c, effect)) return false;
     if (effect.form == LawForm::pinched &&
         (dissipation(effect) < kDissipates || effect.knobs[5].plain() < kNarrowestSlip ||
          at_the_edge(effect.knobs[4]) || at_the_edge(effect.knobs[5])))
