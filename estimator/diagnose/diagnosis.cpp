@@ -92,7 +92,7 @@ class Search {
     out_.model = now.model;
     out_.declared = declared_model(plant_, stretches_, now.model, {&out_.known, &out_.effects});
     out_.ratio_after = ratio(now);
-    doubt();
+    doubt(now.model);
     set_errors(fitter_, now.model, now.motion, out_.effects);
     set_errors(fitter_, now.model, now.motion, out_.known);
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
@@ -125,8 +125,9 @@ class Search {
   }
 
   /// What leaves more than noise is what it resembles at best.
-  void doubt() {
-    if (out_.ratio_after < kAdequate) return;
+  void doubt(const Model& model) {
+    const double chance = kSignificant / std::sqrt(fitter_.expected(model));
+    if (out_.ratio_after < 1 + chance) return;
     for (FoundEffect& e : out_.effects) {
       e.approximate = true;
       e.confidence = std::min(e.confidence, kDoubtful);
