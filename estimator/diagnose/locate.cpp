@@ -165,9 +165,10 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   for (const Localisation& place : places) {
     // Frames that bend do more than a moment at the base, by which they are located.
     const bool moment = place.suspects.front().kind == Suspect::Kind::rocking;
-    if (place.ratio > (moment ? wide : limit) || out.size() >= kMostContenders) continue;
+    if (place.ratio > (moment ? wide : limit)) continue;
     const bool another_kind = of_kind[place.suspects.front().kind]++ == 0;
-    if (out.size() < kContenders || another_kind) out.push_back(place);
+    const bool worth = out.size() < kContenders || (another_kind && out.size() < kMostContenders);
+    if (worth || moment) out.push_back(place);
   }
   return out;
 }
