@@ -230,8 +230,7 @@ std::string effects_section(const DiagnoseOutput& o) {
   if (!o.diagnosis.rejected.empty())
     out +=
         "<h2>What did not earn its place</h2>\n<p>None that is what its name says explains 97 % of "
-        "what an "
-        "arbitrary force at the best place would, without worsening a record.</p>\n" +
+        "what an arbitrary force at the best place would, without worsening a record.</p>\n" +
         ranking(o, o.diagnosis.rejected, o.diagnosis.rejected.front().cost);
   return out;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "estimator/diagnose/declared.h"
@@ -59,11 +58,6 @@ bool is_rival(const Trial& t, const Trial& best) {
   const bool first = t.kind == best.kind && t.place == best.place;
   const bool second = t.second == std::pair(best.kind, best.place);
   return t.fate == Fate::fitted && !any && !(best.second ? is_same(t, best) : first || second);
-}
-
-void append(std::vector<Trial>& list, std::vector<Trial> more) {
-  list.insert(list.end(), std::make_move_iterator(more.begin()),
-              std::make_move_iterator(more.end()));
 }
 
 class Search {
@@ -126,8 +120,7 @@ class Search {
 
   /// What leaves more than noise is what it resembles at best.
   void doubt(const Model& model) {
-    const double chance = kSignificant / std::sqrt(fitter_.expected(model));
-    if (out_.ratio_after < 1 + chance) return;
+    if (out_.ratio_after < 1 + chance_of(fitter_, model)) return;
     for (FoundEffect& e : out_.effects) {
       e.approximate = true;
       e.confidence = std::min(e.confidence, kDoubtful);

@@ -13,7 +13,6 @@ constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
 constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
 constexpr std::size_t kContenders = 3, kMostContenders = 5;
 constexpr std::size_t kMostAsLikely = 16;
-constexpr double kChance = 4;  ///< standard deviations of the misfit under noise
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
 constexpr int kSteps = 8, kPairSteps = 6;
 constexpr int kGlance = 3;      ///< steps after which it is seen what leads
@@ -97,6 +96,10 @@ bool is_global(const Suspect& s) {
 
 }  // namespace
 
+double chance_of(const Fitter& fitter, const Model& model) {
+  return kSignificant / std::sqrt(fitter.expected(model));
+}
+
 Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel) {
   Located out;
   std::vector<std::vector<Suspect>> lists;
@@ -139,7 +142,7 @@ std::vector<Localisation> locate_beside(const Fitter& fitter, const FitResult& n
 std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
                                     const Located& located, const Parallel& parallel) {
   if (located.once.empty() || located.places.empty()) return {};
-  const double chance = kChance / std::sqrt(fitter.expected(now.model));
+  const double chance = chance_of(fitter, now.model);
   const double most = located.once.front().ratio + chance;
   std::vector<const Localisation*> starts;
   for (const Localisation& l : located.once) {

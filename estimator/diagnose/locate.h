@@ -6,6 +6,11 @@
 
 namespace framewatch {
 
+constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
+
+/// Of the ratio of a model's misfit to what noise explains: what is more than chance.
+double chance_of(const Fitter& fitter, const Model& model);
+
 /// Where it is that a model does not fit.
 struct Located {
   std::vector<Localisation> places;  ///< the most likely ones, fitted again, best first

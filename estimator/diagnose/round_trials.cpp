@@ -1,8 +1,6 @@
 #include "estimator/diagnose/round_trials.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace framewatch {
@@ -29,8 +27,7 @@ void look_beside(const TrialContext& context, const std::vector<FoundEffect>& fo
   const bool of_law = std::any_of(found.begin(), found.end(), [&](const FoundEffect& e) {
     return e.chosen.place == place.suspects.front().place && is_element(place);
   });
-  const double chance = kSignificant / std::sqrt(context.fitter.expected(context.now.model));
-  if (!of_law || place.ratio < 1 + chance) return;
+  if (!of_law || place.ratio < 1 + chance_of(context.fitter, context.now.model)) return;
   std::vector<Localisation> beside = locate_beside(context.fitter, context.now, located.once,
                                                    place.suspects.front(), context.parallel);
   if (!beside.empty() && beside.front().ratio - 1 < kPairShare * (place.ratio - 1))
@@ -59,9 +56,7 @@ std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& l
   bound = std::min(context.now.cost, bound_of(context.fitter.plant(), pairs.front()));
   for (std::size_t i = 0; i < std::min<std::size_t>(2, pairs.size()); ++i) {
     if (pairs[i].ratio > 2 * pairs.front().ratio) break;
-    std::vector<Trial> trials = try_pair(context, pairs[i]);
-    out.insert(out.end(), std::make_move_iterator(trials.begin()),
-               std::make_move_iterator(trials.end()));
+    append(out, try_pair(context, pairs[i]));
   }
   return out;
 }

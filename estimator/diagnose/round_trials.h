@@ -7,8 +7,7 @@
 
 namespace framewatch {
 
-constexpr double kOnePlace = 1.6;   ///< ratio above which one place does not do
-constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
+constexpr double kOnePlace = 1.6;  ///< ratio above which one place does not do
 
 bool is_element(const Localisation& place);
 

@@ -114,8 +114,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     Trial& t = out[at] = trial_of(c, *kept[at].candidate, runs[at], Fate::fitted);
     if (!is_named(c, t)) t.fate = Fate::other_law;
   });
-  trials.insert(trials.end(), std::make_move_iterator(out.begin()),
-                std::make_move_iterator(out.end()));
+  append(trials, std::move(out));
   return trials;
 }
 
@@ -139,6 +138,11 @@ Candidate joined(const Localisation& pair, const Proposal& p, const Proposal& q)
 }
 
 }  // namespace
+
+void append(std::vector<Trial>& list, std::vector<Trial> more) {
+  list.insert(list.end(), std::make_move_iterator(more.begin()),
+              std::make_move_iterator(more.end()));
+}
 
 void free_shapes(Model& model) {
   for (ModelEffect& e : model.effects) {

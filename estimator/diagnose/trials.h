@@ -18,6 +18,8 @@ struct TrialContext {
 /// Whether an effect is an axis' freed gain or clock rather than a member of the model's effects.
 bool is_axis_error(EffectKind kind);
 
+void append(std::vector<Trial>& list, std::vector<Trial> more);
+
 /// Misfit that a model is spared because it does not look at what may be anything.
 double spared(const Fitter& fitter, const Model& model);
 

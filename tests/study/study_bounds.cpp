@@ -25,23 +25,26 @@ class Bounds {
       }
     if (all == 0) return;
     const double measured = static_cast<double>(good) / all;
-    out_.push_back({what, fmt::format("{} {:g} %", at_least ? "at least" : "at most", 100 * limit),
-                    fmt::format("{} of {} ({:.1f} %)", good, all, 100 * measured),
-                    at_least ? measured >= limit : measured <= limit});
+    add(what, limit, at_least, measured,
+        fmt::format("{} of {} ({:.1f} %)", good, all, 100 * measured));
   }
 
   void median(const std::string& what, std::vector<double> values, double limit, bool at_least) {
     if (values.empty()) return;
     std::sort(values.begin(), values.end());
     const double measured = values[values.size() / 2];
-    out_.push_back({what, fmt::format("{} {:g} %", at_least ? "at least" : "at most", 100 * limit),
-                    fmt::format("{:.1f} %", 100 * measured),
-                    at_least ? measured >= limit : measured <= limit});
+    add(what, limit, at_least, measured, fmt::format("{:.1f} %", 100 * measured));
   }
 
   std::vector<Bound> out() && { return std::move(out_); }
 
  private:
+  void add(const std::string& what, double limit, bool at_least, double measured,
+           const std::string& text) {
+    out_.push_back({what, fmt::format("{} {:g} %", at_least ? "at least" : "at most", 100 * limit),
+                    text, at_least ? measured >= limit : measured <= limit});
+  }
+
   const std::vector<Outcome>& outcomes_;
   std::vector<Bound> out_;
 };

@@ -48,6 +48,13 @@ std::map<std::string, Group> grouped(const std::vector<Outcome>& outcomes,
   return out;
 }
 
+std::vector<Outcome> selected(const std::vector<Outcome>& outcomes,
+                              const std::function<bool(const Outcome&)>& holds) {
+  std::vector<Outcome> out;
+  std::copy_if(outcomes.begin(), outcomes.end(), std::back_inserter(out), holds);
+  return out;
+}
+
 void add_summary(const std::vector<Outcome>& outcomes, std::string& out) {
   out +=
       "| group | building | cases | name and place | place | abstained | confidently wrong | "
@@ -74,9 +81,8 @@ void add_confusion(const std::vector<Outcome>& outcomes, std::string& out) {
   out +=
       "\n| hidden | cases | right | place right | named instead, or first of several |\n"
       "| --- | --- | --- | --- | --- |\n";
-  std::vector<Outcome> looked_for;
-  std::copy_if(outcomes.begin(), outcomes.end(), std::back_inserter(looked_for),
-               [](const Outcome& o) { return o.group != kTakenOut; });
+  const std::vector<Outcome> looked_for =
+      selected(outcomes, [](const Outcome& o) { return o.group != kTakenOut; });
   const auto rows = grouped(looked_for, [](const Outcome& o) { return o.hidden; });
   for (const auto& [hidden, group] : rows) {
     std::map<std::string, int> instead;
@@ -97,9 +103,8 @@ void add_confusion(const std::vector<Outcome>& outcomes, std::string& out) {
 
 void add_by_noise(const std::vector<Outcome>& outcomes, std::string& out) {
   out += "\n| noise | cases | right | excess removed, median |\n| --- | --- | --- | --- |\n";
-  std::vector<Outcome> hidden;
-  std::copy_if(outcomes.begin(), outcomes.end(), std::back_inserter(hidden),
-               [](const Outcome& o) { return o.group == "catalogue"; });
+  const std::vector<Outcome> hidden =
+      selected(outcomes, [](const Outcome& o) { return o.group == "catalogue"; });
   const auto rows =
       grouped(hidden, [](const Outcome& o) { return fmt::format("{:g} %", 100 * o.noise_ratio); });
   for (const auto& [noise, group] : rows)
