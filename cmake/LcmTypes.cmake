@@ -3,6 +3,8 @@
 find_path(LCM_INCLUDE_DIR lcm/lcm-cpp.hpp REQUIRED)
 find_library(LCM_LIBRARY lcm REQUIRED)
 find_program(LCM_GEN lcm-gen REQUIRED)
+find_program(AWK awk REQUIRED)
+set(lcm_layouts ${CMAKE_CURRENT_LIST_DIR}/lcm-layouts.awk)
 
 if(NOT TARGET lcm::lcm)
   add_library(lcm::lcm UNKNOWN IMPORTED)
@@ -11,7 +13,8 @@ if(NOT TARGET lcm::lcm)
 endif()
 
 # framewatch_lcm_types(<target> <package> <file>...): interface library with the generated headers,
-# included as <package/name.hpp>; a system include, because generated code is not held to our flags.
+# included as <package/name.hpp>, and the layouts of all these messages, <package/message_layouts.hpp>; a
+# system include, because generated code is not held to our flags.
 function(framewatch_lcm_types target package)
   set(out ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(headers)
@@ -24,6 +27,12 @@ function(framewatch_lcm_types target package)
       DEPENDS ${file} COMMENT "lcm-gen ${file}" VERBATIM)
     list(APPEND headers ${header})
   endforeach()
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE files)
+  set(header ${out}/${package}/message_layouts.hpp)
+  add_custom_command(OUTPUT ${header}
+    COMMAND ${AWK} -f ${lcm_layouts} -v out=${header} ${files}
+    DEPENDS ${files} ${lcm_layouts} COMMENT "layouts of the messages" VERBATIM)
+  list(APPEND headers ${header})
   add_custom_target(${target}_headers DEPENDS ${headers})
   add_library(${target} INTERFACE)
   add_dependencies(${target} ${target}_headers)

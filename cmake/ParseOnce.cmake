@@ -1,27 +1,32 @@
-# Most of a build is headers, read again for every source. Off where a missing #include must be seen:
-# everywhere but in the sanitizer build, which ./test makes beside one without.
+# Most of a build is headers, read again for every source. FRAMEWATCH_PARSE_ONCE precompiles them and
+# joins the sources of a room by eight. Off in `dev`, where a missing #include must be seen.
 set(framewatch_standard_headers <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream>
-  <functional> <map> <memory> <mutex> <numeric> <optional> <string> <thread> <utility> <vector>)
+  <functional> <map> <memory> <mutex> <numeric> <optional> <set> <string> <thread> <utility> <vector>)
 
-# framewatch_precompile(<target> <header>...): these and the standard library's.
-function(framewatch_precompile target)
-  if(FRAMEWATCH_PARSE_ONCE)
-    target_precompile_headers(${target} PRIVATE ${framewatch_standard_headers} ${ARGN})
+# framewatch_precompile(<name> LINKS <library>... HEADERS <header>... FOR <target>...): these headers and the
+# standard library's, read once for all targets, which are compiled with the options that users of LINKS
+# have and with OPTIONS.
+function(framewatch_precompile name)
+  cmake_parse_arguments(ARG "" "" "LINKS;HEADERS;FOR;OPTIONS" ${ARGN})
+  if(NOT FRAMEWATCH_PARSE_ONCE)
+    return()
   endif()
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "")
+  add_library(${name} OBJECT ${source})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS})
+  framewatch_options(${name})
+  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
+  target_precompile_headers(${name} PRIVATE ${framewatch_standard_headers} ${ARG_HEADERS})
+  foreach(target IN LISTS ARG_FOR)
+    target_precompile_headers(${target} REUSE_FROM ${name})
+  endforeach()
 endfunction()
 
-# framewatch_precompile_like(<target> <other>): what was made for another target of the same flags.
-function(framewatch_precompile_like target other)
+# framewatch_join(<target>...): their sources are compiled eight at a time. What they name in a
+# namespace without a name must then differ from one source to the next.
+function(framewatch_join)
   if(FRAMEWATCH_PARSE_ONCE)
-    target_precompile_headers(${target} REUSE_FROM ${other})
-  endif()
-endfunction()
-
-# framewatch_join(<target>): its sources are compiled eight at a time: a third of the time in the
-# daemon, no gain in the estimator, which is Eigen. What they name in a namespace without a name must
-# then differ from one source to the next.
-function(framewatch_join target)
-  if(FRAMEWATCH_PARSE_ONCE)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+    set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ON)
   endif()
 endfunction()

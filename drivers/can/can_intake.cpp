@@ -61,10 +61,10 @@ void CanIntake::make_node(const CanNodeMap& node) {
       deliver(v, time_us, t->period_us());
     });
   } else if (!bus.latch) {
-    bus.latch = std::make_unique<SyncLatch>(map_, node.bus, steps_,
-                                            [this, &bus](const TimedValues& v, double time_us) {
-                                              deliver(v, time_us, bus.latch->period_us());
-                                            });
+    bus.latch = std::make_unique<SyncMatcher>(map_, node.bus, steps_,
+                                              [this, &bus](const TimedValues& v, double time_us) {
+                                                deliver(v, time_us, bus.latch->period_us());
+                                              });
   }
   nodes_.push_back(std::move(made));
 }
@@ -190,7 +190,7 @@ void CanIntake::place(Node& node, int at, const CanFrame& frame, TimedValues val
     ++node.counters.unplaced;
     return;
   }
-  node.timer->see(reading, host_us, std::move(values));
+  node.timer->open_sample(reading, host_us, std::move(values));
 }
 
 void CanIntake::deliver(const TimedValues& v, double time_us, double frame_us) {
@@ -223,13 +223,13 @@ void CanIntake::deliver(const TimedValues& v, double time_us, double frame_us) {
     }
     if (observer_) observer_({v.node, readings[i].axis, number, at_us, value});
     if (resamplers_.empty()) {
-      sink_({from_microseconds(std::llround(at_us)), readings[i].axis, value});
+      sink_({estimator::from_microseconds(std::llround(at_us)), readings[i].axis, value});
       continue;
     }
-    resamplers_[axis].add(number, at_us, period_us, value,
-                          [&](std::int64_t grid_us, double resampled) {
-                            sink_({from_microseconds(grid_us), readings[i].axis, resampled});
-                          });
+    resamplers_[axis].add(
+        number, at_us, period_us, value, [&](std::int64_t grid_us, double resampled) {
+          sink_({estimator::from_microseconds(grid_us), readings[i].axis, resampled});
+        });
   }
 }
 

@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/base/sequence_counter.h"
 #include "drivers/can/can_map.h"
 #include "drivers/can/can_notice.h"
 #include "drivers/can/can_status.h"
 #include "drivers/can/frame_lookup.h"
 #include "drivers/can/resampler.h"
 #include "drivers/can/stream_timer.h"
-#include "drivers/can/sync_latch.h"
-#include "drivers/sequence_counter.h"
+#include "drivers/can/sync_matcher.h"
 #include "estimator/motion/sample.h"
 
 namespace framewatch::drivers {
@@ -23,7 +23,7 @@ namespace framewatch::drivers {
 /// what it does not take. Frames of one bus come in the order they were received.
 class CanIntake {
  public:
-  using Sink = std::function<void(const AccelSample&)>;
+  using Sink = std::function<void(const estimator::AccelSample&)>;
   /// One decoded value before it is brought to the grid; `number` counts the node's samples.
   struct Decoded {
     int node, axis;
@@ -37,7 +37,7 @@ class CanIntake {
   CanIntake(const CanIntake&) = delete;
   CanIntake& operator=(const CanIntake&) = delete;
 
-  /// Told what the frames say of buses and nodes. To be set before the first frame.
+  /// Hears what the frames say of buses and nodes. To be set before the first frame.
   void on_notice(CanNoticeSink sink) { notice_ = std::move(sink); }
 
   void frame(int bus, const CanFrame& frame);
@@ -77,7 +77,7 @@ class CanIntake {
   };
   struct Bus {
     FrameLookup lookup;
-    std::unique_ptr<SyncLatch> latch;  ///< null when no node needs it
+    std::unique_ptr<SyncMatcher> latch;  ///< null when no node needs it
 
     template <typename Archive>
     void archive(Archive& a) {
@@ -97,7 +97,7 @@ class CanIntake {
   Sink sink_;
   Observer observer_;
   CanNoticeSink notice_;
-  HostSteps steps_;
+  HostClockSteps steps_;
   std::vector<Node> nodes_;
   std::vector<Bus> buses_;
   std::vector<CanBusCounters> bus_counters_;

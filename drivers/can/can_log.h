@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "drivers/base/problem.h"
+#include "drivers/base/text_output.h"
 #include "drivers/can/can_frame.h"
-#include "drivers/record.h"
-#include "drivers/text_output.h"
+#include "drivers/records/record.h"
 
 namespace framewatch::drivers {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "drivers/can/can_frame.h"
-#include "drivers/can/clock_line.h"
+#include "drivers/can/lower_envelope_clock.h"
 
 namespace framewatch::drivers {
 
@@ -52,7 +52,7 @@ class CanSocket {
   int fd_ = -1, index_ = 0, buffer_bytes_ = 0;
   std::uint32_t dropped_before_ = 0;
   std::int64_t dropped_ = 0;
-  ClockLine controller_{};
+  LowerEnvelopeClock controller_{};  ///< the clock of the controller's stamps
 };
 
 /// Index of a network interface, 0 when there is none, and whether it is up.

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <utility>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
-std::vector<ChannelGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
-  std::vector<ChannelGuard::Axis> out;
+std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
+  std::vector<AxisGuard::Axis> out;
   for (const SensorAxis& axis : axes) out.push_back({axis.range, static_cast<int>(axis.direction)});
   return out;
 }
@@ -70,4 +70,4 @@ std::vector<AxisCounters> Acquisition::counters() const {
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,17 +4,17 @@
 #include <functional>
 #include <vector>
 
+#include "estimator/motion/axis_guard.h"
 #include "estimator/motion/calibration.h"
-#include "estimator/motion/channel_guard.h"
-#include "estimator/motion/gap_filler.h"
+#include "estimator/motion/lost_sample_filler.h"
 #include "estimator/motion/sample_merger.h"
-#include "estimator/options.h"
+#include "estimator/setup/options.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Raw samples in, clean sample sets out: whole-sample delays taken off the stamps, axes merged on
-/// one grid, failing sensors' values taken out, calibrated, single losses filled. What is left of a
-/// delay, less than a sample, is the reader's (SensorAxis::delay of axes()).
+/// one grid, failing sensors' values removed, calibrated, single losses filled. The fraction of a
+/// delay that is less than a sample remains for the reader (SensorAxis::delay of axes()).
 class Acquisition {
  public:
   using Sink = std::function<void(const SampleSet&)>;
@@ -22,10 +22,10 @@ class Acquisition {
   Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOptions& options, Sink sink);
 
   void push(const AccelSample& raw);
-  /// The input has ended: gives out everything still held.
+  /// The input has ended: passes on everything still held.
   void finish();
 
-  /// The configured axes with what is left of their delays.
+  /// The configured axes with the remaining fractions of their delays.
   const std::vector<SensorAxis>& axes() const { return axes_; }
   std::vector<AxisCounters> counters() const;
 
@@ -41,11 +41,11 @@ class Acquisition {
   std::vector<SensorAxis> axes_;
   std::vector<SensorClock::duration> whole_delay_;
   SampleMerger merger_;
-  ChannelGuard guard_;
+  AxisGuard guard_;
   Calibration calibration_;
-  GapFiller filler_;
+  LostSampleFiller filler_;
   SampleSet calibrated_;
   Sink sink_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

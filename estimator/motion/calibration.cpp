@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kGravity = 9.80665;
@@ -39,4 +39,4 @@ void Calibration::apply(std::vector<double>& accel) {
   }
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,7 +4,7 @@
 
 #include "estimator/structure/sensors.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// From scaled sensor values to absolute acceleration along the frames, m/s^2: offset, polarity,
 /// gravity on a tilted axis, and the share of the other horizontal direction on an axis that is
@@ -25,4 +25,4 @@ class Calibration {
   std::vector<double> straight_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

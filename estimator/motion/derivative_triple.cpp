@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include <Eigen/Dense>
+#include "estimator/numeric/solve.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr int kHalfLength = 6;
@@ -14,13 +14,12 @@ constexpr int kGridPoints = 500;
 /// space of e and an orthogonal factorisation: the normal equations would lose half the digits.
 Eigen::VectorXd constrained_fit(const Eigen::MatrixXd& x, const Eigen::VectorXd& y,
                                 const Eigen::MatrixXd& e, const Eigen::VectorXd& f) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(e.transpose());
-  const Eigen::MatrixXd q = qr.householderQ();
+  const Eigen::MatrixXd q = orthogonal_basis(e.transpose());
   const Eigen::Index constraints = e.rows();
   const Eigen::MatrixXd range = q.leftCols(constraints);
   const Eigen::MatrixXd null = q.rightCols(q.cols() - constraints);
-  const Eigen::VectorXd particular = range * (e * range).partialPivLu().solve(f);
-  return particular + null * (x * null).colPivHouseholderQr().solve(y - x * particular);
+  const Eigen::VectorXd particular = range * solve_lu(e * range, f);
+  return particular + null * LeastSquares(x * null).solve(y - x * particular);
 }
 
 /// Taps c_-L..c_L (newest first) of sum c_k e^(-i w k) = (i w)^order e^(i w advance), relative
@@ -80,4 +79,4 @@ DerivativeTriple trapezoid_triple(double rate_hz) {
           1.0};
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

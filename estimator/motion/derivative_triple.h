@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Three finite impulse responses of equal length and equal delay whose outputs are p, p' and p''
 /// of their input. Taps newest first; units 1, 1/s, 1/s^2. delay is in samples.
@@ -15,7 +15,7 @@ struct DerivativeTriple {
 };
 
 /// Least squares on 0..rate/4 with exact behaviour at rest, 13 taps, followed by the numerator
-/// (1 + z^-1)^2 / 4 of the bilinear low-pass (15 taps in all). Relative error below 1e-4 up to
+/// (1 + z^-1)^2 / 4 of the oscillator sections (15 taps in all). Relative error below 1e-4 up to
 /// rate/5. advance: outputs belong to an instant this many samples later than `delay` says, at most
 /// half a sample either way; it undoes a sensor's known delay. Source: docs/equations.md,
 /// derivative triple.
@@ -25,4 +25,4 @@ DerivativeTriple matched_triple(double rate_hz, double advance = 0);
 /// and second trapezoidal integrals. The paper's integration.
 DerivativeTriple trapezoid_triple(double rate_hz);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Everything about a building's motion that the paper's method uses: instants x degrees of freedom
 /// (Structure::dof), SI.
@@ -12,4 +12,4 @@ struct MotionHistory {
   Eigen::MatrixXd disp_rel;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr int kTaps = 61;
 constexpr int kEvery = 4;  // samples per filter output: the band's noise does not need more
 constexpr double kLow = 0.28,
                  kHigh = 0.45;  // of the sampling rate; half the window's transition in
-constexpr double kMemory_s = 5;
+constexpr double kNoiseMemory_s = 5;
 constexpr double kLeast_s = 1;
 
 double blackman(int tap) {
@@ -23,7 +23,7 @@ double blackman(int tap) {
 NoiseMeter::NoiseMeter(int axes, double rate_hz)
     : rate_hz_(rate_hz),
       least_(std::max(4L, std::lround(kLeast_s * rate_hz / kEvery))),
-      memory_(std::max(least_, std::lround(kMemory_s * rate_hz / kEvery))),
+      memory_(std::max(least_, std::lround(kNoiseMemory_s * rate_hz / kEvery))),
       axis_(static_cast<std::size_t>(axes)),
       ring_(static_cast<std::size_t>(axes) * 2 * kTaps, 0.0) {
   std::vector<double> window;
@@ -38,7 +38,7 @@ NoiseMeter::NoiseMeter(int axes, double rate_hz)
     at_rest += taps_.back();
     area += window.back();
   }
-  // A sensor's bias is many times its noise: nothing at all passes at rest.
+  // A sensor's bias is many times its noise: the gain at rest is exactly zero.
   for (std::size_t i = 0; i < kTaps; ++i) {
     taps_[i] -= at_rest / area * window[i];
     gain_ += taps_[i] * taps_[i];
@@ -67,4 +67,4 @@ double NoiseMeter::density(int axis) const {
   return a.measured < least_ ? 0 : std::sqrt(2 * a.power / (gain_ * rate_hz_));
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

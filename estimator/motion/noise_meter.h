@@ -2,10 +2,10 @@
 
 #include <vector>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// Measures the axes' own noise where a building hardly moves, between a quarter and 0.45 of the
-/// sampling rate, over the last seconds. docs/equations.md, measured noise.
+/// Measures the noise of the axes in a band where a building hardly moves, 0.29 to 0.45 of the
+/// sampling rate, over the last 5 s. docs/equations.md, measured noise.
 class NoiseMeter {
  public:
   NoiseMeter(int axes, double rate_hz);
@@ -41,4 +41,4 @@ class NoiseMeter {
   int since_output_ = 0;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// The sensors' clock: whatever the nodes are synchronised to. The estimator knows no other.
 struct SensorClock {
@@ -43,4 +43,4 @@ struct SampleSet {
   }
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kOffGrid = 0.3;     // of a step: a sample farther from its instant is no sample
 constexpr double kPhaseGain = 0.02;  // how fast the grid follows the stamps
-constexpr std::int64_t kSpare = 8;   // instants beyond the lateness that may be open
+constexpr std::int64_t kBeyondLateness = 8;  // instants beyond the lateness that may be open
 
 }  // namespace
 
@@ -18,7 +18,7 @@ SampleMerger::SampleMerger(int axes, double rate_hz, double lateness_s)
       lateness_(std::max<std::int64_t>(1, std::llround(lateness_s * rate_hz))),
       stray_limit_(2 * axes + 4) {
   const auto count = static_cast<std::size_t>(axes);
-  open_.resize(static_cast<std::size_t>(lateness_ + kSpare));
+  open_.resize(static_cast<std::size_t>(lateness_ + kBeyondLateness));
   for (Instant& i : open_) {
     i.accel.resize(count);
     i.has.resize(count);
@@ -43,7 +43,7 @@ std::int64_t SampleMerger::index_of(double time_us) const {
 void SampleMerger::anchor(double time_us) {
   for (Instant& i : open_) clear(i);
   phase_us_ = time_us;
-  // A new anchor leaves a hole in the numbering: whoever reads the sets sees the gap.
+  // A new anchor makes the numbering jump: readers of the sets see the interruption.
   origin_ = anchored_ ? std::max(newest_, first_open_) + 2 : 0;
   first_open_ = origin_;
   newest_ = origin_ - 1;
@@ -143,4 +143,4 @@ const SampleSet* SampleMerger::next() {
   return &set_;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

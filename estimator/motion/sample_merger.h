@@ -5,7 +5,7 @@
 
 #include "estimator/motion/sample.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Counts of what happened to the samples of one axis.
 struct AxisCounters {
@@ -23,10 +23,11 @@ struct AxisCounters {
   }
 };
 
-/// Brings the axes' samples together on one grid of instants. An instant is given out once every
-/// axis that is not silent has delivered, or when a sample `lateness` newer has come: a dead sensor
-/// holds nobody up. Instants come out in order; a jump of SampleSet::index is a gap. The grid's
-/// phase follows the stamps, so a sampling clock that is off by 1000 ppm does not fall off it.
+/// Brings the axes' samples together on one grid of instants. An instant is closed once every
+/// axis that is not silent has delivered, or when a sample `lateness` newer has come, so that a
+/// dead sensor does not delay the others. Instants come out in order; a jump of SampleSet::index is
+/// an interruption. The grid's phase follows the time stamps, so it tolerates a sampling clock that
+/// is off by 1000 ppm.
 class SampleMerger {
  public:
   SampleMerger(int axes, double rate_hz, double lateness_s);
@@ -86,4 +87,4 @@ class SampleMerger {
   SampleSet set_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

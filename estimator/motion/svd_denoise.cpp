@@ -4,9 +4,9 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/SVD>
+#include "estimator/numeric/eigenvalues.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 /// The effective order r: the fewest singular values whose norm ratio reaches `norm_ratio`.
@@ -18,23 +18,22 @@ Eigen::Index effective_order(const Eigen::VectorXd& singular, double norm_ratio)
 }
 
 Eigen::MatrixXd low_rank(const Eigen::MatrixXd& a, double norm_ratio) {
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::Index r = effective_order(svd.singularValues(), norm_ratio);
-  return svd.matrixU().leftCols(r) * svd.singularValues().head(r).asDiagonal() *
-         svd.matrixV().leftCols(r).transpose();
+  const SingularValues svd = singular_values(a);
+  const Eigen::Index r = effective_order(svd.values, norm_ratio);
+  return svd.left.leftCols(r) * svd.values.head(r).asDiagonal() * svd.right.leftCols(r).transpose();
 }
 
 }  // namespace
 
 Eigen::VectorXd svd_denoised(const Eigen::VectorXd& samples, const SvdDenoising& denoising) {
-  const Eigen::Index rows = denoising.stretch_rows();
+  const Eigen::Index rows = denoising.segment_rows();
   assert(rows > 0 && samples.size() >= rows && samples.allFinite());
   Eigen::VectorXd out(samples.size());
   for (Eigen::Index done = 0; done < samples.size();) {
     const Eigen::Index first = std::min(done, samples.size() - rows);
-    const Eigen::MatrixXd stretch =
+    const Eigen::MatrixXd segment =
         samples.segment(first, rows).reshaped(denoising.interval_rows, denoising.intervals);
-    const Eigen::VectorXd kept = low_rank(stretch, denoising.norm_ratio).reshaped();
+    const Eigen::VectorXd kept = low_rank(segment, denoising.norm_ratio).reshaped();
     const Eigen::Index skipped = done - first;
     out.segment(done, rows - skipped) = kept.tail(rows - skipped);
     done = first + rows;
@@ -42,4 +41,4 @@ Eigen::VectorXd svd_denoised(const Eigen::VectorXd& samples, const SvdDenoising&
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -6,13 +6,12 @@
 #include <numbers>
 #include <optional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
+#include "estimator/numeric/eigenvalues.h"
+#include "estimator/numeric/solve.h"
 #include "estimator/refine/measured_building.h"
 #include "estimator/refine/window_likelihood.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 using Eigen::MatrixXd;
@@ -23,20 +22,20 @@ constexpr double kLeastSnr = 10;         ///< of a frame stiffness' information 
 constexpr double kLeastCurvature = 0.2;  ///< of a step's information over that with noise
 constexpr double kLeastSignal = 1e-3;    ///< the same, of the standard errors
 
-/// `information` without the part that is noise, no direction of it below `least` of the whole.
+/// `information` minus its noise part, in no direction less than `least` times the whole.
 MatrixXd signal_part(const MatrixXd& information, const MatrixXd& noise_part, double least) {
   const VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();
   const VectorXd inverse = scale.cwiseInverse();
   MatrixXd whole = inverse.asDiagonal() * information * inverse.asDiagonal();
   const MatrixXd noise = inverse.asDiagonal() * noise_part * inverse.asDiagonal();
   whole.diagonal().array() += 1e-12;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(whole - noise, whole);
-  if (solver.info() != Eigen::Success) return least * information;
-  const MatrixXd back = scale.asDiagonal() * whole * solver.eigenvectors();
-  return back * solver.eigenvalues().cwiseMax(least).asDiagonal() * back.transpose();
+  const RealEigen eigen = generalized_eigen(whole - noise, whole);
+  if (!eigen.good) return least * information;
+  const MatrixXd back = scale.asDiagonal() * whole * eigen.vectors;
+  return back * eigen.values.cwiseMax(least).asDiagonal() * back.transpose();
 }
 
-/// One refinement: everything relative to the design, x = theta / design.
+/// One refinement, in units of the design: x = theta / design.
 class Refiner {
  public:
   Refiner(const MeasuredBuilding& building, const Spectrum& spectrum, const ParameterTable& table,
@@ -101,7 +100,7 @@ class Refiner {
     return misfit / std::max(likelihood_.observations() - fitted, 1.0);
   }
 
-  /// Noise that is there over the noise that is configured, as far as it concerns the prior.
+  /// Actual over configured noise, as it scales the prior.
   double noise_level() const { return building_.noise_known ? std::max(level_, 1.0) : level_; }
   VectorXd pull() const { return noise_level() * prior_; }
 
@@ -117,14 +116,14 @@ class Refiner {
   std::optional<VectorXd> step_at(const VectorXd& x, const LikelihoodPoint& point) {
     MatrixXd curvature = signal_part(point.information, point.noise_part, kLeastCurvature);
     curvature.diagonal() += pull();
-    const Eigen::LDLT<MatrixXd> factor(curvature);
-    if (factor.info() != Eigen::Success || !factor.isPositive()) return std::nullopt;
+    const Ldlt factor(curvature);
+    if (!factor.good() || !factor.positive()) return std::nullopt;
     const VectorXd gradient = point.gradient + pull().cwiseProduct((x.array() - 1).matrix());
-    error_ =
-        std::sqrt(noise_level()) * factor.solve(MatrixXd::Identity(table_.size(), table_.size()))
-                                       .diagonal()
-                                       .cwiseMax(0)
-                                       .cwiseSqrt();
+    error_ = std::sqrt(noise_level()) *
+             factor.solve(MatrixXd(MatrixXd::Identity(table_.size(), table_.size())))
+                 .diagonal()
+                 .cwiseMax(0)
+                 .cwiseSqrt();
     VectorXd step = -factor.solve(gradient);
     if (!step.allFinite() || !(error_.array() > 0).all()) return std::nullopt;
     return step;
@@ -145,7 +144,7 @@ class Refiner {
     curvature.diagonal() += prior_ * level;
     score.diagonal() += prior_ * level;
     const MatrixXd inverse =
-        curvature.ldlt().solve(MatrixXd::Identity(table_.size(), table_.size()));
+        Ldlt(curvature).solve(MatrixXd(MatrixXd::Identity(table_.size(), table_.size())));
     const VectorXd variance = (inverse * score * inverse).diagonal();
     out.theta = x.cwiseProduct(design_);
     out.std_error = (level * variance).cwiseMax(0).cwiseSqrt().cwiseProduct(design_);
@@ -168,13 +167,13 @@ class Refiner {
   double level_ = 1;
 };
 
-RefineStatus refused(StretchStatus status) {
+RefineStatus refused(SegmentStatus status) {
   switch (status) {
-    case StretchStatus::missing_sensors:
+    case SegmentStatus::missing_sensors:
       return RefineStatus::missing_sensors;
-    case StretchStatus::bad_samples:
+    case SegmentStatus::bad_samples:
       return RefineStatus::bad_samples;
-    case StretchStatus::too_short:
+    case SegmentStatus::too_short:
       return RefineStatus::too_short;
     default:
       return RefineStatus::bad_input;
@@ -188,9 +187,9 @@ Refinement refine_max_likelihood(const Structure& structure, const std::vector<S
                                  const Eigen::VectorXd& design, const Eigen::VectorXd& start,
                                  const RefineOptions& options) {
   Refinement out;
-  const StretchStatus stretch = check_stretch(structure, axes, start, rate_hz, accel_abs);
-  if (stretch != StretchStatus::good) {
-    out.status = refused(stretch);
+  const SegmentStatus segment = check_segment(structure, axes, start, rate_hz, accel_abs);
+  if (segment != SegmentStatus::good) {
+    out.status = refused(segment);
     return out;
   }
   if (design.size() != start.size() || !design.allFinite() || !(design.array() > 0).all())
@@ -224,4 +223,4 @@ const char* status_word(RefineStatus status) {
   return "failed";
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

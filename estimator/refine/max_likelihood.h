@@ -9,17 +9,17 @@
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 struct RefineOptions {
-  bool prior = true;          ///< weak pull toward the design, as wide as the streaming estimator's
+  bool prior = true;          ///< weak prior around the design, as the streaming estimator's
   int max_iterations = 50;    ///< Gauss-Newton steps
   double tolerance = 0.01;    ///< converged when a step is below this many standard errors
   double longest_step = 0.3;  ///< of any parameter, relative to the design
 };
 
-/// converged, not_converged: all numbers are there; any other: only status is.
-/// quiet: no frame stiffness stands out of the sensor noise. failed: theta left what is computable.
+/// converged, not_converged: all members are set; any other: only `status` is. quiet: no frame
+/// stiffness exceeds the sensor noise. failed: the likelihood cannot be computed at some theta.
 enum class RefineStatus {
   converged,
   not_converged,
@@ -31,15 +31,15 @@ enum class RefineStatus {
   failed
 };
 
-/// What a stored stretch says about the parameters, theta order, SI.
+/// Maximum-likelihood estimate from a stored segment, theta order, SI.
 struct Refinement {
   RefineStatus status = RefineStatus::bad_input;
   Eigen::VectorXd theta;
-  Eigen::VectorXd std_error;  ///< with prior, noise in the regressors and misfit counted in
-  Eigen::VectorXd bound;      ///< Cramer-Rao bound at theta, no prior; infinite: nothing is shown
+  Eigen::VectorXd std_error;  ///< includes prior, regressor noise and misfit
+  Eigen::VectorXd bound;      ///< Cramer-Rao bound at theta without prior; infinite: no information
   int iterations = 0;
   double log_likelihood = 0;
-  double misfit_ratio = 0;  ///< misfit over what the sensor noise explains; 1 when all fits
+  double misfit_ratio = 0;  ///< misfit over its expectation under sensor noise; 1: fits
   Band band;
   int bins = 0;
 
@@ -48,8 +48,8 @@ struct Refinement {
   }
 };
 
-/// Errors-in-variables maximum likelihood of a stretch of calibrated samples (with the prior: of
-/// the posterior), docs/equations.md, maximum-likelihood refinement. Never throws.
+/// Errors-in-variables maximum likelihood (with the prior: maximum posterior) of a segment of
+/// calibrated samples, docs/equations.md, maximum-likelihood refinement. Never throws.
 /// accel_abs: instants x axes, m/s^2; design, start: > 0. Source: (31)-(38).
 Refinement refine_max_likelihood(const Structure& structure, const std::vector<SensorAxis>& axes,
                                  double rate_hz, const Eigen::MatrixXd& accel_abs,
@@ -59,4 +59,4 @@ Refinement refine_max_likelihood(const Structure& structure, const std::vector<S
 /// "converged", "not converged", "quiet", ...
 const char* status_word(RefineStatus status);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

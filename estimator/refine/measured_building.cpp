@@ -1,18 +1,17 @@
 #include "estimator/refine/measured_building.h"
 
-#include <Eigen/Cholesky>
-
-#include "estimator/identify/deformations.h"
-#include "estimator/identify/floor_layout.h"
+#include "estimator/identify/elements/deformations.h"
+#include "estimator/identify/elements/floor_layout.h"
+#include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Shares of the axes in the motion of every place of one floor, frames x axes; empty when a
+/// Weights of the axes in the motion of every frame at one floor, frames x axes; empty when a
 /// frame's motion is not measured and all are needed.
 std::optional<MatrixXd> places(const Deformations& deformations, int floor, int frames, Index axes,
                                bool all_needed, std::vector<Index>& measured) {
@@ -76,11 +75,11 @@ std::optional<MeasuredBuilding> measured_building(const Structure& s, const Para
     for (Index i = 0; i < rows; ++i)
       model.row(i) = constraint.row(measured[static_cast<std::size_t>(i)]);
     const MatrixXd normal = weighted.transpose() * model;
-    const Eigen::LDLT<MatrixXd> solver(normal);
-    const auto pivots = solver.vectorD();
+    const Ldlt solver(normal);
+    const Eigen::VectorXd pivots = solver.pivots();
     if (rows < constraint.cols() || pivots.minCoeff() <= 1e-10 * pivots.maxCoeff())
       return std::nullopt;
-    coordinates = solver.solve(weighted.transpose() * readings);
+    coordinates = solver.solve(MatrixXd(weighted.transpose() * readings));
   }
 
   const Matrices matrices = assemble(s, table, Eigen::VectorXd::Zero(table.size()));
@@ -96,4 +95,4 @@ std::optional<MeasuredBuilding> measured_building(const Structure& s, const Para
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -9,29 +9,29 @@
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// The equation of motion (6) as the sensors see it, docs/equations.md (31): with A the spectra of
-/// the axes, e(w) = [mass + act diag(c_e / jw - k_e / w^2) sense] A(w) vanishes on exact motion. No
-/// motion of the ground is assumed known: base axes are measured like any other.
+/// The equation of motion (6) in terms of the sensor axes, docs/equations.md (31): with A the
+/// spectra of the axes, e(w) = [mass + act diag(c_e / jw - k_e / w^2) sense] A(w) is zero for exact
+/// motion. The ground motion is not assumed known: base axes are measured like any other.
 struct MeasuredBuilding {
   Eigen::MatrixXd mass;      ///< equations x axes, kg
-  Eigen::MatrixXd act;       ///< equations x elements: where an element's force acts
-  Eigen::MatrixXd sense;     ///< elements x axes: an element's deformation from the axes' motion
+  Eigen::MatrixXd act;       ///< equations x elements: directions of the elements' forces
+  Eigen::MatrixXd sense;     ///< elements x axes: deformations from the axes' motion
   Eigen::VectorXd variance;  ///< of one sample's white noise, per axis, (m/s^2)^2
   Eigen::VectorXd delay;     ///< s, per axis
-  bool noise_known = true;   ///< of every axis; else 1e-4 m/s^2/sqrt(Hz) stands in for the missing
+  bool noise_known = true;   ///< false: 1e-4 m/s^2/sqrt(Hz) is used for axes without one
 
   Eigen::Index equations() const { return mass.rows(); }
   Eigen::Index elements() const { return act.cols(); }
   Eigen::Index axes() const { return sense.cols(); }
 };
 
-/// Empty when a motion that the equations need has no sensor. Rigid floors take the weighted mean
-/// of their sensors.
+/// Empty when a motion that the equations need has no sensor. The motion of rigid floors is the
+/// weighted mean of their sensors.
 std::optional<MeasuredBuilding> measured_building(const Structure& structure,
                                                   const ParameterTable& table,
                                                   const std::vector<SensorAxis>& axes,
                                                   double rate_hz);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -5,8 +5,9 @@
 #include <complex>
 
 #include "estimator/structure/matrices.h"
+#include "estimator/structure/natural_frequencies.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 Band structure_band(const Structure& structure, const ParameterTable& table,
                     const Eigen::VectorXd& theta, double rate_hz) {
@@ -46,4 +47,4 @@ Spectrum spectrum_of(const Eigen::MatrixXd& accel, const Eigen::VectorXd& delay,
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -7,9 +7,9 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// Frequencies at which a stretch of motion is compared with the equations, Hz.
+/// Frequency band in which a segment is compared with the equations, Hz.
 struct Band {
   double low_hz = 0;
   double high_hz = 0;
@@ -20,18 +20,18 @@ struct Band {
 Band structure_band(const Structure& structure, const ParameterTable& table,
                     const Eigen::VectorXd& theta, double rate_hz);
 
-/// Discrete Fourier transform of a stretch, trapezoidal sums, bins inside a band.
+/// Discrete Fourier transform (trapezoidal sums) of a segment, bins inside a band.
 struct Spectrum {
-  Band band;               ///< of the bins there are
+  Band band;               ///< from the first bin to the last
   Eigen::VectorXd w;       ///< rad/s, ascending
   Eigen::MatrixXcd accel;  ///< axes x bins, sum of samples, m/s^2
-  double intervals = 0;    ///< of the stretch: noise of variance v has intervals * v in each bin
+  double intervals = 0;    ///< of the segment; noise of variance v has intervals * v in each bin
 
   Eigen::Index bins() const { return w.size(); }
 };
 
-/// accel: instants x axes, m/s^2, all finite; delay: s, per axis, undone.
+/// accel: instants x axes, m/s^2, finite; delay: s, per axis, is compensated.
 Spectrum spectrum_of(const Eigen::MatrixXd& accel, const Eigen::VectorXd& delay, double rate_hz,
                      const Band& band);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

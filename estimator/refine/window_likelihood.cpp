@@ -2,11 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
+#include "estimator/numeric/complex.h"
+#include "estimator/numeric/solve.h"
 
-#include "estimator/structure/complex.h"
-
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 using Eigen::Index;
@@ -21,14 +20,14 @@ class ScaledCholesky {
   explicit ScaledCholesky(const MatrixXd& matrix)
       : scale_(matrix.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse()),
         factor_(scale_.asDiagonal() * matrix * scale_.asDiagonal()) {}
-  bool good() const { return factor_.info() == Eigen::Success && scale_.allFinite(); }
+  bool good() const { return factor_.good() && scale_.allFinite(); }
   MatrixXd solve(const MatrixXd& right) const {
     return scale_.asDiagonal() * factor_.solve(scale_.asDiagonal() * right);
   }
 
  private:
   VectorXd scale_;
-  Eigen::LLT<MatrixXd> factor_;
+  Cholesky factor_;
 };
 
 /// Adds 2 Re(conj(g_p) g_q H) to the information of [k, c], g = -1/w^2 of k and 1/jw of c.
@@ -78,8 +77,8 @@ bool WindowLikelihood::prepare(const VectorXd& theta) {
     bin.operation.real() = building_.mass + building_.act * stiff.asDiagonal() * building_.sense;
     bin.operation.imag() = building_.act * damped.asDiagonal() * building_.sense;
     const MatrixXcd omega = bin.operation * noise_.asDiagonal() * bin.operation.adjoint();
-    const Eigen::LLT<MatrixXcd> factor(omega);
-    if (factor.info() != Eigen::Success) return false;
+    const ComplexCholesky factor(omega);
+    if (!factor.good()) return false;
     bin.weight = factor.solve(identity);
     bin.residual = bin.operation * spectrum_.accel.col(b);
   }
@@ -174,4 +173,4 @@ std::optional<MatrixXd> WindowLikelihood::information_of_exact_motion(const Vect
   return point.information;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

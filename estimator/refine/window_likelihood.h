@@ -9,30 +9,30 @@
 #include "estimator/refine/measured_building.h"
 #include "estimator/refine/spectrum.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// Unknowns beside theta that a stretch needs per equation, docs/equations.md (32).
-/// states: displacement and velocity at its ends; sampled: also what sampling adds to them.
+/// Unknowns per equation for the ends of a segment, docs/equations.md (32). states: displacement
+/// and velocity; sampled: also the terms that sampling adds.
 enum class EndTerms { states = 2, sampled = 4 };
 
-/// What the misfit of a stretch is and how it depends on theta; docs/equations.md (33)-(36).
+/// Misfit of a segment at one theta and its derivatives; docs/equations.md (33)-(36).
 struct LikelihoodPoint {
   double misfit = 0;            ///< sum of e^H Omega^-1 e, end terms fitted
   Eigen::VectorXd gradient;     ///< of misfit, per unit of theta
   Eigen::MatrixXd information;  ///< Fisher information of theta, end terms projected out
-  Eigen::MatrixXd noise_part;   ///< share of `information` that is expected of sensor noise alone
+  Eigen::MatrixXd noise_part;   ///< expected value of `information` under sensor noise alone
 };
 
-/// Errors-in-variables likelihood of a stretch: every axis noisy, the true motion unknown.
+/// Errors-in-variables likelihood of a segment: every axis noisy, the true motion unknown.
 class WindowLikelihood {
  public:
   /// Both must outlive this.
   WindowLikelihood(const MeasuredBuilding& building, const Spectrum& spectrum, EndTerms terms);
 
-  /// Empty when theta makes no sense of the data (not finite).
+  /// Empty when the misfit is not finite at theta.
   std::optional<double> misfit(const Eigen::VectorXd& theta);
   std::optional<LikelihoodPoint> at(const Eigen::VectorXd& theta);
-  /// Information that exact motion gives: the spectrum is taken for the truth.
+  /// Information of the segment if its spectrum is the exact motion.
   std::optional<Eigen::MatrixXd> information_of_exact_motion(const Eigen::VectorXd& theta);
 
   /// Complex equations over all bins.
@@ -43,7 +43,7 @@ class WindowLikelihood {
   struct Bin {
     Eigen::MatrixXcd operation;             ///< D, equations x axes
     Eigen::MatrixXcd weight;                ///< Omega^-1
-    Eigen::VectorXcd residual;              ///< e, end terms taken off after fit_ends()
+    Eigen::VectorXcd residual;              ///< e; minus the fitted end terms after fit_ends()
     std::vector<std::complex<double>> end;  ///< factors of the end unknowns
   };
   bool prepare(const Eigen::VectorXd& theta);
@@ -59,4 +59,4 @@ class WindowLikelihood {
   Eigen::MatrixXd ends_;  ///< information of the end unknowns
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -5,7 +5,7 @@
 
 #include "estimator/simulate/random.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr int kTones = 100;  ///< one in each of as many equal parts of the band
@@ -34,4 +34,4 @@ double AppliedForce::at(double time_s) const {
   return sum;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

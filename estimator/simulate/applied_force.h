@@ -4,7 +4,7 @@
 
 #include "estimator/structure/effect.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// The force of the effect unmeasured_force, N, positive toward +x or +y: a sine and a stationary
 /// Gaussian one made of many sines of seeded frequencies and phases. The same on every machine.
@@ -26,4 +26,4 @@ class AppliedForce {
   double from_s_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

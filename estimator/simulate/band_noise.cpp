@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 Eigen::VectorXd band_noise(Eigen::Index rows, double rate_hz, double low_hz, double high_hz,
                            Random& random) {
@@ -30,4 +30,4 @@ Eigen::VectorXd band_noise(Eigen::Index rows, double rate_hz, double low_hz, dou
   return out / std::sqrt(out.squaredNorm() / static_cast<double>(rows));
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
+#include "estimator/numeric/eigenvalues.h"
 #include "estimator/simulate/rotations.h"
 #include "estimator/structure/matrices.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 using enum EffectKind;
@@ -115,18 +114,6 @@ double rotational_stiffness(const std::vector<Effect>& effects, EffectKind kind,
 
 }  // namespace
 
-Eigen::MatrixXd LinearModel::stiffness() const {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mass.size(), mass.size());
-  for (const LinearElement& e : linear) out += e.stiffness * e.b * e.b.transpose();
-  return out;
-}
-
-Eigen::MatrixXd LinearModel::damping() const {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mass.size(), mass.size());
-  for (const LinearElement& e : linear) out += e.damping * e.b * e.b.transpose();
-  return out;
-}
-
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects) {
   const Structure s = with_extra_mass(structure, effects);
@@ -189,8 +176,7 @@ bool stands(const Structure& s, const ParameterTable& table, const Eigen::Vector
     }
   }
   const Eigen::MatrixXd reduced = model.constraint.transpose() * stiffness * model.constraint;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(reduced, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues().minCoeff() > 0;
+  return symmetric_eigenvalues(reduced).minCoeff() > 0;
 }
 
 bool concerns_building(const std::vector<Effect>& effects) {
@@ -198,4 +184,4 @@ bool concerns_building(const std::vector<Effect>& effects) {
                      [](const Effect& e) { return !is_channel_effect(e.kind); });
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -7,30 +7,12 @@
 
 #include "estimator/simulate/applied_force.h"
 #include "estimator/simulate/element_law.h"
+#include "estimator/simulate/linear_model.h"
 #include "estimator/structure/effect.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
-
-/// A spring and a dashpot along b: force k b'y + c b'y' on the degrees of freedom b.
-struct LinearElement {
-  Eigen::VectorXd b;
-  double stiffness = 0;  ///< N/m
-  double damping = 0;    ///< N*s/m
-};
-
-/// The linear part of a building with its effects. Degrees of freedom are the structure's, then
-/// one for each hidden mass, all relative to the ground.
-struct LinearModel {
-  Eigen::VectorXd mass;               ///< kg
-  Eigen::MatrixXd influence;          ///< x (x, y): 1 where the ground moves it
-  Eigen::MatrixXd constraint;         ///< x independent coordinates
-  std::vector<LinearElement> linear;  ///< first those of theta, in its order, then the effects'
-
-  Eigen::MatrixXd stiffness() const;  ///< of the degrees of freedom
-  Eigen::MatrixXd damping() const;
-};
+namespace framewatch::estimator {
 
 /// extra_mass, tuned_mass_damper, base_rocking, frame_bending, added_spring, added_damper and
 /// floor_flexibility act here, the other kinds do not.
@@ -62,4 +44,4 @@ bool stands(const Structure& structure, const ParameterTable& table, const Eigen
 /// Whether any effect needs more than LinearBuilding: all but those of channels do.
 bool concerns_building(const std::vector<Effect>& effects);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 ChannelEffects::ChannelEffects(std::vector<Effect> effects) : effects_(std::move(effects)) {
   std::erase_if(effects_, [](const Effect& e) { return !is_channel_effect(e.kind); });
@@ -53,4 +53,4 @@ const Eigen::VectorXd& ChannelEffects::apply(double time_s, const Eigen::VectorX
   return out_;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -8,7 +8,7 @@
 #include "estimator/simulate/sensor_model.h"
 #include "estimator/structure/effect.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// The effects of channels, on motion that the sensors then measure with their noise. They act in
 /// the order of the list, time shifts and clipping apart: the first is a delay of the response
@@ -28,4 +28,4 @@ class ChannelEffects {
   Eigen::VectorXd out_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kStopDecibel = 80;
@@ -82,4 +82,4 @@ const Eigen::VectorXd& Decimator::output() {
   return output_;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Linear-phase low-pass (Kaiser-windowed sinc), unit gain at 0 Hz: passes up to 0.4 of the output
 /// rate within 1e-4 and stops from 0.6 on by 80 dB; `ratio` fine steps per output step. An odd
@@ -39,4 +39,4 @@ class Decimator {
   Eigen::VectorXd output_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 double sign(double x) {
@@ -198,4 +198,4 @@ std::unique_ptr<ElementLaw> make_law(const Effect& e, const Structure& s) {
   }
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -6,7 +6,7 @@
 #include "estimator/structure/effect.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// The force that an effect adds to k d + c v of one element: a restoring force, N, positive when
 /// it acts against positive deformation d, m; v = d', m/s. Internal states, if any, start at 0.
@@ -31,4 +31,4 @@ class ElementLaw {
 /// Null when the effect is not a law of one element. The effect must be without problems.
 std::unique_ptr<ElementLaw> make_law(const Effect& effect, const Structure& structure);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,7 +4,7 @@
 
 #include "estimator/simulate/linear_building.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kLongestStep_s = 1e-3;
@@ -34,4 +34,4 @@ MotionHistory exact_motion(const Structure& structure, const ParameterTable& tab
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

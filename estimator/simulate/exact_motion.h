@@ -7,7 +7,7 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// The exact response from rest, `rows` instants from time 0. No anti-alias filter: the equation of
 /// motion holds at every instant. The ground motion is linear within steps of at most 1 ms.
@@ -15,4 +15,4 @@ MotionHistory exact_motion(const Structure& structure, const ParameterTable& tab
                            const Eigen::VectorXd& theta, const PlanMotion& motion, double rate_hz,
                            Eigen::Index rows);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

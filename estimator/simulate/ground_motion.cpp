@@ -6,7 +6,7 @@
 
 #include "estimator/simulate/random.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 /// x'' + 2 zeta w x' + w^2 x = input, one step at a time with the input linear between samples:
@@ -95,4 +95,4 @@ GroundMotion kanai_tajimi(const KanaiTajimi& p) {
   return motion;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

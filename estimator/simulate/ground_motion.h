@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Ground acceleration along one direction, piecewise linear between samples step_s apart.
 struct GroundMotion {
@@ -46,4 +46,4 @@ struct KanaiTajimi {
 /// The same motion for the same parameters on every machine.
 GroundMotion kanai_tajimi(const KanaiTajimi& parameters);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,13 +4,11 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-#include <unsupported/Eigen/MatrixFunctions>
-
+#include "estimator/numeric/eigenvalues.h"
+#include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 /// out = a * x. Written out because a debug build of Eigen's is many times slower.
@@ -47,11 +45,11 @@ void LinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   const Matrices matrices = assemble(structure_, table_, theta);
   const Eigen::Index q = constraint_.cols();
   const Eigen::MatrixXd constraint_mass = constraint_.transpose() * matrices.mass.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> mass(constraint_mass * constraint_);
+  const Ldlt mass(constraint_mass * constraint_);
   const Eigen::MatrixXd stiffness =
-      mass.solve(constraint_.transpose() * matrices.stiffness * constraint_);
+      mass.solve(Eigen::MatrixXd(constraint_.transpose() * matrices.stiffness * constraint_));
   const Eigen::MatrixXd damping =
-      mass.solve(constraint_.transpose() * matrices.damping * constraint_);
+      mass.solve(Eigen::MatrixXd(constraint_.transpose() * matrices.damping * constraint_));
 
   const double scale_before = velocity_scale_;
   velocity_scale_ = std::sqrt(stiffness.diagonal().maxCoeff());
@@ -64,10 +62,10 @@ void LinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   generator.block(0, q, q, q).diagonal().setConstant(velocity_scale_);
   generator.block(q, 0, q, q) = -stiffness / velocity_scale_;
   generator.block(q, q, q, q) = -damping;
-  generator.block(q, 2 * q, q, 2) = -mass.solve(constraint_mass * influence_);
+  generator.block(q, 2 * q, q, 2) = -mass.solve(Eigen::MatrixXd(constraint_mass * influence_));
   generator.block(2 * q, 2 * q + 2, 2, 2).setIdentity();
   const Eigen::MatrixXd scaled = generator * step_s_;
-  const Eigen::MatrixXd exponential = scaled.exp();
+  const Eigen::MatrixXd exponential = matrix_exponential(scaled);
   transition_ = exponential.topRows(2 * q);
   transition_.rightCols(2) /= step_s_;
 
@@ -79,7 +77,7 @@ void LinearBuilding::set_theta(const Eigen::VectorXd& theta) {
 
 void LinearBuilding::set_state(const Eigen::VectorXd& disp_rel, const Eigen::VectorXd& vel_rel) {
   const Eigen::Index q = constraint_.cols();
-  const auto decomposition = constraint_.colPivHouseholderQr();
+  const LeastSquares decomposition(constraint_);
   state_.head(q) = velocity_scale_ * decomposition.solve(disp_rel);
   state_.segment(q, q) = decomposition.solve(vel_rel);
   update_accel();
@@ -113,4 +111,4 @@ Eigen::VectorXd LinearBuilding::vel_rel() const {
   return constraint_ * state_.segment(constraint_.cols(), constraint_.cols());
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -6,7 +6,7 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// M y'' + C y' + K y = -M r a_g advanced in time exactly (first-order-hold state space by the
 /// matrix exponential): no error while the ground acceleration is linear within a step. Floors are
@@ -51,4 +51,4 @@ class LinearBuilding : public SimulatedBuilding {
   Eigen::VectorXd accel_abs_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

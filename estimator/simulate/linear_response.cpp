@@ -7,7 +7,7 @@
 #include "estimator/simulate/linear_building.h"
 #include "estimator/simulate/nonlinear_building.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 /// Times are multiples of a binary-inexact step.
@@ -109,4 +109,4 @@ Response linear_response(const Structure& structure, const ParameterTable& table
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -12,7 +12,7 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 struct ResponseOptions {
   double rate_hz = 100;
@@ -86,4 +86,4 @@ Response linear_response(const Structure& structure, const ParameterTable& table
                          const Eigen::VectorXd& theta, const PlanMotion& motion,
                          const ResponseOptions& options = {}, double duration_s = -1);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

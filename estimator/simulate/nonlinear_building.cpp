@@ -5,12 +5,10 @@
 #include <cmath>
 #include <iterator>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <unsupported/Eigen/MatrixFunctions>
+#include "estimator/numeric/eigenvalues.h"
+#include "estimator/numeric/solve.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kLongestPart_s = 5e-4;
@@ -78,12 +76,12 @@ void NonlinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   constraint_ = model.constraint;
   const Eigen::Index q = constraint_.cols();
   const Eigen::MatrixXd constraint_mass = constraint_.transpose() * model.mass.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> mass(constraint_mass * constraint_);
-  const Eigen::MatrixXd mass_inverse = mass.solve(Eigen::MatrixXd::Identity(q, q));
+  const Ldlt mass(constraint_mass * constraint_);
+  const Eigen::MatrixXd mass_inverse = mass.solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(q, q)));
   const Eigen::MatrixXd stiffness =
-      mass.solve(constraint_.transpose() * model.stiffness() * constraint_);
+      mass.solve(Eigen::MatrixXd(constraint_.transpose() * model.stiffness() * constraint_));
   const Eigen::MatrixXd damping =
-      mass.solve(constraint_.transpose() * model.damping() * constraint_);
+      mass.solve(Eigen::MatrixXd(constraint_.transpose() * model.damping() * constraint_));
 
   if (state_.size() == 0) state_ = Eigen::VectorXd::Zero(2 * q + 4);
   const double scale_before = velocity_scale_;
@@ -108,10 +106,10 @@ void NonlinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   generator.block(0, q, q, q).diagonal().setConstant(velocity_scale_);
   generator.block(q, 0, q, q) = -stiffness / velocity_scale_;
   generator.block(q, q, q, q) = -damping;
-  generator.block(q, 2 * q, q, 2) = -mass.solve(constraint_mass * model.influence);
+  generator.block(q, 2 * q, q, 2) = -mass.solve(Eigen::MatrixXd(constraint_mass * model.influence));
   generator.block(2 * q, 2 * q + 2, 2, 2).setIdentity();
   const Eigen::MatrixXd scaled = generator * (step_s_ / parts_ / 2);
-  const Eigen::MatrixXd exponential = scaled.exp();
+  const Eigen::MatrixXd exponential = matrix_exponential(scaled);
   half_ = exponential.topRows(2 * q);
 
   const Eigen::Index nd = accel_abs_.size();
@@ -133,9 +131,9 @@ void NonlinearBuilding::choose_parts(const LinearModel& model,
                                      const Eigen::MatrixXd& mass_inverse) {
   const Eigen::MatrixXd dynamic =
       mass_inverse * constraint_.transpose() * model.stiffness() * constraint_;
-  const Eigen::EigenSolver<Eigen::MatrixXd> modes(dynamic, false);
-  const double fastest = std::min(std::sqrt(modes.eigenvalues().real().cwiseAbs().maxCoeff()),
-                                  2 * M_PI * kFastestMode_hz);
+  const Eigen::VectorXcd modes = general_eigenvalues(dynamic);
+  const double fastest =
+      std::min(std::sqrt(modes.real().cwiseAbs().maxCoeff()), 2 * M_PI * kFastestMode_hz);
   double part_s = std::min(kLongestPart_s, kModeAngle / std::max(fastest, 1e-9));
   for (std::size_t i = 0; i < laws_.size(); ++i) {
     const double per_newton = -placed_[i].b.dot(placed_[i].push);
@@ -153,7 +151,7 @@ void NonlinearBuilding::set_state(const Eigen::VectorXd& disp_rel, const Eigen::
   const auto hidden = constraint_.rows() - disp_rel.size();
   const Eigen::VectorXd rest = Eigen::VectorXd::Zero(hidden);
   Eigen::VectorXd full(constraint_.rows());
-  const auto decomposition = constraint_.colPivHouseholderQr();
+  const LeastSquares decomposition(constraint_);
   full << disp_rel, rest;
   state_.head(q) = velocity_scale_ * decomposition.solve(full);
   full << vel_rel, rest;
@@ -299,4 +297,4 @@ Eigen::VectorXd NonlinearBuilding::vel_rel() const {
   return constraint_.topRows(accel_abs_.size()) * state_.segment(q, q);
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -7,12 +7,12 @@
 #include "estimator/simulate/building_model.h"
 #include "estimator/simulate/simulated_building.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// A building with effects. Its linear part is advanced by the matrix exponential, exactly while
 /// the ground acceleration is linear within a step; laws and forces by the fourth-order Runge-Kutta
 /// scheme in the coordinates that move with it (Lawson, SIAM J. Numer. Anal. 4, 1967). Without laws
-/// it is LinearBuilding up to rounding. Not what diagnose fits with, on purpose.
+/// it is LinearBuilding up to rounding. Diagnosis fits with another scheme, on purpose.
 class NonlinearBuilding : public SimulatedBuilding {
  public:
   /// Effects without problems, those of channels are ignored; step_s > 0. A step is divided into as
@@ -89,4 +89,4 @@ class NonlinearBuilding : public SimulatedBuilding {
   Eigen::VectorXd middle_, stage_, end_, carried_, stage_z_, force_now_, force_middle_, force_end_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

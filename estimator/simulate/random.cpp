@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 /// SplitMix64's finaliser: neighbouring inputs give unrelated outputs.
@@ -33,4 +33,4 @@ double Random::normal() {
   return radius * std::cos(angle);
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

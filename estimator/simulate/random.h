@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Seeded normal and uniform numbers; unlike the standard distributions the same everywhere.
 class Random {
@@ -23,4 +23,4 @@ class Random {
   bool has_spare_ = false;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

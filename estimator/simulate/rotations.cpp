@@ -1,8 +1,11 @@
 #include "estimator/simulate/rotations.h"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
+#include <vector>
 
-namespace framewatch {
+#include "estimator/numeric/solve.h"
+
+namespace framewatch::estimator {
 namespace {
 
 /// How much each rotation turns each frame story: stories' heights where it lies below.
@@ -51,7 +54,7 @@ void add_rotations(const Structure& s, const ParameterTable& table, Direction di
   const Eigen::MatrixXd moment_arm = k.height.transpose() * stiffness.asDiagonal();
   Eigen::MatrixXd rotational = moment_arm * k.height;
   rotational.diagonal() += k.spring;
-  const Eigen::MatrixXd rotation = rotational.ldlt().solve(moment_arm * drift);
+  const Eigen::MatrixXd rotation = Ldlt(rotational).solve(Eigen::MatrixXd(moment_arm * drift));
   const Eigen::MatrixXd deformation = drift - k.height * rotation;
   for (Eigen::Index i = 0; i < rows; ++i)
     model.linear[k.frames[static_cast<std::size_t>(i)]].b = deformation.row(i).transpose();
@@ -59,4 +62,4 @@ void add_rotations(const Structure& s, const ParameterTable& table, Direction di
     model.linear.push_back({rotation.row(r).transpose(), k.spring[r], 0});
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

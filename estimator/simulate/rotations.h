@@ -1,10 +1,10 @@
 #pragma once
 
-#include <vector>
+#include "estimator/simulate/linear_model.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/structure.h"
 
-#include "estimator/simulate/building_model.h"
-
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// base_rocking and frame_bending along one direction: replaces the frames' deformations in
 /// model.linear by those beside the rotations, and adds the rotational springs. The rotations have
@@ -13,4 +13,4 @@ namespace framewatch {
 void add_rotations(const Structure& structure, const ParameterTable& table, Direction direction,
                    double base_stiffness, double floor_stiffness, LinearModel& model);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 double quantised(double accel, const SensorModel& m) {
@@ -77,4 +77,4 @@ const std::vector<double>& SensorArray::measure(double time_s, const Eigen::Vect
   return raw_;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

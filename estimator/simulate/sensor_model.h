@@ -12,7 +12,7 @@
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// What one accelerometer axis does to the motion, in this order: noise, bias and thermal ramp,
 /// saturation, quantisation, loss; then its inverse calibration. SI.
@@ -38,8 +38,8 @@ double noise_density_of(double ratio, double rms, double rate_hz);
 std::vector<ResponseChannel> response_channels(const Structure& structure,
                                                const std::vector<SensorAxis>& axes);
 
-/// All axes of a building. The same seed gives the same samples; every axis has its own numbers,
-/// whatever the others do.
+/// All axes of a building. The same seed gives the same samples; every axis has random numbers of
+/// its own, independent of the others.
 class SensorArray {
  public:
   /// One model per axis; rate_hz is that of the instants given to measure().
@@ -59,4 +59,4 @@ class SensorArray {
   std::vector<double> raw_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

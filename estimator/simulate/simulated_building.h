@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// A building that is shaken in steps of step_s(), from rest.
 class SimulatedBuilding {
@@ -24,11 +24,11 @@ class SimulatedBuilding {
   /// m/s^2, positive toward +x or +y.
   virtual const Eigen::VectorXd& accel_abs() const = 0;
 
-  /// Everything that the motion to come depends on, the time apart.
+  /// Everything that later motion depends on, but for the time.
   virtual std::vector<double> motion() const = 0;
-  /// Goes on from what motion() gave of the same building. False, and nothing changes, when it is
-  /// of another size.
+  /// Continues from what motion() gave of the same building. False, and nothing changes, when it
+  /// has another size.
   [[nodiscard]] virtual bool resume(const std::vector<double>& motion) = 0;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -12,21 +12,21 @@
 
 #include <Eigen/Core>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Values that are written as they lie in memory.
 template <typename T>
 concept PlainState = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// A class that says what its state is: archive() names every member that outlives a call, once,
-/// for both directions. What the constructor makes of the configuration, and what is formed anew
-/// before it is read, is no state.
+/// A class with state: archive() names every member that outlives a call, once for writing and
+/// reading. Members that the constructor derives from the configuration, and those that are
+/// computed anew before they are read, are not part of it.
 template <typename T, typename Archive>
 concept Archived = requires(T& value, Archive& archive) {
   value.archive(archive);
 };
 
-/// What writer and reader have in common: how a value falls into plain ones. Derived has
+/// Common to writer and reader: how a value is divided into plain ones. Derived has
 /// plain(T&), block(std::vector<T>&) and count(std::size_t), which gives back the size to take.
 template <typename Derived>
 class StateArchive {
@@ -125,8 +125,8 @@ class StateWriter : public StateArchive<StateWriter> {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Gives a state back. Never reads beyond its bytes; when they do not fit what is read into, good()
-/// is false from there on and what was read into is to be thrown away.
+/// Reads a state. Never reads beyond its bytes; when they do not fit the objects that are read,
+/// good() is false from there on and these objects must be discarded.
 class StateReader : public StateArchive<StateReader> {
  public:
   static constexpr bool kReading = true;
@@ -134,7 +134,7 @@ class StateReader : public StateArchive<StateReader> {
   explicit StateReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
   bool good() const { return good_; }
-  /// Everything was read, and nothing is left over.
+  /// Everything was read and no byte remains.
   bool whole() const { return good_ && at_ == bytes_.size(); }
 
   template <PlainState T>
@@ -148,7 +148,7 @@ class StateReader : public StateArchive<StateReader> {
     values.resize(size);
     if (size > 0) take(values.data(), size * sizeof(T));
   }
-  /// A number of things of a byte at least: never more than there are bytes left.
+  /// Elements take at least a byte each, so a count cannot exceed the bytes that remain.
   std::size_t count(std::size_t) {
     std::uint64_t stored = 0;
     plain(stored);
@@ -172,4 +172,4 @@ class StateReader : public StateArchive<StateReader> {
   bool good_ = true;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 std::size_t index_of(const Effect& effect, std::string_view key) {
@@ -51,4 +51,4 @@ Effect make_effect(EffectKind kind, const EffectPlace& place) {
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -10,7 +10,7 @@
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// What a linear shear building and perfect accelerometers leave out. Names as in the catalogue.
 enum class EffectKind {
@@ -133,4 +133,4 @@ std::vector<EffectPlace> effect_places(EffectKind kind, const Structure& structu
 std::string place_text(const EffectPlace& place, const Structure& structure,
                        const std::vector<SensorAxis>& axes);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -1,8 +1,10 @@
-#include <limits>
+#include <initializer_list>
+#include <utility>
+#include <vector>
 
 #include "estimator/structure/effect.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 using enum EffectKind;
@@ -44,46 +46,47 @@ const EffectParameter kUnloading =
            "share of the loop's shape that dissipates; 0.5: unloading "
            "is linear");
 
-std::vector<EffectDescription> make_catalogue() {
-  const std::vector<PlaceKind> element{PlaceKind::frame, PlaceKind::panel};
-  const std::vector<PlaceKind> frame{PlaceKind::frame};
-  const std::vector<PlaceKind> node{PlaceKind::node};
-  const std::vector<PlaceKind> pair{PlaceKind::node_pair};
-  const std::vector<PlaceKind> building{PlaceKind::building};
-  const std::vector<PlaceKind> channel{PlaceKind::channel};
-  const std::vector<PlaceKind> channels{PlaceKind::channel_pair};
+constexpr std::initializer_list<PlaceKind> kElement = {PlaceKind::frame, PlaceKind::panel};
+constexpr std::initializer_list<PlaceKind> kFrame = {PlaceKind::frame};
+constexpr std::initializer_list<PlaceKind> kNode = {PlaceKind::node};
+constexpr std::initializer_list<PlaceKind> kNodePair = {PlaceKind::node_pair};
+constexpr std::initializer_list<PlaceKind> kBuilding = {PlaceKind::building};
+constexpr std::initializer_list<PlaceKind> kChannel = {PlaceKind::channel};
+constexpr std::initializer_list<PlaceKind> kChannelPair = {PlaceKind::channel_pair};
+
+std::vector<EffectDescription> elastic_and_hysteretic_laws() {
   return {
       {cubic_stiffness,
        "cubic_stiffness",
-       element,
+       kElement,
        {either_sign("k3_npm3", "N/m^3", "cubic stiffness")},
        "f = k3 d^3",
        "k3 > 0 hardens, k3 < 0 softens.",
        "Duffing 1918; Wigren and Schoukens 2013 (Silverbox)"},
       {quadratic_stiffness,
        "quadratic_stiffness",
-       element,
+       kElement,
        {either_sign("k2_npm2", "N/m^2", "quadratic stiffness")},
        "f = k2 d abs(d)",
        "k2 > 0 hardens, k2 < 0 softens, alike in both directions.",
        "Nayfeh and Mook, Nonlinear Oscillations, 1979"},
       {bilinear_hysteresis,
        "bilinear_hysteresis",
-       element,
+       kElement,
        {kHystereticStiffness, kYieldDeformation},
        "f = kh z; z' = v while abs(z) < dy or z v < 0, else 0",
        kHystereticSign,
        "Caughey, J. Appl. Mech. 27 (1960)"},
       {bouc_wen,
        "bouc_wen",
-       element,
+       kElement,
        {kHystereticStiffness, kYieldDeformation, kSmoothness, kUnloading},
        "f = kh z; z' = v (1 - abs(z/dy)^n (beta sgn(v z) + 1 - beta))",
        kHystereticSign,
        "Wen, J. Eng. Mech. Div. 102 (1976), normalised so that z ends at dy"},
       {pinching,
        "pinching",
-       frame,
+       kFrame,
        {kHystereticStiffness,
         kYieldDeformation,
         kSmoothness,
@@ -95,9 +98,14 @@ std::vector<EffectDescription> make_catalogue() {
        "h = 1 - p exp(-(z/(w dy))^2)",
        "As bouc_wen; p = 0 is bouc_wen.",
        "Baber and Noori, J. Eng. Mech. 111 (1985), slip zone about zero force"},
+  };
+}
+
+std::vector<EffectDescription> friction_contact_and_weight() {
+  return {
       {coulomb_friction,
        "coulomb_friction",
-       element,
+       kElement,
        {not_negative("fc_n", "N", "friction force"),
         positive("v0_mps", "m/s", "velocity below which the force gives way smoothly")},
        "f = fc tanh(v/v0)",
@@ -105,14 +113,14 @@ std::vector<EffectDescription> make_catalogue() {
        "Den Hartog, Trans. ASME 53 (1931), regularised"},
       {quadratic_damping,
        "quadratic_damping",
-       frame,
+       kFrame,
        {not_negative("c2_ns2pm2", "N*s^2/m^2", "quadratic damping")},
        "f = c2 v abs(v)",
        "c2 > 0 resists the velocity. Dissipates.",
        "Nayfeh and Mook, Nonlinear Oscillations, 1979"},
       {one_sided_gap,
        "one_sided_gap",
-       frame,
+       kFrame,
        {not_negative("kg_npm", "N/m", "stiffness in contact"),
         within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact"),
         within("side", "", 1.0, -1, 1, "s: 1 closes toward positive deformation, -1 negative")},
@@ -121,7 +129,7 @@ std::vector<EffectDescription> make_catalogue() {
        "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988), without dashpot"},
       {two_sided_gap,
        "two_sided_gap",
-       frame,
+       kFrame,
        {not_negative("kg_npm", "N/m", "stiffness in contact"),
         within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact")},
        "f = kg (max(d - g, 0) - max(-d - g, 0))",
@@ -129,11 +137,16 @@ std::vector<EffectDescription> make_catalogue() {
        "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988), without dashpot"},
       {p_delta,
        "p_delta",
-       frame,
+       kFrame,
        {not_negative("weight_n", "N", "W: weight that the frame story carries")},
        "f = -(W/h) d, h the story height",
        "W > 0 weakens. The same as a lower k: only known weights tell them apart.",
        "Wilson and Habibullah, Eng. J. AISC 24 (1987)"},
+  };
+}
+
+std::vector<EffectDescription> masses_and_rotations() {
+  return {
       {extra_mass,
        "extra_mass",
        {PlaceKind::crossing},
@@ -144,7 +157,7 @@ std::vector<EffectDescription> make_catalogue() {
        "Newton's second law"},
       {tuned_mass_damper,
        "tuned_mass_damper",
-       node,
+       kNode,
        {not_negative("mass_kg", "kg", "m: hidden mass, beside node_mass_kg"),
         positive("frequency_hz", "Hz", "F: of the mass on its spring, the floor held"),
         within("damping_ratio", "", std::nullopt, 0, 2, "h: likewise")},
@@ -154,7 +167,7 @@ std::vector<EffectDescription> make_catalogue() {
        "Den Hartog, Mechanical Vibrations, 1956"},
       {base_rocking,
        "base_rocking",
-       building,
+       kBuilding,
        {positive("kr_nmprad", "N*m/rad", "K: rotational stiffness of the base")},
        "every story's frames of the direction deform by d = drift - h_i phi, phi the base's "
        "rotation; K phi = sum over stories of h_i k d (moment of the elastic story shears); "
@@ -163,30 +176,35 @@ std::vector<EffectDescription> make_catalogue() {
        "Veletsos and Meek, Earthquake Eng. Struct. Dyn. 3 (1974), without rotary inertia"},
       {frame_bending,
        "frame_bending",
-       building,
+       kBuilding,
        {positive("kr_nmprad", "N*m/rad", "K: rotational stiffness of every frame at every floor")},
        "in each frame of the direction a hinge at every floor j = 0..N-1 turns all above it: "
        "d_i = drift_i - h_i sum over j < i of phi_j; K phi_j = sum over i > j of h_i k_i d_i; "
        "dashpots and added laws take the same d",
        "Smaller K is softer; 1/K = 0 is none. phi > 0 leans toward positive.",
        "Stafford Smith and Coull, Tall Building Structures, 1991, columns as hinged segments"},
+  };
+}
+
+std::vector<EffectDescription> springs_dampers_and_changes() {
+  return {
       {added_spring,
        "added_spring",
-       pair,
+       kNodePair,
        {either_sign("k_npm", "N/m", "stiffness between the two floors")},
        "f = k (y_story - y_to_story), on one frame",
        "k > 0 resists.",
        "Hooke's law"},
       {added_damper,
        "added_damper",
-       pair,
+       kNodePair,
        {not_negative("c_nspm", "N*s/m", "dashpot between the two floors")},
        "f = c (y'_story - y'_to_story), on one frame; to_story = 0: the base",
        "c > 0 resists. Dissipates.",
        "Newton's law of viscosity"},
       {stiffness_drop,
        "stiffness_drop",
-       element,
+       kElement,
        {either_sign("dk_npm", "N/m", "change of the stiffness"),
         within("at_s", "s", std::nullopt, 0, kLong_s, "t0: when")},
        "f = dk d from t0 on",
@@ -194,13 +212,18 @@ std::vector<EffectDescription> make_catalogue() {
        "Shintani, Yoshitomi and Takewaki, Front. Built Environ. 5:103 (2019), section on damage"},
       {stiffness_drift,
        "stiffness_drift",
-       element,
+       kElement,
        {either_sign("dk_npm", "N/m", "change of the stiffness at the end"),
         within("from_s", "s", 0.0, 0, kLong_s, "t0: when it begins"),
         {"duration_s", "s", std::nullopt, 0, kLong_s, true, "T: how long it takes"}},
        "f = dk clip((t - t0)/T, 0, 1) d",
        "dk < 0 loses stiffness.",
        "Clinton et al., Bull. Seismol. Soc. Am. 96 (2006): wander of frequencies"},
+  };
+}
+
+std::vector<EffectDescription> floors_and_forces() {
+  return {
       {floor_flexibility,
        "floor_flexibility",
        {PlaceKind::floor},
@@ -211,7 +234,7 @@ std::vector<EffectDescription> make_catalogue() {
        "Shintani, Yoshitomi and Takewaki, Front. Built Environ. 5:103 (2019), equation (12)"},
       {unmeasured_force,
        "unmeasured_force",
-       node,
+       kNode,
        {within("amplitude_n", "N", 0.0, 0, kAny, "F: of a harmonic force"),
         {"frequency_hz", "Hz", 1.0, 0, 1e4, true, "f: of the harmonic force"},
         within("phase_rad", "rad", 0.0, -100, 100, "p: of the harmonic force"),
@@ -223,38 +246,43 @@ std::vector<EffectDescription> make_catalogue() {
        "p(t) = F sin(2 pi f t + p) + Gaussian force, on one degree of freedom",
        "Positive pushes toward +x or +y.",
        "Wind and machines: Chopra, Dynamics of Structures, 2017"},
+  };
+}
+
+std::vector<EffectDescription> sensor_errors() {
+  return {
       {gain_error,
        "gain_error",
-       channel,
+       kChannel,
        {within("gain", "", std::nullopt, -1, 100, "g: relative error")},
        "out = (1 + g) a",
        "g > 0 reads too much.",
        "IEEE Std 1293"},
-      {polarity, "polarity", channel, {}, "out = -a", "", "IEEE Std 1293"},
+      {polarity, "polarity", kChannel, {}, "out = -a", "", "IEEE Std 1293"},
       {misalignment,
        "misalignment",
-       channels,
+       kChannelPair,
        {within("angle_deg", "deg", std::nullopt, -90, 90, "q: from the channel's axis")},
        "out = cos(q) a + sin(q) a_with",
        "q > 0 turns the axis toward that of with_channel.",
        "IEEE Std 1293"},
       {time_shift,
        "time_shift",
-       channel,
+       kChannel,
        {within("shift_s", "s", std::nullopt, -0.5, 0.5, "T: delay")},
        "out(t) = a(t - T)",
        "T > 0: the channel is late.",
        "definition of a delay"},
       {clipping,
        "clipping",
-       channel,
+       kChannel,
        {positive("level_mps2", "m/s^2", "L: largest value")},
        "out = min(max(a, -L), L)",
        "",
        "IEEE Std 1293"},
       {bias_drift,
        "bias_drift",
-       channel,
+       kChannel,
        {either_sign("ramp_mps3", "m/s^2 per s", "slope"),
         within("from_s", "s", 0.0, 0, kLong_s, "t0: when it begins")},
        "out = a + ramp max(t - t0, 0)",
@@ -262,12 +290,22 @@ std::vector<EffectDescription> make_catalogue() {
        "IEEE Std 1293"},
       {swapped,
        "swapped",
-       channels,
+       kChannelPair,
        {},
        "out = a_with, out_with = a: the two channels' motions are exchanged",
        "",
        "wiring"},
   };
+}
+
+/// In the order of EffectKind.
+std::vector<EffectDescription> make_catalogue() {
+  std::vector<EffectDescription> out;
+  for (const auto& part :
+       {elastic_and_hysteretic_laws, friction_contact_and_weight, masses_and_rotations,
+        springs_dampers_and_changes, floors_and_forces, sensor_errors})
+    for (EffectDescription& description : part()) out.push_back(std::move(description));
+  return out;
 }
 
 }  // namespace
@@ -277,4 +315,4 @@ std::span<const EffectDescription> effect_catalogue() {
   return kCatalogue;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -3,7 +3,7 @@
 #include "estimator/structure/effect.h"
 #include "estimator/structure/place_names.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 int x_lines(const Structure& s) {
@@ -118,4 +118,4 @@ std::string place_text(const EffectPlace& p, const Structure& s,
   return "";
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -3,7 +3,7 @@
 
 #include "estimator/structure/effect.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 std::string number_text(double value) {
@@ -133,4 +133,4 @@ std::vector<Problem> find_problems(const Effect& effect, const Structure& struct
   return Checker(effect, structure, axes).run();
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -3,16 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
-
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
-
-constexpr int kDense = 200;  // degrees of freedom up to which dense algebra is as quick
-constexpr int kVectors = 8;
-constexpr int kMostIterations = 200;
-constexpr double kConverged = 1e-14;
 
 /// Plan coordinates of the frame lines, from the first of each direction.
 std::vector<double> lines(const std::vector<double>& spans) {
@@ -101,60 +93,4 @@ Eigen::MatrixXd floor_constraint(const Structure& s) {
   return out;
 }
 
-double lowest_frequency_hz(const Structure& s, const ParameterTable& table,
-                           const Eigen::VectorXd& theta) {
-  if (s.degrees_of_freedom() <= kDense) return natural_frequencies_hz(s, table, theta).front();
-  using Sparse = Eigen::SparseMatrix<double>;
-  const int nd = s.degrees_of_freedom();
-  std::vector<Eigen::Triplet<double>> entries;
-  for (const Element& e : elements(s, table))
-    for (const auto& [row, br] : e.b)
-      for (const auto& [column, bc] : e.b)
-        entries.emplace_back(row, column, theta[e.stiffness] * br * bc);
-  Sparse stiffness(nd, nd), mass(nd, nd);
-  stiffness.setFromTriplets(entries.begin(), entries.end());
-  entries.clear();
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f)
-      entries.emplace_back(s.dof(story, f), s.dof(story, f), s.frame_mass(story, f));
-  mass.setFromTriplets(entries.begin(), entries.end());
-  if (s.floor == FloorModel::rigid) {
-    const Sparse r = floor_constraint(s).sparseView();
-    stiffness = Sparse(r.transpose()) * stiffness * r;
-    mass = Sparse(r.transpose()) * mass * r;
-  }
-  // Subspace iteration: several vectors, for the lowest frequencies may lie close together.
-  const Eigen::SimplicialLDLT<Sparse> solver(stiffness);
-  Eigen::MatrixXd x = Eigen::MatrixXd::Zero(stiffness.rows(), kVectors);
-  for (Eigen::Index i = 0; i < x.rows(); ++i)
-    for (Eigen::Index c = 0; c < kVectors; ++c)
-      x(i, c) = std::cos(static_cast<double>((2 * c + 1) * i) / static_cast<double>(x.rows())) +
-                (i % kVectors == c ? 1 : 0);
-  double lowest = 0;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
-    x = solver.solve(mass * x);
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(
-        x.transpose() * (stiffness * x), x.transpose() * (mass * x));
-    x = x * small.eigenvectors();
-    const double before = lowest;
-    lowest = small.eigenvalues()[0];
-    if (std::abs(lowest - before) <= kConverged * lowest) break;
-  }
-  return std::sqrt(std::max(lowest, 0.0)) / (2 * M_PI);
-}
-
-std::vector<double> natural_frequencies_hz(const Structure& s, const ParameterTable& table,
-                                           const Eigen::VectorXd& theta) {
-  const Matrices matrices = assemble(s, table, theta);
-  const Eigen::MatrixXd r = floor_constraint(s);
-  const Eigen::MatrixXd m = r.transpose() * matrices.mass.asDiagonal() * r;
-  const Eigen::MatrixXd k = r.transpose() * matrices.stiffness * r;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(k, m,
-                                                                         Eigen::EigenvaluesOnly);
-  std::vector<double> out;
-  for (const double w2 : solver.eigenvalues())
-    out.push_back(std::sqrt(std::max(w2, 0.0)) / (2 * M_PI));
-  return out;
-}
-
-}  // namespace framewatch
+}  // namespace framewatch::estimator

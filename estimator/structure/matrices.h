@@ -8,7 +8,7 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// One frame story or floor panel: a rank-one contribution b b^T times its stiffness (damping).
 /// b holds (degree of freedom, coefficient) pairs: a vertical frame +1 at its floor and -1 at the
@@ -39,13 +39,4 @@ Matrices assemble(const Structure& structure, const ParameterTable& table,
 /// orthonormal under the floor's mass.
 Eigen::MatrixXd floor_constraint(const Structure& structure);
 
-/// The lowest undamped natural frequency, Hz. Unlike all of them it takes a large building no
-/// longer than a few solutions of its banded equations.
-double lowest_frequency_hz(const Structure& structure, const ParameterTable& table,
-                           const Eigen::VectorXd& theta);
-
-/// Undamped natural frequencies, ascending, Hz. Dense: the cube of the degrees of freedom.
-std::vector<double> natural_frequencies_hz(const Structure& structure, const ParameterTable& table,
-                                           const Eigen::VectorXd& theta);
-
-}  // namespace framewatch
+}  // namespace framewatch::estimator

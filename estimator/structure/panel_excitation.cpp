@@ -4,11 +4,11 @@
 #include <cmath>
 #include <complex>
 
-#include <Eigen/LU>
-
+#include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
+#include "estimator/structure/natural_frequencies.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr std::size_t kModes = 12;
@@ -40,7 +40,7 @@ std::vector<double> panel_excitation(const Structure& s, const ParameterTable& t
     dynamic += std::complex<double>(0, w) * matrices.damping;
     dynamic.diagonal() -= (w * w * matrices.mass).cast<std::complex<double>>();
     const Eigen::MatrixXcd motion =
-        dynamic.partialPivLu().solve(force.cast<std::complex<double>>());
+        ComplexLu(dynamic).solve(Eigen::MatrixXcd(force.cast<std::complex<double>>()));
     Eigen::VectorXd deformation(table.elements());
     for (const Element& e : all) {
       Eigen::RowVectorXcd q = Eigen::RowVectorXcd::Zero(2);
@@ -54,4 +54,4 @@ std::vector<double> panel_excitation(const Structure& s, const ParameterTable& t
   return share;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -7,7 +7,7 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// How much ground motion shears each floor panel: its largest deformation as a share of the
 /// largest frame deformation, over ground motion along x, y and obliquely at the natural
@@ -16,4 +16,4 @@ namespace framewatch {
 std::vector<double> panel_excitation(const Structure& structure, const ParameterTable& table,
                                      const Eigen::VectorXd& theta);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

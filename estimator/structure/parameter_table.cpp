@@ -2,10 +2,9 @@
 
 #include <cmath>
 
-#include "estimator/structure/matrices.h"
 #include "estimator/structure/place_names.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 ParameterTable::ParameterTable(const Structure& s)
     : stories_(s.stories), n_(s.n()), m_(s.m()), panels_(s.panels()) {
@@ -57,11 +56,4 @@ double design_tolerance(ParameterKind kind) {
   return 0.1;
 }
 
-Eigen::VectorXd with_proportional_damping(const Structure& structure, const ParameterTable& table,
-                                          Eigen::VectorXd theta, double damping_ratio) {
-  const double w1 = 2 * M_PI * lowest_frequency_hz(structure, table, theta);
-  theta.tail(table.elements()) = 2 * damping_ratio / w1 * theta.head(table.elements());
-  return theta;
-}
-
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -8,7 +8,7 @@
 
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 enum class ParameterKind { frame_stiffness, panel_stiffness, frame_damping, panel_damping };
 
@@ -53,9 +53,4 @@ class ParameterTable {
 /// How far a design may usually be off, relative: also the width of the estimators' priors.
 double design_tolerance(ParameterKind kind);
 
-/// theta with every stiffness given and damping proportional to it, C = (2 h / w1) K, where w1 is
-/// the lowest undamped natural circular frequency: how the paper's examples set damping.
-Eigen::VectorXd with_proportional_damping(const Structure& structure, const ParameterTable& table,
-                                          Eigen::VectorXd theta, double damping_ratio);
-
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 std::string crossing_name(const Structure& s, int crossing) {
   const int columns = std::max(s.m(), 1);
@@ -16,4 +16,4 @@ std::string panel_name(const Structure& s, int panel) {
          s.frames_x[static_cast<std::size_t>(panel / columns)];
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

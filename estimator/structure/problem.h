@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// One broken rule of a description, and which part of the description broke it.
 struct Problem {
@@ -11,4 +11,4 @@ struct Problem {
   std::string message;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

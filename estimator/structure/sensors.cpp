@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kSteepest = M_PI / 3;
@@ -79,4 +79,4 @@ std::vector<std::string> problems(const Structure& s, const std::vector<SensorAx
   return messages;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -5,7 +5,7 @@
 
 #include "estimator/structure/structure.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// One accelerometer axis and where it sits. Its corrected value, m/s^2, absolute, positive toward
 /// +x or +y, is polarity * (scale * raw - offset), freed from gravity and from the other horizontal
@@ -33,4 +33,4 @@ std::vector<Problem> find_problems(const Structure& structure, const std::vector
 /// Their messages.
 std::vector<std::string> problems(const Structure& structure, const std::vector<SensorAxis>& axes);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 bool all_positive(const std::vector<double>& values) {
@@ -79,4 +79,4 @@ std::vector<std::string> problems(const Structure& s) {
   return messages;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -5,7 +5,7 @@
 
 #include "estimator/structure/problem.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Axis a frame is parallel to, and along which its floors and sensors move.
 enum class Direction { x, y };
@@ -52,4 +52,4 @@ std::vector<Problem> find_problems(const Structure& structure);
 /// Their messages.
 std::vector<std::string> problems(const Structure& structure);
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

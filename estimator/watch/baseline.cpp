@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 Baseline::Baseline(std::size_t parameters)
     : value(parameters, std::numeric_limits<double>::quiet_NaN()),
@@ -53,9 +53,9 @@ bool BaselineLearner::push(const WindowEstimate& e, double degc) {
 
 bool BaselineLearner::enough(std::size_t p) const {
   if (sums_[p].learned_s < learn_s_) return false;
-  if (watched_[p].smallest == 0) return true;
+  if (watched_[p].least_change == 0) return true;
   const Mean m = mean(sums_[p]);
-  return m.std_error <= kExact * watched_[p].smallest * m.value;
+  return m.std_error <= kExact * watched_[p].least_change * m.value;
 }
 
 BaselineLearner::Mean BaselineLearner::mean(const Sum& sum) {
@@ -87,4 +87,4 @@ Baseline BaselineLearner::so_far() const {
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

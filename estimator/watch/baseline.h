@@ -4,11 +4,11 @@
 #include <limits>
 #include <vector>
 
-#include "estimator/identify/estimate.h"
+#include "estimator/identify/estimate/estimate.h"
 #include "estimator/watch/separate_windows.h"
 #include "estimator/watch/watched.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 /// Reference parameters that changes are judged against: theta order, SI; NaN where there is none.
 struct Baseline {
@@ -29,22 +29,21 @@ struct Baseline {
   }
 };
 
-/// Takes a baseline from a while in which the building is what it should be: the mean of the main
-/// windows that count and do not overlap, weighted by 1 / std_error^2. Its error is what the
-/// weights say, or what the windows' scatter says if that is more. Every parameter is learned for
-/// itself, until its baseline is exact enough to be no matter beside the change that is looked for:
-/// in weak motion that takes longer.
+/// Learns a baseline while the building is intact: the mean of the main windows that count and do
+/// not overlap, weighted by 1 / std_error^2. Its error follows from the weights, or from the
+/// scatter of the windows if that is larger. Every parameter is learned for itself, until the error
+/// of its baseline is small beside the least relevant change; in weak motion that takes longer.
 class BaselineLearner {
  public:
-  /// Standard error of a baseline, in changes that matter, at which it is learned.
+  /// Standard error of a baseline, over the least relevant change, at which it is learned.
   static constexpr double kExact = 0.1;
 
   /// watched: theta order. learn_s: sum of the windows that every parameter takes at least.
   BaselineLearner(const std::vector<Watched>& watched, double learn_s);
 
-  /// degc: the window's temperature; NaN: not known. True when this one completed a parameter.
+  /// degc: the window's temperature; NaN: unknown. True when this window completed a parameter.
   bool push(const WindowEstimate& estimate, double degc = std::numeric_limits<double>::quiet_NaN());
-  /// Sum of the windows so far, whatever they show.
+  /// Total length of the windows so far, whatever they show.
   double seconds() const { return windows_.seconds(); }
   /// Parameters that are learned.
   Baseline baseline() const;
@@ -83,4 +82,4 @@ class BaselineLearner {
   std::vector<Sum> sums_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

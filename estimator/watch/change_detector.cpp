@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kFreedom = 19;         // of standard errors from 20 blocks
 constexpr double kMemory_s = 15;        // of the usual standard error
-constexpr double kBaselineErrors = 3;   // that a value may be off by for ever
-constexpr double kMostOfThreshold = 2;  // a sum beyond that tells nothing more
-constexpr double kOneWindow = 0.6;      // of the threshold: a window alone convinces nobody
+constexpr double kBaselineErrors = 3;   // that a value may be off by permanently
+constexpr double kMostOfThreshold = 2;  // a sum is limited to that
+constexpr double kOneWindow = 0.6;      // of the threshold: most that one window adds
 
 double log_likelihood(double z) {
   return -(kFreedom + 1) / 2 * std::log1p(z * z / kFreedom);
@@ -36,7 +36,7 @@ void ChangeDetector::push(const WindowEstimate& e) {
   const auto phase = static_cast<int>(free - used_until_.begin());
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
     const Watched& watched = parameters_[p].watched;
-    if (watched.smallest > 0 && baseline_.knows(p) && watched.counts(e, p)) judge(p, phase, e);
+    if (watched.least_change > 0 && baseline_.knows(p) && watched.counts(e, p)) judge(p, phase, e);
   }
 }
 
@@ -50,14 +50,14 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
       usual == 0 ? error : usual + std::min(1.0, window_s / kPhases / kMemory_s) * (error - usual);
   const double scale = std::hypot(std::max(error, usual), baseline_error);
   const double off = e.value[p] / baseline_.value[p] - 1;
-  const double spare = (parameter.watched.spare + kBaselineErrors * baseline_error) / scale;
-  const double z = off / scale, least = parameter.watched.smallest / scale;
+  const double tolerance = (parameter.watched.tolerance + kBaselineErrors * baseline_error) / scale;
+  const double z = off / scale, least = parameter.watched.least_change / scale;
 
   for (const int sign : {-1, 1}) {
     Track& track = parameter.away[sign < 0 ? 0 : 1][static_cast<std::size_t>(phase)];
     const double toward = sign * z;
     const double gain = std::min(log_likelihood(toward - std::max(toward, least)) -
-                                     log_likelihood(toward - std::clamp(toward, 0.0, spare)),
+                                     log_likelihood(toward - std::clamp(toward, 0.0, tolerance)),
                                  kOneWindow * threshold_);
     if (track.sum + gain <= 0) {
       track = {};
@@ -76,7 +76,7 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   if (parameter.sign == 0) return;
   double& back = parameter.back[static_cast<std::size_t>(phase)];
   const double toward = parameter.sign * z;
-  back = std::max(0.0, back + log_likelihood(toward - std::clamp(toward, 0.0, spare)) -
+  back = std::max(0.0, back + log_likelihood(toward - std::clamp(toward, 0.0, tolerance)) -
                            log_likelihood(toward - std::max(toward, least)));
   if (back <= threshold_) return;
   parameter.sign = 0;
@@ -93,4 +93,4 @@ Change ChangeDetector::change(int parameter) const {
           track.since};
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -3,13 +3,13 @@
 #include <array>
 #include <vector>
 
-#include "estimator/identify/estimate.h"
+#include "estimator/identify/estimate/estimate.h"
 #include "estimator/watch/baseline.h"
 #include "estimator/watch/watched.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// What the windows since a time say about a parameter.
+/// The change of a parameter, from the windows since a time.
 struct Change {
   double ratio = 0;  ///< of the baseline: -0.05 has lost a twentieth
   double std_error = 0;
@@ -22,27 +22,27 @@ struct Change {
 };
 
 /// Looks for lasting changes of parameters in the windows of one length: cumulative sums of
-/// log-likelihood ratios between "changed by at least the smallest change that matters" and "as the
-/// baseline, but for a spare" (docs/equations.md 39, 40). Windows of one sum do not overlap, so
-/// their errors are nearly independent; kPhases sums, staggered, let no change wait for a window's
-/// end. The likelihood is Student's, because standard errors come from 20 blocks, and a window that
-/// claims less error than usual is not believed. A value that prior and noise pull far toward the
-/// design does not count: that error is the same in every window.
+/// log-likelihood ratios between "changed by at least the least relevant change" and "equal to the
+/// baseline within the tolerance" (docs/equations.md 39, 40). Windows of one sum do not overlap, so
+/// their errors are nearly independent; kPhases staggered sums find a change before a
+/// whole further window has passed. The likelihood is Student's, because standard errors come from
+/// 20 blocks; a standard error below the usual one is replaced by that. A value that prior and
+/// noise bias far does not count: that error is the same in every window.
 class ChangeDetector {
  public:
   static constexpr int kPhases = 5;
 
-  /// watched: theta order; what has no baseline is not. threshold: sum at which a change is
-  /// believed; a false one has probability exp(-threshold) per window and direction.
+  /// watched: theta order; parameters without a baseline are not watched. threshold: sum at which a
+  /// change is accepted; a false one has probability exp(-threshold) per window and direction.
   ChangeDetector(const Baseline& baseline, const std::vector<Watched>& watched, double threshold);
 
-  /// What windows are judged against from now on; evidence stays.
+  /// The baseline from now on; the sums stay.
   void set_baseline(const Baseline& baseline) { baseline_ = baseline; }
 
   /// Windows closer than a kPhases-th of their length are left out.
   void push(const WindowEstimate& estimate);
 
-  /// The parameter is believed to have changed, and not yet to be back.
+  /// A change of the parameter has been accepted, and its end not yet.
   bool changed(int parameter) const { return of(parameter).sign != 0; }
   /// Only while changed().
   Change change(int parameter) const;
@@ -87,4 +87,4 @@ class ChangeDetector {
   std::array<Time, kPhases> used_until_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

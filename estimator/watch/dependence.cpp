@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 Dependence::Dependence(std::size_t parameters)
     : at_(2 * parameters, 0.0), slope_(2 * parameters, 0.0), covariance_(3 * parameters, 0.0) {}
@@ -73,7 +73,7 @@ bool DependenceLearner::push(const WindowEstimate& e, double degc) {
 DependenceLearner::Fit DependenceLearner::fit(const Sum& s) const {
   const auto& n = s.normal;
   const double mean[] = {n[1] / n[0], n[2] / n[0]};
-  // About the mean conditions; what is not asked for has a variance of nothing.
+  // About the mean conditions; a condition that is not asked for has a slope of 0 +- 0.
   constexpr double kNever = 1e30;
   const double m00 = n[3] - n[0] * mean[0] * mean[0] +
                      (options_.temperature ? 1 / (kUsualPerDegc * kUsualPerDegc) : kNever);
@@ -126,4 +126,4 @@ Dependence DependenceLearner::dependence() const {
   return out;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

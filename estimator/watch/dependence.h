@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "estimator/identify/estimate.h"
+#include "estimator/identify/estimate/estimate.h"
 #include "estimator/watch/baseline.h"
 #include "estimator/watch/separate_windows.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// What stiffness may depend on without damage: temperature, degC, and the logarithm of the
+/// What an intact building's stiffness may depend on: temperature, degC, and the logarithm of the
 /// amplitude of the element's own motion.
 struct Conditions {
   double degc;
@@ -57,10 +57,10 @@ struct DependenceOptions {
   bool temperature = false, amplitude = false;
 };
 
-/// Takes a baseline from long windows that do not overlap, and how it follows the conditions: least
-/// squares weighted by 1 / std_error^2, the slopes weakly drawn to zero, by which what the
-/// conditions did not show has an honest error. Errors are what the weights say, or what the
-/// scatter about the fit says if that is more.
+/// Learns a baseline from long windows that do not overlap, and how it depends on the conditions:
+/// least squares weighted by 1 / std_error^2, with a weak prior of zero slope, so that a slope that
+/// the conditions did not show has an error that says so. Errors follow from the weights, or from
+/// the scatter about the fit if that is larger.
 class DependenceLearner {
  public:
   /// What a slope may be before anything is known: standard deviations.
@@ -108,4 +108,4 @@ class DependenceLearner {
   std::vector<Sum> sums_;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kColdest_degc = -90, kHottest_degc = 150;  // beyond is a broken thermometer
@@ -39,4 +39,4 @@ double MeanTemperature::mean(Time start, Time end) const {
   return count > 0 ? sum / count : before;
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

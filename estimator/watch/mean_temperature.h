@@ -5,20 +5,20 @@
 
 #include "estimator/motion/sample.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// Means of a slow quantity over the last kBins stretches of equal length.
+/// Means of the temperature over the last kBins intervals of equal length.
 class MeanTemperature {
  public:
   static constexpr int kBins = 64;
-  /// A reading holds for so many stretches when no other one comes.
+  /// A reading is valid for so many intervals when no other one comes.
   static constexpr int kHolds = 20;
 
   explicit MeanTemperature(double bin_s) : bin_us_(static_cast<std::int64_t>(1e6 * bin_s)) {}
 
   void push(Time time, double degc);
-  /// Over the stretches that hold start to end; when there is nothing of them, of the newest one
-  /// before that still holds; else NaN.
+  /// Over the intervals from start to end; when they hold no reading, of the newest valid one
+  /// before; else NaN.
   double mean(Time start, Time end) const;
 
   template <typename Archive>
@@ -42,4 +42,4 @@ class MeanTemperature {
   std::array<Bin, kBins> bins_{};
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -2,15 +2,15 @@
 
 #include <chrono>
 
-#include "estimator/identify/estimate.h"
+#include "estimator/identify/estimate/estimate.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// Picks the windows that are learned from: valid ones that do not overlap, by which their errors
-/// are nearly independent.
+/// Selects the windows to learn from: valid ones that do not overlap, so that their errors are
+/// nearly independent.
 class SeparateWindows {
  public:
-  /// Whether this one is to be taken; then it counts.
+  /// Whether this window is selected; it then counts.
   bool take(const WindowEstimate& e) {
     if (e.status != WindowStatus::valid || (count_ > 0 && e.start <= end_)) return false;
     end_ = e.end;
@@ -36,4 +36,4 @@ class SeparateWindows {
   Time end_{};
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

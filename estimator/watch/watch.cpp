@@ -3,24 +3,24 @@
 #include <algorithm>
 #include <cmath>
 
-namespace framewatch {
+namespace framewatch::estimator {
 namespace {
 
 constexpr double kSeconds = 3600, kHoursPerYear = 8766;
 constexpr double kBinsPerWindow = 20, kBin_s = 60;  // of the temperature's means
 constexpr double kExpectedErrors = 3;
-constexpr double kUnknown_degc = 10;  // that it may be off by when the thermometer is silent
-constexpr double kNewsErrors = 2;     // standard errors a change moves by before it is told again
+constexpr double kUnknown_degc = 10;  // assumed deviation while the thermometer is silent
+constexpr double kNewsErrors = 2;  // standard errors a change moves by before it is reported again
 
-/// A design off by its tolerance may not move a value by more than this share of the change that
-/// matters. A panel's change that matters is one or two standard errors of its values, so that what
-/// moves them all alike must be allowed for; a frame's is many.
-constexpr double kMostPull_k = 0.1, kMostPull_g = 0.25;
-/// The same of long windows, whose baseline is pulled alike.
-constexpr double kMostPullQuiet = 0.4;
+/// A design off by its tolerance may not bias a value by more than this share of the least relevant
+/// change. For a panel that is one or two standard errors of its values, so that a bias common to
+/// all windows must be allowed for; for a frame it is many.
+constexpr double kMostBias_k = 0.1, kMostBias_g = 0.25;
+/// The same in long windows, whose baseline has the same bias.
+constexpr double kMostBiasQuiet = 0.4;
 
-/// The value as it would be under the conditions of the baseline. What they may explain by
-/// kExpectedErrors errors is no deviation: that error is the same in every window.
+/// The value as it would be under the conditions of the baseline. A deviation that the conditions
+/// may explain within kExpectedErrors errors is removed: that error is the same in every window.
 void correct(WindowEstimate& e, std::size_t p, double baseline, const Dependence::Expected& now) {
   if (!std::isfinite(now.std_error) || now.ratio <= 0) {
     e.reason[p] = Observability::quiet;
@@ -36,12 +36,11 @@ DependenceOptions quiet_options(const WatchOptions& o) {
   return {kSeconds * o.quiet_learn_hours, o.temperature, o.amplitude};
 }
 
-/// Sums that may cross it, per year, over the false alarms that are put up with:
-/// docs/equations.md (41).
+/// From the number of tests per year over the accepted false alarms: docs/equations.md (41).
 double threshold_for(const WatchOptions& o, const std::vector<double>& windows_s,
                      const std::vector<Watched>& watched) {
   const auto count = static_cast<double>(std::count_if(
-      watched.begin(), watched.end(), [](const Watched& w) { return w.smallest > 0; }));
+      watched.begin(), watched.end(), [](const Watched& w) { return w.least_change > 0; }));
   const double tests_per_window = 2 * count * ChangeDetector::kPhases;
   double tests = 0;
   for (const double s : windows_s)
@@ -53,17 +52,18 @@ double threshold_for(const WatchOptions& o, const std::vector<double>& windows_s
 }  // namespace
 
 std::vector<Watched> watched_parameters(const ParameterTable& table, const WatchOptions& o) {
-  const auto watched = [](double smallest, double pull, ParameterKind kind, double spare) {
-    if (smallest == 0) return Watched{};
-    return Watched{smallest, smallest * pull / design_tolerance(kind), smallest * spare};
+  const auto watched = [](double least_change, double bias, ParameterKind kind, double tolerance) {
+    if (least_change == 0) return Watched{};
+    return Watched{least_change, least_change * bias / design_tolerance(kind),
+                   least_change * tolerance};
   };
   std::vector<Watched> out(static_cast<std::size_t>(table.size()));
   for (std::size_t p = 0; p < out.size(); ++p) {
     const ParameterKind kind = table[static_cast<int>(p)].kind;
     if (kind == ParameterKind::frame_stiffness)
-      out[p] = watched(o.smallest_k, kMostPull_k, kind, 0);
+      out[p] = watched(o.least_change_k, kMostBias_k, kind, 0);
     if (kind == ParameterKind::panel_stiffness)
-      out[p] = watched(o.smallest_g, kMostPull_g, kind, kMostPull_g);
+      out[p] = watched(o.least_change_g, kMostBias_g, kind, kMostBias_g);
   }
   return out;
 }
@@ -94,7 +94,7 @@ void Watch::begin() {
 
 void Watch::begin_quiet() {
   std::vector<Watched> watched = watched_;
-  for (Watched& w : watched) w.most_pull *= kMostPullQuiet / kMostPull_k;
+  for (Watched& w : watched) w.most_bias *= kMostBiasQuiet / kMostBias_k;
   detectors_.back() = ChangeDetector(quiet_baseline_, watched, threshold_);
 }
 
@@ -105,13 +105,13 @@ const std::vector<Alarm>& Watch::push(const WindowEstimate& estimate) {
   const bool quiet = window == windows_s_.size();
   detectors_[window].push(quiet ? corrected_quiet(estimate) : corrected(estimate));
   quiet ? learn_quiet(estimate) : learn(estimate);
-  for (int p = 0; p < static_cast<int>(states_.size()); ++p) tell(p, estimate);
+  for (int p = 0; p < static_cast<int>(states_.size()); ++p) report(p, estimate);
   return news_;
 }
 
 void Watch::learn(const WindowEstimate& e) {
   const double degc = temperature_.mean(e.start, e.end);
-  if (options_.temperature && std::isnan(degc)) return;  // it could never be corrected
+  if (options_.temperature && std::isnan(degc)) return;  // it could not be corrected later
   if (!learner_.push(e, degc)) return;
   const Baseline learned = learner_.baseline();
   for (std::size_t p = 0; p < watched_.size(); ++p) {
@@ -142,7 +142,7 @@ double Watch::quiet_learned() const {
   return quiet_known_ ? 1 : quiet_learner_.learned_s() / (kSeconds * options_.quiet_learn_hours);
 }
 
-/// Of an ordinary window: what its temperature may do to the baseline's value.
+/// For an ordinary window: the expected effect of its temperature on the baseline's value.
 Dependence::Expected Watch::expected(std::size_t p, double degc) const {
   const double from = baseline_.degc[p];
   const bool known = quiet_known_ && quiet_baseline_.knows(p);
@@ -174,26 +174,26 @@ const WindowEstimate& Watch::corrected_quiet(const WindowEstimate& e) {
   return corrected_;
 }
 
-void Watch::tell(int parameter, const WindowEstimate& estimate) {
+void Watch::report(int parameter, const WindowEstimate& estimate) {
   State& state = states_[static_cast<std::size_t>(parameter)];
   const auto window = static_cast<std::size_t>(estimate.window);
   const bool changed = detectors_[window].changed(parameter);
   if (state.id == 0) {
     if (!changed) return;
     state = {++last_id_, window, detectors_[window].change(parameter)};
-    news_.push_back({state.id, AlarmState::raised, parameter, state.told, estimate.end});
+    news_.push_back({state.id, AlarmState::raised, parameter, state.reported, estimate.end});
     return;
   }
   if (state.detector != window) return;
   if (!changed) {
-    news_.push_back({state.id, AlarmState::cleared, parameter, state.told, estimate.end});
+    news_.push_back({state.id, AlarmState::cleared, parameter, state.reported, estimate.end});
     state = {};
     return;
   }
   const Change now = detectors_[window].change(parameter);
-  if (std::abs(now.ratio - state.told.ratio) < kNewsErrors * state.told.std_error) return;
-  state.told = now;
+  if (std::abs(now.ratio - state.reported.ratio) < kNewsErrors * state.reported.std_error) return;
+  state.reported = now;
   news_.push_back({state.id, AlarmState::changed, parameter, now, estimate.end});
 }
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

@@ -10,69 +10,70 @@
 #include "estimator/watch/dependence.h"
 #include "estimator/watch/mean_temperature.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
 struct WatchOptions {
-  double learn_s = 60;  ///< of windows a parameter's baseline takes at least, when none is given
-  /// Smallest changes that matter, relative; 0: not watched.
-  double smallest_k = 0.03, smallest_g = 0.2;
-  double alarms_per_year = 1;  ///< false ones that are put up with, of the whole building
+  double learn_s = 60;  ///< least total length of windows to learn a baseline from
+  /// Least relevant changes of frame and panel stiffness, relative; 0: not watched.
+  double least_change_k = 0.03, least_change_g = 0.2;
+  double alarms_per_year = 1;  ///< accepted rate of false alarms, of the whole building
   /// Time a year in which the building moves enough for windows to have values.
   double shaking_hours_per_year = 10;
-  /// Length of the long windows, in which weak motion is watched; 0: it is not.
+  /// Length of the long windows, which watch weak motion; 0: none.
   double quiet_window_s = 3600;
   /// Hours of long windows that their baseline takes.
   double quiet_learn_hours = 24;
-  /// What a baseline may follow: the temperature, given by temperature(), and, of long windows, the
-  /// amplitude of the motion.
+  /// Conditions that baselines are corrected for: the temperature, given by temperature(), and, in
+  /// long windows, the amplitude of the motion.
   bool temperature = false, amplitude = false;
 };
 
 enum class AlarmState { cleared, raised, changed };
 
-/// News of a parameter's alarm.
+/// A transition of a parameter's alarm.
 struct Alarm {
   std::int64_t id;  ///< the same from raised to cleared; from 1
   AlarmState state;
   int parameter;
-  Change change;  ///< of a cleared one: what it last was
-  Time found;     ///< end of the window that says so
+  Change change;  ///< of a cleared alarm: the last one reported
+  Time found;     ///< end of the window that shows it
 };
 
 /// How the parameters are watched: theta order.
 std::vector<Watched> watched_parameters(const ParameterTable& table, const WatchOptions& options);
 
 /// Watches frame and panel stiffness for changes against a baseline, given or learned first, in the
-/// windows of every length at once: short ones are quick, long ones see small changes. The longest,
-/// of accumulated weak motion, have a baseline of their own, always learned: a building is stiffer
-/// when it hardly moves.
+/// windows of every length at once: short ones respond quickly, long ones detect small changes. The
+/// longest, of accumulated weak motion, have a baseline of their own, always learned, because a
+/// building is stiffer when it hardly moves.
 class Watch {
  public:
-  /// baseline: what it lacks is learned. windows_s: lengths of the windows, WindowEstimate::window
-  /// its index; the next index is that of the long window, if there is one.
+  /// baseline: parameters that it lacks are learned. windows_s: lengths of the windows,
+  /// WindowEstimate::window its index; the next index is that of the long window, if there is one.
   Watch(const ParameterTable& table, const WatchOptions& options,
         const std::vector<double>& windows_s, const std::optional<Baseline>& baseline);
 
-  /// What this window changes about alarms; valid until the next call.
+  /// The transitions of alarms that this window causes; valid until the next call.
   const std::vector<Alarm>& push(const WindowEstimate& estimate);
 
-  /// What a thermometer said.
+  /// A reading of the thermometer.
   void temperature(Time time, double degc) { temperature_.push(time, degc); }
 
-  /// Of the parameters that are given or learned so far; null while there is none.
+  /// The parameters that are given or learned so far; null while there is none.
   const Baseline* baseline() const { return baseline_.known() > 0 ? &baseline_ : nullptr; }
   int parameters() const { return static_cast<int>(watched_.size()); }
-  /// The parameter's changes matter.
-  bool watched(std::size_t parameter) const { return watched_[parameter].smallest > 0; }
+  /// The parameter is watched for changes.
+  bool watched(std::size_t parameter) const { return watched_[parameter].least_change > 0; }
   /// Of the long windows; null while it is being learned.
   const Baseline* quiet_baseline() const { return quiet_known_ ? &quiet_baseline_ : nullptr; }
   /// How that follows the conditions.
   const Dependence& dependence() const { return dependence_; }
   /// Of the long windows their baseline takes, 0..1.
   double quiet_learned() const;
-  /// Learns the baseline of the long windows anew: the amplitudes are measured otherwise.
+  /// Learns the baseline of the long windows anew, because the amplitudes are now measured
+  /// otherwise.
   void forget_quiet();
-  /// Mean of the thermometer until a time; NaN: it is not heard.
+  /// Mean temperature at a time; NaN: no valid reading.
   double degc(Time now) const { return temperature_.mean(now, now); }
   const WatchOptions& options() const { return options_; }
   /// Of every detector's sums: false alarms come at most as often as the options ask for.
@@ -95,11 +96,11 @@ class Watch {
   struct State {
     std::int64_t id = 0;  ///< of its alarm; 0: none
     std::size_t detector = 0;
-    Change told;
+    Change reported;
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(id, detector, told);
+      a(id, detector, reported);
     }
   };
   void begin();
@@ -110,7 +111,7 @@ class Watch {
   /// The estimate as it would be under the conditions of its baseline.
   const WindowEstimate& corrected(const WindowEstimate& estimate);
   const WindowEstimate& corrected_quiet(const WindowEstimate& estimate);
-  void tell(int parameter, const WindowEstimate& estimate);
+  void report(int parameter, const WindowEstimate& estimate);
 
   WatchOptions options_;
   std::vector<Watched> watched_;  ///< theta order
@@ -130,4 +131,4 @@ class Watch {
   std::int64_t last_id_ = 0;
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

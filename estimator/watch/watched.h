@@ -2,22 +2,22 @@
 
 #include <cstddef>
 
-#include "estimator/identify/estimate.h"
+#include "estimator/identify/estimate/estimate.h"
 
-namespace framewatch {
+namespace framewatch::estimator {
 
-/// How a parameter is watched.
+/// By what limits a parameter is watched.
 struct Watched {
-  double smallest = 0;   ///< change that matters, relative; 0: not watched
-  double most_pull = 1;  ///< share of prior and noise in a value above which it does not count
-  double spare = 0;      ///< lasting error, relative, that values may have all the same
+  double least_change = 0;  ///< least relevant change, relative; 0: not watched
+  double most_bias = 1;     ///< share of prior and noise above which a value does not count
+  double tolerance = 0;     ///< lasting deviation, relative, that is no change
 
-  /// Whether a window has a value that is learned from and judged. What prior and noise pull far
-  /// toward the design is off by the same in every window like it, so that no mean finds it.
+  /// Whether a window has a value that is learned from and judged. The bias of prior and noise is
+  /// the same in all windows alike, so that no mean removes it.
   bool counts(const WindowEstimate& e, std::size_t p) const {
     return e.reason[p] == Observability::observable &&
-           e.prior_share[p] + e.noise_share[p] <= most_pull;
+           e.prior_share[p] + e.noise_share[p] <= most_bias;
   }
 };
 
-}  // namespace framewatch
+}  // namespace framewatch::estimator

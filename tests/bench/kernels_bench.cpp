@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "estimator/identify/boxplot.h"
-#include "estimator/identify/kernels.h"
+#include "estimator/identify/estimate/boxplot.h"
+#include "estimator/numeric/kernels.h"
 #include "estimator/simulate/random.h"
 
 namespace framewatch::bench {
@@ -21,13 +21,13 @@ constexpr Front kFronts[] = {{"1x1", 10, 8, 4}, {"3x3", 34, 16, 8}};
 constexpr int kColumns = 40;  // of the uncertainty pass
 
 std::vector<double> random_values(int count) {
-  Random random(1);
+  estimator::Random random(1);
   std::vector<double> out(static_cast<std::size_t>(count));
   for (double& v : out) v = random.normal();
   return out;
 }
 
-void add_rows(benchmark::State& state, const kernels::Table& table, const Front& front) {
+void add_rows(benchmark::State& state, const estimator::kernels::Table& table, const Front& front) {
   const int stride = padded(front.size());
   const auto h = random_values(front.rows * stride);
   auto sum = random_values(stride * stride);
@@ -39,7 +39,8 @@ void add_rows(benchmark::State& state, const kernels::Table& table, const Front&
                                                benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void partial_cholesky(benchmark::State& state, const kernels::Table& table, const Front& front) {
+void partial_cholesky(benchmark::State& state, const estimator::kernels::Table& table,
+                      const Front& front) {
   const int stride = padded(front.size());
   std::vector<double> start(static_cast<std::size_t>(stride * stride), 0.01);
   for (int i = 0; i < stride; ++i) start[static_cast<std::size_t>(i * stride + i)] = 10;
@@ -58,7 +59,8 @@ void partial_cholesky(benchmark::State& state, const kernels::Table& table, cons
       benchmark::Counter(flops, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void backward_columns(benchmark::State& state, const kernels::Table& table, const Front& front) {
+void backward_columns(benchmark::State& state, const estimator::kernels::Table& table,
+                      const Front& front) {
   const int stride = padded(front.size());
   std::vector<double> factor(static_cast<std::size_t>(front.own * stride), 0.001);
   for (int i = 0; i < front.own; ++i) factor[static_cast<std::size_t>(i * stride + i)] = 1;
@@ -69,7 +71,8 @@ void backward_columns(benchmark::State& state, const kernels::Table& table, cons
   }
 }
 
-void subtract_product(benchmark::State& state, const kernels::Table& table, const Front& front) {
+void subtract_product(benchmark::State& state, const estimator::kernels::Table& table,
+                      const Front& front) {
   const int stride = padded(front.size());
   const auto packed = random_values(stride * stride), x = random_values(stride);
   auto score = random_values(stride);
@@ -80,8 +83,8 @@ void subtract_product(benchmark::State& state, const kernels::Table& table, cons
 }
 
 void boxplot(benchmark::State& state) {
-  BoxplotWindow window(500);
-  Random random(2);
+  estimator::BoxplotWindow window(500);
+  estimator::Random random(2);
   double value = 1;
   for (auto _ : state) {
     value += 1e-3 * random.normal();
@@ -91,9 +94,10 @@ void boxplot(benchmark::State& state) {
 }
 
 void register_all() {
-  const std::pair<const char*, const kernels::Table*> tables[] = {{"portable", kernels::portable()},
-                                                                  {"avx2", kernels::x86_64_v3()},
-                                                                  {"avx512", kernels::x86_64_v4()}};
+  const std::pair<const char*, const estimator::kernels::Table*> tables[] = {
+      {"portable", estimator::kernels::portable()},
+      {"avx2", estimator::kernels::x86_64_v3()},
+      {"avx512", estimator::kernels::x86_64_v4()}};
   for (const auto& [name, table] : tables) {
     if (table == nullptr) continue;
     for (const Front& front : kFronts) {

@@ -13,9 +13,9 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/run_command.h"
-#include "drivers/accel_codec.h"
-#include "drivers/lcm_source.h"
+#include "daemon/live/run_command.h"
+#include "drivers/lcm/accel_codec.h"
+#include "drivers/lcm/lcm_source.h"
 #include "tests/bench/cpu_clock.h"
 #include "tests/bench/shaken_building.h"
 
@@ -47,8 +47,10 @@ daemon::Config live_config(int stories, int bays) {
     std::this_thread::sleep_until(due);
     due += std::chrono::milliseconds(1000 / kRate_hz);
     for (Eigen::Index a = 0; a < accel.cols(); ++a) {
-      drivers::NodeSample sample{
-          from_microseconds(10'000LL * t), t, static_cast<std::int32_t>(a), {accel(t, a), 0, 0}};
+      drivers::SensorNodeSample sample{estimator::from_microseconds(10'000LL * t),
+                                       t,
+                                       static_cast<std::int32_t>(a),
+                                       {accel(t, a), 0, 0}};
       const std::vector<std::uint8_t> bytes = drivers::encode_accel(sample);
       lcm->publish("ACCEL", bytes.data(), static_cast<unsigned>(bytes.size()));
     }

@@ -4,7 +4,7 @@
 
 #include <Eigen/SparseCholesky>
 
-#include "estimator/identify/design.h"
+#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/simulate/ground_motion.h"
 #include "estimator/simulate/random.h"
 #include "estimator/structure/matrices.h"
@@ -19,10 +19,10 @@ constexpr double kOff = 0.1;           // of the building from its design
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-Sparse assembled(const Structure& s, const ParameterTable& table, const Eigen::VectorXd& theta,
-                 int half) {
+Sparse assembled(const estimator::Structure& s, const estimator::ParameterTable& table,
+                 const Eigen::VectorXd& theta, int half) {
   std::vector<Eigen::Triplet<double>> entries;
-  for (const Element& e : elements(s, table))
+  for (const estimator::Element& e : elements(s, table))
     for (const auto& [i, bi] : e.b)
       for (const auto& [j, bj] : e.b)
         entries.emplace_back(i, j, theta[e.stiffness + half * table.elements()] * bi * bj);
@@ -33,9 +33,9 @@ Sparse assembled(const Structure& s, const ParameterTable& table, const Eigen::V
 
 }  // namespace
 
-PipelineConfig building(int stories, int bays) {
-  PipelineConfig config;
-  Structure& s = config.structure;
+estimator::PipelineConfig building(int stories, int bays) {
+  estimator::PipelineConfig config;
+  estimator::Structure& s = config.structure;
   s.name = "bench";
   s.stories = stories;
   for (int i = 1; i <= bays + 1; ++i) {
@@ -47,8 +47,8 @@ PipelineConfig building(int stories, int bays) {
   s.story_height.assign(static_cast<std::size_t>(stories), 3.5);
   s.node_mass.assign(static_cast<std::size_t>(s.nodes()), 5e4);
   const double density = kNoise_mps2 / std::sqrt(kRate_hz / 2);
-  const auto add = [&](int story, int frame, Direction direction) {
-    SensorAxis axis;
+  const auto add = [&](int story, int frame, estimator::Direction direction) {
+    estimator::SensorAxis axis;
     axis.name = "axis" + std::to_string(config.axes.size());
     axis.story = story;
     axis.frame = frame;
@@ -58,18 +58,18 @@ PipelineConfig building(int stories, int bays) {
   };
   for (int story = 1; story <= stories; ++story)
     for (int f = 0; f < s.frames(); ++f) add(story, f, s.direction(f));
-  add(0, -1, Direction::x);
-  add(0, -1, Direction::y);
+  add(0, -1, estimator::Direction::x);
+  add(0, -1, estimator::Direction::y);
   config.options.rate_hz = kRate_hz;
-  config.design = guessed_design(s, ParameterTable(s));
+  config.design = guessed_design(s, estimator::ParameterTable(s));
   return config;
 }
 
-Eigen::MatrixXd shaken(const PipelineConfig& config, int instants) {
-  const Structure& s = config.structure;
-  const ParameterTable table(s);
+Eigen::MatrixXd shaken(const estimator::PipelineConfig& config, int instants) {
+  const estimator::Structure& s = config.structure;
+  const estimator::ParameterTable table(s);
   Eigen::VectorXd theta = config.design;
-  Random random(7);
+  estimator::Random random(7);
   for (double& v : theta) v *= 1 + kOff * (2 * random.uniform() - 1);
   const int nd = s.degrees_of_freedom();
   const Sparse k = assembled(s, table, theta, 0), c = assembled(s, table, theta, 1);
@@ -79,16 +79,16 @@ Eigen::MatrixXd shaken(const PipelineConfig& config, int instants) {
   for (int story = 1; story <= s.stories; ++story)
     for (int f = 0; f < s.frames(); ++f) {
       m.coeffRef(s.dof(story, f), s.dof(story, f)) = s.frame_mass(story, f);
-      influence(s.dof(story, f), s.direction(f) == Direction::x ? 0 : 1) = 1;
+      influence(s.dof(story, f), s.direction(f) == estimator::Direction::x ? 0 : 1) = 1;
     }
   const double h = 1 / kRate_hz / kSubsteps;
   const Eigen::SimplicialLDLT<Sparse> solver(Sparse(m + h / 2 * c + h * h / 4 * k));
 
-  KanaiTajimi ground;
+  estimator::KanaiTajimi ground;
   ground.duration_s = instants / kRate_hz + 1;
   ground.strong_s = ground.duration_s;
   ground.build_up_s = 1;
-  const GroundMotion motion = kanai_tajimi(ground);
+  const estimator::GroundMotion motion = kanai_tajimi(ground);
   const Eigen::Vector2d direction(std::cos(0.7), std::sin(0.7));
   Eigen::VectorXd d = Eigen::VectorXd::Zero(nd), v = d, a = d;
   Eigen::MatrixXd out(instants, nd + 2);
@@ -108,17 +108,17 @@ Eigen::MatrixXd shaken(const PipelineConfig& config, int instants) {
   return out;
 }
 
-DenseInput::DenseInput(const PipelineConfig& config, int instants)
+DenseInput::DenseInput(const estimator::PipelineConfig& config, int instants)
     : equations(config.structure.degrees_of_freedom()), elements(0) {
-  const ParameterTable table(config.structure);
+  const estimator::ParameterTable table(config.structure);
   elements = table.elements();
-  for (const Element& e : framewatch::elements(config.structure, table))
+  for (const estimator::Element& e : estimator::elements(config.structure, table))
     for (const auto& [dof, b] : e.b) {
       equation.push_back(dof);
       element.push_back(e.stiffness);
       coefficient.push_back(b);
     }
-  Random random(3);
+  estimator::Random random(3);
   motion.resize(static_cast<std::size_t>(instants) * static_cast<std::size_t>(stride()));
   for (double& value : motion) value = random.normal();
 }

@@ -4,23 +4,23 @@
 
 #include <Eigen/Core>
 
-#include "estimator/pipeline.h"
+#include "estimator/pipeline/pipeline.h"
 #include "tests/bench/alternatives.h"
 
 namespace framewatch::bench {
 
 /// A building of `stories` stories, bays x bays in plan, slightly uneven so that it twists, with a
 /// sensor on every degree of freedom.
-PipelineConfig building(int stories, int bays);
+estimator::PipelineConfig building(int stories, int bays);
 
 /// Absolute accelerations, instants x axes at 100 Hz, of a building that differs from the design by
 /// up to 10 %, shaken obliquely, with sensor noise. Newmark's method on sparse matrices: quick for
 /// any number of stories, and exactness does not matter here.
-Eigen::MatrixXd shaken(const PipelineConfig& config, int instants);
+Eigen::MatrixXd shaken(const estimator::PipelineConfig& config, int instants);
 
 /// What the alternatives are fed with: windows of element motion of the same size, random.
 struct DenseInput {
-  DenseInput(const PipelineConfig& config, int instants);
+  DenseInput(const estimator::PipelineConfig& config, int instants);
   Pattern pattern() const;
   int stride() const { return 2 * elements + equations; }
 

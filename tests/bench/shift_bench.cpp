@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
-#include "estimator/identify/deformations.h"
-#include "estimator/identify/floor_layout.h"
+#include "estimator/identify/elements/deformations.h"
+#include "estimator/identify/elements/floor_layout.h"
 #include "estimator/motion/acquisition.h"
 #include "estimator/motion/derivative_triple.h"
-#include "estimator/motion/motion_filter.h"
+#include "estimator/motion/drift_controlled_integrator.h"
 #include "estimator/structure/parameter_table.h"
 #include "tests/bench/alternatives.h"
 #include "tests/bench/cpu_clock.h"
@@ -74,9 +74,9 @@ std::vector<double> time_instants(const Eigen::MatrixXd& accel, Clock clock_us, 
   std::vector<double> times;
   times.reserve(static_cast<std::size_t>(accel.rows()));
   for (int t = 0; t < accel.rows(); ++t) {
-    const Time time = from_microseconds(10'000LL * t);
+    const estimator::Time time = estimator::from_microseconds(10'000LL * t);
     const double begin = clock_us();
-    for (int a = 0; a < accel.cols(); ++a) push(AccelSample{time, a, accel(t, a)});
+    for (int a = 0; a < accel.cols(); ++a) push(estimator::AccelSample{time, a, accel(t, a)});
     if (t >= kSteadyFrom) times.push_back(clock_us() - begin);
   }
   return times;
@@ -88,12 +88,14 @@ std::vector<double> time_instants(const Eigen::MatrixXd& accel, Clock clock_us, 
 template <typename Make>
 Cost time_twice(const Eigen::MatrixXd& accel, double clock_us, bool small, Make make) {
   auto first = make();
-  Cost cost = cost_of(time_instants(accel, cpu_us, [&](const AccelSample& s) { first->push(s); }),
-                      clock_us);
+  Cost cost = cost_of(
+      time_instants(accel, cpu_us, [&](const estimator::AccelSample& s) { first->push(s); }),
+      clock_us);
   if (!small) return cost;
   auto second = make();
-  cost.median_us =
-      quantile(time_instants(accel, wall_us, [&](const AccelSample& s) { second->push(s); }), 0.5);
+  cost.median_us = quantile(
+      time_instants(accel, wall_us, [&](const estimator::AccelSample& s) { second->push(s); }),
+      0.5);
   return cost;
 }
 
@@ -101,16 +103,18 @@ Cost time_twice(const Eigen::MatrixXd& accel, double clock_us, bool small, Make 
 /// alternatives have it; all windows; the main window with boxplots.
 enum class Ours { window, windows, boxplot };
 
-void run_ours(const PipelineConfig& base, const Eigen::MatrixXd& accel, double clock_us, Ours what,
-              Row& row) {
-  PipelineConfig config = base;
+void run_ours(const estimator::PipelineConfig& base, const Eigen::MatrixXd& accel, double clock_us,
+              Ours what, Row& row) {
+  estimator::PipelineConfig config = base;
   if (what != Ours::boxplot) config.options.boxplot_windows = 0;
   if (what != Ours::windows) config.options.other_windows_s.clear();
   int valid = 0;
   const auto make = [&] {
     const double before_mb = allocated_mb(), start = cpu_us();
-    auto pipeline = std::make_unique<Pipeline>(
-        config, [&](const WindowEstimate& e) { valid += e.status == WindowStatus::valid ? 1 : 0; });
+    auto pipeline =
+        std::make_unique<estimator::Pipeline>(config, [&](const estimator::WindowEstimate& e) {
+          valid += e.status == estimator::WindowStatus::valid ? 1 : 0;
+        });
     if (what == Ours::windows) row.start_s = 1e-6 * (cpu_us() - start);
     if (what == Ours::windows) row.memory_mb = std::max(row.memory_mb, allocated_mb() - before_mb);
     return pipeline;
@@ -132,26 +136,27 @@ void run_ours(const PipelineConfig& base, const Eigen::MatrixXd& accel, double c
 /// From samples to element deformations: what every method needs, the alternatives too.
 class FrontEnd {
  public:
-  explicit FrontEnd(const PipelineConfig& config)
+  explicit FrontEnd(const estimator::PipelineConfig& config)
       : table_(config.structure),
         layout_(config.structure, table_),
         deformations_(config.structure, layout_, config.axes),
-        filter_(std::vector<DerivativeTriple>(config.axes.size(), matched_triple(100)),
-                HighPass(config.options.high_pass_hz, 100)),
+        filter_(std::vector<estimator::DerivativeTriple>(config.axes.size(),
+                                                         estimator::matched_triple(100)),
+                estimator::HighPass(config.options.high_pass_hz, 100)),
         set_(deformations_.make_set()),
-        acquisition_(config.axes, config.options, [this](const SampleSet& samples) {
+        acquisition_(config.axes, config.options, [this](const estimator::SampleSet& samples) {
           filter_.push(samples.accel);
           deformations_.compute(filter_, set_);
         }) {}
-  void push(const AccelSample& sample) { acquisition_.push(sample); }
+  void push(const estimator::AccelSample& sample) { acquisition_.push(sample); }
 
  private:
-  ParameterTable table_;
-  FloorLayout layout_;
-  Deformations deformations_;
-  MotionFilter filter_;
-  DeformationSet set_;
-  Acquisition acquisition_;
+  estimator::ParameterTable table_;
+  estimator::FloorLayout layout_;
+  estimator::Deformations deformations_;
+  estimator::DriftControlledIntegrator filter_;
+  estimator::DeformationSet set_;
+  estimator::Acquisition acquisition_;
 };
 
 double median_of_runs(const DenseInput& input, Alternative& way, int counted, double most_s) {
@@ -212,7 +217,7 @@ Result run_numpy(int equations, int parameters, double flops) {
   return out;
 }
 
-void run_alternatives(const PipelineConfig& config, Row& row, const Row* smaller) {
+void run_alternatives(const estimator::PipelineConfig& config, Row& row, const Row* smaller) {
   const double p = row.parameters, rows = kWindow * static_cast<double>(row.equations);
   const double gram = 2 * rows * p * p, factor = p * p * p / 3;
   const double update = 2.0 * row.equations * p * p;
@@ -302,8 +307,8 @@ void print_targets(const std::vector<Row>& rows) {
 Row run(const Size& size, int instants, double clock_us) {
   Row row;
   row.size = size;
-  const PipelineConfig config = building(size.stories, size.bays);
-  row.parameters = ParameterTable(config.structure).size();
+  const estimator::PipelineConfig config = building(size.stories, size.bays);
+  row.parameters = estimator::ParameterTable(config.structure).size();
   row.equations = config.structure.degrees_of_freedom();
   const Eigen::MatrixXd accel = shaken(config, instants);
   for (const Ours what : {Ours::window, Ours::windows, Ours::boxplot})

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "estimator/structure/nan.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::soak {
 namespace {
@@ -26,10 +26,11 @@ constexpr ClockStep kClockSteps_[] = {{0.4, 300'000}, {0.6, -1'500'000}, {0.8, 3
 
 }  // namespace
 
-SoakNight::SoakNight(const PipelineConfig& config, std::int64_t instants, std::uint64_t seed)
+SoakNight::SoakNight(const estimator::PipelineConfig& config, std::int64_t instants,
+                     std::uint64_t seed)
     : instants_(instants),
       truth_(config.design),
-      parameters_stiff_(ParameterTable(config.structure).elements()),
+      parameters_stiff_(estimator::ParameterTable(config.structure).elements()),
       random_(seed, 1),
       building_(config.structure, config.design, config.axes, seed),
       accel_(config.axes.size()) {
@@ -47,7 +48,7 @@ void SoakNight::season() {
 }
 
 void SoakNight::fail(std::vector<double>& accel) {
-  if (within(kDeadFrom, kDeadTo)) accel[5] = kNaN;
+  if (within(kDeadFrom, kDeadTo)) accel[5] = estimator::kNaN;
   if (within(kStuckFrom, kStuckTo)) accel[3] = 0.01;
   for (const double at : kSpikes)
     if (at_ == static_cast<std::int64_t>(share(at))) accel[4] = 1000;

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "daemon/config.h"
+#include "daemon/config/config.h"
 #include "tests/support/restless_building.h"
 
 namespace framewatch::soak {
@@ -24,7 +24,7 @@ class SoakNight {
   static constexpr double kSwing = 0.03;  ///< of stiffness in a day, trough to crest
   static constexpr int kClockSteps = 3;
 
-  SoakNight(const PipelineConfig& config, std::int64_t instants, std::uint64_t seed);
+  SoakNight(const estimator::PipelineConfig& config, std::int64_t instants, std::uint64_t seed);
 
   Instant next();
   /// Of the instant next() gave last.
@@ -41,7 +41,7 @@ class SoakNight {
   std::int64_t instants_, at_ = -1, clock_us_ = 0, burst_ = 0;
   Eigen::VectorXd truth_;
   int parameters_stiff_;  ///< theta's first half: stiffness
-  Random random_;
+  estimator::Random random_;
   test::RestlessBuilding building_;
   double degc_ = 10;
   std::vector<double> accel_;

@@ -15,17 +15,19 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <framewatch/event_t.hpp>
 #include <framewatch/temperature_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
 
-#include "daemon/clocks.h"
-#include "daemon/estimation.h"
-#include "daemon/history.h"
-#include "daemon/history_files.h"
-#include "daemon/process_usage.h"
-#include "daemon/summary_query.h"
-#include "drivers/accel_codec.h"
-#include "drivers/encoded.h"
-#include "drivers/message_check.h"
+#include "daemon/base/clocks.h"
+#include "daemon/base/process_usage.h"
+#include "daemon/estimation/estimation.h"
+#include "daemon/history/history.h"
+#include "daemon/history/history_files.h"
+#include "daemon/history/summary_query.h"
+#include "drivers/base/encoded.h"
+#include "drivers/lcm/accel_codec.h"
+#include "drivers/lcm/message_check.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
@@ -84,12 +86,13 @@ class Soak {
             config_,
             [this](std::int64_t, const std::string& channel,
                    const std::vector<std::uint8_t>& bytes) { published(channel, bytes); },
-            [this](const WindowEstimate& e) { window(e); }) {
-    estimation_.tap({[this](const AccelSample& sample) { history_->sample(sample); },
+            [this](const estimator::WindowEstimate& e) { window(e); }) {
+    estimation_.tap({[this](const estimator::AccelSample& sample) { history_->sample(sample); },
                      [this](const temperature_t& t) { history_->temperature(t); },
+                     {},
                      {}});
     for (const daemon::AxisSource& source : config_.sources)
-      nodes_.emplace_back(source.node, source.axis);
+      nodes_.emplace_back(source.sensor_node, source.axis);
   }
 
   SoakResult run() {
@@ -98,7 +101,7 @@ class Soak {
     estimation_.finish();
     result_.wall_s = 1e-6 * static_cast<double>(daemon::steady_clock_us() - began_us);
     result_.instants = instants_;
-    for (const AxisCounters& axis : estimation_.pipeline().counters().axes)
+    for (const estimator::AxisCounters& axis : estimation_.pipeline().counters().axes)
       result_.samples += axis.received;
     result_.raw_dropped = history_->status().raw_dropped;
     result_.summary_dropped = history_->status().summary_dropped;
@@ -111,10 +114,10 @@ class Soak {
  private:
   void step(std::int64_t i);
   void published(const std::string& channel, const std::vector<std::uint8_t>& bytes);
-  void window(const WindowEstimate& e);
+  void window(const estimator::WindowEstimate& e);
   void look_at_memory(std::int64_t time_us);
-  void compare_sums(const WindowEstimate& e);
-  double difference(const WindowEstimate& e, std::size_t from) const;
+  void compare_sums(const estimator::WindowEstimate& e);
+  double difference(const estimator::WindowEstimate& e, std::size_t from) const;
   void look_at_history();
 
   SoakOptions options_;
@@ -127,7 +130,7 @@ class Soak {
   std::deque<std::pair<std::int64_t, std::vector<double>>> kept_;  ///< before a comparison
   std::size_t next_compared_ = 0;
   std::int64_t at_ = 0, turn_ = 0, turned_at_ = 0, phase_ = 0;
-  std::optional<Time> last_end_;
+  std::optional<estimator::Time> last_end_;
   SoakResult result_;
 };
 
@@ -190,7 +193,7 @@ void Soak::look_at_memory(std::int64_t time_us) {
 void Soak::published(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
   history_->message(channel, bytes);
   if (channel.ends_with("_EVENT")) {
-    const auto event = drivers::decode_event(bytes);
+    const auto event = drivers::decoded<event_t>(bytes);
     if (!event || event->kind != "stiffness_change") return;
     if (event->state == 1) ++result_.alarms;
     result_.told.push_back(
@@ -199,12 +202,12 @@ void Soak::published(const std::string& channel, const std::vector<std::uint8_t>
   if (channel.find("ESTIMATE_") == std::string::npos ||
       !channel.ends_with(fmt::format("{:g}S", options_.quiet_window_s)))
     return;
-  const auto estimate = drivers::decode_window_estimate(bytes);
+  const auto estimate = drivers::decoded<window_estimate_t>(bytes);
   ++result_.long_windows;
   result_.long_values += estimate && estimate->status == 1 ? 1 : 0;
 }
 
-void Soak::window(const WindowEstimate& e) {
+void Soak::window(const estimator::WindowEstimate& e) {
   ++result_.windows;
   if (last_end_) {
     const auto hop = std::chrono::duration<double>(e.end - *last_end_).count();
@@ -217,15 +220,15 @@ void Soak::window(const WindowEstimate& e) {
 }
 
 /// Of this window's solution from that of a pipeline that begins with a kept instant.
-double Soak::difference(const WindowEstimate& e, std::size_t from) const {
-  PipelineConfig config = config_.pipeline;
-  config.design = estimation_.pipeline().design();
+double Soak::difference(const estimator::WindowEstimate& e, std::size_t from) const {
+  estimator::PipelineConfig config = config_.pipeline;
+  config.design = estimation_.pipeline().theta0();
   config.options.self_tune = false;
   config.options.long_window_s = 0;
   config.options.hop_s = 0.01;
   double least = 1;
-  Pipeline pipeline(config, [&](const WindowEstimate& other) {
-    if (other.end != e.end || other.status == WindowStatus::warming_up) return;
+  estimator::Pipeline pipeline(config, [&](const estimator::WindowEstimate& other) {
+    if (other.end != e.end || other.status == estimator::WindowStatus::warming_up) return;
     double most = 0;
     for (std::size_t p = 0; p < e.solution.size(); ++p)
       most = std::max(most, std::abs(e.solution[p] / other.solution[p] - 1));
@@ -234,12 +237,13 @@ double Soak::difference(const WindowEstimate& e, std::size_t from) const {
   for (std::size_t i = from; i < kept_.size(); ++i)
     for (std::size_t a = 0; a < kept_[i].second.size(); ++a)
       if (!std::isnan(kept_[i].second[a]))
-        pipeline.push({from_microseconds(kept_[i].first), static_cast<int>(a), kept_[i].second[a]});
+        pipeline.push({estimator::from_microseconds(kept_[i].first), static_cast<int>(a),
+                       kept_[i].second[a]});
   pipeline.finish();
   return least;
 }
 
-void Soak::compare_sums(const WindowEstimate& e) {
+void Soak::compare_sums(const estimator::WindowEstimate& e) {
   // Blocks begin where a pipeline, or a newly tuned one, did: one of so many places, the last one
   // found first.
   double least = 1;

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/pipeline.h"
+#include "estimator/pipeline/pipeline.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::soak {
@@ -56,23 +56,24 @@ TEST(Soak, AWindowThatHoldsLessNoiseThanIsTakenOffSaysNothing) {
   constexpr double kSeconds = 2825, kRate_hz = 100;
   SoakOptions o;
   o.directory = "history";
-  PipelineConfig config = configuration(o).pipeline;
+  estimator::PipelineConfig config = configuration(o).pipeline;
   const auto whole = static_cast<std::int64_t>(o.days * 86400 * kRate_hz);
   SoakNight night(config, whole, o.seed);
   int windows = 0;
-  const auto look = [&](const WindowEstimate& e) {
-    if (e.status == WindowStatus::warming_up) return;
+  const auto look = [&](const estimator::WindowEstimate& e) {
+    if (e.status == estimator::WindowStatus::warming_up) return;
     for (std::size_t p = 0; p < e.value.size(); ++p) {
       if (e.snr[p] > 0) continue;
-      EXPECT_NE(e.reason[p], Observability::observable);
+      EXPECT_NE(e.reason[p], estimator::Observability::observable);
       windows += p == 0 ? 1 : 0;
     }
   };
-  Pipeline pipeline(config, look, look);
+  estimator::Pipeline pipeline(config, look, look);
   for (std::int64_t i = 0; i < static_cast<std::int64_t>(kSeconds * kRate_hz); ++i) {
     const Instant instant = night.next();
     for (std::size_t a = 0; a < instant.accel->size(); ++a)
-      pipeline.push({from_microseconds(instant.time_us), static_cast<int>(a), (*instant.accel)[a]});
+      pipeline.push({estimator::from_microseconds(instant.time_us), static_cast<int>(a),
+                     (*instant.accel)[a]});
   }
   EXPECT_GT(windows, 0);
 }

@@ -6,21 +6,22 @@
 namespace framewatch::study {
 namespace {
 
-using enum EffectKind;
+using enum estimator::EffectKind;
 
-EffectPlace random_place(EffectKind kind, const StudyBuilding& b, Random& random) {
-  std::vector<EffectPlace> places = effect_places(kind, b.truth, b.axes);
+estimator::EffectPlace random_place(estimator::EffectKind kind, const StudyBuilding& b,
+                                    estimator::Random& random) {
+  std::vector<estimator::EffectPlace> places = effect_places(kind, b.truth, b.axes);
   if (kind == swapped)  // base channels are no mistake one would make with those above
-    std::erase_if(places, [&](const EffectPlace& p) {
+    std::erase_if(places, [&](const estimator::EffectPlace& p) {
       return (b.axes[static_cast<std::size_t>(p.channel)].story == 0) !=
              (b.axes[static_cast<std::size_t>(p.with_channel)].story == 0);
     });
   return places[static_cast<std::size_t>(random.uniform() * static_cast<double>(places.size()))];
 }
 
-int element_of(const EffectPlace& p, const ParameterTable& table) {
-  return p.kind == PlaceKind::panel ? table.panel_stiffness(p.story, p.panel)
-                                    : table.frame_stiffness(p.story, p.frame);
+int element_of(const estimator::EffectPlace& p, const estimator::ParameterTable& table) {
+  return p.kind == estimator::PlaceKind::panel ? table.panel_stiffness(p.story, p.panel)
+                                               : table.frame_stiffness(p.story, p.frame);
 }
 
 /// What the sizes of an element's effect are measured in.
@@ -28,7 +29,7 @@ struct ElementScale {
   double k, d, v;
 };
 
-double largest_size(EffectKind kind, bool softening) {
+double largest_size(estimator::EffectKind kind, bool softening) {
   switch (kind) {
     case cubic_stiffness:
       return softening ? 0.25 : 2;
@@ -68,8 +69,8 @@ double largest_size(EffectKind kind, bool softening) {
 }
 
 /// Values at an element, in the order of the catalogue, for size s; u are uniform draws.
-std::vector<double> element_values(EffectKind kind, const ElementScale& e, double s, double sign,
-                                   const double* u, double seconds) {
+std::vector<double> element_values(estimator::EffectKind kind, const ElementScale& e, double s,
+                                   double sign, const double* u, double seconds) {
   switch (kind) {
     case cubic_stiffness:
       return {sign * s * e.k / (e.d * e.d)};
@@ -99,8 +100,9 @@ std::vector<double> element_values(EffectKind kind, const ElementScale& e, doubl
   }
 }
 
-std::vector<double> node_values(EffectKind kind, const StudyBuilding& b, const Peaks& peaks,
-                                const EffectPlace& p, double s, const double* u) {
+std::vector<double> node_values(estimator::EffectKind kind, const StudyBuilding& b,
+                                const Peaks& peaks, const estimator::EffectPlace& p, double s,
+                                const double* u) {
   const double k = b.theta[b.table().frame_stiffness(std::max(p.story, 1), std::max(p.frame, 0))];
   const double w1 = 2 * M_PI * peaks.first_mode_hz;
   const double mass = b.truth.frame_mass(std::max(p.story, 1), std::max(p.frame, 0));
@@ -134,7 +136,8 @@ std::vector<double> node_values(EffectKind kind, const StudyBuilding& b, const P
 }
 
 /// Rotational stiffness that makes `s` of the frames' flexibility.
-double rotational_stiffness(const StudyBuilding& b, const EffectPlace& p, double s, bool base) {
+double rotational_stiffness(const StudyBuilding& b, const estimator::EffectPlace& p, double s,
+                            bool base) {
   double sum = 0;
   for (int f = 0; f < b.truth.frames(); ++f)
     if (b.truth.direction(f) == p.direction) sum += b.theta[b.table().frame_stiffness(1, f)];
@@ -142,9 +145,10 @@ double rotational_stiffness(const StudyBuilding& b, const EffectPlace& p, double
   return (base ? sum : sum / b.truth.n()) * height * height / s;
 }
 
-std::vector<double> channel_values(EffectKind kind, const StudyBuilding& b, const Peaks& peaks,
-                                   const EffectPlace& p, double s, double sign) {
-  const SensorAxis& axis = b.axes[static_cast<std::size_t>(p.channel)];
+std::vector<double> channel_values(estimator::EffectKind kind, const StudyBuilding& b,
+                                   const Peaks& peaks, const estimator::EffectPlace& p, double s,
+                                   double sign) {
+  const estimator::SensorAxis& axis = b.axes[static_cast<std::size_t>(p.channel)];
   const double rms = axis.story > 0 ? peaks.accel_rms[b.truth.dof(axis.story, axis.frame)] : 0.5;
   switch (kind) {
     case clipping:
@@ -162,8 +166,9 @@ std::vector<double> channel_values(EffectKind kind, const StudyBuilding& b, cons
 
 }  // namespace
 
-Draw draw_effect(EffectKind kind, const StudyBuilding& b, const Peaks& peaks, Random& random) {
-  const EffectPlace place = random_place(kind, b, random);
+Draw draw_effect(estimator::EffectKind kind, const StudyBuilding& b, const Peaks& peaks,
+                 estimator::Random& random) {
+  const estimator::EffectPlace place = random_place(kind, b, random);
   const double sign = random.uniform() < 0.5 ? -1 : 1;
   std::vector<double> u;
   for (int i = 0; i < 4; ++i) u.push_back(random.uniform());
@@ -174,16 +179,16 @@ Draw draw_effect(EffectKind kind, const StudyBuilding& b, const Peaks& peaks, Ra
   draw.of_channel = of_channel;
   draw.largest = largest_size(kind, sign < 0);
   draw.make = [=](double s, Hidden& hidden) {
-    Effect e{kind, place, {}};
-    if (place.kind == PlaceKind::frame || place.kind == PlaceKind::panel) {
+    estimator::Effect e{kind, place, {}};
+    if (place.kind == estimator::PlaceKind::frame || place.kind == estimator::PlaceKind::panel) {
       const int i = element_of(place, b.table());
       const ElementScale scale{b.theta[i], peaks.deformation[i], peaks.rate[i]};
       e.values = element_values(kind, scale, s, sign, u.data(), peaks.seconds);
       const bool hysteretic = kind == bilinear_hysteresis || kind == bouc_wen || kind == pinching;
       if (hysteretic) hidden.theta[i] -= e.values[0];  // its share of the frame, not more
-    } else if (place.kind == PlaceKind::building) {
+    } else if (place.kind == estimator::PlaceKind::building) {
       e.values = {rotational_stiffness(b, place, s, kind == base_rocking)};
-    } else if (place.kind == PlaceKind::floor) {
+    } else if (place.kind == estimator::PlaceKind::floor) {
       const double k = b.theta[b.table().frame_stiffness(place.story, 0)];
       e.values = {k / s, 0.002 * k / s};
     } else if (of_channel) {
@@ -196,8 +201,9 @@ Draw draw_effect(EffectKind kind, const StudyBuilding& b, const Peaks& peaks, Ra
   return draw;
 }
 
-std::vector<Effect> in_record(std::vector<Effect> effects, int record, double seconds) {
-  for (Effect& e : effects) {
+std::vector<estimator::Effect> in_record(std::vector<estimator::Effect> effects, int record,
+                                         double seconds) {
+  for (estimator::Effect& e : effects) {
     if (record == 0) break;
     if (e.kind == stiffness_drop)
       e.set("at_s",

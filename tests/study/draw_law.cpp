@@ -11,7 +11,7 @@ double sign(double x) {
 }
 
 /// f(t, d, v) without memory.
-class PlainLaw : public ElementLaw {
+class PlainLaw : public estimator::ElementLaw {
  public:
   using Function = std::function<double(double t, double d, double v)>;
   PlainLaw(Function f, double stiffness) : f_(std::move(f)), stiffness_(stiffness) {}
@@ -26,7 +26,7 @@ class PlainLaw : public ElementLaw {
 };
 
 /// Sliders in parallel, each giving way at its own, perhaps lopsided, deformation.
-class Sliders : public ElementLaw {
+class Sliders : public estimator::ElementLaw {
  public:
   struct Part {
     double k, down, up, slider = 0;
@@ -58,12 +58,12 @@ struct LawScale {
   double k, d, v, seconds;
 };
 
-std::unique_ptr<ElementLaw> plain(PlainLaw::Function f, double stiffness) {
+std::unique_ptr<estimator::ElementLaw> plain(PlainLaw::Function f, double stiffness) {
   return std::make_unique<PlainLaw>(std::move(f), stiffness);
 }
 
-std::unique_ptr<ElementLaw> make_other(const std::string& name, const LawScale& e, double s,
-                                       double u, int record) {
+std::unique_ptr<estimator::ElementLaw> make_other(const std::string& name, const LawScale& e,
+                                                  double s, double u, int record) {
   if (name == "smooth gap") {
     const double g = (0.3 + 0.3 * u) * e.d, w = 0.1 * e.d;
     return plain(
@@ -136,9 +136,10 @@ const std::vector<std::string>& outsiders() {
   return kNames;
 }
 
-Draw draw_law(const std::string& name, const StudyBuilding& b, const Peaks& peaks, Random& random) {
-  EffectPlace place;
-  place.kind = PlaceKind::frame;
+Draw draw_law(const std::string& name, const StudyBuilding& b, const Peaks& peaks,
+              estimator::Random& random) {
+  estimator::EffectPlace place;
+  place.kind = estimator::PlaceKind::frame;
   place.story = 1 + static_cast<int>(random.uniform() * b.truth.stories);
   place.frame = static_cast<int>(random.uniform() * b.truth.frames());
   const double u = random.uniform();

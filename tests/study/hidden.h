@@ -23,13 +23,13 @@ struct Peaks {
 struct OtherLaw {
   std::string name;
   std::vector<std::string> accepted;  ///< names of the catalogue that describe it about
-  EffectPlace place;
-  std::function<std::unique_ptr<ElementLaw>(int record)> make;
+  estimator::EffectPlace place;
+  std::function<std::unique_ptr<estimator::ElementLaw>(int record)> make;
 };
 
 /// What a case hides, of a certain size.
 struct Hidden {
-  std::vector<Effect> effects;  ///< of record 0
+  std::vector<estimator::Effect> effects;  ///< of record 0
   std::vector<OtherLaw> laws;
   Eigen::VectorXd theta;  ///< the building's, less what the effects have taken over
 };
@@ -45,16 +45,17 @@ struct Draw {
 };
 
 /// An effect of the catalogue at a random place.
-Draw draw_effect(EffectKind kind, const StudyBuilding& building, const Peaks& peaks,
-                 Random& random);
+Draw draw_effect(estimator::EffectKind kind, const StudyBuilding& building, const Peaks& peaks,
+                 estimator::Random& random);
 
 /// Names of laws that are like one of the catalogue's, and of those that are like none.
 const std::vector<std::string>& other_forms();
 const std::vector<std::string>& outsiders();
 Draw draw_law(const std::string& name, const StudyBuilding& building, const Peaks& peaks,
-              Random& random);
+              estimator::Random& random);
 
 /// The effects as they act in another record: what begins at a time, or has a phase, differs.
-std::vector<Effect> in_record(std::vector<Effect> effects, int record, double seconds);
+std::vector<estimator::Effect> in_record(std::vector<estimator::Effect> effects, int record,
+                                         double seconds);
 
 }  // namespace framewatch::study

@@ -7,6 +7,7 @@
 
 #include "estimator/simulate/linear_building.h"
 #include "estimator/structure/matrices.h"
+#include "estimator/structure/natural_frequencies.h"
 #include "tests/study/study_record.h"
 
 namespace framewatch::study {
@@ -27,10 +28,10 @@ Eigen::VectorXd stacked(const Eigen::MatrixXd& m) {
 /// Largest deformations of the linear building.
 Peaks find_peaks(const StudyCase& c) {
   const StudyBuilding& b = c.building;
-  const ParameterTable table = b.table();
+  const estimator::ParameterTable table = b.table();
   const double step_s = 1 / c.options.rate_hz;
-  LinearBuilding building(b.truth, table, b.theta, step_s);
-  const std::vector<Element> all = elements(b.truth, table);
+  estimator::LinearBuilding building(b.truth, table, b.theta, step_s);
+  const std::vector<estimator::Element> all = elements(b.truth, table);
   Peaks out;
   out.seconds = c.options.seconds;
   out.deformation = out.rate = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(all.size()));
@@ -43,7 +44,7 @@ Peaks find_peaks(const StudyCase& c) {
     building.advance(ground(i), ground(i + 1));
     const Eigen::VectorXd d = building.disp_rel(), v = building.vel_rel();
     out.accel_rms += building.accel_abs().cwiseAbs2() / steps;
-    for (const Element& e : all) {
+    for (const estimator::Element& e : all) {
       double deformation = 0, rate = 0;
       for (const auto& [dof, coefficient] : e.b) {
         deformation += coefficient * d[dof];
@@ -63,7 +64,7 @@ Peaks find_peaks(const StudyCase& c) {
 }  // namespace
 
 LinearShare::LinearShare(const StudyCase& c) : case_(c), peaks_(find_peaks(c)) {
-  for (const SensorAxis& axis : c.building.axes) base_axes_ += axis.story == 0;
+  for (const estimator::SensorAxis& axis : c.building.axes) base_axes_ += axis.story == 0;
   linear_ = clean_record(c, 0);
   const Eigen::Index above = linear_.cols() - base_axes_;
   derivatives_ = derivatives_at(c, stacked(linear_.rightCols(above)));
@@ -72,10 +73,10 @@ LinearShare::LinearShare(const StudyCase& c) : case_(c), peaks_(find_peaks(c)) {
     if (norms_[u] > 0) derivatives_.col(u) /= norms_[u];
 
   StudyCase shaken = c;
-  Random random(c.options.seed, 77);
-  GroundMotion* along[] = {&shaken.motions[0].x, &shaken.motions[0].y};
+  estimator::Random random(c.options.seed, 77);
+  estimator::GroundMotion* along[] = {&shaken.motions[0].x, &shaken.motions[0].y};
   for (Eigen::Index i = 0; i < base_axes_; ++i) {
-    GroundMotion& motion = *along[i % 2];
+    estimator::GroundMotion& motion = *along[i % 2];
     motion.step_s = 1 / c.options.rate_hz;
     // Straight lines between samples lose a third of their power.
     const double rms =

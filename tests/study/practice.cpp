@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "drivers/text_output.h"
+#include "drivers/base/text_output.h"
 #include "tests/study/study_building.h"
 
 namespace framewatch::study {
@@ -96,7 +96,7 @@ Json location_of(const Json& hidden) {
 StudyBuilding belief(const Json& in) {
   StudyBuilding b;
   b.kind = "practice";
-  Structure& s = b.believed;
+  estimator::Structure& s = b.believed;
   s.name = in["case"];
   s.stories = in["stories"];
   for (int l = 1; l <= in["n"].get<int>(); ++l) s.frames_x.push_back("y" + std::to_string(l));
@@ -104,7 +104,7 @@ StudyBuilding belief(const Json& in) {
   s.span_x = in["spans_x_m"].get<std::vector<double>>();
   s.span_y = in["spans_y_m"].get<std::vector<double>>();
   s.story_height = in["story_heights_m"].get<std::vector<double>>();
-  const ParameterTable table(s);
+  const estimator::ParameterTable table(s);
   b.design = Eigen::VectorXd::Zero(table.size());
   const Json& k = in["nominal_stiffness"];
   for (int story = 1; story <= s.stories; ++story) {
@@ -123,9 +123,10 @@ StudyBuilding belief(const Json& in) {
   }
   b.design_damping_ratio = in["nominal_damping_ratio"];
   for (const Json& channel : in["channels"]) {
-    SensorAxis axis;
+    estimator::SensorAxis axis;
     axis.name = channel["name"];
-    axis.direction = channel["direction"] == "x" ? Direction::x : Direction::y;
+    axis.direction =
+        channel["direction"] == "x" ? estimator::Direction::x : estimator::Direction::y;
     axis.story = channel.value("floor", 0);
     const std::string line = channel.value("line", "");
     for (int f = 0; f < s.frames(); ++f)

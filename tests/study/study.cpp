@@ -54,14 +54,14 @@ struct Wanted {
 };
 
 /// Effects that two records cannot show, or that need a second state of the building.
-bool can_be_found(EffectKind kind) {
-  return kind != EffectKind::p_delta;  // the same as a lower stiffness
+bool can_be_found(estimator::EffectKind kind) {
+  return kind != estimator::EffectKind::p_delta;  // the same as a lower stiffness
 }
 
 std::vector<Wanted> wanted_cases(long each) {
   std::vector<Wanted> out;
   for (long i = 0; i < each; ++i) {
-    for (const EffectDescription& d : effect_catalogue())
+    for (const estimator::EffectDescription& d : estimator::effect_catalogue())
       if (can_be_found(d.kind)) out.push_back({"catalogue", std::string(d.name)});
     for (const std::string& name : other_forms()) out.push_back({"other_form", name});
     for (const std::string& name : outsiders()) out.push_back({"outside", name});

@@ -1,5 +1,7 @@
 #include "tests/study/study_building.h"
 
+#include "estimator/structure/natural_frequencies.h"
+
 #include <algorithm>
 #include <cassert>
 
@@ -13,12 +15,12 @@ constexpr double kDesignError = 0.05;
 constexpr double kGainError = 0.005;
 constexpr double kClockError_s = 0.25e-3;
 
-double uniform(Random& random, double low, double high) {
+double uniform(estimator::Random& random, double low, double high) {
   return low + (high - low) * random.uniform();
 }
 
 /// Never further than three standard deviations.
-double off(Random& random, double deviation) {
+double off(estimator::Random& random, double deviation) {
   return deviation * std::clamp(random.normal(), -3.0, 3.0);
 }
 
@@ -28,9 +30,10 @@ std::vector<std::string> names(const char* prefix, int count) {
   return out;
 }
 
-Structure plan(const std::string& kind, FloorModel floor, Random& random) {
+estimator::Structure plan(const std::string& kind, estimator::FloorModel floor,
+                          estimator::Random& random) {
   const int lines = kind == "2story_3x3" ? 4 : 2;
-  Structure s;
+  estimator::Structure s;
   s.name = kind;
   s.stories = kind == "5story_1x1" ? 5 : 2;
   s.frames_x = names("y", lines);
@@ -44,30 +47,30 @@ Structure plan(const std::string& kind, FloorModel floor, Random& random) {
   return s;
 }
 
-Eigen::VectorXd true_theta(const Structure& s, Random& random) {
-  const ParameterTable table(s);
+Eigen::VectorXd true_theta(const estimator::Structure& s, estimator::Random& random) {
+  const estimator::ParameterTable table(s);
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(table.size());
   const double frame = 15e3 * s.n() * (s.stories == 5 ? 3.0 : 1.0);  // first mode at 2 to 3 Hz
   for (int i = 0; i < table.elements(); ++i)
-    theta[i] =
-        frame * (table[i].kind == ParameterKind::frame_stiffness ? uniform(random, 0.7, 1.3)
-                                                                 : uniform(random, 0.8, 1.6));
+    theta[i] = frame * (table[i].kind == estimator::ParameterKind::frame_stiffness
+                            ? uniform(random, 0.7, 1.3)
+                            : uniform(random, 0.8, 1.6));
   theta = with_proportional_damping(s, table, theta, uniform(random, 0.01, 0.02));
   for (int i = table.elements(); i < table.size(); ++i) theta[i] *= uniform(random, 0.8, 1.2);
   return theta;
 }
 
-std::vector<SensorAxis> sensors(const Structure& s) {
-  std::vector<SensorAxis> axes;
-  for (const Direction direction : {Direction::x, Direction::y}) {
-    SensorAxis base;
-    base.name = direction == Direction::x ? "base-x" : "base-y";
+std::vector<estimator::SensorAxis> sensors(const estimator::Structure& s) {
+  std::vector<estimator::SensorAxis> axes;
+  for (const estimator::Direction direction : {estimator::Direction::x, estimator::Direction::y}) {
+    estimator::SensorAxis base;
+    base.name = direction == estimator::Direction::x ? "base-x" : "base-y";
     base.direction = direction;
     axes.push_back(base);
   }
   for (int story = 1; story <= s.stories; ++story) {
     for (int f = 0; f < s.frames(); ++f) {
-      SensorAxis axis;
+      estimator::SensorAxis axis;
       axis.name = fmt::format("F{}-{}", story, s.frame_name(f));
       axis.story = story;
       axis.frame = f;
@@ -105,8 +108,8 @@ const std::vector<std::string>& building_kinds() {
   return kKinds;
 }
 
-StudyBuilding random_building(const std::string& kind, FloorModel floor, Random& random,
-                              double tolerance) {
+StudyBuilding random_building(const std::string& kind, estimator::FloorModel floor,
+                              estimator::Random& random, double tolerance) {
   StudyBuilding b;
   b.kind = kind;
   b.believed = plan(kind, floor, random);
@@ -124,14 +127,14 @@ StudyBuilding random_building(const std::string& kind, FloorModel floor, Random&
 }
 
 std::string config_toml(const StudyBuilding& b, double rate_hz) {
-  const Structure& s = b.believed;
-  const ParameterTable table(s);
+  const estimator::Structure& s = b.believed;
+  const estimator::ParameterTable table(s);
   std::string out = fmt::format(
       "[structure]\nname = \"{}\"\nstories = {}\nframes_x = {}\nframes_y = {}\nspan_x_m = {}\n"
       "span_y_m = {}\nstory_height_m = {}\nfloor = \"{}\"\n",
       s.name, s.stories, quoted(s.frames_x), quoted(s.frames_y), list(s.span_x.data(), s.m() - 1),
       list(s.span_y.data(), s.n() - 1), list(s.story_height.data(), s.stories),
-      s.floor == FloorModel::rigid ? "rigid" : "flexible");
+      s.floor == estimator::FloorModel::rigid ? "rigid" : "flexible");
   std::string masses;
   for (int story = 0; story < s.stories; ++story) {
     const double* first = s.node_mass.data() + story * s.n() * s.m();
@@ -151,11 +154,12 @@ std::string config_toml(const StudyBuilding& b, double rate_hz) {
   if (s.panels() > 0) out += "\ngk = [" + panels + "]";
   out += fmt::format("\ndamping_ratio = {}\n\n[estimator]\nrate_hz = {}\n", b.design_damping_ratio,
                      rate_hz);
-  for (const SensorAxis& axis : b.axes)
+  for (const estimator::SensorAxis& axis : b.axes)
     out += fmt::format("\n[[channel]]\nname = \"{}\"\nstory = {}\n{}", axis.name, axis.story,
-                       axis.story > 0 ? fmt::format("frame = \"{}\"\n", s.frame_name(axis.frame))
-                                      : fmt::format("direction = \"{}\"\n",
-                                                    axis.direction == Direction::x ? "x" : "y"));
+                       axis.story > 0
+                           ? fmt::format("frame = \"{}\"\n", s.frame_name(axis.frame))
+                           : fmt::format("direction = \"{}\"\n",
+                                         axis.direction == estimator::Direction::x ? "x" : "y"));
   return out;
 }
 

@@ -13,24 +13,24 @@ namespace framewatch::study {
 /// What a building really is and what its engineer believes.
 struct StudyBuilding {
   std::string kind;
-  Structure truth;         ///< with the true masses
-  Eigen::VectorXd theta;   ///< true stiffness and damping
-  Structure believed;      ///< masses off by 1 %
-  Eigen::VectorXd design;  ///< stiffness off by 5 %
+  estimator::Structure truth;     ///< with the true masses
+  Eigen::VectorXd theta;          ///< true stiffness and damping
+  estimator::Structure believed;  ///< masses off by 1 %
+  Eigen::VectorXd design;         ///< stiffness off by 5 %
   double design_damping_ratio = 0.01;
-  std::vector<SensorAxis> axes;
+  std::vector<estimator::SensorAxis> axes;
   std::vector<double> gain_error;   ///< of each axis, 0.5 %
   std::vector<double> clock_error;  ///< s, 0.25 ms
 
-  ParameterTable table() const { return ParameterTable(truth); }
+  estimator::ParameterTable table() const { return estimator::ParameterTable(truth); }
 };
 
 /// The kinds of building: 2story_1x1, 2story_3x3, 5story_1x1 (stories, bays).
 const std::vector<std::string>& building_kinds();
 
 /// A random one. Standard deviations of what is wrong are scaled by `tolerance`.
-StudyBuilding random_building(const std::string& kind, FloorModel floor, Random& random,
-                              double tolerance = 1);
+StudyBuilding random_building(const std::string& kind, estimator::FloorModel floor,
+                              estimator::Random& random, double tolerance = 1);
 
 /// The engineer's belief as a configuration file.
 std::string config_toml(const StudyBuilding& building, double rate_hz);

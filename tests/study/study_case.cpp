@@ -5,6 +5,7 @@
 
 #include "estimator/simulate/building_model.h"
 #include "estimator/structure/matrices.h"
+#include "estimator/structure/natural_frequencies.h"
 #include "tests/study/linear_share.h"
 #include "tests/study/study_record.h"
 
@@ -17,13 +18,14 @@ constexpr int kSizes = 10;            ///< steps of the search
 constexpr int kDraws = 6;             ///< places tried
 constexpr int kGrowths = 7;           ///< of a size that showed too little
 
-double uniform(Random& random, double low, double high) {
+double uniform(estimator::Random& random, double low, double high) {
   return low + (high - low) * random.uniform();
 }
 
-PlanMotion shaking(const CaseOptions& o, double first_mode_hz, std::uint64_t seed, Random& random) {
+estimator::PlanMotion shaking(const CaseOptions& o, double first_mode_hz, std::uint64_t seed,
+                              estimator::Random& random) {
   const auto along = [&](std::uint64_t own) {
-    KanaiTajimi p;
+    estimator::KanaiTajimi p;
     p.ground_frequency_hz = first_mode_hz * uniform(random, 1.0, 2.0);
     p.high_pass_hz = 0.3 * first_mode_hz;
     p.peak_mps2 = uniform(random, 1.5, 2.5);
@@ -31,7 +33,7 @@ PlanMotion shaking(const CaseOptions& o, double first_mode_hz, std::uint64_t see
     p.strong_s = 0.6 * o.seconds;
     p.decay_s = 0.1 * o.seconds;
     p.seed = own;
-    GroundMotion motion = kanai_tajimi(p);
+    estimator::GroundMotion motion = kanai_tajimi(p);
     motion.accel.insert(motion.accel.begin(), static_cast<std::size_t>(kQuiet_s / motion.step_s),
                         0.0);
     return motion;
@@ -40,8 +42,8 @@ PlanMotion shaking(const CaseOptions& o, double first_mode_hz, std::uint64_t see
 }
 
 Draw draw_hidden(const std::string& name, const StudyBuilding& b, const Peaks& peaks,
-                 Random& random) {
-  if (const auto kind = find_effect(name)) return draw_effect(*kind, b, peaks, random);
+                 estimator::Random& random) {
+  if (const auto kind = estimator::find_effect(name)) return draw_effect(*kind, b, peaks, random);
   return draw_law(name, b, peaks, random);
 }
 
@@ -117,10 +119,11 @@ std::optional<StudyCase> make_case(const std::string& group, const std::string& 
   c.options = options;
   c.group = group;
   c.name = name;
-  Random random(options.seed, 1);
+  estimator::Random random(options.seed, 1);
   const bool rigid = name.find("floor_flexibility") != std::string::npos;
-  c.building =
-      random_building(options.building, rigid ? FloorModel::rigid : FloorModel::flexible, random);
+  c.building = random_building(
+      options.building, rigid ? estimator::FloorModel::rigid : estimator::FloorModel::flexible,
+      random);
   c.hidden.theta = c.building.theta;
   const double f1 =
       natural_frequencies_hz(c.building.truth, c.building.table(), c.building.theta).front();

@@ -26,8 +26,8 @@ struct StudyCase {
   std::string name;   ///< of what is hidden
   StudyBuilding building;
   Hidden hidden;
-  std::vector<PlanMotion> motions;  ///< train, holdout
-  double gap_over_floor = 0;        ///< what no linear model explains, of the train record
+  std::vector<estimator::PlanMotion> motions;  ///< train, holdout
+  double gap_over_floor = 0;  ///< what no linear model explains, of the train record
 };
 
 /// Empty when no size at all makes it show; the reason is then in `why_not`.

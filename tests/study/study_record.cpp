@@ -8,10 +8,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/effect_json.h"
-#include "daemon/simulation_truth.h"
-#include "drivers/record_csv_writer.h"
-#include "drivers/text_output.h"
+#include "daemon/simulation/effect_json.h"
+#include "daemon/simulation/simulation_truth.h"
+#include "drivers/base/text_output.h"
+#include "drivers/records/record_csv_writer.h"
 #include "estimator/simulate/channel_effects.h"
 #include "estimator/simulate/nonlinear_building.h"
 #include "estimator/simulate/sensor_model.h"
@@ -25,24 +25,24 @@ constexpr double kBias_mps2 = 0.02;
 constexpr double kFullScale_mps2 = 4 * 9.80665;
 constexpr int kBits = 16;
 
-Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<Effect>& more,
+Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<estimator::Effect>& more,
                     bool anti_alias) {
   const StudyBuilding& b = c.building;
-  std::vector<Effect> effects = in_record(c.hidden.effects, record, c.options.seconds);
+  std::vector<estimator::Effect> effects = in_record(c.hidden.effects, record, c.options.seconds);
   effects.insert(effects.end(), more.begin(), more.end());
-  std::vector<ResponseChannel> channels = response_channels(b.truth, b.axes);
-  ChannelEffects channel_effects(effects);
+  std::vector<estimator::ResponseChannel> channels = response_channels(b.truth, b.axes);
+  estimator::ChannelEffects channel_effects(effects);
   channel_effects.delay(channels);
-  ResponseOptions options;
+  estimator::ResponseOptions options;
   options.rate_hz = c.options.rate_hz;
   options.anti_alias = anti_alias;
   options.longest_step_s = anti_alias ? kFine_s : 1 / options.rate_hz;
-  std::vector<PlacedLaw> laws;
+  std::vector<estimator::PlacedLaw> laws;
   for (const OtherLaw& law : c.hidden.laws)
     laws.push_back({b.table().frame_stiffness(law.place.story, law.place.frame), law.make(record)});
-  ResponseStream stream(
-      std::make_unique<NonlinearBuilding>(b.truth, b.table(), c.hidden.theta, effects,
-                                          std::move(laws), fine_step_s(options)),
+  estimator::ResponseStream stream(
+      std::make_unique<estimator::NonlinearBuilding>(b.truth, b.table(), c.hidden.theta, effects,
+                                                     std::move(laws), fine_step_s(options)),
       c.motions[static_cast<std::size_t>(record)], options, {}, channels);
   const auto rows = static_cast<Eigen::Index>(c.options.seconds * c.options.rate_hz);
   Eigen::MatrixXd out(rows, static_cast<Eigen::Index>(b.axes.size()));
@@ -50,7 +50,7 @@ Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<Effect>& m
     const Eigen::VectorXd& motion = stream.next();
     out.row(i) = channel_effects.apply(stream.time_s(), motion).transpose();
   }
-  std::vector<SensorModel> models(b.axes.size());
+  std::vector<estimator::SensorModel> models(b.axes.size());
   channel_effects.limit(models);
   for (std::size_t a = 0; a < models.size(); ++a) {
     const double level = models[a].clip_level;
@@ -61,20 +61,21 @@ Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<Effect>& m
   return out;
 }
 
-bool any_late(const std::vector<Effect>& effects) {
-  return std::any_of(effects.begin(), effects.end(),
-                     [](const Effect& e) { return e.kind == EffectKind::time_shift; });
+bool any_late(const std::vector<estimator::Effect>& effects) {
+  return std::any_of(effects.begin(), effects.end(), [](const estimator::Effect& e) {
+    return e.kind == estimator::EffectKind::time_shift;
+  });
 }
 
 /// The small errors that every instrument has.
-std::vector<Effect> instrument_errors(const StudyBuilding& b) {
-  std::vector<Effect> out;
+std::vector<estimator::Effect> instrument_errors(const StudyBuilding& b) {
+  std::vector<estimator::Effect> out;
   for (std::size_t i = 0; i < b.axes.size(); ++i) {
-    EffectPlace place;
-    place.kind = PlaceKind::channel;
+    estimator::EffectPlace place;
+    place.kind = estimator::PlaceKind::channel;
     place.channel = static_cast<int>(i);
-    out.push_back({EffectKind::gain_error, place, {b.gain_error[i]}});
-    out.push_back({EffectKind::time_shift, place, {b.clock_error[i]}});
+    out.push_back({estimator::EffectKind::gain_error, place, {b.gain_error[i]}});
+    out.push_back({estimator::EffectKind::time_shift, place, {b.clock_error[i]}});
   }
   return out;
 }
@@ -119,7 +120,7 @@ bool write_text(const std::string& path, const std::string& text, std::string& e
 bool write_record(const StudyCase& c, int record, const std::string& path, std::string& error) {
   const Eigen::MatrixXd accel = measured(c, record);
   std::vector<std::string> names;
-  for (const SensorAxis& axis : c.building.axes) names.push_back(axis.name);
+  for (const estimator::SensorAxis& axis : c.building.axes) names.push_back(axis.name);
   drivers::RecordCsvWriter out;
   bool good = out.open(path, names);
   std::vector<double> row(names.size());
@@ -140,11 +141,11 @@ Eigen::MatrixXd clean_record(const StudyCase& c, int record) {
 
 Eigen::MatrixXd measured(const StudyCase& c, int record) {
   Eigen::MatrixXd out = run(c, record, instrument_errors(c.building), true);
-  std::vector<SensorModel> models(c.building.axes.size());
-  ChannelEffects(c.hidden.effects).limit(models);
+  std::vector<estimator::SensorModel> models(c.building.axes.size());
+  estimator::ChannelEffects(c.hidden.effects).limit(models);
   for (Eigen::Index a = 0; a < out.cols(); ++a) {
-    Random noise(c.options.seed,
-                 100 + static_cast<std::uint64_t>(record) * 1000 + static_cast<std::uint64_t>(a));
+    estimator::Random noise(c.options.seed, 100 + static_cast<std::uint64_t>(record) * 1000 +
+                                                static_cast<std::uint64_t>(a));
     const double deviation = c.options.noise_ratio *
                              std::sqrt(out.col(a).squaredNorm() / static_cast<double>(out.rows()));
     const double bias = kBias_mps2 * (2 * noise.uniform() - 1);

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/config.h"
+#include "daemon/config/config.h"
 #include "tests/study/practice.h"
 #include "tests/study/study_case.h"
 #include "tests/study/study_record.h"
@@ -112,10 +112,10 @@ TEST(StudyScore, JudgesNamePlaceAndGap) {
   const StudyCase c = made("catalogue", "bouc_wen", quick());
   ASSERT_TRUE(write_case(c, directory, error)) << error;
   std::filesystem::create_directory(directory + "/out");
-  const EffectPlace& place = c.hidden.effects.front().place;
+  const estimator::EffectPlace& place = c.hidden.effects.front().place;
   const auto diagnosed = [&](const std::string& verdict, const std::string& name, int story,
                              double confidence = 0.999) {
-    const std::string where = place.kind == PlaceKind::panel
+    const std::string where = place.kind == estimator::PlaceKind::panel
                                   ? "\"kind\": \"panel\", \"panel\": \"x1y1\""
                                   : "\"kind\": \"frame\", \"frame\": \"" +
                                         c.building.truth.frame_name(place.frame) + "\"";

@@ -1,9 +1,14 @@
 #include "tests/support/example_effects.h"
 
+#include <utility>
+#include <vector>
+
+#include "estimator/structure/natural_frequencies.h"
+
 namespace framewatch::test {
 
-TableModel table_model(FloorModel floor) {
-  Structure s;
+TableModel table_model(estimator::FloorModel floor) {
+  estimator::Structure s;
   s.name = "table model";
   s.stories = 2;
   s.frames_x = {"y1", "y2"};
@@ -13,21 +18,21 @@ TableModel table_model(FloorModel floor) {
   s.story_height = {1.0, 1.0};
   s.floor = floor;
   s.node_mass.assign(8, 20.0);
-  const ParameterTable table(s);
+  const estimator::ParameterTable table(s);
   Eigen::VectorXd theta = Eigen::VectorXd::Zero(table.size());
   const double stiffness[] = {38e3, 22e3, 32e3, 19e3, 23e3, 36e3, 21e3, 33e3, 45e3, 40e3};
   for (int i = 0; i < table.elements(); ++i) theta[i] = stiffness[i];
   theta = with_proportional_damping(s, table, theta, 0.01);
-  std::vector<SensorAxis> axes;
-  for (const Direction direction : {Direction::x, Direction::y}) {
-    SensorAxis base;
-    base.name = direction == Direction::x ? "base-x" : "base-y";
+  std::vector<estimator::SensorAxis> axes;
+  for (const estimator::Direction direction : {estimator::Direction::x, estimator::Direction::y}) {
+    estimator::SensorAxis base;
+    base.name = direction == estimator::Direction::x ? "base-x" : "base-y";
     base.direction = direction;
     axes.push_back(base);
   }
   for (int story = 1; story <= s.stories; ++story) {
     for (int f = 0; f < s.frames(); ++f) {
-      SensorAxis axis;
+      estimator::SensorAxis axis;
       axis.name = "F" + std::to_string(story) + "-" + s.frame_name(f);
       axis.story = story;
       axis.frame = f;
@@ -38,88 +43,74 @@ TableModel table_model(FloorModel floor) {
   return {s, theta, axes};
 }
 
-Effect example_effect(EffectKind kind, const TableModel& model, double size) {
-  Effect e = make_effect(kind, effect_places(kind, model.structure, model.axes).front());
-  const auto give = [&](std::initializer_list<double> values) { e.values = values; };
-  using enum EffectKind;
+namespace {
+
+/// Parameters with which an effect of the table shows; empty: it has none.
+std::vector<double> example_values(estimator::EffectKind kind, double size) {
+  using enum estimator::EffectKind;
   switch (kind) {
     case cubic_stiffness:
-      give({size * 5e8});
-      break;
+      return {size * 5e8};
     case quadratic_stiffness:
-      give({size * 2e6});
-      break;
+      return {size * 2e6};
     case bilinear_hysteresis:
-      give({size * 1e4, 1.5e-3});
-      break;
+      return {size * 1e4, 1.5e-3};
     case bouc_wen:
-      give({size * 1e4, 1.5e-3, 2, 0.6});
-      break;
+      return {size * 1e4, 1.5e-3, 2, 0.6};
     case pinching:
-      give({size * 1e4, 1.5e-3, 2, 0.6, 0.8, 0.3});
-      break;
+      return {size * 1e4, 1.5e-3, 2, 0.6, 0.8, 0.3};
     case coulomb_friction:
-      give({size * 10, 2e-3});
-      break;
+      return {size * 10, 2e-3};
     case quadratic_damping:
-      give({size * 1e3});
-      break;
+      return {size * 1e3};
     case one_sided_gap:
-      give({size * 3e4, 2e-3, -1});
-      break;
+      return {size * 3e4, 2e-3, -1};
     case two_sided_gap:
-      give({size * 3e4, 2e-3});
-      break;
+      return {size * 3e4, 2e-3};
     case p_delta:
-      give({size * 3e3});
-      break;
+      return {size * 3e3};
     case extra_mass:
-      give({size * 3});
-      break;
+      return {size * 3};
     case tuned_mass_damper:
-      give({size * 2, 3, 0.05});
-      break;
+      return {size * 2, 3, 0.05};
     case base_rocking:
     case frame_bending:
-      give({3e5 / (size > 0 ? size : 1e-10)});
-      break;
+      return {3e5 / (size > 0 ? size : 1e-10)};
     case added_spring:
-      give({size * 3e3});
-      break;
+      return {size * 3e3};
     case added_damper:
-      give({size * 100});
-      break;
+      return {size * 100};
     case stiffness_drop:
-      give({-size * 5e3, 2});
-      break;
+      return {-size * 5e3, 2};
     case stiffness_drift:
-      give({-size * 5e3, 1, 2});
-      break;
+      return {-size * 5e3, 1, 2};
     case floor_flexibility:
-      give({2e4 / (size > 0 ? size : 1e-6), 30});
-      break;
+      return {2e4 / (size > 0 ? size : 1e-6), 30};
     case unmeasured_force:
-      give({size * 20, 3, 0.4, size * 10, 0.5, 8, 3, 0.5});
-      break;
+      return {size * 20, 3, 0.4, size * 10, 0.5, 8, 3, 0.5};
     case gain_error:
-      give({size * 0.1});
-      break;
+      return {size * 0.1};
     case misalignment:
-      give({size * 5});
-      break;
+      return {size * 5};
     case time_shift:
-      give({size * 0.012});
-      break;
+      return {size * 0.012};
     case clipping:
-      give({size > 0 ? 1.5 / size : 1e9});
-      break;
+      return {size > 0 ? 1.5 / size : 1e9};
     case bias_drift:
-      give({size * 0.02, 1});
-      break;
+      return {size * 0.02, 1};
     case polarity:
     case swapped:
-      break;
+      return {};
   }
+  return {};
+}
+
+}  // namespace
+
+estimator::Effect example_effect(estimator::EffectKind kind, const TableModel& model, double size) {
+  estimator::Effect e = make_effect(kind, effect_places(kind, model.structure, model.axes).front());
+  if (std::vector<double> values = example_values(kind, size); !values.empty())
+    e.values = std::move(values);
   return e;
 }
 

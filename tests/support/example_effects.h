@@ -9,16 +9,17 @@ namespace framewatch::test {
 
 /// Two-story table model, one bay each way, flexible floors; its theta and one axis per place.
 struct TableModel {
-  Structure structure;
+  estimator::Structure structure;
   Eigen::VectorXd theta;
-  std::vector<SensorAxis> axes;
+  std::vector<estimator::SensorAxis> axes;
 
-  ParameterTable table() const { return ParameterTable(structure); }
+  estimator::ParameterTable table() const { return estimator::ParameterTable(structure); }
 };
-TableModel table_model(FloorModel floor = FloorModel::flexible);
+TableModel table_model(estimator::FloorModel floor = estimator::FloorModel::flexible);
 
 /// An effect of the kind at its first place, of a size that matters when frames deform by about
 /// 5 mm; `size` scales what makes it strong, 0 is no effect.
-Effect example_effect(EffectKind kind, const TableModel& model, double size = 1);
+estimator::Effect example_effect(estimator::EffectKind kind, const TableModel& model,
+                                 double size = 1);
 
 }  // namespace framewatch::test

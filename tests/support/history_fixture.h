@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/config.h"
-#include "daemon/raw_history_reader.h"
+#include "daemon/config/config.h"
+#include "daemon/history/raw_history_reader.h"
 
 namespace framewatch::test {
 

@@ -9,8 +9,8 @@ constexpr double kWhole_s = 15;
 
 }  // namespace
 
-ExactRecord exact_stretch(const Structure& structure, const Eigen::VectorXd& truth,
-                          const PlanMotion& motion, double noise_ratio, double from_s,
+ExactRecord exact_stretch(const estimator::Structure& structure, const Eigen::VectorXd& truth,
+                          const estimator::PlanMotion& motion, double noise_ratio, double from_s,
                           double to_s) {
   ExactRecord out = daemon::exact_record(structure, truth, motion, noise_ratio, kWhole_s);
   const auto first = std::llround(from_s * daemon::kTrialRate_hz);

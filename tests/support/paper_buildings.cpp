@@ -1,16 +1,16 @@
 #include "tests/support/paper_buildings.h"
 
-#include "daemon/paper_motions.h"
+#include "daemon/lab/paper_motions.h"
 #include "tests/support/data.h"
 
 namespace framewatch::test {
 
-std::optional<GroundMotion> el_centro_ns() {
+std::optional<estimator::GroundMotion> el_centro_ns() {
   const auto data = data_path("");
   return data ? daemon::el_centro_ns(*data) : std::nullopt;
 }
 
-std::optional<GroundMotion> hachinohe_ns() {
+std::optional<estimator::GroundMotion> hachinohe_ns() {
   const auto data = data_path("");
   return data ? daemon::hachinohe_ns(*data) : std::nullopt;
 }

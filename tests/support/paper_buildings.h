@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "daemon/paper_buildings.h"
+#include "daemon/lab/paper_buildings.h"
 #include "estimator/simulate/ground_motion.h"
 
 namespace framewatch::test {
@@ -14,7 +14,7 @@ using daemon::table2;
 using daemon::table2_theta;
 
 /// Records of the data folder; empty when it is not there.
-std::optional<GroundMotion> el_centro_ns();
-std::optional<GroundMotion> hachinohe_ns();
+std::optional<estimator::GroundMotion> el_centro_ns();
+std::optional<estimator::GroundMotion> hachinohe_ns();
 
 }  // namespace framewatch::test

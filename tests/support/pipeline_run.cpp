@@ -8,41 +8,44 @@
 
 namespace framewatch::test {
 
-Eigen::MatrixXd shaken(const Structure& structure, const Eigen::VectorXd& theta, double rate_hz,
-                       double duration_s, double noise_ratio) {
-  KanaiTajimi parameters;
+Eigen::MatrixXd shaken(const estimator::Structure& structure, const Eigen::VectorXd& theta,
+                       double rate_hz, double duration_s, double noise_ratio) {
+  estimator::KanaiTajimi parameters;
   parameters.duration_s = duration_s;
   parameters.strong_s = duration_s;
   parameters.build_up_s = 1;
   parameters.seed = 17;
-  const PlanMotion motion = directed(kanai_tajimi(parameters), M_PI / 4);
-  Eigen::MatrixXd accel = linear_response(structure, ParameterTable(structure), theta, motion,
-                                          {.rate_hz = rate_hz, .longest_step_s = 2.5e-3})
+  const estimator::PlanMotion motion = directed(kanai_tajimi(parameters), M_PI / 4);
+  Eigen::MatrixXd accel = linear_response(structure, estimator::ParameterTable(structure), theta,
+                                          motion, {.rate_hz = rate_hz, .longest_step_s = 2.5e-3})
                               .accel_abs;
   for (Eigen::Index axis = 0; axis < accel.cols() && noise_ratio > 0; ++axis) {
-    Random random(3, static_cast<std::uint64_t>(axis));
+    estimator::Random random(3, static_cast<std::uint64_t>(axis));
     const double rms = accel.col(axis).norm() / std::sqrt(static_cast<double>(accel.rows()));
     for (double& a : accel.col(axis)) a += noise_ratio * rms * random.normal();
   }
   return accel;
 }
 
-PipelineConfig pipeline_config(const Structure& structure, double rate_hz) {
-  PipelineConfig config;
+estimator::PipelineConfig pipeline_config(const estimator::Structure& structure, double rate_hz) {
+  estimator::PipelineConfig config;
   config.structure = structure;
   config.axes = full_sensor_axes(structure);
   config.options.rate_hz = rate_hz;
   return config;
 }
 
-AccelSample sample_at(const Eigen::MatrixXd& accel, double rate_hz, int instant, int axis) {
-  return {from_microseconds(std::llround(1e6 * instant / rate_hz)), axis, accel(instant, axis)};
+estimator::AccelSample sample_at(const Eigen::MatrixXd& accel, double rate_hz, int instant,
+                                 int axis) {
+  return {estimator::from_microseconds(std::llround(1e6 * instant / rate_hz)), axis,
+          accel(instant, axis)};
 }
 
-PipelineRun run_pipeline(const PipelineConfig& config, const Eigen::MatrixXd& accel,
+PipelineRun run_pipeline(const estimator::PipelineConfig& config, const Eigen::MatrixXd& accel,
                          const Delivered& delivered) {
   PipelineRun run;
-  Pipeline pipeline(config, [&](const WindowEstimate& e) { run.estimates.push_back(e); });
+  estimator::Pipeline pipeline(
+      config, [&](const estimator::WindowEstimate& e) { run.estimates.push_back(e); });
   for (int t = 0; t < accel.rows(); ++t)
     for (int axis = 0; axis < accel.cols(); ++axis)
       if (!delivered || delivered(t, axis))

@@ -3,17 +3,18 @@
 #include <functional>
 #include <vector>
 
-#include "estimator/pipeline.h"
+#include "estimator/pipeline/pipeline.h"
 
 namespace framewatch::test {
 
 /// Absolute accelerations of a building shaken obliquely by a strong seeded Kanai-Tajimi motion:
 /// instants x axes of full_sensor_axes(). noise_ratio: white noise of every axis, share of its rms.
-Eigen::MatrixXd shaken(const Structure& structure, const Eigen::VectorXd& theta, double rate_hz,
-                       double duration_s, double noise_ratio = 0);
+Eigen::MatrixXd shaken(const estimator::Structure& structure, const Eigen::VectorXd& theta,
+                       double rate_hz, double duration_s, double noise_ratio = 0);
 
 /// A configuration with sensors everywhere and no design.
-PipelineConfig pipeline_config(const Structure& structure, double rate_hz = 100);
+estimator::PipelineConfig pipeline_config(const estimator::Structure& structure,
+                                          double rate_hz = 100);
 
 /// What decides whether a sample is delivered: (instant, axis).
 using Delivered = std::function<bool(int, int)>;
@@ -21,13 +22,14 @@ using Delivered = std::function<bool(int, int)>;
 /// Everything a pipeline gives out for these accelerations, the first instant at time 0, and its
 /// counters at the end.
 struct PipelineRun {
-  std::vector<WindowEstimate> estimates;
-  PipelineCounters counters;
+  std::vector<estimator::WindowEstimate> estimates;
+  estimator::PipelineCounters counters;
 };
-PipelineRun run_pipeline(const PipelineConfig& config, const Eigen::MatrixXd& accel,
+PipelineRun run_pipeline(const estimator::PipelineConfig& config, const Eigen::MatrixXd& accel,
                          const Delivered& delivered = {});
 
 /// The sample of an axis at an instant.
-AccelSample sample_at(const Eigen::MatrixXd& accel, double rate_hz, int instant, int axis);
+estimator::AccelSample sample_at(const Eigen::MatrixXd& accel, double rate_hz, int instant,
+                                 int axis);
 
 }  // namespace framewatch::test

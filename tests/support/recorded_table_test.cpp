@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "daemon/scenario.h"
-#include "daemon/simulation_output.h"
+#include "daemon/simulation/scenario.h"
+#include "daemon/simulation/simulation_output.h"
 
 namespace framewatch::test {
 

@@ -11,9 +11,11 @@ constexpr double kGround_hz = 2.5, kGroundDamping = 0.6, kHighPass_hz = 0.3, kLo
 
 }  // namespace
 
-RestlessBuilding::RestlessBuilding(const Structure& structure, const Eigen::VectorXd& theta,
-                                   const std::vector<SensorAxis>& axes, std::uint64_t seed)
-    : building_(structure, ParameterTable(structure), theta, 1 / kStepRate_hz),
+RestlessBuilding::RestlessBuilding(const estimator::Structure& structure,
+                                   const Eigen::VectorXd& theta,
+                                   const std::vector<estimator::SensorAxis>& axes,
+                                   std::uint64_t seed)
+    : building_(structure, estimator::ParameterTable(structure), theta, 1 / kStepRate_hz),
       random_(seed),
       measured_(static_cast<Eigen::Index>(axes.size())) {
   // s^2 / (s^2 + 2 z w s + w^2), (2 z w s + w^2) / (same) and w^2 / (same), bilinear.
@@ -28,10 +30,10 @@ RestlessBuilding::RestlessBuilding(const Structure& structure, const Eigen::Vect
                section(kHighPass_hz, M_SQRT1_2, 1, 0, 0), section(kLowPass_hz, M_SQRT1_2, 0, 0, 1),
                section(kLowPass_hz, M_SQRT1_2, 0, 0, 1)};
   const Eigen::Index floors = structure.degrees_of_freedom();
-  for (const SensorAxis& axis : axes)
-    sensed_.push_back(axis.story > 0                   ? structure.dof(axis.story, axis.frame)
-                      : axis.direction == Direction::x ? floors
-                                                       : floors + 1);
+  for (const estimator::SensorAxis& axis : axes)
+    sensed_.push_back(axis.story > 0 ? structure.dof(axis.story, axis.frame)
+                      : axis.direction == estimator::Direction::x ? floors
+                                                                  : floors + 1);
 }
 
 double RestlessBuilding::Section::through(double x, int direction) {

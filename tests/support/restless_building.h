@@ -20,8 +20,8 @@ class RestlessBuilding {
   static constexpr double kRate_hz = 100;
 
   /// axes: what is measured, in any order.
-  RestlessBuilding(const Structure& structure, const Eigen::VectorXd& theta,
-                   const std::vector<SensorAxis>& axes, std::uint64_t seed);
+  RestlessBuilding(const estimator::Structure& structure, const Eigen::VectorXd& theta,
+                   const std::vector<estimator::SensorAxis>& axes, std::uint64_t seed);
 
   /// Takes time to compute: not for every instant.
   void set_theta(const Eigen::VectorXd& theta) { building_.set_theta(theta); }
@@ -41,8 +41,8 @@ class RestlessBuilding {
   };
   Eigen::Vector2d ground();
 
-  LinearBuilding building_;
-  Random random_;
+  estimator::LinearBuilding building_;
+  estimator::Random random_;
   std::vector<Section> sections_;
   Eigen::Vector2d before_ = Eigen::Vector2d::Zero();
   double ground_density_ = 0, noise_density_ = 0;

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "estimator/pipeline.h"
+#include "estimator/pipeline/pipeline.h"
 
 namespace framewatch::test {
 
@@ -18,18 +18,18 @@ class ShakenMinute {
 
   ShakenMinute();
   int frame() const { return frame_; }
-  const ParameterTable& table() const { return table_; }
+  const estimator::ParameterTable& table() const { return table_; }
   /// By WindowEstimate::window.
   std::vector<double> windows_s() const;
   /// Every window of one motion.
   void run(std::uint64_t seed, bool damaged,
-           const std::function<void(const WindowEstimate&)>& take) const;
+           const std::function<void(const estimator::WindowEstimate&)>& take) const;
 
  private:
   Eigen::MatrixXd motion(std::uint64_t seed, bool damaged) const;
 
-  Structure structure_;
-  ParameterTable table_;
+  estimator::Structure structure_;
+  estimator::ParameterTable table_;
   int frame_;
 };
 

@@ -1,0 +1,14 @@
+#include "daemon/base/exit_code.h"
+
+#include <cstdio>
+
+#include <fmt/core.h>
+
+namespace framewatch::daemon {
+
+int refuse(const std::string& command, const std::string& message) {
+  fmt::print(stderr, "framewatch {}: {}\n", command, message);
+  return kBadInput;
+}
+
+}  // namespace framewatch::daemon

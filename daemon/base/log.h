@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace framewatch::daemon {
+
+enum class LogLevel { error = 3, warning = 4, notice = 5, info = 6, debug = 7 };
+
+/// One line on stderr; under systemd prefixed with <N>, from which journald knows its priority.
+void log(LogLevel level, const std::string& message);
+
+/// Lets one line per second through and says how many it held back. The caller passes the time.
+class RateLimitedLog {
+ public:
+  explicit RateLimitedLog(LogLevel level) : level_(level) {}
+  void operator()(std::int64_t now_us, const std::string& message);
+
+ private:
+  LogLevel level_;
+  std::int64_t next_us_ = INT64_MIN;
+  std::int64_t held_back_ = 0;
+};
+
+}  // namespace framewatch::daemon

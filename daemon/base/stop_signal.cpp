@@ -1,0 +1,28 @@
+#include "daemon/base/stop_signal.h"
+
+#include <csignal>
+
+namespace framewatch::daemon {
+namespace {
+
+volatile std::sig_atomic_t requested = 0;
+
+extern "C" void request_stop(int) {
+  requested = 1;
+}
+
+}  // namespace
+
+void catch_stop_signals() {
+  std::signal(SIGCHLD, SIG_DFL);  // who ignores it is told of no child's end
+  struct sigaction action {};
+  action.sa_handler = request_stop;
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+}
+
+bool stop_requested() {
+  return requested != 0;
+}
+
+}  // namespace framewatch::daemon

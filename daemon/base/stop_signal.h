@@ -1,0 +1,10 @@
+#pragma once
+
+namespace framewatch::daemon {
+
+/// From now on SIGINT and SIGTERM do not end the process by themselves.
+void catch_stop_signals();
+/// Whether SIGINT or SIGTERM has come.
+bool stop_requested();
+
+}  // namespace framewatch::daemon

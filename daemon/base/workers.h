@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace framewatch::daemon {
+
+/// Runs independent pieces of work on several threads and reports progress. The result of a piece
+/// must not depend on its thread or on the order.
+class Workers {
+ public:
+  /// (what is being done, pieces done, pieces in all); called by one thread at a time.
+  using Progress = std::function<void(const std::string&, int, int)>;
+
+  explicit Workers(int threads, Progress progress = {});
+
+  /// Calls work(0) .. work(count - 1), each once; returns when all are done.
+  void run(const std::string& what, int count, const std::function<void(int)>& work) const;
+
+ private:
+  int threads_;
+  Progress progress_;
+};
+
+}  // namespace framewatch::daemon

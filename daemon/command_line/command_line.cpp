@@ -1,0 +1,33 @@
+#include "daemon/command_line/command_line.h"
+
+#include <CLI/CLI.hpp>
+
+#include "daemon/command_line/command_list.h"
+
+namespace framewatch::daemon {
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app{
+      "framewatch: stiffness and damping of every frame and floor panel of a building,\n"
+      "from its accelerometers, while it moves."};
+  app.name("framewatch");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", FRAMEWATCH_VERSION);
+
+  CommandList commands(app);
+  for (const auto add :  // in the order in which --help lists them
+       {add_demo,     add_run,       add_replay,      add_diff,  add_repair,
+        add_refine,   add_diagnose,  add_adopt,       add_check, add_convert,
+        add_simulate, add_reproduce, add_report,      add_serve, add_record,
+        add_history,  add_status,    add_acknowledge, add_tell,  add_selftest})
+    add(commands);
+
+  try {
+    app.parse(argc, argv);
+    return commands.run_chosen();
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+}
+
+}  // namespace framewatch::daemon

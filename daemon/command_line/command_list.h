@@ -1,0 +1,77 @@
+#pragma once
+
+#include <any>
+#include <functional>
+#include <list>
+#include <string>
+#include <utility>
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace framewatch::daemon {
+
+/// The commands of the program with their options. Each add_<command> below declares one command:
+/// its options, which write the fields of its arguments struct, and what runs when it is chosen.
+class CommandList {
+ public:
+  explicit CommandList(CLI::App& app) : app_(app) {}
+
+  /// A command without options yet.
+  CLI::App* add(const std::string& name, const std::string& purpose);
+
+  /// Arguments with their defaults; they live as long as the list.
+  template <class Arguments>
+  Arguments& arguments() {
+    return *std::any_cast<Arguments>(&arguments_.emplace_back(Arguments{}));
+  }
+
+  /// What happens when `command` is chosen; returns the exit status. It may throw a CLI::ParseError
+  /// for options that do not go together.
+  void set_action(CLI::App* command, std::function<int()> action);
+
+  /// Runs the chosen command, after parsing. Returns its exit status; 2 when none was chosen.
+  [[nodiscard]] int run_chosen() const { return chosen_ ? chosen_() : 2; }
+
+ private:
+  CLI::App& app_;
+  std::list<std::any> arguments_;
+  std::function<int()> chosen_;
+};
+
+// Options that several commands have.
+void add_config(CLI::App* command, std::string& config);            ///< CONFIG, required
+void add_installed_config(CLI::App* command, std::string& config);  ///< CONFIG, with a default
+void add_url(CLI::App* command, std::string& url);                  ///< --url
+void add_json(CLI::App* command, bool& json);                       ///< --json
+
+// live_commands.cpp: the daemon and what one does with it while it runs.
+void add_demo(CommandList& commands);
+void add_run(CommandList& commands);
+void add_serve(CommandList& commands);
+void add_status(CommandList& commands);
+void add_acknowledge(CommandList& commands);
+void add_tell(CommandList& commands);
+void add_selftest(CommandList& commands);
+
+// record_commands.cpp: where records come from and what they are turned into.
+void add_simulate(CommandList& commands);
+void add_record(CommandList& commands);
+void add_report(CommandList& commands);
+void add_convert(CommandList& commands);
+void add_history(CommandList& commands);
+
+// replay_commands.cpp: logs and estimates from logs.
+void add_replay(CommandList& commands);
+void add_diff(CommandList& commands);
+void add_repair(CommandList& commands);
+void add_refine(CommandList& commands);
+
+// model_commands.cpp: configurations and models.
+void add_check(CommandList& commands);
+void add_reproduce(CommandList& commands);
+void add_diagnose(CommandList& commands);
+void add_adopt(CommandList& commands);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,193 @@
+#include <CLI/CLI.hpp>
+
+#include "daemon/command_line/command_list.h"
+#include "daemon/commands/convert_command.h"
+#include "daemon/history/history_command.h"
+#include "daemon/session/record_command.h"
+#include "daemon/session/report_command.h"
+#include "daemon/simulation/simulate_command.h"
+
+namespace framewatch::daemon {
+
+void add_simulate(CommandList& commands) {
+  SimulateArguments& arguments = commands.arguments<SimulateArguments>();
+  CLI::App* command =
+      commands.add("simulate", "a virtual building's accelerometers, to LCM, to CAN or to a file");
+  command->footer(
+      "Examples:\n"
+      "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
+      "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2\n"
+      "  framewatch simulate configs/can/scenario_tower.toml --can vcan0");
+  command->add_option("SCENARIO", arguments.scenario, "scenario file (TOML)")->required();
+  command->add_option("--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog");
+  CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
+                                         "publish live, on this URL or the configuration's");
+  lcm->expected(0, 1)->type_name("[URL]");
+  CLI::Option* can = command->add_option(
+      "--can", arguments.can_interface,
+      "send the frames of the configuration's CAN nodes, on this interface or the configuration's");
+  can->expected(0, 1)->type_name("[INTERFACE]");
+  command->add_option("--speed", arguments.speed, "of --lcm and --can, times real time")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  command->add_option("--seconds", arguments.seconds, "instead of the scenario's duration")
+      ->check(CLI::Range(1e-3, 1e6));
+  command->add_option("--truth", arguments.truth, "JSON file to write what is hidden to");
+  command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
+  commands.set_action(command, [&arguments, lcm, can] {
+    arguments.lcm = lcm->count() > 0;
+    arguments.can = can->count() > 0;
+    return simulate(arguments);
+  });
+}
+
+void add_record(CommandList& commands) {
+  RecordArguments& arguments = commands.arguments<RecordArguments>();
+  CLI::App* command = commands.add(
+      "record", "acquisition sessions: raw samples and estimates in logs, and a report at the end");
+  command->footer(
+      "Checks the channels for 3 s, then records until Ctrl-C, --seconds or --send stop. With\n"
+      "--standby it waits for the live page, or for --send from another terminal.\n"
+      "Exit status: 0 recorded and reported, 1 not everything, 2 bad usage or configuration.\n"
+      "Examples:\n"
+      "  framewatch record table.toml --test \"El Centro 30 %\" --operator me --seconds 60\n"
+      "  framewatch record table.toml --test sweep --trigger 0.2 --pre-trigger 5 --seconds 60\n"
+      "  framewatch record table.toml --standby --out /data/sessions\n"
+      "  framewatch record table.toml --send start --test sweep");
+  add_config(command, arguments.config);
+  add_url(command, arguments.url);
+  command->add_option("--out", arguments.out, "folder that gets a folder per session")
+      ->type_name("DIR")
+      ->capture_default_str();
+  SessionRequest& request = arguments.request;
+  command->add_option("--test", request.test, "name of the test");
+  command->add_option("--operator", request.operator_name, "who makes it");
+  command->add_option("--notes", request.notes, "what the next reader should know");
+  command->add_option("--seconds", request.length_s, "length after the start or trigger");
+  command->add_option("--trigger", request.trigger_mps2,
+                      "arm: begin when a base channel is so far from rest, m/s^2");
+  CLI::Option* before = command->add_option("--pre-trigger", request.pre_trigger_s,
+                                            "seconds stored from before the trigger (default 5)");
+  command->add_option("--tap-test", arguments.tap_s,
+                      "first wait at most so many seconds for a tap next to every sensor, in the\n"
+                      "building's positive direction: tells reversed ones");
+  command->add_flag("!--no-check", arguments.check, "begin without the check of the channels");
+  command->add_flag("--strict", arguments.strict, "record nothing when a channel has a problem");
+  command->add_flag("--standby", arguments.standby, "wait for commands, session after session");
+  command
+      ->add_option("--send", arguments.send, "tell the recorder that runs: start, arm, tap or stop")
+      ->check(CLI::IsMember({"start", "arm", "tap", "stop"}));
+  command->add_option("--finish", arguments.finish,
+                      "stages and report of a session that was cut off, or whose report failed");
+  command->add_option("--reports", arguments.reports,
+                      "folder for the report (default: the session's own)");
+  command->add_flag("--csv", arguments.csv, "raw samples and estimates as CSV too");
+  command->add_flag("--mat", arguments.mat, "raw samples and estimates for MATLAB too");
+  command->add_flag("--split", arguments.split, "a raw log for every stage too");
+  command->add_flag("!--no-report", arguments.report, "no report at the end");
+  command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
+  commands.set_action(command, [&arguments, before] {
+    if (before->count() == 0 && arguments.request.trigger_mps2 > 0)
+      arguments.request.pre_trigger_s = 5;
+    return record(arguments);
+  });
+}
+
+void add_report(CommandList& commands) {
+  ReportArguments& arguments = commands.arguments<ReportArguments>();
+  CLI::App* command = commands.add(
+      "report", "one self-contained page of a session: boxplots, parameters, histories, loops");
+  command->footer(
+      "With --config and --raw also stages (forced and free vibration side by side),\n"
+      "reference-dynamic values, transfer functions, drifts and forces.\n"
+      "Example: framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html");
+  command->add_option("EST", arguments.estimates, "LCM event log of estimates")->required();
+  command->add_option("--out", arguments.out, "page to write (default: EST with .html)");
+  command->add_option("--config", arguments.config, "the building's configuration (TOML)");
+  command->add_option("--raw", arguments.raw,
+                      "raw samples: LCM event logs and record files, in order of time");
+  command->add_option("--title", arguments.title, "of the page");
+  command->add_option("--test", arguments.test, "name of the test");
+  command->add_option("--operator", arguments.operator_name, "who made it");
+  command->add_option("--notes", arguments.notes, "what the next reader should know");
+  command->add_option("--session", arguments.session,
+                      "session.json of framewatch record: check of the channels, trigger");
+  command->add_flag("--quiet", arguments.quiet, "do not print the page's path");
+  commands.set_action(command, [&arguments] { return report(arguments); });
+}
+
+void add_convert(CommandList& commands) {
+  ConvertArguments& arguments = commands.arguments<ConvertArguments>();
+  CLI::App* command = commands.add(
+      "convert", "records to LCM event logs or CSV, logs of accelerations or estimates to CSV");
+  command->footer(
+      "What is read is told from the content, what is written from OUT's ending: .lcmlog, .csv or\n"
+      ".csv.gz. Several records of one rate become one log. docs/formats.md has every format.\n"
+      "Examples:\n"
+      "  framewatch convert rec.csv --config table.toml rec.lcmlog\n"
+      "  framewatch convert elcentro_NS.dat --unit g elcentro.csv\n"
+      "  framewatch convert hachi.txt --unit gal --step 0.01 hachi.lcmlog\n"
+      "  framewatch convert ground.csv.gz first.csv.gz second.csv.gz top.csv.gz run.lcmlog\n"
+      "  framewatch convert est.lcmlog --boxplot est.csv");
+  command
+      ->add_option("FILES", arguments.inputs,
+                   "IN... OUT: record files or one event log, then the output")
+      ->required()
+      ->expected(2, 1000)
+      ->type_name("");
+  command->add_option("--unit", arguments.unit, "of a file that does not say it: g, gal, mps2");
+  command->add_option("--step", arguments.step_s, "seconds between samples of a file without time");
+  command->add_option("--format", arguments.format, "csv, at2, two-columns, rows or xsens")
+      ->capture_default_str();
+  command->add_option("--config", arguments.config,
+                      "configuration whose channels say where the columns of their names travel");
+  command->add_option("--channel", arguments.channel,
+                      "LCM channel to write (default ACCEL) or to read");
+  command->add_flag("--boxplot", arguments.boxplot, "boxplot columns beside the estimates");
+  command->add_flag("--denoise", arguments.denoise,
+                    "the paper's removal of noise on every channel of a record, for comparison");
+  command->add_option("--start-us", arguments.start_us, "sensor time of a record's time zero");
+  commands.set_action(command, [&arguments] {
+    arguments.out = arguments.inputs.back();
+    arguments.inputs.pop_back();
+    return convert(arguments);
+  });
+}
+
+void add_history(CommandList& commands) {
+  HistoryArguments& arguments = commands.arguments<HistoryArguments>();
+  CLI::App* command = commands.add(
+      "history", "what `run` keeps on disk: an overview, summaries, events, raw samples as files");
+  command->footer(
+      "Times are UTC (2026-11-21T23:15:00Z) or seconds since 1970. Exit status: 0 done, 2 bad\n"
+      "usage or input, and nothing written.\n"
+      "Examples:\n"
+      "  framewatch history building.toml\n"
+      "  framewatch history building.toml --last 2d --parameter 'kx_1_*'\n"
+      "  framewatch history building.toml --period 3600 --out year.csv.gz\n"
+      "  framewatch history building.toml --from 2026-11-21T17:00Z --to 2026-11-21T17:05Z \\\n"
+      "    --raw quake.mseed");
+  command
+      ->add_option("CONFIG_OR_DIR", arguments.place,
+                   "configuration file (TOML) with [history], or the directory it names")
+      ->required();
+  command->add_option("--from", arguments.from, "leave out what is earlier");
+  command->add_option("--to", arguments.to, "leave out what is this late or later");
+  command->add_option("--last", arguments.last, "only so long before the newest: 90m, 2h, 3d");
+  command->add_option("--period", arguments.period_s,
+                      "seconds that a summary is of (default: the shortest that fits a screen,\n"
+                      "of a file the shortest)");
+  command->add_option("--parameter", arguments.parameters, "names, * and ? allowed (default: all)");
+  command->add_option("--out", arguments.out,
+                      "file for the summaries: .csv, .csv.gz or .mat (MATLAB 5)");
+  command->add_option("--raw", arguments.raw,
+                      "file for raw samples: .lcmlog, .csv, .csv.gz or .mseed (miniSEED)");
+  command->add_option("--channel", arguments.channels, "of the raw samples (default: all)");
+  command->add_option("--network", arguments.network, "SEED network code")->capture_default_str();
+  command->add_option("--station", arguments.station, "SEED station code")->capture_default_str();
+  command->add_flag("--events", arguments.events, "every event instead of summaries");
+  command->add_flag("--json", arguments.json, "the overview as a program would read it");
+  commands.set_action(command, [&arguments] { return history(arguments); });
+}
+
+}  // namespace framewatch::daemon

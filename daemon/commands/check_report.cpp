@@ -1,0 +1,123 @@
+#include "daemon/commands/check_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+#include <fmt/core.h>
+
+#include "drivers/can/bus_load.h"
+#include "estimator/pipeline/pipeline.h"
+#include "estimator/structure/matrices.h"
+#include "estimator/structure/natural_frequencies.h"
+#include "estimator/structure/panel_excitation.h"
+
+namespace framewatch::daemon {
+namespace {
+
+/// Below this share rounding is all there is.
+constexpr double kNoShear = 1e-9;
+/// Below this share 1 % sensor noise leaves a panel with an error of more than its value
+/// (method.md).
+constexpr double kWeakShear = 0.01;
+/// The derivative filters' error is small up to a fifth of the sampling rate.
+constexpr double kUsableShareOfRate = 0.2;
+/// Larger buildings would keep a person waiting for dense matrices.
+constexpr int kMaxDegreesOfFreedom = 400;
+
+/// Bytes allocated by this process and not freed.
+std::size_t allocated_bytes() {
+#ifdef __GLIBC__
+  const struct mallinfo2 info = ::mallinfo2();
+  return info.uordblks + info.hblkhd;
+#else
+  return 0;
+#endif
+}
+
+void warn_about_panels(CheckReport& report) {
+  std::string none, weak;
+  for (const PanelOutlook& panel : report.panels) {
+    std::string& list = panel.shear_ratio < kNoShear ? none : weak;
+    if (panel.shear_ratio < kWeakShear) list += (list.empty() ? "" : ", ") + panel.parameter;
+  }
+  if (!none.empty())
+    report.warnings.push_back(
+        "the plan is symmetric in the design's stiffness and mass: ground motion does not shear "
+        "the floors, and no record can identify " +
+        none + " and their damping");
+  if (!weak.empty())
+    report.warnings.push_back(
+        "the plan is nearly symmetric in the design's stiffness and mass: expect little about " +
+        weak + " and their damping");
+}
+
+void warn_about_rate(CheckReport& report) {
+  const double rate = report.config.pipeline.options.rate_hz;
+  const double usable = kUsableShareOfRate * rate;
+  const auto& hz = report.design_hz;
+  const auto above = std::count_if(hz.begin(), hz.end(), [&](double f) { return f > usable; });
+  if (above > 0)
+    report.warnings.push_back(fmt::format(
+        "{} of {} design natural frequencies lie above a fifth of the sampling rate, {:g} Hz "
+        "(highest: {:.2f} Hz); sample at {:.0f} Hz or more",
+        above, hz.size(), usable, hz.back(), std::ceil(hz.back() / kUsableShareOfRate)));
+}
+
+void warn_about_rounding(CheckReport& report) {
+  const estimator::EstimatorOptions& o = report.config.pipeline.options;
+  const auto check = [&](const char* key, double asked, int rows) {
+    const double got = rows / o.rate_hz;
+    if (std::abs(got - asked) > 1e-6 * asked)
+      report.warnings.push_back(
+          fmt::format("estimator.{}: {:g} s becomes {:.6g} s, {} samples at {:g} Hz", key, asked,
+                      got, rows, o.rate_hz));
+  };
+  check("window_s", o.window_s, report.window_rows);
+  check("hop_s", o.hop_s, report.hop_rows);
+}
+
+void warn_about_bus_load(CheckReport& report) {
+  for (std::size_t b = 0; b < report.config.can.buses.size(); ++b) {
+    const double share = drivers::bus_load(report.config.can, static_cast<int>(b)).share;
+    if (share > drivers::kHighBusLoad)
+      report.warnings.push_back(fmt::format(
+          "the configured nodes may take {:.0f} % of {}: above {:.0f} % frames wait long "
+          "and other devices suffer; a higher bit rate, a second bus or fewer nodes help",
+          100 * share, report.config.can.buses[b].interface, 100 * drivers::kHighBusLoad));
+  }
+}
+
+}  // namespace
+
+CheckReport make_check_report(const Config& config) {
+  CheckReport report;
+  report.config = config;
+  const estimator::PipelineConfig& c = config.pipeline;
+  const std::size_t before = allocated_bytes();
+  const estimator::Pipeline pipeline(c, [](const estimator::WindowEstimate&) {});
+  report.memory_bytes = allocated_bytes() - before;
+  report.window_rows = pipeline.window_rows();
+  report.hop_rows = pipeline.hop_rows();
+  const estimator::ParameterTable table(c.structure);
+  for (int i = 0; i < table.size(); ++i) report.parameters.push_back(table[i].name);
+  warn_about_rounding(report);
+  warn_about_bus_load(report);
+  const bool small = c.structure.degrees_of_freedom() <= kMaxDegreesOfFreedom;
+  if (c.design.size() > 0 && small) {
+    report.design_hz = natural_frequencies_hz(c.structure, table, c.design);
+    const std::vector<double> shares = panel_excitation(c.structure, table, c.design);
+    const int first = table.elements() - static_cast<int>(shares.size());
+    for (std::size_t p = 0; p < shares.size(); ++p)
+      report.panels.push_back({table[first + static_cast<int>(p)].name, shares[p]});
+    warn_about_panels(report);
+    warn_about_rate(report);
+  }
+  return report;
+}
+
+}  // namespace framewatch::daemon

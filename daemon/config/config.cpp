@@ -1,0 +1,55 @@
+#include "daemon/config/config.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "daemon/base/file_digest.h"
+#include "daemon/config/baseline_file.h"
+#include "daemon/config/gap_model.h"
+#include "daemon/config/read_config.h"
+#include "daemon/keys/fields.h"
+
+namespace framewatch::daemon {
+namespace {
+
+void place_all_files(Config& config) {
+  const std::string beside = std::filesystem::path(config.path).parent_path().string();
+  if (config.watch) place_files("watch", beside, *config.watch);
+  if (config.gap) place_files("gap", beside, *config.gap);
+  if (config.history) place_files("history", beside, *config.history);
+  if (config.actions) place_files("actions", beside, *config.actions);
+}
+
+}  // namespace
+
+std::optional<Config> parse_config(const std::string& path, const std::string& text,
+                                   std::vector<ConfigProblem>& problems) {
+  Config config;
+  config.path = path;
+  config.sha256 = sha256(text);
+  std::vector<TextProblem> found;
+  if (const std::optional<TomlValue> document = parse_toml(text, found))
+    read_config(*document, config, found);
+  if (found.empty()) {
+    place_all_files(config);
+    load_watch_baseline(config, problems);
+    load_gap_model(config, problems);
+    if (problems.empty()) return config;
+    return std::nullopt;
+  }
+  problems = with_file(path, std::move(found));
+  return std::nullopt;
+}
+
+std::optional<Config> load_config(const std::string& path, std::vector<ConfigProblem>& problems) {
+  problems.clear();
+  std::string error;
+  const std::optional<std::string> text = read_text_file(path, error);
+  if (!text) {
+    problems.push_back({path, error});
+    return std::nullopt;
+  }
+  return parse_config(path, *text, problems);
+}
+
+}  // namespace framewatch::daemon

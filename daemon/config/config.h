@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config_problems.h"
+#include "daemon/config/settings.h"
+
+namespace framewatch::daemon {
+
+/// Reads and validates. Empty optional and every problem at once when it is not valid.
+std::optional<Config> load_config(const std::string& path, std::vector<ConfigProblem>& problems);
+/// The same from a text; `path` is what messages call it.
+std::optional<Config> parse_config(const std::string& path, const std::string& text,
+                                   std::vector<ConfigProblem>& problems);
+
+}  // namespace framewatch::daemon

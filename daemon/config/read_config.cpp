@@ -1,0 +1,63 @@
+#include "daemon/config/read_config.h"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "daemon/config/can_reader.h"
+#include "daemon/config/effects.h"
+#include "daemon/config/sections.h"
+#include "daemon/keys/section_table.h"
+#include "daemon/keys/suggest.h"
+
+namespace framewatch::daemon {
+namespace {
+
+void check_sections(const TomlValue& document, std::vector<TextProblem>& problems) {
+  std::vector<std::string> known;
+  std::string headings;
+  for (const SectionDescription& s : section_table()) {
+    if (!s.reload) continue;  // of another file
+    if (s.section.find('.') == std::string_view::npos) known.emplace_back(s.section);
+    if (s.heading.starts_with('['))
+      headings += (headings.empty() ? "" : ", ") + std::string(s.heading);
+  }
+  for (const TomlEntry& entry : document.entries) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+    const std::string meant = nearest(entry.key, known);
+    problems.push_back(
+        {entry.place, fmt::format("unknown section or key {}: {}", entry.key,
+                                  meant.empty() ? "the sections are " + headings
+                                                : fmt::format("did you mean {}?", meant))});
+  }
+}
+
+}  // namespace
+
+bool read_config(const TomlValue& document, Config& config, std::vector<TextProblem>& problems) {
+  const std::size_t before = problems.size();
+  check_sections(document, problems);
+  const StructureReading structure = read_structure(document, problems);
+  config.pipeline.structure = structure.structure;
+  config.pipeline.design = structure.design;
+  read_channels(document, structure, config, problems);
+  config.pipeline.options = read_estimator(document, problems);
+  config.lcm = read_lcm(document, problems);
+  read_can(document, config, problems);
+  config.watch = read_watch(document, problems);
+  if (config.watch) config.pipeline.options.long_window_s = config.watch->options.quiet_window_s;
+  config.gap = read_gap(document, problems);
+  config.history = read_history(document, problems);
+  config.actions = read_actions(document, problems);
+  if (problems.size() == before)
+    for (const std::string& rule : estimator::problems(config.pipeline))
+      problems.push_back({{}, rule});
+  const bool sound = problems.size() == before;
+  const std::vector<const TomlValue*> effects = tables_of(document, "effect", problems);
+  if (sound)
+    config.effects = read_effects(effects, structure.structure, config.pipeline.axes, problems);
+  return problems.size() == before;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/keys/action_options.h"
+#include "daemon/keys/channel_options.h"
+#include "daemon/keys/gap_options.h"
+#include "daemon/keys/history_options.h"
+#include "daemon/keys/lcm_options.h"
+#include "daemon/keys/watch_options.h"
+#include "drivers/can/can_map.h"
+#include "estimator/pipeline/pipeline.h"
+#include "estimator/structure/effect.h"
+
+namespace framewatch::daemon {
+
+/// One configuration file, defaults filled in.
+struct Config {
+  std::string path;
+  std::string sha256;
+  estimator::PipelineConfig pipeline;
+  std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
+  LcmSettings lcm;
+  drivers::CanMap can;                     ///< axes as in pipeline.axes
+  std::optional<WatchSettings> watch;      ///< none: nothing is watched
+  std::optional<GapSettings> gap;          ///< none: nothing is simulated beside the measurement
+  std::optional<HistorySettings> history;  ///< none: nothing is kept
+  std::optional<ActionSettings> actions;   ///< none: nobody is notified
+  std::vector<estimator::Effect> effects;  ///< that the building has beyond the linear model
+};
+
+}  // namespace framewatch::daemon

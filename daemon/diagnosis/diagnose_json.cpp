@@ -1,0 +1,155 @@
+#include "daemon/diagnosis/diagnose_json.h"
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/simulation/effect_json.h"
+#include "estimator/diagnose/trials/catalogue_form.h"
+#include "estimator/diagnose/verdict/verdict.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// [from, to]; null where it is not known.
+Json span(double from, double to) {
+  return to > from ? Json{number(from), number(to)} : Json(nullptr);
+}
+
+/// Gap (or its floor) of every channel and overall, averaged over the training or the held-out
+/// segments.
+Json gap_json(const DiagnoseOutput& o, const std::vector<estimator::Gap>& gaps, bool holdout,
+              bool floor) {
+  Json channels = Json::object();
+  double overall = 0;
+  int count = 0;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(o.plant.axis_count());
+  for (std::size_t r = 0; r < gaps.size(); ++r) {
+    if ((r >= o.holdout_from) != holdout) continue;
+    overall += floor ? gaps[r].overall_floor : gaps[r].overall;
+    sum += floor ? gaps[r].floor : gaps[r].axis;
+    ++count;
+  }
+  if (count == 0) return {{"overall", nullptr}, {"channels", Json::object()}};
+  for (Eigen::Index a = 0; a < sum.size(); ++a)
+    if (!o.plant.is_input(a) || o.plant.prescribed)
+      channels[o.plant.axes[static_cast<std::size_t>(a)].name] = number(sum[a] / count);
+  return {{"overall", number(overall / count)}, {"channels", channels}};
+}
+
+Json both(const DiagnoseOutput& o, const std::vector<estimator::Gap>& gaps, bool floor) {
+  return {{"train", gap_json(o, gaps, false, floor)}, {"holdout", gap_json(o, gaps, true, floor)}};
+}
+
+/// Name, place, parameters.
+Json effect_json(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
+  const estimator::Effect effect = catalogue_effect(o.plant, o.segments, f, o.diagnosis.model);
+  Json parameters = parameters_json(effect);
+  std::size_t index = 0;
+  for (auto& [key, value] : parameters.items()) {
+    if (index < f.std_error.size() && f.std_error[index] > 0)
+      value["std_error"] = number(f.std_error[index]);
+    ++index;
+  }
+  return {{"effect", std::string(name_of(effect.kind))},
+          {"location", location_json(effect.place, o.plant.structure, o.plant.axes)},
+          {"parameters", parameters}};
+}
+
+const char* outcome_word(estimator::TrialOutcome outcome) {
+  switch (outcome) {
+    case estimator::TrialOutcome::fitted:
+      return "fitted";
+    case estimator::TrialOutcome::screened_out:
+      return "screened_out";
+    case estimator::TrialOutcome::diverged:
+      return "diverged";
+    case estimator::TrialOutcome::other_law:
+      break;
+  }
+  return "other_law";
+}
+
+Json trial_json(const DiagnoseOutput& o, const estimator::Trial& t) {
+  Json out{{"effect", std::string(name_of(t.kind))},
+           {"location", location_json(t.place, o.plant.structure, o.plant.axes)},
+           {"explained_share", number(t.fraction)},
+           {"misfit", number(t.cost)},
+           {"fate", outcome_word(t.outcome)}};
+  if (t.second)
+    out["together_with"] = {
+        {"effect", std::string(name_of(t.second->first))},
+        {"location", location_json(t.second->second, o.plant.structure, o.plant.axes)}};
+  return out;
+}
+
+}  // namespace
+
+std::string diagnosis_json(const DiagnoseOutput& o) {
+  const estimator::Diagnosis& d = o.diagnosis;
+  Json out{{"schema", "framewatch.diagnosis/1"}, {"verdict", verdict_word(d.verdict)}};
+  if (!d.reason.empty()) out["reason"] = d.reason;
+  out["gap"] = {{"before", both(o, d.before, false)},
+                {"after", both(o, d.after, false)},
+                {"noise_floor", both(o, d.before, true)},
+                {"after_is_of_a_model_fitted_to", d.after_of_all ? "all records" : "train"},
+                {"misfit_ratio_before", number(d.ratio_before)},
+                {"misfit_ratio_after", number(d.ratio_after)}};
+  out["effects"] = Json::array();
+  for (const estimator::FoundEffect& f : d.effects) {
+    Json one = effect_json(o, f);
+    one.update(Json{{"holdout_nrmse_before", number(f.before)},
+                    {"holdout_nrmse_after", number(f.after)},
+                    {"explained_share", number(f.chosen.fraction)},
+                    {"confidence", number(f.confidence)},
+                    {"approximate", f.approximate},
+                    {"alternatives", Json::array()},
+                    {"indistinguishable_from", Json::array()}});
+    for (const estimator::Trial& t : f.alternatives)
+      one["alternatives"].push_back(trial_json(o, t));
+    for (const estimator::EffectKind kind : f.like)
+      one["indistinguishable_from"].push_back(std::string(name_of(kind)));
+    out["effects"].push_back(one);
+  }
+  out["known_effects"] = Json::array();
+  for (const estimator::FoundEffect& f : d.known) out["known_effects"].push_back(effect_json(o, f));
+  out["candidates_rejected"] = Json::array();
+  for (const estimator::Trial& t : d.rejected)
+    out["candidates_rejected"].push_back(trial_json(o, t));
+  out["where"] = Json::array();
+  for (const estimator::WhereEntry& w : d.where)
+    out["where"].push_back(
+        {{"location", location_json(w.place, o.plant.structure, o.plant.axes)},
+         {"misfit_ratio_if_free", number(w.ratio)},
+         {"record", o.records[w.record].path},
+         {"time_s", span(w.from_s, w.to_s)},
+         {"band_hz", span(w.low_hz, w.high_hz)},
+         {"peak", w.peak > 0 ? number(w.peak) : Json(nullptr)},
+         {"peak_unit", w.place.kind == estimator::PlaceKind::channel ? "m/s^2" : "N"}});
+  Json parameters = Json::object();
+  for (int p = 0; p < o.plant.table.size(); ++p)
+    if (!o.plant.stiff_floors || o.plant.table[p].panel < 0)
+      parameters[o.plant.table[p].name] = {{"value", number(d.model.theta[p])},
+                                           {"unit", o.plant.table[p].unit},
+                                           {"design", number(o.plant.design[p])}};
+  out["parameters"] = parameters;
+  Json files = Json::array();
+  for (std::size_t r = 0; r < o.records.size(); ++r)
+    files.push_back({{"file", o.records[r].path},
+                     {"sha256", o.records[r].sha256},
+                     {"use", r < o.holdout_from ? "train" : "holdout"}});
+  out["provenance"] = {{"config", o.config.path},
+                       {"config_sha256", o.config.sha256},
+                       {"records", files},
+                       {"version", FRAMEWATCH_VERSION},
+                       {"command", "diagnose"}};
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace framewatch::daemon

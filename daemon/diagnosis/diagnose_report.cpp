@@ -1,0 +1,283 @@
+#include "daemon/diagnosis/diagnose_report.h"
+
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "daemon/diagnosis/where_map.h"
+#include "daemon/documents/html_page.h"
+#include "daemon/documents/svg_plot.h"
+#include "estimator/diagnose/model/free_run.h"
+#include "estimator/diagnose/trials/catalogue_form.h"
+#include "estimator/diagnose/verdict/verdict.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kForceDeformationPoints = 4000;
+constexpr std::size_t kRanked = 15;
+
+std::string percent(double share) {
+  return fmt::format("{:.2f} %", 100 * share);
+}
+
+std::string place(const DiagnoseOutput& o, const estimator::EffectPlace& p) {
+  return html_text(place_text(p, o.plant.structure, o.plant.axes));
+}
+
+std::string use(const DiagnoseOutput& o, std::size_t r) {
+  return r < o.holdout_from ? "train" : "held out";
+}
+
+std::string gap_section(const DiagnoseOutput& o) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> plots;
+  for (std::size_t r = 0; r < o.diagnosis.before.size() && r < o.diagnosis.after.size(); ++r) {
+    const estimator::Gap& before = o.diagnosis.before[r];
+    const estimator::Gap& after = o.diagnosis.after[r];
+    rows.push_back({html_text(o.records[r].path) + " (" + use(o, r) + ")", percent(before.overall),
+                    percent(after.overall), percent(before.overall_floor)});
+    SvgAxis names{""};
+    SvgSeries b{"before", 1, SvgMark::rings, {}, {}}, a{"after", 0, SvgMark::dots, {}, {}},
+        n{"noise floor", 6, SvgMark::bars, {}, {}};
+    for (std::size_t c = 0; c < o.plant.axes.size(); ++c) {
+      if (o.plant.is_input(static_cast<Eigen::Index>(c)) && !o.plant.prescribed) continue;
+      names.categories.push_back(o.plant.axes[c].name);
+      const auto x = static_cast<double>(names.categories.size());
+      const auto at = static_cast<Eigen::Index>(c);
+      for (SvgSeries* s : {&b, &a, &n}) s->x.push_back(x);
+      b.y.push_back(100 * before.axis[at]);
+      a.y.push_back(100 * after.axis[at]);
+      n.y.push_back(100 * before.floor[at]);
+    }
+    SvgPlot plot(use(o, r) + ": gap of every channel", names, {"free-run NRMSE, %"});
+    plot.add(n);
+    plot.add(b);
+    plot.add(a);
+    plots.push_back(plot.svg());
+  }
+  const std::string fitted =
+      o.diagnosis.after_of_all
+          ? "The training records do not determine the effects: the gap after is of a model fitted "
+            "to all records."
+          : "Both models were fitted to the training records alone.";
+  return "<h2>Gap between simulation and measurement</h2>\n"
+         "<p>Free run from the measured motion of the base alone. " +
+         fitted + "</p>\n" + html_table({"record", "before", "after", "noise floor"}, rows) +
+         html_figure(plots, "Gap per channel, over what the sensors' noise alone would make.");
+}
+
+std::string history_section(const DiagnoseOutput& o) {
+  std::vector<std::string> plots;
+  for (std::size_t r = 0; r < o.diagnosis.before.size() && r < o.diagnosis.after.size(); ++r) {
+    const estimator::RecordSegment& s = o.segments[r];
+    const int axis = o.diagnosis.before[r].worst_axis;
+    const Eigen::VectorXd measured = signal_of(s.spectrum.row(axis).transpose(), s, 1);
+    const auto simulated = [&](const estimator::Gap& gap) {
+      return Eigen::VectorXd(measured - signal_of(gap.difference.row(axis).transpose(), s, 1));
+    };
+    const Eigen::VectorXd before = simulated(o.diagnosis.before[r]),
+                          after = simulated(o.diagnosis.after[r]);
+    Eigen::Index peak = 0;
+    measured.cwiseAbs().maxCoeff(&peak);
+    const auto span = static_cast<Eigen::Index>(4 * s.rate_hz);
+    const Eigen::Index from =
+        std::max<Eigen::Index>(0, std::min(peak - span / 2, measured.size() - span));
+    const Eigen::Index to = std::min(measured.size(), from + span);
+    std::vector<double> t, m, b, a;
+    for (Eigen::Index i = from; i < to; ++i) {
+      t.push_back(static_cast<double>(i) / s.rate_hz);
+      m.push_back(measured[i]);
+      b.push_back(before[i]);
+      a.push_back(after[i]);
+    }
+    SvgPlot plot(use(o, r) + ": channel " + o.plant.axes[static_cast<std::size_t>(axis)].name,
+                 {"time, s"}, {"acceleration in the band, m/s^2"});
+    plot.add({"measured", 6, SvgMark::line, t, m});
+    plot.add({"simulated before", 1, SvgMark::dashed, t, b});
+    plot.add({"simulated after", 0, SvgMark::thin_line, t, a});
+    plots.push_back(plot.svg());
+  }
+  return "<h2>Measured and simulated</h2>\n" +
+         html_figure(plots, "The channel with the widest gap, around the strongest motion.");
+}
+
+std::string loop_section(const DiagnoseOutput& o) {
+  std::vector<std::string> plots;
+  for (const estimator::FoundEffect& f : o.diagnosis.effects) {
+    if (f.index < 0) continue;
+    const estimator::ModelEffect& e = o.diagnosis.model.effects[static_cast<std::size_t>(f.index)];
+    if (!e.element_law()) continue;
+    std::size_t law = 0;
+    for (int i = 0; i < f.index; ++i)
+      law += o.diagnosis.model.effects[static_cast<std::size_t>(i)].element_law();
+    const std::size_t r = o.segments.size() - 1;
+    const int ratio = steps_per_sample(o.plant, o.segments[r].rate_hz);
+    const estimator::FreeRun run = free_run(o.plant, o.diagnosis.model, o.segments[r], r, ratio);
+    if (!run.good) continue;
+    const estimator::LawTrack& track = run.tracks[law];
+    const int element = element_of(o.plant, e.place);
+    const double k = o.diagnosis.model.theta[element], linear = o.diagnosis.linear.theta[element];
+    std::vector<double> d, before, after;
+    const Eigen::Index stride = std::max<Eigen::Index>(1, track.d.size() / kForceDeformationPoints);
+    for (Eigen::Index i = 0; i < track.d.size(); i += stride) {
+      d.push_back(track.d[i]);
+      before.push_back(linear * track.d[i]);
+      after.push_back(k * track.d[i] + track.force[i]);
+    }
+    SvgPlot plot(place_text(e.place, o.plant.structure, o.plant.axes), {"deformation, m"},
+                 {"restoring force, N"});
+    plot.add({"after", 0, SvgMark::thin_line, d, after});
+    plot.add({"before: linear", 1, SvgMark::dots, d, before});
+    plots.push_back(plot.svg());
+  }
+  return plots.empty() ? ""
+                       : "<h2>Force and deformation</h2>\n" +
+                             html_figure(plots, "Of the last record, as the model has it.");
+}
+
+/// Time span of nine tenths of the signal that a place needs.
+std::string when(const DiagnoseOutput& o, const estimator::WhereEntry& w) {
+  if (!(w.to_s > w.from_s)) return "";
+  return fmt::format("{:.1f} to {:.1f} s of {}", w.from_s, w.to_s,
+                     html_text(o.records[w.record].path));
+}
+
+std::string band(const estimator::WhereEntry& w) {
+  return w.high_hz > w.low_hz ? fmt::format("{:.2f} to {:.2f} Hz", w.low_hz, w.high_hz) : "";
+}
+
+std::string peak(const estimator::WhereEntry& w) {
+  const char* unit = w.place.kind == estimator::PlaceKind::channel ? "m/s^2" : "N";
+  return w.peak > 0 ? fmt::format("{:.3g} {}", w.peak, unit) : "";
+}
+
+std::string where_section(const DiagnoseOutput& o) {
+  std::vector<std::vector<std::string>> rows;
+  for (const estimator::WhereEntry& w : o.diagnosis.where)
+    rows.push_back(
+        {place(o, w.place), fmt::format("{:.3f}", w.ratio), when(o, w), band(w), peak(w)});
+  return fmt::format(
+             "<h2>Where</h2>\n<p>If one place may do anything at all, the rest of a linear "
+             "building "
+             "fits again when it is the right one: the misfit falls to 1, from {:.3g}.</p>\n",
+             o.diagnosis.ratio_before) +
+         html_figure(
+             where_map(o.plant.structure, o.plant.axes, o.diagnosis.map, o.diagnosis.ratio_before),
+             "Plans of the stories. The stronger a frame, panel, mass or sensor is drawn, "
+             "the less is left when it may do anything; the three best are numbered.") +
+         html_table({"place", "misfit left, 1 is noise", "when", "frequencies", "largest"}, rows);
+}
+
+const char* why_it_lost(estimator::TrialOutcome outcome) {
+  switch (outcome) {
+    case estimator::TrialOutcome::fitted:
+      return "leaves more unexplained";
+    case estimator::TrialOutcome::screened_out:
+      return "others of its place do better when the measured motion drives the law";
+    case estimator::TrialOutcome::diverged:
+      return "its free run comes to no end";
+    case estimator::TrialOutcome::other_law:
+      break;
+  }
+  return "as fitted it is not the law of this name";
+}
+
+/// Table of the best trials. best: cost of the one that was chosen.
+std::string ranking(const DiagnoseOutput& o, const std::vector<estimator::Trial>& trials,
+                    double best) {
+  std::vector<std::vector<std::string>> rows;
+  for (const estimator::Trial& t : trials) {
+    if (rows.size() == kRanked) break;
+    std::string name(name_of(t.kind)), where = place(o, t.place);
+    if (t.second) {
+      name += " and " + std::string(name_of(t.second->first));
+      where += " and " + place(o, t.second->second);
+    }
+    rows.push_back({html_text(name), where, percent(t.fraction),
+                    fmt::format("{:.0f}", t.cost - best), why_it_lost(t.outcome)});
+  }
+  const std::size_t more = trials.size() - rows.size();
+  return html_table({"candidate", "place", "explains of the excess",
+                     "log-likelihood below the best", "why it lost"},
+                    rows) +
+         (more > 0 ? fmt::format("<p>{} more are in diagnosis.json.</p>\n", more) : "");
+}
+
+std::string effects_section(const DiagnoseOutput& o) {
+  std::string out;
+  for (const estimator::FoundEffect& f : o.diagnosis.effects) {
+    const estimator::Effect effect = catalogue_effect(o.plant, o.segments, f, o.diagnosis.model);
+    const estimator::EffectDescription& d = describe(effect.kind);
+    out += "<h2>" + html_text(std::string(d.name)) + ", " + place(o, effect.place) + "</h2>\n<p>" +
+           html_text(std::string(d.equation)) + "</p>\n";
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t i = 0; i < d.parameters.size(); ++i)
+      rows.push_back(
+          {html_text(std::string(d.parameters[i].meaning)), fmt::format("{:.5g}", effect.values[i]),
+           i < f.std_error.size() && f.std_error[i] > 0 ? fmt::format("{:.2g}", f.std_error[i])
+                                                        : "",
+           html_text(std::string(d.parameters[i].unit))});
+    if (!rows.empty()) out += html_table({"parameter", "value", "standard error", "unit"}, rows);
+    out += fmt::format("<p>Held-out gap {} before, {} after.</p>\n", percent(f.before),
+                       percent(f.after));
+    if (f.approximate)
+      out +=
+          "<p>More than noise is left: what acts is not quite this, the nearest name in the "
+          "catalogue, or something else acts besides.</p>\n";
+    for (const estimator::EffectKind kind : f.like)
+      out += "<p>Cannot be told from " + html_text(std::string(name_of(kind))) +
+             " with these records: a motion of another strength would tell.</p>\n";
+    if (!f.alternatives.empty())
+      out += "<h3>Runners-up</h3>\n" + ranking(o, f.alternatives, f.chosen.cost);
+  }
+  if (!o.diagnosis.rejected.empty())
+    out +=
+        "<h2>What did not earn its place</h2>\n<p>None that is what its name says explains 97 % of "
+        "what an arbitrary force at the best place would, without worsening a record.</p>\n" +
+        ranking(o, o.diagnosis.rejected, o.diagnosis.rejected.front().cost);
+  return out;
+}
+
+std::string provenance(const DiagnoseOutput& o) {
+  std::vector<std::vector<std::string>> rows{
+      {html_text(o.config.path), "configuration", o.config.sha256}};
+  for (std::size_t r = 0; r < o.records.size(); ++r)
+    rows.push_back({html_text(o.records[r].path), use(o, r), o.records[r].sha256});
+  return "<h2>Provenance</h2>\n" + html_table({"file", "use", "SHA-256"}, rows) +
+         "<p>framewatch " FRAMEWATCH_VERSION ", diagnose</p>\n";
+}
+
+}  // namespace
+
+std::string diagnosis_text(const DiagnoseOutput& o) {
+  const estimator::Diagnosis& d = o.diagnosis;
+  std::string out = fmt::format("{}: misfit {:.3g} of noise before, {:.3g} after\n",
+                                verdict_word(d.verdict), d.ratio_before, d.ratio_after);
+  for (const estimator::FoundEffect& f : d.effects)
+    out += fmt::format("  {}{} at {}: held-out gap {} -> {}\n", f.approximate ? "about " : "",
+                       name_of(f.chosen.kind),
+                       place_text(f.chosen.place, o.plant.structure, o.plant.axes),
+                       percent(f.before), percent(f.after));
+  if (d.effects.empty() && d.verdict == estimator::Verdict::unexplained && !d.where.empty())
+    out += fmt::format("  something unknown at {}\n",
+                       place_text(d.where.front().place, o.plant.structure, o.plant.axes));
+  if (!d.reason.empty()) out += "  " + d.reason + "\n";
+  return out;
+}
+
+std::string diagnosis_report(const DiagnoseOutput& o) {
+  const std::string title = "Diagnosis of " + o.plant.structure.name;
+  std::string body = "<h1>" + html_text(title) + "</h1>\n<p><strong>" +
+                     std::string(verdict_word(o.diagnosis.verdict)) + "</strong></p>\n<pre>" +
+                     html_text(diagnosis_text(o)) + "</pre>\n";
+  body +=
+      gap_section(o) + history_section(o) + effects_section(o) + loop_section(o) + where_section(o);
+  body += fmt::format(
+      "<h2>What stays unexplained</h2>\n<p>The misfit is {:.3g} times what the sensors' noise "
+      "explains after all effects; 1 would be nothing but noise.</p>\n",
+      o.diagnosis.ratio_after);
+  return html_page(title, body + provenance(o));
+}
+
+}  // namespace framewatch::daemon

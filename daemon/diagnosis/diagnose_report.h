@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/diagnosis/diagnose_output.h"
+
+namespace framewatch::daemon {
+
+/// report.html: a self-contained page.
+std::string diagnosis_report(const DiagnoseOutput& output);
+/// The verdict, a line for every effect, and the reason if there is one.
+std::string diagnosis_text(const DiagnoseOutput& output);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,63 @@
+#include "daemon/documents/html_page.h"
+
+#include <fmt/core.h>
+
+#include "daemon/documents/svg_style.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr const char* kStyle =
+    ":root{--page:#fff;--ink:#1a1a1a;--soft:#5c5c5c;--rule:#d0d0d0;--stripe:#f6f6f4;"
+    "color-scheme:light dark}"
+    "@media screen and (prefers-color-scheme:dark){:root{--page:#161616;--ink:#e8e8e8;"
+    "--soft:#a8a8a8;--rule:#444;--stripe:#1f1f1f}}"
+    "@media print{:root{color-scheme:light}}"
+    "body{background:var(--page);color:var(--ink);font:15px/1.5 system-ui,sans-serif;"
+    "max-width:1000px;margin:2em auto;padding:0 1em}"
+    "h1{font-size:1.7em;line-height:1.2}h2{font-size:1.3em;margin-top:2.2em;"
+    "border-bottom:1px solid var(--rule);padding-bottom:.2em}h3{font-size:1.05em}"
+    "p{max-width:46em}code,pre{font:13px/1.5 ui-monospace,monospace}"
+    "pre{background:var(--stripe);padding:.6em .8em;overflow-x:auto}"
+    ".wide{overflow-x:auto}"
+    "table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums;margin:1em 0}"
+    "th,td{padding:.25em .55em;text-align:right;border-bottom:1px solid var(--rule)}"
+    "th{border-bottom:2px solid var(--rule);vertical-align:bottom}"
+    "th:first-child,td:first-child{text-align:left}td{white-space:nowrap}tr:nth-child(even) "
+    "td{background:var(--stripe)}"
+    "figure{margin:1.2em 0;break-inside:avoid}figure>div{display:flex;flex-wrap:wrap;gap:.4em}"
+    "figcaption{color:var(--soft);font-size:13px;max-width:60em}"
+    "details summary{cursor:pointer;color:var(--soft)}"
+    "@media print{body{font-size:10pt;margin:0;max-width:none}h2,h3{break-after:avoid}"
+    ".wide{overflow:visible}table{font-size:7.5pt}th,td{padding:.2em .4em}"
+    "tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit}}";
+
+}  // namespace
+
+std::string html_table(const std::vector<std::string>& head,
+                       const std::vector<std::vector<std::string>>& rows) {
+  std::string out = "<div class=\"wide\"><table><thead><tr>";
+  for (const std::string& cell : head) out += "<th>" + cell + "</th>";
+  out += "</tr></thead><tbody>\n";
+  for (const auto& row : rows) {
+    out += "<tr>";
+    for (const std::string& cell : row) out += "<td>" + cell + "</td>";
+    out += "</tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+std::string html_figure(const std::vector<std::string>& plots, const std::string& caption) {
+  std::string out = "<figure><div>\n";
+  for (const std::string& plot : plots) out += plot;
+  return out + "</div><figcaption>" + caption + "</figcaption></figure>\n";
+}
+
+std::string html_page(const std::string& title, const std::string& body) {
+  return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+         "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>" +
+         html_text(title) + "</title>\n<style>" + kStyle + svg_style() +
+         "</style></head>\n<body>\n" + body + "</body></html>\n";
+}
+
+}  // namespace framewatch::daemon

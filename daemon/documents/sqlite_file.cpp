@@ -1,0 +1,158 @@
+#include "daemon/documents/sqlite_file.h"
+
+#include <sqlite3.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kPatience_ms = 5000;  // while another process writes
+
+}  // namespace
+
+void SqliteStatement::finalize(sqlite3_stmt* statement) {
+  sqlite3_finalize(statement);
+}
+
+SqliteStatement& SqliteStatement::bind(int at, std::int64_t value) {
+  sqlite3_bind_int64(statement_.get(), at, value);
+  return *this;
+}
+
+SqliteStatement& SqliteStatement::bind(int at, double value) {
+  sqlite3_bind_double(statement_.get(), at, value);  // NaN becomes NULL
+  return *this;
+}
+
+SqliteStatement& SqliteStatement::bind(int at, std::string_view text) {
+  sqlite3_bind_text(statement_.get(), at, text.data(), static_cast<int>(text.size()),
+                    SQLITE_TRANSIENT);
+  return *this;
+}
+
+SqliteStatement& SqliteStatement::bind(int at, std::span<const double> values) {
+  sqlite3_bind_blob(statement_.get(), at,
+                    values.empty() ? "" : static_cast<const void*>(values.data()),
+                    static_cast<int>(values.size_bytes()), SQLITE_TRANSIENT);
+  return *this;
+}
+
+int SqliteStatement::step() {
+  if (*failed_) return SQLITE_ERROR;
+  const int result = statement_ ? sqlite3_step(statement_.get()) : SQLITE_ERROR;
+  if (result != SQLITE_ROW && result != SQLITE_DONE) *failed_ = true;
+  return result;
+}
+
+bool SqliteStatement::row() {
+  return step() == SQLITE_ROW;
+}
+
+bool SqliteStatement::run() {
+  const bool good = step() == SQLITE_DONE;
+  // A reset would forget why.
+  if (good) again();
+  return good;
+}
+
+void SqliteStatement::again() {
+  sqlite3_reset(statement_.get());
+  sqlite3_clear_bindings(statement_.get());
+}
+
+bool SqliteStatement::null(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+std::int64_t SqliteStatement::integer(int column) const {
+  return sqlite3_column_int64(statement_.get(), column);
+}
+
+double SqliteStatement::number(int column) const {
+  return null(column) ? std::numeric_limits<double>::quiet_NaN()
+                      : sqlite3_column_double(statement_.get(), column);
+}
+
+std::string SqliteStatement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+  return text == nullptr ? "" : text;
+}
+
+std::vector<double> SqliteStatement::numbers(int column) const {
+  const void* bytes = sqlite3_column_blob(statement_.get(), column);
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  std::vector<double> out(static_cast<std::size_t>(size) / sizeof(double));
+  if (!out.empty()) std::memcpy(out.data(), bytes, out.size() * sizeof(double));
+  return out;
+}
+
+void SqliteFile::close_file(sqlite3* file) {
+  sqlite3_close(file);
+}
+
+bool SqliteFile::fail() {
+  error_ = file_ ? sqlite3_errmsg(file_.get()) : "no memory";
+  return false;
+}
+
+bool SqliteFile::open(const std::string& path) {
+  sqlite3* file = nullptr;
+  const int opened =
+      sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+  file_.reset(file);
+  failed_ = false;
+  if (opened != SQLITE_OK) {
+    fail();
+    file_.reset();
+    return false;
+  }
+  sqlite3_busy_timeout(file, kPatience_ms);
+  // auto_vacuum has to be set before the first table.
+  if (execute("PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL;"
+              "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"))
+    return true;
+  file_.reset();
+  return false;
+}
+
+bool SqliteFile::open_to_read(const std::string& path) {
+  sqlite3* file = nullptr;
+  const int opened = sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READONLY, nullptr);
+  file_.reset(file);
+  failed_ = false;
+  if (opened != SQLITE_OK) return fail();
+  sqlite3_busy_timeout(file, kPatience_ms);
+  return true;
+}
+
+bool SqliteFile::execute(const std::string& sql) {
+  return (file_ &&
+          sqlite3_exec(file_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK) ||
+         fail();
+}
+
+SqliteStatement SqliteFile::prepare(std::string_view sql) {
+  sqlite3_stmt* statement = nullptr;
+  if (sqlite3_prepare_v2(file_.get(), sql.data(), static_cast<int>(sql.size()), &statement,
+                         nullptr) != SQLITE_OK)
+    fail();
+  return {statement, &failed_};
+}
+
+bool SqliteFile::transaction(const std::function<bool()>& work) {
+  failed_ = false;
+  if (!execute("BEGIN IMMEDIATE")) return false;
+  if (work() && !failed_ && execute("COMMIT")) return true;
+  fail();
+  const std::string why = std::move(error_);
+  failed_ = false;
+  (void)execute("ROLLBACK");
+  error_ = why;
+  return false;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <framewatch/event_t.hpp>
+#include <framewatch/temperature_t.hpp>
+
+#include "daemon/config/config.h"
+#include "daemon/estimation/can_events.h"
+#include "daemon/estimation/publisher.h"
+#include "daemon/estimation/sensor_seconds.h"
+#include "daemon/estimation/wanted_axes.h"
+#include "daemon/events/raised_events.h"
+#include "drivers/can/can_intake.h"
+#include "drivers/lcm/accel_intake.h"
+#include "estimator/gap/gap_monitor.h"
+
+namespace framewatch::daemon {
+
+/// Messages in, messages out: intake, pipeline, change detection and publisher. Live and replayed
+/// samples take the same path. Uses no clock.
+class Estimation {
+ public:
+  using Observer = std::function<void(const estimator::WindowEstimate&)>;
+
+  /// `config` must outlive this. `observer`, if any, sees every estimate before it is published.
+  Estimation(const Config& config, MessageSink sink, Observer observer = {});
+
+  /// One LCM message, whatever it is.
+  drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size);
+  /// One CAN frame of the bus with this index in the configuration.
+  void frame(int bus, const drivers::CanFrame& frame) { can_.frame(bus, frame); }
+  /// A state of a CAN bus that no frame reports.
+  void notice(const drivers::CanNotice& notice);
+  /// One value from a file that has names instead of messages.
+  void sample(const estimator::AccelSample& sample);
+  /// The input has ended: closes open instants, publishes the last table and status.
+  void finish();
+
+  /// Further receivers of inputs and results; any may be empty.
+  struct Taps {
+    std::function<void(const estimator::AccelSample&)> sample;
+    std::function<void(const temperature_t&)> temperature;
+    std::function<void(const estimator::GapNews&)> gap;
+    std::function<void(const event_t&)> event;  ///< after it was published
+  };
+  void tap(Taps taps) { taps_ = std::move(taps); }
+
+  /// Goes out with the next status.
+  void set_live(const LiveState& live) { live_ = live; }
+  const drivers::AccelIntake& intake() const { return intake_; }
+  const drivers::CanIntake& can() const { return can_; }
+  const estimator::Pipeline& pipeline() const { return pipeline_; }
+  std::int64_t windows() const { return windows_; }  ///< published
+  /// Events that are raised and not cleared.
+  const RaisedEvents& raised() const { return raised_; }
+  RaisedEvents& raised() { return raised_; }
+  /// The gap monitor simulates this model from now on; without [gap] nothing happens.
+  void adopt(const estimator::GapModel& model);
+  /// The baseline of the change detection; null while it is learned, and without [watch].
+  const estimator::Baseline* baseline() const { return watch_ ? watch_->baseline() : nullptr; }
+
+  /// Takes the state over from `before`, which has the same structure, channels and grid but other
+  /// settings. To be called before the first sample. keep_window: the samples in the window are
+  /// kept, because the new settings weight them alike. Parts whose state does not fit the new
+  /// settings start anew: a gap window of another length, changes against another baseline.
+  void take_over(Estimation& before, bool keep_window);
+
+  /// The whole state, and back; see Pipeline.
+  void save(estimator::StateWriter& state);
+  [[nodiscard]] bool load(estimator::StateReader& state);
+
+ private:
+  void publish_state();
+  drivers::IntakeResult temperature(const void* data, std::size_t size);
+  void main_window(const estimator::WindowEstimate& estimate);
+  void watch(const estimator::WindowEstimate& estimate);
+  void look_for_gap(const estimator::SampleSet& instant);
+  void begin_watch();
+  void begin_gap();
+  void announce(const event_t& event);
+  /// Clears the raised events of a kind that is not looked for any more.
+  void withdraw(const std::string& kind);
+
+  const Config& config_;
+  Observer observer_;
+  Taps taps_;
+  Publisher publisher_;
+  RaisedEvents raised_;
+  estimator::Pipeline pipeline_;
+  std::optional<estimator::Watch> watch_;
+  std::optional<estimator::GapMonitor> gap_;
+  std::vector<double> noise_density_;  ///< as of the last second
+  drivers::AccelIntake intake_;
+  drivers::CanIntake can_;
+  CanEvents can_events_;
+  SensorSeconds seconds_;
+  LiveState live_;
+  std::int64_t windows_ = 0;
+};
+
+}  // namespace framewatch::daemon

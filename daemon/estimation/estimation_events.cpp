@@ -1,0 +1,68 @@
+#include "daemon/estimation/estimation_events.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "daemon/config/gap_model.h"
+#include "daemon/events/event_words.h"
+
+namespace framewatch::daemon {
+
+event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
+  const std::string& name = table[alarm.parameter].name;
+  const double change = 100 * alarm.change.ratio, error = 100 * alarm.change.std_error;
+  const double since_s = 1e-6 * static_cast<double>(to_microseconds(alarm.change.since));
+  event_t m{};
+  m.time_us = to_microseconds(alarm.found);
+  m.since_us = to_microseconds(alarm.change.since);
+  m.id = alarm.id;
+  m.state = static_cast<std::int32_t>(alarm.state);
+  m.severity = alarm.state == estimator::AlarmState::cleared ? severity::warning : severity::alarm;
+  m.kind = "stiffness_change";
+  m.place = name;
+  m.value = change;
+  m.std_error = error;
+  m.unit = "%";
+  m.message = alarm.state == estimator::AlarmState::cleared
+                  ? fmt::format("{} is at its baseline again", name)
+                  : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {:.2f} s", name,
+                                std::abs(change), error, change < 0 ? "below" : "above", since_s);
+  return m;
+}
+
+event_t gap_event(const estimator::GapNews& news, const Config& config) {
+  const bool raised = news.state != estimator::AlarmState::cleared;
+  const std::string name =
+      news.worst_axis >= 0 ? config.pipeline.axes[static_cast<std::size_t>(news.worst_axis)].name
+                           : "";
+  event_t m{};
+  m.time_us = to_microseconds(news.found);
+  m.since_us = to_microseconds(news.since);
+  m.id = news.id;
+  m.state = static_cast<std::int32_t>(news.state);
+  m.severity = raised ? severity::warning : severity::information;
+  m.kind = "gap";
+  m.place = name;
+  m.value = 100 * news.excess;
+  m.std_error = std::numeric_limits<double>::quiet_NaN();
+  m.unit = "%";
+  m.segment = segment_name(config, news.id);
+  m.message =
+      raised
+          ? fmt::format("simulation and measurement differ by {:.0f} % beyond noise, most at {}",
+                        m.value, name)
+          : fmt::format("simulation and measurement agree again: {:.0f} % beyond noise", m.value);
+  return m;
+}
+
+event_t withdrawn(event_t raised) {
+  raised.state = event_state::cleared;
+  raised.severity = severity::information;
+  raised.message = "is not looked for any more: the configuration was changed";
+  return raised;
+}
+
+}  // namespace framewatch::daemon

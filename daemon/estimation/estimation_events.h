@@ -1,0 +1,20 @@
+#pragma once
+
+#include <framewatch/event_t.hpp>
+
+#include "daemon/config/config.h"
+#include "estimator/gap/gap_alarm.h"
+#include "estimator/watch/watch.h"
+
+namespace framewatch::daemon {
+
+/// News of a parameter's alarm as an event of kind "stiffness_change"; value and std_error in %.
+event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table);
+
+/// News of the gap between simulation and measurement as an event of kind "gap"; value in %.
+event_t gap_event(const estimator::GapNews& news, const Config& config);
+
+/// The end of a raised event that is not looked for under a new configuration.
+event_t withdrawn(event_t raised);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,38 @@
+#include "daemon/events/acknowledge_messages.h"
+
+#include <random>
+
+#include "daemon/base/clocks.h"
+
+namespace framewatch::daemon {
+
+acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
+                                  const std::string& comment) {
+  std::random_device source;
+  acknowledge_t out{};
+  out.request = 1 + (std::int64_t{source()} << 20 | std::int64_t{source() >> 12});
+  out.time_us = host_clock_us();
+  out.id = id;
+  out.who = who;
+  out.comment = comment;
+  return out;
+}
+
+void add_acknowledged(acknowledged_t& message, const event_t& event, const Acknowledgement& by) {
+  message.id.push_back(event.id);
+  message.kind.push_back(event.kind);
+  message.place.push_back(event.place);
+  message.since_us.push_back(by.time_us);
+  message.who.push_back(by.who);
+  message.comment.push_back(by.comment);
+  message.events = static_cast<std::int32_t>(message.id.size());
+}
+
+acknowledged_t acknowledged_message(const event_t& event, const Acknowledgement& by) {
+  acknowledged_t out{};
+  out.time_us = by.time_us;
+  add_acknowledged(out, event, by);
+  return out;
+}
+
+}  // namespace framewatch::daemon

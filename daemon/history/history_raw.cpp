@@ -1,0 +1,122 @@
+#include "daemon/history/history_raw.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/history/raw_export.h"
+#include "daemon/history/raw_history_reader.h"
+#include "daemon/simulation/simulation_output.h"
+#include "drivers/lcm/count_block.h"
+
+namespace framewatch::daemon {
+namespace {
+
+class RawJob {
+ public:
+  RawJob(const HistoryArguments& arguments, const HistoryRequest& request,
+         std::vector<std::string>& problems)
+      : a_(arguments), request_(request), problems_(problems) {}
+
+  void run() {
+    const std::vector<RawLog> logs =
+        raw_logs_between(request_.directory, request_.from_us, request_.to_us);
+    // What is in them first: an export has all of its channels from the start.
+    std::vector<std::string> names;
+    double rate_hz = 0, resolution_mps2 = 0;
+    std::int64_t samples = 0;
+    std::vector<std::string> notes;
+    std::string why;
+    const auto fails = [&] {
+      problem(why);
+      return;
+    };
+    if (!read_raw_history(logs, request_.from_us, request_.to_us,
+                          {[&](const auto& now, double rate) {
+                             for (const std::string& name : now)
+                               if (std::find(names.begin(), names.end(), name) == names.end())
+                                 names.push_back(name);
+                             if (rate_hz == 0) rate_hz = rate;
+                           },
+                           [&](const RawCount& c) {
+                             ++samples;
+                             if (resolution_mps2 == 0) resolution_mps2 = c.resolution_mps2;
+                           }},
+                          notes, why))
+      return fails();
+    check_patterns("--channel", a_.channels, names, problems_);
+    if (samples == 0) problem("there are no raw samples in that time");
+    if (!problems_.empty()) return;
+    std::erase_if(names, [&](const std::string& name) { return !is_chosen(a_.channels, name); });
+    std::vector<RawChannel> channels;
+    for (const std::string& name : names) channels.push_back(placed(name, channels.size()));
+    const auto out =
+        raw_export(a_.raw, channels, rate_hz, resolution_mps2, {a_.network, a_.station}, why);
+    if (!out) return fails();
+    write_raw(logs, names, *out);
+  }
+
+ private:
+  void problem(std::string message) { problems_.push_back(std::move(message)); }
+
+  /// Where the channel of a name travels: where the configuration says, else on a node of its own.
+  RawChannel placed(const std::string& name, std::size_t index) const {
+    if (request_.config) {
+      const auto all = addresses(request_.config->sources);
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (request_.config->pipeline.axes[i].name == name) return {name, all[i]};
+    }
+    return {name, {"ACCEL", static_cast<std::int32_t>(index), 0}};
+  }
+
+  void write_raw(const std::vector<RawLog>& logs, const std::vector<std::string>& names,
+                 RawExport& out) {
+    std::vector<std::optional<std::size_t>> place;  // by the log's channel
+    std::int64_t samples = 0, beyond = 0;
+    bool good = true;
+    std::vector<std::string> notes;
+    std::string why;
+    const RawVisitor visitor{
+        [&](const std::vector<std::string>& now, double) {
+          place.assign(now.size(), std::nullopt);
+          for (std::size_t i = 0; i < now.size(); ++i)
+            if (const auto at = std::find(names.begin(), names.end(), now[i]); at != names.end())
+              place[i] = static_cast<std::size_t>(at - names.begin());
+        },
+        [&](const RawCount& c) {
+          if (!good || !place[c.channel]) return;
+          ++samples;
+          beyond += c.count == drivers::kMostCount || c.count == -drivers::kMostCount;
+          const double accel = c.count == drivers::kNoCount
+                                   ? std::numeric_limits<double>::quiet_NaN()
+                                   : c.count * c.resolution_mps2;
+          good = out.put(*place[c.channel], c.time_us, accel);
+        },
+        [&](const drivers::LogEvent& event) { good = good && out.message(event); }};
+    const bool read = read_raw_history(logs, request_.from_us, request_.to_us, visitor, notes, why);
+    if (!read || !good || !out.close()) {
+      problem(read ? fmt::format("{}: {}", a_.raw, out.error()) : why);
+      return;
+    }
+    fmt::print("{}: {} samples of {} channels\n", a_.raw, samples, names.size());
+    if (beyond > 0) fmt::print("{} of them are beyond what was stored\n", beyond);
+    for (const std::string& note : notes) fmt::print("{}\n", note);
+    for (const std::string& note : out.notes()) fmt::print("{}\n", note);
+  }
+
+  const HistoryArguments& a_;
+  const HistoryRequest& request_;
+  std::vector<std::string>& problems_;
+};
+
+}  // namespace
+
+void export_raw_history(const HistoryArguments& arguments, const HistoryRequest& request,
+                        std::vector<std::string>& problems) {
+  RawJob(arguments, request, problems).run();
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,198 @@
+#include "daemon/history/summary_history.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <framewatch/acknowledged_t.hpp>
+#include <framewatch/event_t.hpp>
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+#include <fmt/core.h>
+
+#include "daemon/base/clocks.h"
+#include "daemon/base/log.h"
+#include "drivers/lcm/message_check.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{200};
+constexpr std::chrono::seconds kAgain{1};  // after a commit that failed
+constexpr std::chrono::hours kPrune{1};
+
+}  // namespace
+
+SummaryHistory::SummaryHistory(const Config& config)
+    : config_(config),
+      estimate_(config.lcm.prefix + "ESTIMATE"),
+      table_(config.lcm.prefix + "PARAMETERS"),
+      status_(config.lcm.prefix + "STATUS"),
+      event_(config.lcm.prefix + "EVENT"),
+      acknowledged_(config.lcm.prefix + "ACKNOWLEDGED"),
+      store_(*config.history),
+      collector_(kSecond_us * config.history->summary_s.front()),
+      next_commit_(Clock::now()),
+      next_prune_(next_commit_),
+      thread_([this] { work(); }) {}
+
+SummaryHistory::~SummaryHistory() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void SummaryHistory::message(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+  const auto kind = channel == estimate_       ? Kind::estimate
+                    : channel == table_        ? Kind::table
+                    : channel == status_       ? Kind::status
+                    : channel == event_        ? Kind::event
+                    : channel == acknowledged_ ? Kind::acknowledged
+                                               : std::optional<Kind>();
+  if (!kind) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (queued_ + bytes.size() > kQueueBytes) {
+    counters_.dropped += *kind != Kind::table && *kind != Kind::status;
+    return;
+  }
+  queued_ += bytes.size();
+  queue_.push_back({*kind, bytes});
+}
+
+SummaryHistory::Counters SummaryHistory::counters() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return counters_;
+}
+
+void SummaryHistory::work() {
+  commit();  // what was taken already is known before the first window comes
+  for (bool last = false; !last;) {
+    std::vector<Message> messages;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      wake_.wait_for(lock, kLook, [this] { return stop_; });
+      last = stop_;
+      messages.swap(queue_);
+      queued_ = 0;
+    }
+    for (const Message& message : messages) take(message);
+    const bool due = Clock::now() >= next_commit_;
+    // Sensors that fall silent in the middle of a period leave nothing uncommitted.
+    if (last || (due && waiting_.empty())) end_period();
+    if (last || due) commit();
+  }
+}
+
+void SummaryHistory::take(const Message& message) {
+  switch (message.kind) {
+    case Kind::estimate:
+      if (const auto e = drivers::decoded<window_estimate_t>(message.bytes)) {
+        if (collector_.ends_before(*e)) end_period();
+        collector_.add(*e);
+        newest_us_ = std::max(newest_us_, e->window_end_us);
+      }
+      break;
+    case Kind::table:
+      if (const auto t = drivers::decoded<parameter_table_t>(message.bytes)) {
+        if (collector_.ends_before(*t)) {
+          end_period();
+          commit();
+          waiting_.periods.clear();
+        }
+        collector_.add(*t);
+      }
+      break;
+    case Kind::status:
+      if (const auto s = drivers::decoded<status_t>(message.bytes)) {
+        if (collector_.ends_before(*s)) end_period();
+        collector_.add(*s);
+      }
+      break;
+    case Kind::event:
+      if (auto e = drivers::decoded<event_t>(message.bytes)) {
+        waiting_.events.push_back(std::move(*e));
+        next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
+      }
+      break;
+    case Kind::acknowledged:
+      if (auto a = drivers::decoded<acknowledged_t>(message.bytes)) {
+        waiting_.acknowledged.push_back(std::move(*a));
+        next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
+      }
+      break;
+  }
+}
+
+void SummaryHistory::end_period() {
+  if (collector_.empty()) return;
+  waiting_.parameters = collector_.parameters();
+  waiting_.channels = collector_.channels();
+  waiting_.periods.push_back(collector_.take());
+  next_commit_ = std::min(next_commit_, Clock::now());
+}
+
+void SummaryHistory::commit() {
+  const auto period = std::chrono::seconds(config_.history->summary_s.front());
+  next_commit_ = Clock::now() + period + kAgain;  // when no period ends before
+  std::string problem;
+  if (!store_.is_open()) {
+    problem = store_.open();
+    for (const auto& [start_us, last_us] :
+         problem.empty() ? store_.open_periods() : decltype(store_.open_periods())())
+      collector_.taken(start_us, last_us);
+  }
+  if (waiting_.empty() && problem.empty()) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    counters_.trouble.clear();
+    return;
+  }
+  if (problem.empty()) problem = store_.add(waiting_);
+  std::int64_t until_us = INT64_MIN;
+  if (problem.empty()) {
+    for (const PeriodData& data : waiting_.periods) until_us = std::max(until_us, data.last_us);
+    waiting_.periods.clear();
+    waiting_.events.clear();
+    waiting_.acknowledged.clear();
+  } else {
+    next_commit_ = Clock::now() + kAgain;
+    store_.close();  // a disk that comes back may hold another file
+    bound();
+  }
+  if (store_.repeated() > std::exchange(repeated_said_, store_.repeated()))
+    log(LogLevel::notice, "windows of a time that was summarised before are not summarised again");
+  const bool time_known = newest_us_ != INT64_MIN;
+  if (problem.empty() && time_known && Clock::now() >= next_prune_) {
+    next_prune_ = Clock::now() + kPrune;
+    problem = store_.prune(std::min(newest_us_, host_clock_us()));
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  counters_.trouble = problem;
+  if (!problem.empty()) return;
+  ++counters_.commits;
+  counters_.until_us = std::max(counters_.until_us, until_us);
+}
+
+void SummaryHistory::bound() {
+  std::int64_t dropped = 0;
+  while (waiting_.periods.size() > kMostPeriods) {
+    dropped += waiting_.periods.front().windows;
+    waiting_.periods.erase(waiting_.periods.begin());
+  }
+  while (waiting_.events.size() > kMostEvents) {
+    ++dropped;
+    waiting_.events.erase(waiting_.events.begin());
+  }
+  while (waiting_.acknowledged.size() > kMostEvents) {
+    ++dropped;
+    waiting_.acknowledged.erase(waiting_.acknowledged.begin());
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  counters_.dropped += dropped;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,77 @@
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "daemon/base/percent.h"
+#include "daemon/lab/reproduction.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr const char* kJudgedKinds[] = {"k", "G", "c"};
+constexpr double kLeastCoverage = 0.90, kMostCoverage = 0.98;
+constexpr double kMostWrong = 0.05;
+constexpr double kMostChangeByBias = 1e-4;
+/// Fewer published values say nothing about the share of intervals that hold.
+constexpr int kFewestToJudge = 200;
+
+void judge_coverage(const AccuracyRow& row, Method method, const std::string& suffix,
+                    std::vector<Promise>& out) {
+  for (int kind = 0; kind < 3; ++kind) {
+    const ErrorStatistics& s = row.of(method, kind);
+    if (s.published < kFewestToJudge) continue;
+    const double share = s.coverage_ratio();
+    out.push_back({fmt::format("{}{}: 95 % intervals of {} hold in 90 to 98 %", row.name, suffix,
+                               kJudgedKinds[kind]),
+                   percent_1(share), share >= kLeastCoverage && share <= kMostCoverage});
+  }
+}
+
+void judge_row(const AccuracyRow& row, std::vector<Promise>& out) {
+  for (const AccuracyCase& c : accuracy_cases()) {
+    if (c.name != row.name) continue;
+    for (int kind = 0; kind < 3; ++kind) {
+      const double limit = c.limit[static_cast<std::size_t>(kind)];
+      const double found = row.of(Method::matched, kind).quantile(0.5);
+      out.push_back({fmt::format("{}: median error of {} at most {}", row.name, kJudgedKinds[kind],
+                                 percent(limit)),
+                     percent(found), found <= limit});
+    }
+    if (c.bound_limited) {
+      const double ratio = row.of(Method::matched, 0).quantile(0.5) / row.least_median(0);
+      out.push_back({fmt::format("{}: k within {} times the bound", row.name, kMostOverBound),
+                     fmt::format("{:.2f}", ratio), ratio <= kMostOverBound});
+    }
+  }
+  judge_coverage(row, Method::matched, "", out);
+  judge_coverage(row, Method::matched_unaware, ", noise not configured", out);
+}
+
+void judge(const Robustness& r, std::vector<Promise>& out) {
+  for (const ExcitationSweep& sweep : r.sweeps)
+    out.push_back({fmt::format("{}: published k wrong by more than 5 % from 0.3 % to 3000 % noise "
+                               "at most {}",
+                               sweep.name, percent(kMostWrong)),
+                   percent_1(sweep.wrong_ratio(0)), sweep.wrong_ratio(0) <= kMostWrong});
+  for (const Silence& s : r.silences)
+    out.push_back({fmt::format("{}{}: nothing published in {:g} h of sensor noise", s.name,
+                               s.noise_configured ? "" : ", noise not configured", s.hours),
+                   fmt::format("{} of {} windows", s.published, s.windows),
+                   s.published == 0 && s.windows > 0});
+  out.push_back({"Table 1: a bias of 0.05 m/s^2 with a thermal ramp changes k by less than 1e-4",
+                 fmt::format("{:.1e}", r.change_by_bias), r.change_by_bias < kMostChangeByBias});
+  if (r.random_buildings) judge_row(*r.random_buildings, out);
+}
+
+}  // namespace
+
+std::vector<Promise> promises(const Reproduction& all) {
+  std::vector<Promise> out;
+  if (all.seeds < kSeedsToJudge) return out;
+  for (const BuildingReproduction& building : all.buildings)
+    for (const AccuracyRow& row : building.rows) judge_row(row, out);
+  if (all.robustness) judge(*all.robustness, out);
+  return out;
+}
+
+}  // namespace framewatch::daemon

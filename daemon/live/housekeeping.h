@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "daemon/config/config.h"
+#include "daemon/estimation/baseline_keeper.h"
+#include "daemon/estimation/gap_keeper.h"
+#include "daemon/live/can_monitor.h"
+#include "daemon/live/can_warnings.h"
+#include "daemon/live/intake_warnings.h"
+#include "daemon/live/live_estimation.h"
+#include "daemon/live/reloader.h"
+#include "daemon/live/service_report.h"
+#include "daemon/live/state_keeper.h"
+#include "daemon/service/progress_watch.h"
+#include "daemon/service/service_manager.h"
+#include "daemon/service/start_count.h"
+
+namespace framewatch::daemon {
+
+/// The periodic tasks of `framewatch run` beside the estimation: warnings in the log, status
+/// messages, state file, learned baseline, exchanged gap model, systemd's watchdog, and reload.
+class Housekeeping {
+ public:
+  /// `config` must outlive this; text: what it was made of. state_path: empty: no state is kept.
+  /// resumed: the run goes on from a state file.
+  Housekeeping(const Config& config, const std::string& text, const std::string& state_path,
+               int state_every_s, const StartCount& starts, bool resumed);
+
+  /// To be called several times a second.
+  void look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager);
+  /// Reads the configuration anew. Whether it was accepted: then live.config() is a new one.
+  bool reload(LiveEstimation& live, ServiceManager& manager);
+  /// Writes the state and waits for it.
+  void write_state(LiveEstimation& live) { state_.keep(live.config(), live.estimation()); }
+
+ private:
+  StateKeeper state_;
+  IntakeWarnings intake_warnings_;
+  CanWarnings can_warnings_;
+  CanMonitor can_monitor_;
+  BaselineKeeper baseline_;
+  GapKeeper gap_;
+  Reloader reloader_;
+  ServiceReport report_;
+  ProgressWatch progress_;
+  const Config& config_;  ///< the first one: names that no reload changes
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,113 @@
+#include "daemon/live/live_estimation.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <lcm/lcm-cpp.hpp>
+
+#include "daemon/base/clocks.h"
+#include "daemon/live/heard_channels.h"
+
+namespace framewatch::daemon {
+
+LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::CanLogWriter* can_log)
+    : config_(std::make_unique<const Config>(config)),
+      can_map_(config.can),
+      lcm_(lcm),
+      can_log_(can_log),
+      source_(lcm, heard_channels(config), config.lcm.queue_capacity,
+              [this](const std::string& channel, const void* data, std::size_t size,
+                     std::int64_t received_us) { on_message(channel, data, size, received_us); }),
+      can_(can_map_, can_log != nullptr,
+           [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {
+  times_.newest_us.resize(config.pipeline.axes.size());
+  begin_estimation();
+}
+
+void LiveEstimation::begin_estimation() {
+  estimation_ = std::make_unique<Estimation>(
+      *config_,
+      [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+        lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+        if (history_ != nullptr) history_->message(channel, bytes);
+      });
+  if (!segments_ && config_->gap && !config_->gap->store.empty()) segments_.emplace(*config_);
+  estimation_->tap({[this](const estimator::AccelSample& sample) { on_sample(sample); },
+                    [this](const temperature_t& temperature) {
+                      if (history_ != nullptr) history_->temperature(temperature);
+                    },
+                    [this](const estimator::GapNews& news) {
+                      if (segments_ && news.state == estimator::AlarmState::raised)
+                        segments_->raised(news.id);
+                    },
+                    [this](const event_t& event) {
+                      if (on_event_) on_event_(event);
+                    }});
+}
+
+void LiveEstimation::reconfigure(Config next, Reach reach) {
+  segments_.reset();  // writes what it still has under the old settings
+  // Both are held until the new estimation has taken over: the old one refers to its configuration.
+  const std::unique_ptr<const Config> config_before =
+      std::exchange(config_, std::make_unique<const Config>(std::move(next)));
+  const std::unique_ptr<Estimation> before = std::move(estimation_);
+  begin_estimation();
+  estimation_->take_over(*before, reach == Reach::settings);
+}
+
+void LiveEstimation::on_sample(const estimator::AccelSample& sample) {
+  times_.received_us = host_clock_us();
+  times_.newest_us[static_cast<std::size_t>(sample.axis)] = to_microseconds(sample.time);
+  if (segments_) segments_->sample(sample);
+  if (history_ != nullptr) history_->sample(sample);
+}
+
+void LiveEstimation::step_done(std::int64_t began_us, std::int64_t windows_before,
+                               std::int64_t received_us) {
+  times_.steps.add(1e-6 * static_cast<double>(steady_clock_us() - began_us));
+  if (estimation_->windows() == windows_before) return;
+  state_.latency_s = 1e-6 * static_cast<double>(host_clock_us() - received_us);
+  times_.latencies.add(state_.latency_s);
+  if (state_.latency_s > config_->pipeline.options.hop_s) ++times_.deadline_missed;
+}
+
+bool LiveEstimation::poll(int timeout_ms) {
+  if (config_->can.empty()) return source_.handle(timeout_ms);
+  std::vector<pollfd> waiting{{lcm_.getFileno(), POLLIN, 0}};
+  can_.descriptors(waiting);
+  ::poll(waiting.data(), waiting.size(), timeout_ms);
+  can_.handle(steady_clock_us());
+  for (std::size_t b = 0; b < config_->can.buses.size(); ++b) {
+    const bool gone = !can_.state(static_cast<int>(b)).open;
+    estimation_->notice(
+        {drivers::CanNotice::Kind::interface_gone, static_cast<int>(b), !gone, 0, host_clock_us()});
+  }
+  return source_.handle(0) && !can_log_failed_;
+}
+
+void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
+  const std::string& interface = config_->can.buses[static_cast<std::size_t>(bus)].interface;
+  if (can_log_ != nullptr && !can_log_->write(frame, interface)) can_log_failed_ = true;
+  const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
+  estimation_->frame(bus, frame);
+  const std::int64_t dropped = can_.dropped();
+  state_.queue_dropped += dropped - std::exchange(can_dropped_, dropped);
+  step_done(began_us, windows, frame.stamp_us);
+  estimation_->set_live(state_);
+}
+
+void LiveEstimation::on_message(const std::string& channel, const void* data, std::size_t size,
+                                std::int64_t received_us) {
+  const std::int64_t lost = estimation_->intake().lost();
+  const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
+  estimation_->message(channel, data, size);
+  if (source_.queue_was_full())
+    state_.queue_dropped += std::max<std::int64_t>(0, estimation_->intake().lost() - lost);
+  state_.queue_high_water = static_cast<std::int32_t>(source_.backlog_high_water());
+  step_done(began_us, windows, received_us);
+  estimation_->set_live(state_);
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/config/settings.h"
+#include "daemon/estimation/estimation.h"
+#include "daemon/estimation/gap_segments.h"
+#include "daemon/history/history.h"
+#include "daemon/keys/option_table.h"
+#include "daemon/live/live_times.h"
+#include "drivers/can/can_log.h"
+#include "drivers/can/can_source.h"
+#include "drivers/lcm/lcm_source.h"
+
+namespace lcm {
+class LCM;
+}
+
+namespace framewatch::daemon {
+
+/// Live estimation: samples from one LCM instance and from CAN buses, estimates to LCM. Works
+/// inside poll().
+class LiveEstimation {
+ public:
+  /// `lcm` must outlive this; for memq:// everybody shares it. `can_log`, if any, gets every frame
+  /// of the buses.
+  LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::CanLogWriter* can_log = nullptr);
+
+  /// Opens the configured buses. One line for each problem.
+  std::vector<std::string> open_buses() { return can_.open(); }
+
+  /// Waits for messages at most `timeout_ms` and handles those that are there. False when LCM
+  /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
+  [[nodiscard]] bool poll(int timeout_ms);
+  void finish() { estimation_->finish(); }
+  /// From now on samples and published messages are stored there too; null: no longer.
+  void record_to(History* history) { history_ = history; }
+  /// From now on called with every event after it was published.
+  void on_event(std::function<void(const event_t&)> handler) { on_event_ = std::move(handler); }
+  const Estimation& estimation() const { return *estimation_; }
+  Estimation& estimation() { return *estimation_; }
+  /// The configuration it runs with; until the next reconfigure().
+  const Config& config() const { return *config_; }
+  /// Goes on with another configuration, one that reloaded() made of config(). No message is lost.
+  void reconfigure(Config next, Reach reach);
+  const LiveState& state() const { return state_; }
+  const LiveTimes& times() const { return times_; }
+  drivers::CanSource& can() { return can_; }
+
+ private:
+  void on_message(const std::string& channel, const void* data, std::size_t size,
+                  std::int64_t received_us);
+  void on_frame(int bus, const drivers::CanFrame& frame);
+  void on_sample(const estimator::AccelSample& sample);
+  void begin_estimation();
+  void step_done(std::int64_t began_us, std::int64_t windows_before, std::int64_t received_us);
+
+  std::unique_ptr<const Config> config_;
+  const drivers::CanMap can_map_;  ///< of the first configuration: the buses stay open
+  lcm::LCM& lcm_;
+  drivers::CanLogWriter* can_log_;
+  bool can_log_failed_ = false;
+  std::int64_t can_dropped_ = 0;
+  LiveState state_;
+  LiveTimes times_;
+  std::optional<GapSegments> segments_;  ///< none: none are stored
+  History* history_ = nullptr;
+  std::function<void(const event_t&)> on_event_;
+  std::unique_ptr<Estimation> estimation_;
+  drivers::LcmSource source_;
+  drivers::CanSource can_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "daemon/actions/acknowledge_desk.h"
+#include "daemon/actions/action_report.h"
+#include "daemon/config/config.h"
+#include "daemon/history/history_report.h"
+#include "daemon/live/live_estimation.h"
+
+namespace framewatch::daemon {
+
+/// What `framewatch run` does with events: those of the estimation and of the history go to the
+/// command and the webhook of [actions], and can be acknowledged. Keeps the history.
+class LiveEvents {
+ public:
+  /// All must outlive this. Attaches itself to `live`.
+  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live);
+  LiveEvents(const LiveEvents&) = delete;
+  LiveEvents& operator=(const LiveEvents&) = delete;
+
+  /// To be called several times a second.
+  void look();
+  /// Goes on with another configuration, of which [actions] may differ.
+  void reconfigure(const Config& config) { actions_.reconfigure(config); }
+
+ private:
+  const Config& config_;
+  LiveEstimation& live_;
+  HistoryReport history_;
+  ActionReport actions_;
+  AcknowledgeDesk desk_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,130 @@
+#include "daemon/live/run_command.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <lcm/lcm-cpp.hpp>
+
+#include "daemon/base/clocks.h"
+#include "daemon/base/exit_code.h"
+#include "daemon/base/file_digest.h"
+#include "daemon/base/log.h"
+#include "daemon/base/reload_signal.h"
+#include "daemon/base/stop_signal.h"
+#include "daemon/config/config.h"
+#include "daemon/config/config_problems.h"
+#include "daemon/estimation/state_file.h"
+#include "daemon/live/housekeeping.h"
+#include "daemon/live/live_events.h"
+#include "daemon/service/open_lcm.h"
+#include "daemon/service/service_manager.h"
+#include "daemon/service/start_count.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kPoll_ms = 100;
+
+int refuse(const std::string& problem) {
+  fmt::print(stderr, "framewatch run: {}\n", problem);
+  return kBadInput;
+}
+
+/// Resumes from the state file, if there is one. One that does not fit is renamed, and the log says
+/// why. Whether the run was resumed.
+bool resume(const std::string& path, const Config& config, lcm::LCM& lcm,
+            drivers::CanLogWriter* can_log, std::optional<LiveEstimation>& live) {
+  std::error_code none;
+  if (!std::filesystem::exists(path, none)) return false;
+  bool touched = false;
+  const LoadedState state = load_state(path, config, live->estimation(), touched);
+  if (state.problem.empty()) {
+    log(LogLevel::notice,
+        fmt::format("goes on from {}: {} windows so far", path, live->estimation().windows()));
+    return true;
+  }
+  const std::string aside = path + ".refused";
+  std::filesystem::rename(path, aside, none);
+  log(LogLevel::warning,
+      fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
+  if (touched) live.emplace(config, lcm, can_log);
+  return false;
+}
+
+void log_summary(const Estimation& estimation) {
+  const estimator::PipelineCounters counters = estimation.pipeline().counters();
+  log(LogLevel::info,
+      fmt::format("stopped: {} windows, {} gaps, {} messages lost", counters.windows,
+                  counters.interruptions, estimation.intake().lost()));
+}
+
+}  // namespace
+
+int run(const RunArguments& a) {
+  std::vector<ConfigProblem> problems;
+  std::string error;
+  const std::optional<std::string> text = read_text_file(a.config, error);
+  if (!text) problems.push_back({a.config, error});
+  const std::optional<Config> config =
+      text ? parse_config(a.config, *text, problems) : std::nullopt;
+  print_problems(problems);
+  if (!config) return kBadInput;
+
+  catch_stop_signals();
+  catch_reload_signal();
+  ServiceManager manager;
+  const auto lcm = open_lcm_with_retry(*config, a.url, manager, error);
+  if (!lcm) return stop_requested() ? 0 : refuse(error);
+
+  drivers::CanLogWriter can_log;
+  if (!a.can_log.empty() && !can_log.open(a.can_log))
+    return refuse(a.can_log + ": " + can_log.error());
+  drivers::CanLogWriter* const recorder = a.can_log.empty() ? nullptr : &can_log;
+  std::optional<LiveEstimation> estimation(std::in_place, *config, *lcm, recorder);
+  StartCount starts;
+  bool resumed = false;
+  if (!a.state.empty()) {
+    starts = count_start(a.state, error);
+    if (!error.empty()) log(LogLevel::error, fmt::format("starts are not counted: {}", error));
+    resumed = resume(a.state, *config, *lcm, recorder, estimation);
+  }
+  LiveEstimation& live = *estimation;
+  LiveEvents events(*config, *lcm, live);
+  for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
+  Housekeeping housekeeping(*config, *text, a.state, a.state_every_s, starts, resumed);
+  if (!a.quiet)
+    log(LogLevel::info,
+        fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name, config->path,
+                    config->pipeline.axes.size(), a.url.empty() ? config->lcm.url : a.url));
+  manager.ready();
+  RateLimitedLog failures(LogLevel::error);
+  while (!stop_requested()) {
+    if (!live.poll(kPoll_ms) && !stop_requested()) {
+      failures(host_clock_us(),
+               can_log.error().empty() ? "LCM failed to deliver" : "CAN log: " + can_log.error());
+      ::usleep(1000 * kPoll_ms);
+    }
+    housekeeping.look(live, *lcm, manager);
+    events.look();
+    if (reload_requested() && housekeeping.reload(live, manager)) events.reconfigure(live.config());
+  }
+  manager.stopping();
+  // With a state file the instants still open are published after the next start.
+  if (a.state.empty()) {
+    live.finish();
+  } else {
+    housekeeping.write_state(live);
+    error = count_clean_stop(a.state, starts);
+    if (!error.empty()) log(LogLevel::error, fmt::format("the stop is not counted: {}", error));
+  }
+  if (recorder != nullptr && !can_log.close()) return refuse(a.can_log + ": " + can_log.error());
+  if (!a.quiet) log_summary(live.estimation());
+  return 0;
+}
+
+}  // namespace framewatch::daemon

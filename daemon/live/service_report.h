@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <framewatch/service_t.hpp>
+
+#include "daemon/base/once_a_second.h"
+#include "daemon/live/live_estimation.h"
+#include "daemon/live/state_keeper.h"
+#include "daemon/service/start_count.h"
+
+namespace framewatch::daemon {
+
+/// Outcome of the requests to read the configuration anew.
+struct ReloadCount {
+  std::int64_t done = 0, refused = 0;
+  std::string problem;  ///< why the newest one was refused; empty: accepted
+};
+
+/// Reports once a second of the host's clock how the process of `framewatch run` is, whether
+/// samples come or not: without a report the process does not run.
+class ServiceReport {
+ public:
+  ServiceReport(const StartCount& starts, bool resumed);
+  /// The report; empty when less than a second has passed since the last one.
+  std::optional<service_t> look(const LiveEstimation& live, const StateKeeper& state,
+                                const ReloadCount& reloads, std::int64_t now_us);
+
+ private:
+  StartCount starts_;
+  bool resumed_;
+  std::int64_t started_us_ = 0;
+  OnceASecond second_;
+};
+
+}  // namespace framewatch::daemon

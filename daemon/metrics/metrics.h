@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/events/raised_events.h"
+
+namespace framewatch::daemon {
+
+/// The metrics for Prometheus (docs/metrics.md), made of the newest LCM messages. Times are the
+/// caller's: microseconds of a clock that is never set.
+class Metrics {
+ public:
+  /// A message older than this is not shown any more, so that a dead process does not look healthy.
+  static constexpr std::int64_t kFresh_us = 5'000'000;
+
+  /// `config` must outlive this.
+  explicit Metrics(const Config& config) : config_(config) {}
+
+  /// The channels of `framewatch serve` that only the metrics need.
+  std::vector<std::string> channels() const {
+    const std::string& prefix = config_.lcm.prefix;
+    return {prefix + "HISTORY", prefix + "ACTIONS", prefix + "WATCH"};
+  }
+  void message(const std::string& channel, const void* data, std::size_t size, std::int64_t now_us);
+
+  /// Text format 0.0.4. viewers: of the page.
+  std::string text(std::int64_t now_us, int viewers) const;
+
+ private:
+  struct Newest {
+    std::vector<std::uint8_t> bytes;
+    std::int64_t received_us = 0;
+  };
+  const Config& config_;
+  mutable std::mutex mutex_;              ///< guards what is below
+  std::map<std::string, Newest> newest_;  ///< by channel without prefix
+  RaisedEvents found_here_;               ///< by `framewatch serve` without [watch]
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,155 @@
+#include "daemon/replay/refine_command.h"
+
+#include <cmath>
+#include <optional>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/exit_code.h"
+#include "daemon/config/config_problems.h"
+#include "daemon/estimation/estimation.h"
+#include "daemon/estimation/segment_collector.h"
+#include "daemon/replay/replay_survey.h"
+#include "daemon/replay/stored_samples.h"
+#include "drivers/lcm/accel_intake.h"
+#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/refine/max_likelihood.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kNotRefined = 1;
+using Json = nlohmann::ordered_json;
+
+/// Everything a person is told.
+struct Report {
+  double from_s, to_s;
+  estimator::Refinement refinement;
+  std::vector<double> streaming;  ///< theta order; NaN: not published
+};
+
+/// A number, or null when there is none.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+std::string json(const RefineArguments& a, const Config& config,
+                 const estimator::ParameterTable& table, const Report& report) {
+  const estimator::Refinement& r = report.refinement;
+  Json out{{"schema", "framewatch.refine/1"},
+           {"config", a.config},
+           {"config_sha256", config.sha256},
+           {"inputs", a.inputs},
+           {"version", FRAMEWATCH_VERSION},
+           {"from_s", report.from_s},
+           {"to_s", report.to_s},
+           {"prior", a.prior},
+           {"status", status_word(r.status)}};
+  if (r.has_values()) {
+    out["iterations"] = r.iterations;
+    out["log_likelihood"] = number(r.log_likelihood);
+    out["misfit_ratio"] = number(r.misfit_ratio);
+    out["band_hz"] = {r.band.low_hz, r.band.high_hz};
+    out["bins"] = r.bins;
+    out["parameters"] = Json::array();
+    for (int p = 0; p < table.size(); ++p)
+      out["parameters"].push_back({{"name", table[p].name},
+                                   {"unit", table[p].unit},
+                                   {"streaming", number(report.streaming[std::size_t(p)])},
+                                   {"refined", number(r.theta[p])},
+                                   {"std_error", number(r.std_error[p])},
+                                   {"cramer_rao_bound", number(r.bound[p])}});
+  }
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string value_text(double value) {
+  return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-";
+}
+
+std::string text(const estimator::ParameterTable& table, const Report& report) {
+  const estimator::Refinement& r = report.refinement;
+  std::string out =
+      fmt::format("{:.3f} s to {:.3f} s: {}\n", report.from_s, report.to_s, status_word(r.status));
+  if (!r.has_values()) return out;
+  out += fmt::format(
+      "{} steps, {:.2f} to {:.2f} Hz, log-likelihood {:.6g}; misfit {:.3g} of what sensor noise "
+      "explains\n",
+      r.iterations, r.band.low_hz, r.band.high_hz, r.log_likelihood, r.misfit_ratio);
+  out += fmt::format("{:<12} {:>12} {:>12} {:>12} {:>12}  {}\n", "parameter", "streaming",
+                     "refined", "std error", "least error", "unit");
+  for (int p = 0; p < table.size(); ++p)
+    out += fmt::format("{:<12} {:>12} {:>12} {:>12} {:>12}  {}\n", table[p].name,
+                       value_text(report.streaming[std::size_t(p)]), value_text(r.theta[p]),
+                       value_text(r.std_error[p]), value_text(r.bound[p]), table[p].unit);
+  out +=
+      "streaming: the last published value up to the end of the stretch, - if none; least "
+      "error: Cramer-Rao bound\n";
+  return out;
+}
+
+}  // namespace
+
+int refine(const RefineArguments& a) {
+  std::vector<ConfigProblem> config_problems;
+  const std::optional<Config> config = load_config(a.config, config_problems);
+  print_problems(config_problems);
+  if (!config) return kBadInput;
+  const estimator::PipelineConfig& pipeline_config = config->pipeline;
+  const double to_s = a.to_s < 0 ? a.from_s + pipeline_config.options.window_s : a.to_s;
+  if (!(to_s > a.from_s)) {
+    fmt::print(stderr, "framewatch refine: --to must be later than --from\n");
+    return kBadInput;
+  }
+  ReplaySurvey survey(*config, false);
+  for (const std::string& path : a.inputs) survey.add(path);
+  survey.finish();
+  for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", note);
+  for (const std::string& problem : survey.problems()) fmt::print(stderr, "{}\n", problem);
+  if (!survey.problems().empty()) return kBadInput;
+
+  const estimator::ParameterTable table(pipeline_config.structure);
+  SegmentCollector collector(pipeline_config, a.from_s, to_s);
+  Report report{a.from_s, to_s, {}, {}};
+  report.streaming.assign(std::size_t(table.size()), std::nan(""));
+  estimator::Pipeline pipeline(pipeline_config, [&](const estimator::WindowEstimate& estimate) {
+    const auto end_us = static_cast<double>(to_microseconds(estimate.end) - collector.first_us());
+    if (end_us > 1e6 * to_s + 1) return;
+    for (std::size_t p = 0; p < report.streaming.size(); ++p)
+      if (estimate.reason[p] == estimator::Observability::observable)
+        report.streaming[p] = estimate.value[p];
+  });
+  const auto sink = [&](const estimator::AccelSample& sample) {
+    collector.push(sample);
+    if (static_cast<double>(to_microseconds(sample.time) - collector.first_us()) <=
+        1e6 * (to_s + pipeline_config.options.lateness_s))
+      pipeline.push(sample);
+  };
+  drivers::AccelIntake intake(wanted_axes(*config), sink);
+  for (const ReplayInput& input : survey.inputs()) {
+    const std::string problem = push_stored_samples(*config, input, intake, sink);
+    if (problem.empty()) continue;
+    fmt::print(stderr, "{}\n", problem);
+    return kBadInput;
+  }
+  pipeline.finish();
+  collector.finish();
+
+  const Eigen::VectorXd design = pipeline_config.design.size() > 0
+                                     ? pipeline_config.design
+                                     : guessed_design(pipeline_config.structure, table);
+  Eigen::VectorXd start = pipeline.theta0();
+  for (int p = 0; p < table.size(); ++p)
+    if (report.streaming[std::size_t(p)] > 0) start[p] = report.streaming[std::size_t(p)];
+  estimator::RefineOptions options;
+  // Without drawings the design is a guess: nothing to be pulled to.
+  options.prior = a.prior && pipeline_config.options.prior && pipeline_config.design.size() > 0;
+  report.refinement = refine_max_likelihood(pipeline_config.structure, collector.axes(),
+                                            pipeline_config.options.rate_hz, collector.accel(),
+                                            options.prior ? design : start, start, options);
+  fmt::print("{}", a.json ? json(a, *config, table, report) : text(table, report));
+  return report.refinement.status == estimator::RefineStatus::converged ? 0 : kNotRefined;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,307 @@
+#include "daemon/replay/replay_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <thread>
+
+#include <framewatch/event_t.hpp>
+
+#include <fmt/core.h>
+
+#include "daemon/base/exit_code.h"
+#include "daemon/base/progress.h"
+#include "daemon/config/baseline_file.h"
+#include "daemon/config/config_problems.h"
+#include "daemon/estimates/estimate_output.h"
+#include "daemon/estimation/state_file.h"
+#include "daemon/replay/expectation_check.h"
+#include "daemon/replay/replay_summary.h"
+#include "drivers/base/text_output.h"
+#include "drivers/lcm/message_check.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kNotAsExpected = 1;
+using Clock = std::chrono::steady_clock;
+
+/// What can be said before any file is read.
+std::vector<std::string> argument_problems(const ReplayArguments& a) {
+  std::vector<std::string> found;
+  if (!a.out.empty())
+    if (const std::string problem = problem_of_output_name(a.out); !problem.empty())
+      found.push_back(problem);
+  std::vector<std::string> inputs = a.inputs;
+  inputs.push_back(a.config);
+  for (const std::string& input : {a.expect, a.load_state})
+    if (!input.empty()) inputs.push_back(input);
+  for (const std::string& out : {a.out, a.write_expect, a.write_baseline, a.junit, a.save_state})
+    for (const std::string& input : inputs) {
+      std::error_code error;
+      if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
+        found.push_back(input + ": is input and output");
+    }
+  if (!a.junit.empty() && a.expect.empty())
+    found.push_back("--junit: needs --expect, its test cases are the expectations");
+  if (!a.expect.empty() && !a.write_expect.empty())
+    found.push_back("--write-expect: leave --expect out, it is about the old file");
+  if (!(a.span.to_s > a.span.from_s)) found.push_back("--to: must be later than --from");
+  if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog")))
+    found.push_back("--boxplot: is for --out with .csv or .mat; a log always has them");
+  return found;
+}
+
+/// Says all that is wrong. False when replay must not go on.
+bool judge(const ReplaySurvey& survey) {
+  for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", note);
+  for (const std::string& problem : survey.problems()) fmt::print(stderr, "{}\n", problem);
+  if (survey.salvageable())
+    fmt::print(stderr, "framewatch replay: --salvage uses what is intact\n");
+  return survey.problems().empty();
+}
+
+/// Waits until an event's time has come, at `speed` times real time. A step back or of more than
+/// kLongest_us, the night between two logs, is not waited for.
+class Pace {
+ public:
+  explicit Pace(double speed) : speed_(speed) {}
+  void wait_for(std::int64_t time_us) {
+    if (speed_ <= 0) return;
+    std::int64_t step_us = 0;
+    const bool usual = started_ && !__builtin_sub_overflow(time_us, newest_us_, &step_us) &&
+                       step_us >= 0 && step_us <= kLongest_us;
+    if (usual)
+      due_ += std::chrono::duration_cast<Clock::duration>(
+          std::chrono::duration<double, std::micro>(static_cast<double>(step_us) / speed_));
+    started_ = true;
+    newest_us_ = time_us;
+    std::this_thread::sleep_until(due_);
+  }
+
+ private:
+  static constexpr std::int64_t kLongest_us = 10'000'000;
+  double speed_;
+  bool started_ = false;
+  std::int64_t newest_us_ = 0;
+  Clock::time_point due_ = Clock::now();
+};
+
+std::int64_t bytes_of(const std::vector<std::string>& paths) {
+  std::int64_t sum = 0;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    if (!error) sum += static_cast<std::int64_t>(size);
+  }
+  return sum;
+}
+
+/// One replay, from the first byte to the summary.
+class ReplayRun {
+ public:
+  ReplayRun(const ReplayArguments& a, const Config& config,
+            std::optional<Expectations> expectations)
+      : a_(a),
+        config_(config),
+        expectations_(std::move(expectations)),
+        event_channel_(config.lcm.prefix + "EVENT"),
+        survey_(config, a.salvage, a.span),
+        learner_(
+            watched_parameters(estimator::ParameterTable(config.pipeline.structure),
+                               config.watch ? config.watch->options : estimator::WatchOptions{}),
+            std::numeric_limits<double>::infinity()),
+        series_(estimator::ParameterTable(config.pipeline.structure), expectations_.has_value()),
+        estimation_(config, sink(), [this](const estimator::WindowEstimate& e) {
+          series_.add(e);
+          learner_.push(e);
+        }) {}
+
+  int run() {
+    if (!a_.load_state.empty()) {
+      bool touched = false;
+      const LoadedState state = load_state(a_.load_state, config_, estimation_, touched);
+      if (!state.problem.empty()) return refuse("replay", a_.load_state + ": " + state.problem);
+      events_before_ = state.events_before;
+      survey_.goes_on();
+    }
+    if (!open_outputs()) return kBadInput;
+    // At a pace the person should not learn after an hour that the end of the log is damaged.
+    if (a_.speed > 0 && !sound_beforehand()) return kBadInput;
+    read_everything();
+    if (a_.speed > 0 ? !survey_.problems().empty() : !judge(survey_)) return kBadInput;
+    const std::int64_t events = outputs_.empty() ? events_before_ : outputs_.front()->events();
+    for (const auto& output : outputs_)
+      if (failed_.empty() && !output->close()) fail(*output);
+    if (!failed_.empty()) return refuse("replay", failed_);
+    if (!a_.save_state.empty()) {
+      const std::string problem =
+          write_state(a_.save_state, state_bytes(config_, estimation_, events));
+      if (!problem.empty()) return refuse("replay", a_.save_state + ": " + problem);
+    }
+    return conclude();
+  }
+
+ private:
+  /// Messages are made for somebody only.
+  MessageSink sink() {
+    const bool wanted = !a_.out.empty() || a_.lcm || config_.watch ||
+                        (expectations_.has_value() && !expectations_->events.empty());
+    if (!wanted) return {};
+    return [this](std::int64_t time_us, const std::string& channel,
+                  const std::vector<std::uint8_t>& bytes) { put(time_us, channel, bytes); };
+  }
+
+  bool open_outputs() {
+    std::string error;
+    const auto add = [&](std::unique_ptr<EstimateOutput> output, const std::string& name) {
+      if (output)
+        outputs_.push_back(std::move(output));
+      else
+        refuse("replay", name.empty() ? error : fmt::format("{}: {}", name, error));
+      return error.empty();
+    };
+    return (a_.out.empty() ||
+            add(estimate_output(
+                    config_, {a_.out, a_.boxplot, !a_.load_state.empty(), events_before_}, error),
+                a_.out)) &&
+           (!a_.lcm || add(lcm_estimate_output(config_, a_.lcm_url, error), ""));
+  }
+
+  bool sound_beforehand() const {
+    ReplaySurvey survey(config_, a_.salvage, a_.span);
+    for (const std::string& path : a_.inputs) survey.add(path);
+    survey.finish();
+    return judge(survey);
+  }
+
+  void read_everything() {
+    Progress progress("replay", bytes_of(a_.inputs), "MB", 1e6, a_.quiet);
+    Pace pace(a_.speed);
+    survey_.feed(estimation_);
+    survey_.at_each([&](std::int64_t bytes, std::int64_t time_us) {
+      progress(bytes);
+      pace.wait_for(time_us);
+    });
+    for (const std::string& path : a_.inputs) survey_.add(path);
+    survey_.finish();
+    if (a_.save_state.empty()) estimation_.finish();  // else it has not ended
+  }
+
+  void put(std::int64_t time_us, const std::string& channel,
+           const std::vector<std::uint8_t>& bytes) {
+    for (const auto& output : outputs_)
+      if (failed_.empty() && !output->put(time_us, channel, bytes)) fail(*output);
+    if (channel != event_channel_) return;
+    const auto event = drivers::decoded<event_t>(bytes);
+    if (!event || event->state != 1) return;
+    events_.push_back({event->kind, event->place, event->since_us});
+    if (!a_.quiet && !a_.json) alarms_ += fmt::format("alarm: {}\n", event->message);
+  }
+
+  void fail(const EstimateOutput& output) {
+    failed_ = a_.out.empty() ? output.error() : fmt::format("{}: {}", a_.out, output.error());
+  }
+
+  int conclude() {
+    const ReplayCounts counts = replay_counts(estimation_);
+    const ReplayOutcome outcome{series_, counts, events_, survey_.first_us()};
+    std::vector<Check> checks;
+    if (expectations_) checks = check_expectations(*expectations_, outcome);
+    std::string problem;
+    if (!a_.junit.empty())
+      problem = drivers::write_text_file(a_.junit, junit_xml(checks, a_.expect));
+    if (!a_.write_expect.empty())
+      problem = drivers::write_text_file(a_.write_expect, written_expectations(outcome, command()));
+    if (!a_.write_baseline.empty()) problem = write_baseline();
+    if (!problem.empty()) return refuse("replay", problem);
+
+    const std::chrono::duration<double> work = Clock::now() - start_;
+    const ReplaySummary summary{series_, counts, survey_, estimation_.can(), work.count()};
+    const bool holds =
+        std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
+    if (a_.json) {
+      std::string json = summary.json();
+      if (expectations_)
+        json += fmt::format(",\n \"expectations\": {},\n \"differences\": {}", checks.size(),
+                            differences_json(checks));
+      fmt::print("{}}}\n", json);
+    } else if (!a_.quiet) {
+      fmt::print("{}{}", summary.text(), alarms_);
+      if (holds && expectations_) fmt::print("\nas expected: {} of {}\n", checks.size(), a_.expect);
+    }
+    if (holds) return 0;
+    tell_differences(checks);
+    return kNotAsExpected;
+  }
+
+  std::string write_baseline() const {
+    const estimator::Baseline baseline = learner_.so_far();
+    if (baseline.known() == 0)
+      return "--write-baseline: no parameter has a value in half of the windows that the design "
+             "does not pull";
+    return drivers::write_text_file(
+        a_.write_baseline,
+        baseline_text(baseline, estimator::ParameterTable(config_.pipeline.structure)));
+  }
+
+  void tell_differences(const std::vector<Check>& checks) const {
+    int differences = 0;
+    for (const Check& c : checks) {
+      if (c.holds) continue;
+      ++differences;
+      fmt::print(stderr, "{}\n", c.text());
+    }
+    fmt::print(stderr, "framewatch replay: {} of {} expectations of {} do not hold\n", differences,
+               checks.size(), a_.expect);
+  }
+
+  std::string command() const {
+    std::string text = "framewatch replay " + a_.config;
+    for (const std::string& input : a_.inputs) text += " " + input;
+    return text;
+  }
+
+  const ReplayArguments& a_;
+  const Config& config_;
+  Clock::time_point start_ = Clock::now();
+  std::optional<Expectations> expectations_;
+  std::string event_channel_;
+  std::int64_t events_before_ = 0;  ///< of parts before this one
+  ReplaySurvey survey_;
+  estimator::BaselineLearner learner_;
+  EstimateSeries series_;
+  std::vector<RaisedEvent> events_;
+  std::string alarms_;
+  std::vector<std::unique_ptr<EstimateOutput>> outputs_;
+  std::string failed_;
+  Estimation estimation_;
+};
+
+}  // namespace
+
+int replay(const ReplayArguments& a) {
+  const std::vector<std::string> wrong = argument_problems(a);
+  for (const std::string& problem : wrong) refuse("replay", problem);
+  if (!wrong.empty()) return kBadInput;
+  std::vector<ConfigProblem> problems;
+  std::optional<Config> config = load_config(a.config, problems);
+  print_problems(problems);
+  if (!config) return kBadInput;
+  const bool boxplots_are_read =
+      !a.out.empty() || a.lcm || !a.save_state.empty() || !a.load_state.empty();
+  if (!boxplots_are_read) config->pipeline.options.boxplot_windows = 0;
+  std::optional<Expectations> expectations;
+  if (!a.expect.empty()) {
+    problems.clear();
+    expectations = load_expectations(
+        a.expect, estimator::ParameterTable(config->pipeline.structure), problems);
+    print_problems(problems);
+    if (!expectations) return kBadInput;
+  }
+  return ReplayRun(a, *config, std::move(expectations)).run();
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/estimation/estimation.h"
+#include "drivers/lcm/accel_intake.h"
+#include "drivers/lcm/lcm_log.h"
+#include "drivers/records/record_file.h"
+
+namespace framewatch::daemon {
+
+/// One file to replay: an LCM event log, a candump log, or a record held in memory.
+struct ReplayInput {
+  std::string path;
+  bool is_record = false;
+  drivers::Record record;
+  std::vector<int> axis_of_column;  ///< of the record; -1: a column no axis is named after
+};
+
+/// Part of the input, seconds after its first sample; the rest is ignored.
+struct ReplaySpan {
+  double from_s = 0;
+  double to_s = std::numeric_limits<double>::infinity();
+  bool whole() const { return from_s <= 0 && to_s == std::numeric_limits<double>::infinity(); }
+};
+
+/// Looks at every input: what it holds, what is damaged, and whether it can be what the
+/// configuration describes. On its way it may give what it reads to an Estimation, so that nothing
+/// is read twice; whoever does so throws the estimates away when there are problems in the end.
+class ReplaySurvey {
+ public:
+  /// salvage: damaged, undecodable and infinite input is noted and left out instead of refused.
+  ReplaySurvey(const Config& config, bool salvage, ReplaySpan span = {});
+
+  /// From now on every sample is passed to `estimation` too, which must outlive the calls of add().
+  void feed(Estimation& estimation) { estimation_ = &estimation; }
+  /// The estimation has seen what was before --from: tables there are not given again.
+  void goes_on() { goes_on_ = true; }
+  /// What to do at each event or instant of a record, before it is given on: bytes read so far of
+  /// all files, and the time of the event or instant, microseconds.
+  using Step = std::function<void(std::int64_t bytes, std::int64_t time_us)>;
+  void at_each(Step step) { step_ = std::move(step); }
+
+  void add(const std::string& path);
+  /// To be called after the last add(): problems of the whole.
+  void finish();
+
+  /// Problems because of which the replay must not start, each "place: rule".
+  const std::vector<std::string>& problems() const { return problems_; }
+  /// Damage and other notes for the user.
+  const std::vector<std::string>& notes() const { return notes_; }
+  std::vector<ReplayInput>& inputs() { return inputs_; }
+  std::int64_t bytes() const { return bytes_; }
+  std::int64_t damaged_bytes() const { return damaged_bytes_; }
+  /// Whether --salvage would leave out all that is wrong.
+  bool salvageable() const { return faults_ > 0 && faults_ == problems_.size(); }
+  double measured_seconds() const { return static_cast<double>(last_us_ - first_us_) * 1e-6; }
+  /// Sensor time of the first sample that was used, microseconds.
+  std::int64_t first_us() const { return first_us_; }
+
+ private:
+  struct Stamp {
+    std::int64_t sequence, time_us;
+  };
+  struct LogSeen {
+    std::map<std::string, std::int64_t> channels;                  ///< events by channel
+    std::pair<const std::string, std::int64_t>* newest = nullptr;  ///< of the last event
+    std::int64_t events = 0, samples = 0, first_malformed_offset = -1, backwards_offset = -1;
+    std::int64_t infinite_offset = -1;
+    bool left_out = false;  ///< something lies outside the span
+    std::string malformed;  ///< why the first such message is
+  };
+
+  void add_record(ReplayInput input);
+  void give_record(const ReplayInput& input);
+  bool outside(std::int64_t time_us);
+  bool left_out(const drivers::LogEvent& event);
+  const drivers::AccelIntake& intake() const {
+    return estimation_ != nullptr ? estimation_->intake() : intake_;
+  }
+  void add_log(const std::string& path);
+  void add_candump(const std::string& path);
+  void look_at(const drivers::LogEvent& event, LogSeen& seen);
+  void judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed);
+  void check_rate(const std::string& place, double rate_hz);
+  /// False, with the problem, when it is not after the file before it.
+  bool extend(const std::string& path, std::int64_t first_us, std::int64_t last_us);
+
+  void fault(std::string message);
+
+  const Config& config_;
+  bool salvage_;
+  ReplaySpan span_;
+  bool spanned_;
+  bool goes_on_ = false;
+  /// Where the newest sample stood: what has no time of its own is with it.
+  enum class Place { before, inside, after } place_;
+  std::int64_t span_zero_us_ = std::numeric_limits<std::int64_t>::min();
+  drivers::AccelIntake intake_;  ///< while nobody is fed
+  Estimation* estimation_ = nullptr;
+  Step step_;
+  std::string last_path_;
+  std::vector<ReplayInput> inputs_;
+  std::vector<std::string> problems_, notes_;
+  struct NodeStamps {
+    std::pair<std::string, std::int32_t> place;  ///< channel and node
+    std::vector<Stamp> stamps;
+  };
+  std::vector<NodeStamps> stamps_;  ///< of one log, by AccelIntake::last_node()
+  std::int64_t bytes_ = 0, damaged_bytes_ = 0;
+  std::int64_t first_us_ = 0, last_us_ = 0;  ///< of all samples
+  std::int64_t log_first_us_ = 0, log_last_us_ = 0;
+  bool any_ = false;
+  std::size_t faults_ = 0;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <framewatch/acknowledged_t.hpp>
+#include <framewatch/action_status_t.hpp>
+#include <framewatch/can_status_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
+#include <framewatch/service_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/watch_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+#include "daemon/config/config.h"
+
+namespace framewatch::daemon {
+
+/// The newest messages of a daemon, collected over a few seconds.
+class Heard {
+ public:
+  explicit Heard(const Config& config) : prefix_(config.lcm.prefix) {}
+
+  std::vector<std::string> channels() const;
+  void message(const std::string& channel, const void* data, std::size_t size);
+
+  /// Whether two reports of the process have come, and two of the samples unless there are none.
+  bool enough() const;
+
+  std::optional<service_t> first_service, service;
+  std::optional<status_t> first_status, status;
+  std::optional<window_estimate_t> estimate;
+  std::optional<gap_t> gap;
+  std::optional<watch_t> watch;
+  std::optional<can_status_t> can;
+  std::optional<history_status_t> history;
+  std::optional<action_status_t> actions;
+  std::optional<acknowledged_t> acknowledged;
+
+ private:
+  std::string prefix_;
+};
+
+/// Index of the event in heard.acknowledged; empty when it is not acknowledged.
+std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t event_id);
+
+/// Every problem that is not acknowledged, one sentence each; empty when the daemon is healthy.
+/// Requires heard.service. now_us: host clock.
+std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us);
+
+/// Time since the newest sample; without one, since the start.
+double silent_s(const service_t& service, std::int64_t now_us);
+
+/// "3 d 4 h", "5 min 10 s", "2 s".
+std::string span_text(double seconds);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,334 @@
+#include "daemon/session/record_command.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <optional>
+
+#include <framewatch/session_command_t.hpp>
+#include <framewatch/session_status_t.hpp>
+
+#include <fmt/core.h>
+
+#include "daemon/base/child_process.h"
+#include "daemon/base/clocks.h"
+#include "daemon/base/descriptor.h"
+#include "daemon/base/exit_code.h"
+#include "daemon/base/log.h"
+#include "daemon/base/stop_signal.h"
+#include "daemon/config/config_problems.h"
+#include "daemon/session/recorder.h"
+#include "daemon/session/session_command.h"
+#include "daemon/session/session_finish.h"
+#include "drivers/base/encoded.h"
+#include "drivers/can/can_source.h"
+#include "drivers/lcm/lcm_source.h"
+#include "drivers/lcm/message_check.h"
+
+namespace framewatch::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kPoll_ms = 50;
+constexpr std::int64_t kStatus_us = 1'000'000, kNoSamples_us = 10'000'000;
+
+/// A listener: it starts no node and sends no SYNC, which is the estimator's business.
+drivers::CanMap listening(drivers::CanMap map) {
+  for (drivers::CanBusMap& bus : map.buses) bus.send_sync = bus.nmt_start = false;
+  return map;
+}
+
+/// One recorder per folder: two would both obey a command.
+class FolderLock {
+ public:
+  /// Empty, or why not.
+  std::string lock(const std::string& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    file_.reset(::open((folder + "/.recorder").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+    if (file_.get() < 0) return fmt::format("{}: sessions cannot be stored there", folder);
+    if (::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) return "";
+    return fmt::format("{}: another framewatch record works there; tell it with --send", folder);
+  }
+
+ private:
+  Descriptor file_;
+};
+
+void print_channels(const std::vector<ChannelResult>& results) {
+  fmt::print("{:<16} {:>22} {:>12} {:>12} {:>9}  {}\n", "channel", "noise, um/s^2/sqrt(Hz)",
+             "rms, m/s^2", "rests at", "saturated", "");
+  for (const ChannelResult& r : results)
+    fmt::print("{:<16} {:>22} {:>12.2g} {:>+12.4f} {:>9}  {}\n", r.name,
+               std::isfinite(r.noise_density) ? fmt::format("{:.3g}", 1e6 * r.noise_density) : "?",
+               r.rms, r.offset, r.saturated,
+               !r.problem.empty() ? r.problem
+               : r.polarity > 0   ? "polarity right"
+                                  : "");
+  std::fflush(stdout);
+}
+
+class RecordCommand {
+ public:
+  RecordCommand(const RecordArguments& a, const Config& config, lcm::LCM& lcm)
+      : a_(a),
+        config_(config),
+        lcm_(lcm),
+        recorder_(config, a.out, [this](const std::string& folder) { ended(folder); }),
+        source_(lcm, channels(), config.lcm.queue_capacity,
+                [this](const std::string& channel, const void* data, std::size_t size,
+                       std::int64_t received_us) { message(channel, data, size, received_us); }),
+        can_map_(listening(config.can)),
+        can_(can_map_, true,
+             [this](int bus, const drivers::CanFrame& frame) { recorder_.frame(bus, frame); }) {}
+
+  int run() {
+    for (const std::string& note : can_.open()) log(LogLevel::warning, note);
+    step_ = a_.standby ? Step::standby : a_.check ? Step::check : Step::begin;
+    while (step_ != Step::done) {
+      poll();
+      const std::int64_t now_us = host_clock_us();
+      recorder_.tick(now_us);
+      advance(now_us);
+      look_at_child();
+      publish(now_us);
+    }
+    return exit_code_;
+  }
+
+ private:
+  /// Of a command without --standby: check, tap test, session, finishing; standby: until stopped.
+  enum class Step { check, tap, begin, session, finishing, standby, done };
+
+  std::vector<std::string> channels() const {
+    std::vector<std::string> out = recorder_.channels();
+    out.push_back(config_.lcm.prefix + "SESSION_COMMAND");
+    return out;
+  }
+
+  void message(const std::string& channel, const void* data, std::size_t size,
+               std::int64_t received_us) {
+    if (channel != config_.lcm.prefix + "SESSION_COMMAND")
+      return recorder_.message(channel, data, size, received_us);
+    const auto command =
+        drivers::decoded<session_command_t>({static_cast<const std::uint8_t*>(data), size});
+    if (command) recorder_.obey(*command, host_clock_us());
+  }
+
+  void poll() {
+    if (config_.can.empty()) {
+      if (!source_.handle(kPoll_ms) && !stop_requested()) ::usleep(1000 * kPoll_ms);
+      return;
+    }
+    std::vector<pollfd> waiting{{lcm_.getFileno(), POLLIN, 0}};
+    can_.descriptors(waiting);
+    ::poll(waiting.data(), waiting.size(), kPoll_ms);
+    can_.handle(steady_clock_us());
+    (void)source_.handle(0);
+  }
+
+  void fail(const std::string& why) {
+    log(LogLevel::error, why);
+    exit_code_ = kFailed;
+    step_ = Step::done;
+  }
+
+  void advance(std::int64_t now_us) {
+    if (stop_requested() && !stopping_) return stop(now_us);
+    switch (step_) {
+      case Step::check:
+        if (recorder_.checked()) return after_check(now_us);
+        if (started_us_ == 0) started_us_ = now_us;
+        if (now_us < started_us_ + kNoSamples_us) return;
+        started_us_ = now_us;
+        return log(LogLevel::warning, "no samples yet: are the sensors' messages on this LCM?");
+      case Step::tap:
+        if (recorder_.state() == RecorderState::tapping && now_us < tap_until_us_) return;
+        if (recorder_.state() == RecorderState::tapping) (void)recorder_.stop("", now_us);
+        return judge_channels();
+      case Step::begin: {
+        const std::string why = recorder_.begin(a_.request, now_us);
+        if (!why.empty()) return fail(why);
+        step_ = Step::session;
+        return;
+      }
+      case Step::session:
+        if (recorder_.state() != RecorderState::waiting) return;
+        step_ = Step::finishing;
+        return;
+      case Step::finishing:
+        if (!child_ && to_finish_.empty()) step_ = Step::done;
+        return;
+      case Step::standby:
+      case Step::done:
+        return;
+    }
+  }
+
+  void after_check(std::int64_t now_us) {
+    if (a_.tap_s <= 0) return judge_channels();
+    (void)recorder_.tap();
+    tap_until_us_ = now_us + static_cast<std::int64_t>(1e6 * a_.tap_s);
+    step_ = Step::tap;
+  }
+
+  void judge_channels() {
+    const std::vector<ChannelResult> results = recorder_.channel_results();
+    if (!a_.quiet) print_channels(results);
+    for (const ChannelResult& r : results)
+      if (a_.strict && !r.problem.empty())
+        return fail(fmt::format("{}: {}: nothing is recorded (--strict)", r.name, r.problem));
+    step_ = Step::begin;
+  }
+
+  void stop(std::int64_t now_us) {
+    stopping_ = true;
+    const bool recording = recorder_.state() == RecorderState::recording;
+    (void)recorder_.stop("signal", now_us);
+    if (recording || step_ == Step::finishing || (step_ == Step::standby && child_)) {
+      step_ = Step::session;
+      return;
+    }
+    if (!a_.standby && !a_.quiet) log(LogLevel::notice, "nothing was recorded");
+    exit_code_ = a_.standby ? 0 : kFailed;
+    step_ = Step::done;
+  }
+
+  void ended(const std::string& folder) {
+    if (!a_.quiet) log(LogLevel::info, fmt::format("recorded {}", folder));
+    to_finish_.push_back(folder);
+  }
+
+  /// Stages, other formats and the report are another process' work: whatever happens to it, the
+  /// logs are closed.
+  void look_at_child() {
+    if (!child_ && !to_finish_.empty()) {
+      finishing_ = to_finish_.front();
+      to_finish_.pop_front();
+      std::vector<std::string> arguments{"record", a_.config, "--finish", finishing_, "--quiet"};
+      for (const auto& [wanted, option] :
+           {std::pair{a_.csv, "--csv"}, std::pair{a_.mat, "--mat"}, std::pair{a_.split, "--split"},
+            std::pair{!a_.report, "--no-report"}})
+        if (wanted) arguments.push_back(option);
+      if (!a_.reports.empty()) arguments.insert(arguments.end(), {"--reports", a_.reports});
+      std::string error;
+      child_ = ChildProcess::start(std::move(arguments), error);
+      if (!child_) finished(kFailed, error);
+    }
+    if (!child_) return;
+    if (const auto code = child_->ended()) {
+      child_.reset();
+      finished(*code, fmt::format("exit status {}", *code));
+    }
+  }
+
+  void finished(int code, const std::string& how) {
+    const fs::path folder(finishing_);
+    std::string unread;
+    const auto session = read_session_file(finishing_ + "/" + kSessionJson, unread);
+    const bool page = fs::exists(folder / kReportPage);
+    const std::string report =
+        session && !session->report.empty() ? session->report : std::string();
+    if (!a_.quiet && !report.empty()) fmt::print("{}\n", report);
+    std::fflush(stdout);
+    std::string news = "the report is ready";
+    if (code != 0) {
+      news = fmt::format(
+          "the logs are whole, but what comes after them failed ({}); try framewatch record {} "
+          "--finish {}",
+          how, a_.config, finishing_);
+      log(LogLevel::error, news);
+      exit_code_ = kFailed;
+    } else if (!a_.report) {
+      news = "recorded";
+    }
+    if (session && session->dropped > 0) exit_code_ = kFailed;
+    recorder_.finished(page ? folder.filename().string() : std::string(), news);
+  }
+
+  void publish(std::int64_t now_us) {
+    const session_status_t status = recorder_.status(now_us);
+    const bool changed = status.state != said_state_ || status.message != said_news_ ||
+                         status.answered != said_answer_ || status.report != said_report_;
+    if (!changed && now_us < next_status_us_) return;
+    if (changed && !a_.quiet) tell(status);
+    said_state_ = status.state;
+    said_news_ = status.message;
+    said_answer_ = status.answered;
+    said_report_ = status.report;
+    next_status_us_ = now_us + kStatus_us;
+    drivers::encode_into(bytes_, status);
+    lcm_.publish(config_.lcm.prefix + "SESSION", bytes_.data(),
+                 static_cast<unsigned>(bytes_.size()));
+  }
+
+  void tell(const session_status_t& s) const {
+    if (s.answered != said_answer_ && !s.refused.empty())
+      log(LogLevel::warning, "refused: " + s.refused);
+    if (s.state != said_state_ && s.state == static_cast<int>(RecorderState::armed))
+      log(LogLevel::info, fmt::format("armed: begins {:g} m/s^2 from rest", s.trigger_mps2));
+    if (s.state != said_state_ && s.state == static_cast<int>(RecorderState::recording))
+      log(LogLevel::info, fmt::format("recording {}/{}{}", a_.out, s.session,
+                                      s.length_s > 0 ? fmt::format(" for {:g} s", s.length_s)
+                                                     : "; Ctrl-C or --send stop ends it"));
+    if (s.message != said_news_ && !s.message.empty()) log(LogLevel::info, s.message);
+  }
+
+  const RecordArguments& a_;
+  const Config& config_;
+  lcm::LCM& lcm_;
+  Recorder recorder_;
+  drivers::LcmSource source_;
+  drivers::CanMap can_map_;
+  drivers::CanSource can_;
+  Step step_ = Step::standby;
+  int exit_code_ = 0;
+  bool stopping_ = false;
+  std::int64_t started_us_ = 0, tap_until_us_ = 0, next_status_us_ = 0;
+  std::deque<std::string> to_finish_;
+  std::string finishing_;
+  std::optional<ChildProcess> child_;
+  int said_state_ = 0;
+  std::string said_news_, said_report_;
+  std::int64_t said_answer_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+int record(const RecordArguments& a) {
+  if (!a.finish.empty())
+    return finish_session(
+        {a.config, a.finish, a.reports, a.csv, a.mat, a.split, a.report, a.quiet});
+  std::vector<ConfigProblem> config_problems;
+  const auto config = load_config(a.config, config_problems);
+  print_problems(config_problems);
+  bool good = config.has_value();
+  for (const std::string& p : problems(a.request)) {
+    (void)refuse("record", p);
+    good = false;
+  }
+  if (a.standby && (!a.send.empty() || a.tap_s > 0)) {
+    (void)refuse("record", "--standby waits for commands: leave --send and --tap-test out");
+    good = false;
+  }
+  if (!good) return kBadInput;
+  std::string error;
+  const auto lcm = drivers::open_lcm(a.url.empty() ? config->lcm.url : a.url,
+                                     config->lcm.receive_buffer_bytes, error);
+  if (!lcm) return refuse("record", error);
+  if (!a.send.empty()) return send_session_command(*lcm, config->lcm.prefix, a.send, a.request);
+  FolderLock lock;
+  error = lock.lock(a.out);
+  if (!error.empty()) return refuse("record", error);
+  catch_stop_signals();
+  return RecordCommand(a, *config, *lcm).run();
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,237 @@
+#include "daemon/web/live_view.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include <framewatch/acknowledged_t.hpp>
+#include <framewatch/can_status_t.hpp>
+#include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/service_t.hpp>
+#include <framewatch/session_status_t.hpp>
+#include <framewatch/status_t.hpp>
+
+#include "daemon/estimation/estimate_channels.h"
+#include "daemon/estimation/wanted_axes.h"
+#include "daemon/events/acknowledge_messages.h"
+#include "daemon/live/heard_channels.h"
+#include "daemon/web/page_json.h"
+#include "drivers/base/encoded.h"
+#include "drivers/lcm/message_check.h"
+#include "estimator/structure/parameter_table.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr std::size_t kRing = 256;         // 10 s of events
+constexpr std::size_t kMostCommands = 16;  // that wait
+constexpr int kFlushesPerBoxplot = 5;
+constexpr int kFlushesPerSecond = 20;
+
+std::span<const std::uint8_t> bytes(const void* data, std::size_t size) {
+  return {static_cast<const std::uint8_t*>(data), size};
+}
+
+std::vector<std::string> parameter_names(const Config& config) {
+  const estimator::ParameterTable table(config.pipeline.structure);
+  std::vector<std::string> out;
+  for (int p = 0; p < table.size(); ++p) out.push_back(table[p].name);
+  return out;
+}
+
+}  // namespace
+
+LiveView::LiveView(const Config& config, MessageSink publish)
+    : config_(config),
+      publish_(std::move(publish)),
+      estimate_channels_(estimate_channels(config)),
+      motion_(config.pipeline.options.rate_hz),
+      acquisition_(config.pipeline.axes, config.pipeline.options,
+                   [this](const estimator::SampleSet& set) { motion_.push(set); }),
+      intake_(wanted_axes(config),
+              [this](const estimator::AccelSample& sample) { acquisition_.push(sample); }),
+      ring_(kRing) {
+  estimate_channels_.resize(1 + config.pipeline.options.other_windows_s.size());
+}
+
+std::vector<std::string> LiveView::channels() const {
+  std::vector<std::string> out = sample_channels(config_);
+  for (const char* name :
+       {"PARAMETERS", "STATUS", "EVENT", "GAP", "CAN", "SESSION", "SERVICE", "ACKNOWLEDGED"})
+    out.push_back(config_.lcm.prefix + name);
+  out.insert(out.end(), estimate_channels_.begin(), estimate_channels_.end());
+  return out;
+}
+
+void LiveView::push(const std::string& name, const std::string& data) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ring_.push(name, data);
+}
+
+/// The caller holds the mutex.
+void LiveView::push_alarms(const std::vector<std::string>& alarms) {
+  for (const std::string& alarm : alarms) ring_.push("alarm", alarm);
+}
+
+/// Pushes an event that a viewer who joins later gets at once.
+void LiveView::keep(const std::string& name, std::string json) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ring_.push(name, json);
+  kept_[name] = std::move(json);
+}
+
+void LiveView::message(const std::string& channel, const void* data, std::size_t size) {
+  const std::string& prefix = config_.lcm.prefix;
+  if (!channel.starts_with(prefix)) {
+    (void)intake_.message(channel, data, size);
+    return;
+  }
+  const std::string name = channel.substr(prefix.size());
+  if (name == "PARAMETERS") {
+    parameters(data, size);
+  } else if (name.starts_with("ESTIMATE")) {
+    estimate(channel, data, size);
+  } else if (name == "STATUS") {
+    if (const auto s = drivers::decoded<status_t>(bytes(data, size)))
+      keep("status", status_json(*s, config_.sha256));
+  } else if (name == "SESSION") {
+    if (const auto s = drivers::decoded<session_status_t>(bytes(data, size)))
+      keep("session", session_status_json(*s));
+  } else if (name == "CAN") {
+    if (const auto s = drivers::decoded<can_status_t>(bytes(data, size))) keep("can", can_json(*s));
+  } else if (name == "GAP") {
+    if (const auto gap = drivers::decoded<gap_t>(bytes(data, size))) keep("gap", gap_json(*gap));
+  } else {
+    alarms_message(name, data, size);
+  }
+}
+
+void LiveView::alarms_message(const std::string& name, const void* data, std::size_t size) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (name == "EVENT") {
+    if (const auto e = drivers::decoded<event_t>(bytes(data, size)))
+      push_alarms({alarms_.note(*e)});
+  } else if (name == "SERVICE") {
+    if (const auto s = drivers::decoded<service_t>(bytes(data, size)))
+      push_alarms(alarms_.still_raised(*s));
+  } else if (name == "ACKNOWLEDGED") {
+    if (auto a = drivers::decoded<acknowledged_t>(bytes(data, size)))
+      push_alarms(alarms_.acknowledged(std::move(*a)));
+  }
+}
+
+void LiveView::parameters(const void* data, std::size_t size) {
+  const auto table = drivers::decoded<parameter_table_t>(bytes(data, size));
+  if (!table || table->name == parameters_) return;
+  parameters_ = table->name;
+  watch_.reset();
+  // An estimator of another building's configuration is shown, not watched.
+  if (parameters_ == parameter_names(config_))
+    watch_.emplace(config_, std::max<std::int64_t>(1, table->time_us));
+}
+
+void LiveView::estimate(const std::string& channel, const void* data, std::size_t size) {
+  const auto at = std::find(estimate_channels_.begin(), estimate_channels_.end(), channel);
+  if (at == estimate_channels_.end()) return;
+  auto found = drivers::decoded<window_estimate_t>(bytes(data, size));
+  if (!found) return;
+  const auto window = static_cast<int>(at - estimate_channels_.begin());
+  look_for_changes(window, *found);
+  if (window != 0) return;
+  new_estimate_ = true;
+  newest_ = std::move(*found);
+}
+
+void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
+  if (!watch_) return;
+  bool renew = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::swap(renew, renew_);
+  }
+  if (renew) watch_->renew();
+  for (const event_t& e : watch_->observe(window, estimate))
+    if (!config_.watch)  // else the estimator publishes its own
+      publish_(e.time_us, config_.lcm.prefix + "EVENT", drivers::encoded(e));
+}
+
+std::string LiveView::baseline() const {
+  return baseline_json(watch_ ? watch_->baseline() : std::vector<double>{});
+}
+
+void LiveView::flush() {
+  send_requests();
+  if (const std::string rows = motion_.take(); !rows.empty()) push("motion", rows);
+  if (++flushes_ % kFlushesPerSecond == 0) {
+    const std::string json = baseline();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (json != kept_["baseline"]) ring_.push("baseline", json);
+    kept_["baseline"] = json;
+    ring_.push("alive", "{}");
+  }
+  if (!newest_) return;
+  if (std::exchange(new_estimate_, false)) push("estimate", estimate_json(*newest_));
+  if (flushes_ % kFlushesPerBoxplot == 0 && newest_->boxplots > 0)
+    push("boxes", boxes_json(*newest_));
+}
+
+void LiveView::send_requests() {
+  std::vector<session_command_t> commands;
+  std::vector<acknowledge_t> requests;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    commands.swap(commands_);
+    requests.swap(requests_);
+  }
+  for (const acknowledge_t& request : requests)
+    publish_(0, config_.lcm.prefix + "ACKNOWLEDGE", drivers::encoded(request));
+  for (const session_command_t& command : commands)
+    publish_(0, config_.lcm.prefix + "SESSION_COMMAND", drivers::encoded(command));
+}
+
+std::string LiveView::building_json() const {
+  return daemon::building_json(config_, config_.pipeline.options.rate_hz / motion_.stride());
+}
+
+EventRing::Cursor LiveView::join() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::string first = "retry: 1000\n\n";
+  for (const char* name : {"status", "baseline", "session", "can", "gap"})
+    if (const std::string& json = kept_[name]; !json.empty()) first += EventRing::text(name, json);
+  for (const std::string& alarm : alarms_.all()) first += EventRing::text("alarm", alarm);
+  return ring_.join(std::move(first));
+}
+
+std::size_t LiveView::read(EventRing::Cursor& cursor, char* buffer, std::size_t size) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return ring_.read(cursor, buffer, size);
+}
+
+bool LiveView::acknowledge(std::int64_t id) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const event_t* event = alarms_.find(id);
+  if (event == nullptr) return false;
+  const bool found_here = !config_.watch && event->kind == "stiffness_change";
+  if (alarms_.kept_elsewhere() && !found_here) {
+    if (requests_.size() == kMostCommands) return false;
+    requests_.push_back(acknowledge_request(id, "the page", ""));
+  } else {
+    push_alarms({alarms_.acknowledge(id)});
+  }
+  return true;
+}
+
+void LiveView::renew_baseline() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  renew_ = true;
+}
+
+bool LiveView::tell_recorder(const session_command_t& command) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (commands_.size() == kMostCommands) return false;
+  commands_.push_back(command);
+  return true;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <framewatch/acknowledge_t.hpp>
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/session_command_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+#include "daemon/config/config.h"
+#include "daemon/estimation/message_sink.h"
+#include "daemon/web/event_ring.h"
+#include "daemon/web/motion_rows.h"
+#include "daemon/web/page_alarms.h"
+#include "daemon/web/page_watch.h"
+#include "drivers/lcm/accel_intake.h"
+#include "estimator/motion/acquisition.h"
+
+namespace framewatch::daemon {
+
+/// What the page shows, made of LCM messages alone: samples, estimates, status and events in,
+/// server-sent events (JSON) out. message() and flush() belong to one thread; the functions that
+/// viewers call may be called from any thread.
+class LiveView {
+ public:
+  /// `config` must outlive this. publish: where requests and events of the page go (LCM).
+  LiveView(const Config& config, MessageSink publish);
+
+  /// The LCM channels the page is fed by.
+  std::vector<std::string> channels() const;
+  void message(const std::string& channel, const void* data, std::size_t size);
+  /// Sends what has come since the last call; to be called 20 times a second.
+  void flush();
+
+  /// The building, its sensors and parameters, as the page draws them: JSON.
+  std::string building_json() const;
+  EventRing::Cursor join();
+  std::size_t read(EventRing::Cursor& cursor, char* buffer, std::size_t size);
+  /// False when there is no such event, or too many requests wait.
+  bool acknowledge(std::int64_t id);
+  /// The next seconds become the baseline that stiffnesses are compared with.
+  void renew_baseline();
+  /// Goes to `framewatch record` with the next flush(). False when too many commands wait.
+  bool tell_recorder(const session_command_t& command);
+
+ private:
+  void parameters(const void* data, std::size_t size);
+  void estimate(const std::string& channel, const void* data, std::size_t size);
+  void look_for_changes(int window, const window_estimate_t& estimate);
+  void alarms_message(const std::string& name, const void* data, std::size_t size);
+  void keep(const std::string& name, std::string json);
+  void send_requests();
+  void push(const std::string& name, const std::string& data);
+  void push_alarms(const std::vector<std::string>& alarms);
+  std::string baseline() const;
+
+  const Config& config_;
+  MessageSink publish_;
+  std::vector<std::string> estimate_channels_;  ///< by window, without the long one
+  MotionRows motion_;
+  estimator::Acquisition acquisition_;
+  drivers::AccelIntake intake_;
+  std::vector<std::string> parameters_;  ///< names; empty: not known yet
+  std::optional<PageWatch> watch_;
+  std::optional<window_estimate_t> newest_;
+  bool new_estimate_ = false;  ///< since the last flush
+  int flushes_ = 0;
+
+  mutable std::mutex mutex_;  ///< guards what is below
+  EventRing ring_;
+  PageAlarms alarms_;
+  std::map<std::string, std::string> kept_;  ///< newest JSON by event name, for viewers that join
+  std::vector<session_command_t> commands_;
+  std::vector<acknowledge_t> requests_;
+  bool renew_ = false;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,84 @@
+#include "daemon/web/page_alarms.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/events/event_words.h"
+#include "daemon/web/page_json.h"
+#include "estimator/numeric/nan.h"
+
+namespace framewatch::daemon {
+
+std::string PageAlarms::note(const event_t& e) {
+  events_[e.id] = e;
+  if (e.state == event_state::cleared) acknowledged_here_.erase(e.id);
+  if (events_.size() > kMost) {
+    // A raised one would be brought back by the next service_t.
+    auto gone = std::find_if(events_.begin(), events_.end(), [](const auto& known) {
+      return known.second.state == event_state::cleared;
+    });
+    if (gone == events_.end()) gone = events_.begin();
+    acknowledged_here_.erase(gone->first);
+    events_.erase(gone);
+  }
+  return json(e);
+}
+
+std::vector<std::string> PageAlarms::still_raised(const service_t& s) {
+  std::vector<std::string> out;
+  for (std::size_t i = 0; i < s.event_id.size(); ++i) {
+    if (events_.contains(s.event_id[i])) continue;
+    event_t e{};
+    e.id = s.event_id[i];
+    e.time_us = e.since_us = s.event_since_us[i];
+    e.state = event_state::raised;
+    e.severity = s.event_severity[i];
+    e.kind = s.event_kind[i];
+    e.place = s.event_place[i];
+    e.value = e.std_error = estimator::kNaN;
+    e.message = s.event_message[i];
+    out.push_back(note(e));
+  }
+  return out;
+}
+
+std::vector<std::string> PageAlarms::acknowledged(acknowledged_t news) {
+  if (acknowledged_ && acknowledged_->id == news.id && acknowledged_->since_us == news.since_us)
+    return {};
+  std::set<std::int64_t> touched(news.id.begin(), news.id.end());
+  if (acknowledged_) touched.insert(acknowledged_->id.begin(), acknowledged_->id.end());
+  acknowledged_ = std::move(news);
+  std::vector<std::string> out;
+  for (const std::int64_t id : touched)
+    if (const event_t* event = find(id)) out.push_back(json(*event));
+  return out;
+}
+
+std::string PageAlarms::acknowledge(std::int64_t id) {
+  acknowledged_here_.insert(id);
+  return json(events_.at(id));
+}
+
+const event_t* PageAlarms::find(std::int64_t id) const {
+  const auto found = events_.find(id);
+  return found == events_.end() ? nullptr : &found->second;
+}
+
+std::vector<std::string> PageAlarms::all() const {
+  std::vector<std::string> out;
+  for (const auto& [id, event] : events_) out.push_back(json(event));
+  return out;
+}
+
+std::string PageAlarms::json(const event_t& e) const {
+  if (acknowledged_ && e.state != event_state::cleared) {
+    const std::vector<std::int64_t>& ids = acknowledged_->id;
+    if (const auto found = std::find(ids.begin(), ids.end(), e.id); found != ids.end()) {
+      const auto at = static_cast<std::size_t>(found - ids.begin());
+      return alarm_json(e, true, {0, acknowledged_->who[at], acknowledged_->comment[at]});
+    }
+  }
+  return alarm_json(e, acknowledged_here_.contains(e.id), {});
+}
+
+}  // namespace framewatch::daemon

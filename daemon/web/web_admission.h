@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/web/web_settings.h"
+
+namespace framewatch::daemon {
+
+/// Every reason why a page must not be served with these settings; empty: none.
+std::vector<std::string> problems(const WebSettings& settings);
+
+/// The parts of a request that decide on its admission.
+struct WebRequest {
+  std::string method, path;
+  std::string host, origin, cookie, authorization, token;  ///< token: of the query
+};
+
+enum class Admission { served, wrong_host, no_token, wrong_method, wrong_origin };
+Admission admit(const WebSettings& settings, const WebRequest& request);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,297 @@
+#include "daemon/web/web_server.h"
+
+#include <microhttpd.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <charconv>
+#include <set>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/base/file_digest.h"
+#include "daemon/session/session_command.h"
+#include "daemon/web/live_view.h"
+#include "daemon/web/web_admission.h"
+#include "daemon/web/web_files.h"
+#include "daemon/web/web_sessions.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr const char* kPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' "
+    "data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// For a report, which has its own styles and no script.
+constexpr const char* kReportPolicy =
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
+    "'none'; frame-ancestors 'none'; sandbox";
+constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
+constexpr const char* kSessionPath = "/session/";
+constexpr unsigned kIdle_s = 30;
+constexpr std::size_t kBlock = 32768;
+
+std::string header(MHD_Connection* c, const char* name, MHD_ValueKind kind = MHD_HEADER_KIND) {
+  const char* value = MHD_lookup_connection_value(c, kind, name);
+  return value ? value : "";
+}
+
+MHD_Result answer(MHD_Connection* c, unsigned code, MHD_Response* response,
+                  const char* policy = kPolicy) {
+  for (const auto& [name, value] :
+       {std::pair{"Content-Security-Policy", policy},
+        std::pair{"X-Content-Type-Options", "nosniff"}, std::pair{"Referrer-Policy", "no-referrer"},
+        std::pair{"Cache-Control", "no-store"},
+        std::pair{"Cross-Origin-Resource-Policy", "same-origin"}})
+    MHD_add_response_header(response, name, value);
+  const MHD_Result result = MHD_queue_response(c, code, response);
+  MHD_destroy_response(response);
+  return result;
+}
+
+MHD_Response* body(const std::string& text, const char* type) {
+  MHD_Response* response = MHD_create_response_from_buffer(
+      text.size(), const_cast<char*>(text.data()), MHD_RESPMEM_MUST_COPY);
+  MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, type);
+  return response;
+}
+
+MHD_Result plain(MHD_Connection* c, unsigned code, const std::string& text) {
+  return answer(c, code, body(text + "\n", "text/plain; charset=utf-8"));
+}
+
+int port_of(int socket) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
+  return ntohs(address.ss_family == AF_INET6
+                   ? reinterpret_cast<const sockaddr_in6*>(&address)->sin6_port
+                   : reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
+}
+
+const char* type_of(const std::string& path) {
+  return path.ends_with(".js")    ? "text/javascript; charset=utf-8"
+         : path.ends_with(".css") ? "text/css; charset=utf-8"
+         : path.ends_with(".svg") ? "image/svg+xml"
+                                  : "text/html; charset=utf-8";
+}
+
+}  // namespace
+
+class WebServer::Implementation {
+ public:
+  Implementation(const WebSettings& settings, LiveView& view) : settings_(settings), view_(view) {}
+
+  ~Implementation() {
+    stopping_ = true;
+    wake();
+    if (daemon_) MHD_stop_daemon(daemon_);
+  }
+
+  bool start(int socket, std::string& error) {
+    daemon_ = MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, nullptr,
+                               nullptr, &Implementation::handle, this, MHD_OPTION_LISTEN_SOCKET,
+                               socket, MHD_OPTION_CONNECTION_LIMIT, kMostConnections,
+                               MHD_OPTION_CONNECTION_TIMEOUT, kIdle_s, MHD_OPTION_END);
+    if (!daemon_) {
+      error = "libmicrohttpd cannot start";
+      ::close(socket);
+      return false;
+    }
+    port_ = port_of(socket);
+    return true;
+  }
+
+  int port() const { return MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_BIND_PORT)->port; }
+  int viewers() const { return viewers_; }
+
+  void wake() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (MHD_Connection* waiting : waiting_) MHD_resume_connection(waiting);
+    waiting_.clear();
+  }
+
+ private:
+  /// One open stream of events.
+  struct Viewer {
+    Implementation* server;
+    MHD_Connection* connection;
+    EventRing::Cursor cursor;
+  };
+
+  static MHD_Result handle(void* self, MHD_Connection* c, const char* url, const char* method,
+                           const char*, const char*, std::size_t* upload, void** state) {
+    // Headers first; what a body holds is never looked at.
+    static int seen;
+    if (*state == nullptr) {
+      *state = &seen;
+      return MHD_YES;
+    }
+    if (*upload > 0) {
+      *upload = 0;
+      return MHD_NO;
+    }
+    return static_cast<Implementation*>(self)->respond(c, method, url);
+  }
+
+  MHD_Result respond(MHD_Connection* c, const std::string& method, const std::string& path) {
+    const WebRequest request{method,
+                             path,
+                             header(c, "Host"),
+                             header(c, "Origin"),
+                             header(c, "framewatch", MHD_COOKIE_KIND),
+                             header(c, "Authorization"),
+                             header(c, "token", MHD_GET_ARGUMENT_KIND)};
+    switch (admit(settings_, request)) {
+      case Admission::wrong_host:
+        return plain(c, 421, "this name is not served here");
+      case Admission::wrong_method:
+        return plain(c, MHD_HTTP_METHOD_NOT_ALLOWED, "only GET");
+      case Admission::wrong_origin:
+        return plain(c, MHD_HTTP_FORBIDDEN, "from another page");
+      case Admission::no_token:
+        return plain(c, MHD_HTTP_FORBIDDEN, "open the address with its token: /?token=...");
+      case Admission::served:
+        break;
+    }
+    if (method == "POST") return act(c, path);
+    if (path == "/" && !request.token.empty()) return exchange(c, request.token);
+    if (path == "/events") return stream(c);
+    if (path == "/building.json")
+      return answer(c, MHD_HTTP_OK, body(view_.building_json(), "application/json"));
+    if (path == "/sessions.json")
+      return answer(c, MHD_HTTP_OK,
+                    body(settings_.sessions.empty() ? "null" : sessions_json(settings_.sessions),
+                         "application/json"));
+    if (path.starts_with(kSessionPath)) {
+      const auto found =
+          session_document(settings_.sessions, path.substr(std::string(kSessionPath).size()));
+      if (!found) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
+      return answer(c, MHD_HTTP_OK, body(found->content, found->type.c_str()), kReportPolicy);
+    }
+    if (path == "/metrics" && settings_.metrics)
+      return answer(c, MHD_HTTP_OK, body(settings_.metrics(viewers_), kMetricsType));
+    if (path == "/healthz") return plain(c, MHD_HTTP_OK, "ok");
+    return file(c, path == "/" ? "/index.html" : path);
+  }
+
+  MHD_Result act(MHD_Connection* c, const std::string& path) {
+    if (path == "/baseline") {
+      view_.renew_baseline();
+      return plain(c, MHD_HTTP_OK, "the next seconds are the new baseline");
+    }
+    if (path == "/session") return tell_recorder(c);
+    const std::string text = header(c, "id", MHD_GET_ARGUMENT_KIND);
+    std::int64_t id = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+    const bool number = error == std::errc() && end == text.data() + text.size();
+    if (!number || !view_.acknowledge(id)) return plain(c, MHD_HTTP_NOT_FOUND, "no such event");
+    wake();
+    return plain(c, MHD_HTTP_OK, "acknowledged");
+  }
+
+  /// Answers with the id of the command; the recorder's answer with that id comes as an event.
+  MHD_Result tell_recorder(MHD_Connection* c) {
+    const auto text = [c](const char* name) { return header(c, name, MHD_GET_ARGUMENT_KIND); };
+    SessionRequest request{text("test"), text("operator"), text("notes")};
+    for (const auto& [name, value] : {std::pair{"length_s", &request.length_s},
+                                      std::pair{"trigger_mps2", &request.trigger_mps2},
+                                      std::pair{"pre_trigger_s", &request.pre_trigger_s}}) {
+      const std::string given = text(name);
+      const char* const end = given.data() + given.size();
+      const auto [parsed, error] = std::from_chars(given.data(), end, *value);
+      if (!given.empty() && (error != std::errc() || parsed != end))
+        return plain(c, MHD_HTTP_BAD_REQUEST, std::string(name) + ": is no number");
+    }
+    for (const std::string& problem : problems(request))
+      return plain(c, MHD_HTTP_BAD_REQUEST, problem);
+    const session_command_t command = session_command(text("verb"), request);
+    if (!view_.tell_recorder(command))
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many commands at once");
+    return plain(c, MHD_HTTP_ACCEPTED, std::to_string(command.id));
+  }
+
+  /// Replaces the token in the address by a cookie that scripts cannot read.
+  MHD_Result exchange(MHD_Connection* c, const std::string& token) {
+    MHD_Response* response = body("", "text/plain");
+    MHD_add_response_header(response, "Location", "/");
+    // A server without a token needs no cookie.
+    if (!settings_.token.empty() && token == settings_.token)
+      MHD_add_response_header(
+          response, "Set-Cookie",
+          ("framewatch=" + settings_.token + "; HttpOnly; SameSite=Strict; Path=/").c_str());
+    return answer(c, MHD_HTTP_SEE_OTHER, response);
+  }
+
+  MHD_Result file(MHD_Connection* c, const std::string& path) {
+    const auto found = page_files().find(path);
+    if (found == page_files().end()) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
+    if (settings_.files.empty())
+      return answer(c, MHD_HTTP_OK, body(found->second.content, found->second.type.c_str()));
+    std::string error;
+    const auto text = read_text_file(settings_.files + path, error);
+    return text ? answer(c, MHD_HTTP_OK, body(*text, type_of(path)))
+                : plain(c, MHD_HTTP_NOT_FOUND, path + ": " + error);
+  }
+
+  MHD_Result stream(MHD_Connection* c) {
+    auto viewer = std::make_unique<Viewer>(Viewer{this, c, view_.join()});
+    MHD_Response* response = MHD_create_response_from_callback(
+        MHD_SIZE_UNKNOWN, kBlock, &Implementation::read, viewer.get(), &Implementation::leave);
+    if (!response) return MHD_NO;
+    (void)viewer.release();  // leave() has it now
+    ++viewers_;
+    MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
+    return answer(c, MHD_HTTP_OK, response);
+  }
+
+  static ssize_t read(void* of, std::uint64_t, char* buffer, std::size_t size) {
+    auto& viewer = *static_cast<Viewer*>(of);
+    Implementation& server = *viewer.server;
+    const std::lock_guard<std::mutex> lock(server.mutex_);
+    if (server.stopping_) return MHD_CONTENT_READER_END_OF_STREAM;
+    const std::size_t copied = server.view_.read(viewer.cursor, buffer, size);
+    if (copied == 0) {
+      server.waiting_.insert(viewer.connection);
+      MHD_suspend_connection(viewer.connection);
+    }
+    return static_cast<ssize_t>(copied);
+  }
+
+  static void leave(void* of) {
+    const std::unique_ptr<Viewer> viewer(static_cast<Viewer*>(of));
+    const std::lock_guard<std::mutex> lock(viewer->server->mutex_);
+    viewer->server->waiting_.erase(viewer->connection);
+    --viewer->server->viewers_;
+  }
+
+  const WebSettings settings_;
+  LiveView& view_;
+  MHD_Daemon* daemon_ = nullptr;
+  int port_ = 0;
+  std::mutex mutex_;
+  std::set<MHD_Connection*> waiting_;  ///< suspended, because they have read everything
+  std::atomic<bool> stopping_ = false;
+  std::atomic<int> viewers_ = 0;
+};
+
+WebServer::WebServer(const WebSettings& settings, LiveView& view)
+    : implementation_(std::make_unique<Implementation>(settings, view)) {}
+WebServer::~WebServer() = default;
+bool WebServer::start(int socket, std::string& error) {
+  return implementation_->start(socket, error);
+}
+int WebServer::port() const {
+  return implementation_->port();
+}
+int WebServer::viewers() const {
+  return implementation_->viewers();
+}
+void WebServer::wake() {
+  implementation_->wake();
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/web/web_settings.h"
+
+namespace framewatch::daemon {
+
+/// A socket that listens on the address; -1, with the reason, when that fails.
+int listen_on(const std::string& address, int port, std::string& error);
+
+/// "http://127.0.0.1:8080/", with ?token= unless `token` is empty.
+std::string page_address(const WebSettings& settings, int port, const std::string& token);
+
+/// 32 hexadecimal digits from the operating system's random numbers.
+std::string random_token();
+
+}  // namespace framewatch::daemon

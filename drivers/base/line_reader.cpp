@@ -1,0 +1,92 @@
+#include "drivers/base/line_reader.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include <fmt/core.h>
+
+namespace framewatch::drivers {
+namespace {
+
+constexpr std::size_t kReadBytes = 1 << 16;
+
+bool is_control(char c) {
+  return (c >= 0 && c < 0x20 && c != '\t') || c == 0x7f;
+}
+
+}  // namespace
+
+LineReader::LineReader(FileProblems& problems) : problems_(problems) {
+  std::error_code error;
+  const auto status = std::filesystem::status(problems.path(), error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    fail("not a regular file");
+    return;
+  }
+  errno = 0;
+  file_ = gzopen(problems.path().c_str(), "rb");
+  if (file_ == nullptr) fail(fmt::format("cannot be opened: {}", std::strerror(errno)));
+}
+
+LineReader::~LineReader() {
+  if (file_ != nullptr) gzclose(file_);
+}
+
+bool LineReader::fail(const std::string& message) {
+  ended_ = true;
+  buffer_.clear();
+  begin_ = 0;
+  problems_.add(number_, message);
+  return false;
+}
+
+bool LineReader::fill() {
+  buffer_.erase(0, begin_);
+  begin_ = 0;
+  const std::size_t kept = buffer_.size();
+  buffer_.resize(kept + kReadBytes);
+  errno = 0;
+  const int got = gzread(file_, buffer_.data() + kept, kReadBytes);
+  buffer_.resize(kept + static_cast<std::size_t>(std::max(got, 0)));
+  if (got == static_cast<int>(kReadBytes)) return true;
+  ended_ = true;
+  int code = Z_OK;
+  const char* text = gzerror(file_, &code);
+  if (code == Z_BUF_ERROR) return fail("the gzip stream is cut off");
+  if (code == Z_ERRNO) return fail(fmt::format("cannot be read: {}", std::strerror(errno)));
+  if (code != Z_OK && code != Z_STREAM_END)
+    return fail(fmt::format("the gzip stream is damaged: {}", text));
+  return true;
+}
+
+bool LineReader::next(std::string_view& line) {
+  if (file_ == nullptr) return false;
+  std::size_t end = buffer_.find('\n', begin_);
+  while (end == std::string::npos && !ended_) {
+    if (buffer_.size() - begin_ > kMaxLineBytes) {
+      ++number_;
+      return fail(fmt::format("line longer than {} bytes", kMaxLineBytes));
+    }
+    const std::size_t scanned = buffer_.size() - begin_;
+    if (!fill()) return false;
+    end = buffer_.find('\n', begin_ + scanned);
+  }
+  if (end == std::string::npos && begin_ == buffer_.size()) return false;
+  ++number_;
+  line_ended_ = end != std::string::npos;
+  line = std::string_view(buffer_).substr(begin_, end - begin_);
+  begin_ = end == std::string::npos ? buffer_.size() : end + 1;
+  if (number_ == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  const auto control = std::find_if(line.begin(), line.end(), is_control);
+  if (control != line.end())
+    return fail(fmt::format("not a text file: byte 0x{:02x} at column {}", *control,
+                            control - line.begin() + 1));
+  return true;
+}
+
+}  // namespace framewatch::drivers

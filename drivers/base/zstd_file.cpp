@@ -1,0 +1,145 @@
+#include "drivers/base/zstd_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <zstd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include <fmt/core.h>
+
+namespace framewatch::drivers {
+namespace {
+
+int unnamed_file() {
+  std::error_code none;
+  std::filesystem::path folder = std::filesystem::temp_directory_path(none);
+  if (none) folder = "/tmp";
+  const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (file >= 0) return file;
+  std::string name =
+      (folder / "framewatch-XXXXXX").string();  // not every file system has O_TMPFILE
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
+
+bool write_all(int file, const std::uint8_t* bytes, std::size_t size) {
+  while (size > 0) {
+    const ssize_t written = ::write(file, bytes, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+UnpackedFile failed(UnpackedFile out, const char* what) {
+  out.error = fmt::format("{}: {}", what, std::strerror(errno));
+  if (out.file >= 0) ::close(out.file);
+  out.file = -1;
+  return out;
+}
+
+/// A descriptor that is closed.
+class OpenFile {
+ public:
+  OpenFile(const std::string& path, int flags) : file_(::open(path.c_str(), flags, 0644)) {}
+  ~OpenFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  operator int() const { return file_; }
+
+ private:
+  int file_;
+};
+
+/// False, with errno, when something of `in` could not be read or written.
+bool pack(int in, int out, const std::atomic<bool>& stop) {
+  constexpr int kLevel = 3;  // -19 buys a tenth for forty times the time
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
+                                                                     &ZSTD_freeCCtx);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_checksumFlag, 1);
+  std::vector<std::uint8_t> plain(ZSTD_CStreamInSize()), packed(ZSTD_CStreamOutSize());
+  for (bool last = false; !last;) {
+    if (stop) {
+      errno = ECANCELED;
+      return false;
+    }
+    const ssize_t got = ::read(in, plain.data(), plain.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return false;
+    last = got == 0;
+    ZSTD_inBuffer input{plain.data(), static_cast<std::size_t>(got), 0};
+    for (bool done = false; !done;) {
+      ZSTD_outBuffer output{packed.data(), packed.size(), 0};
+      const std::size_t left =
+          ZSTD_compressStream2(context.get(), &output, &input, last ? ZSTD_e_end : ZSTD_e_continue);
+      if (ZSTD_isError(left) != 0) {
+        errno = ENOMEM;
+        return false;
+      }
+      if (!write_all(out, packed.data(), output.pos)) return false;
+      done = last ? left == 0 : input.pos == input.size;
+    }
+  }
+  return ::fsync(out) == 0;
+}
+
+}  // namespace
+
+std::string pack_zstd(const std::string& from, const std::string& to,
+                      const std::atomic<bool>& stop) {
+  const std::string partial = to + ".partial";
+  const OpenFile in(from, O_RDONLY | O_CLOEXEC);
+  if (in < 0) return fmt::format("{}: {}", from, std::strerror(errno));
+  const OpenFile out(partial, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+  if (out >= 0 && pack(in, out, stop) && std::rename(partial.c_str(), to.c_str()) == 0) return {};
+  std::string why = fmt::format("{}: {}", to, std::strerror(errno));
+  ::unlink(partial.c_str());
+  return why;
+}
+
+UnpackedFile unpack_zstd(int file) {
+  UnpackedFile out;
+  out.file = unnamed_file();
+  if (out.file < 0) return failed(out, "no temporary file to unpack to");
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
+                                                                     &ZSTD_freeDCtx);
+  std::vector<std::uint8_t> packed(ZSTD_DStreamInSize()), plain(ZSTD_DStreamOutSize());
+  std::int64_t read_bytes = 0;
+  std::size_t wanted = 1;  // 0: a frame is whole
+  for (;;) {
+    const ssize_t got = ::pread(file, packed.data(), packed.size(), read_bytes);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return failed(out, "cannot be read");
+    if (got == 0) break;
+    ZSTD_inBuffer input{packed.data(), static_cast<std::size_t>(got), 0};
+    while (input.pos < input.size) {
+      ZSTD_outBuffer output{plain.data(), plain.size(), 0};
+      wanted = ZSTD_decompressStream(context.get(), &output, &input);
+      if (!write_all(out.file, plain.data(), output.pos))
+        return failed(out, "cannot be unpacked to a temporary file");
+      out.bytes += static_cast<std::int64_t>(output.pos);
+      if (ZSTD_isError(wanted) == 0) continue;
+      out.damage =
+          fmt::format("the zstd file is damaged near its byte {}: {}",
+                      read_bytes + static_cast<std::int64_t>(input.pos), ZSTD_getErrorName(wanted));
+      return out;
+    }
+    read_bytes += got;
+  }
+  if (wanted != 0) out.damage = fmt::format("the zstd file is cut off at its byte {}", read_bytes);
+  return out;
+}
+
+}  // namespace framewatch::drivers

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace framewatch::drivers {
+
+/// Measured or simulated motion over some time, on one clock: every sensor axis at every instant.
+struct Record {
+  std::vector<std::string> names;               ///< of the axes; record files call them channels
+  std::vector<double> time_s;                   ///< strictly increasing
+  std::vector<std::vector<double>> accel_mps2;  ///< [axis][instant]; NaN where missing
+  double rate_hz = 0;                           ///< nominal: 1 / the even step
+  std::vector<std::string> notes;  ///< what the reader assumed or left out, for a person
+};
+
+}  // namespace framewatch::drivers

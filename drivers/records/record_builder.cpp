@@ -1,0 +1,165 @@
+#include "drivers/records/record_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+#include <fmt/core.h>
+
+namespace framewatch::drivers {
+namespace {
+
+/// Relative error of the step that is found from the single steps; it adds up over lost samples.
+constexpr double kRateError = 1e-4;
+
+}  // namespace
+
+RecordBuilder::RecordBuilder(std::vector<std::string> names, FileProblems& problems)
+    : problems_(problems) {
+  record_.names = std::move(names);
+  record_.accel_mps2.resize(record_.names.size());
+}
+
+void RecordBuilder::add(std::int64_t line, double time_s, std::span<const double> accel_mps2) {
+  if (full_) return;
+  if ((rows() + 1) * (record_.names.size() + 1) > kMaxValues) {
+    problems_.add(line, fmt::format("a record holds at most {} values", kMaxValues));
+    full_ = true;
+    return;
+  }
+  if (!std::isfinite(time_s) || std::abs(time_s) > kMaxTimeS) {
+    problems_.add(line, fmt::format("time must be a number within +-{:g} s", kMaxTimeS));
+    return;
+  }
+  if (!record_.time_s.empty() && !(time_s > record_.time_s.back())) {
+    problems_.add(line, fmt::format("time must increase: {} s comes after {} s", time_s,
+                                    record_.time_s.back()));
+    return;
+  }
+  record_.time_s.push_back(time_s);
+  lines_.push_back(line);
+  for (std::size_t i = 0; i < accel_mps2.size(); ++i)
+    record_.accel_mps2[i].push_back(accel_mps2[i]);
+}
+
+void RecordBuilder::expect(double rate_hz, std::size_t missing) {
+  expected_rate_hz_ = rate_hz;
+  missing_allowed_ = missing;
+}
+
+double RecordBuilder::even_step() const {
+  std::vector<double> steps(rows() - 1);
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    steps[i] = record_.time_s[i + 1] - record_.time_s[i];
+  double usual = 1 / expected_rate_hz_;
+  if (expected_rate_hz_ == 0) {
+    const auto middle = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) / 2);
+    std::nth_element(steps.begin(), middle, steps.end());
+    usual = *middle;
+  }
+  // With times rounded to, say, 1 ms the median step is wrong; the mean of the single steps is not.
+  double sum = 0;
+  double count = 0;
+  for (const double step : steps) {
+    if (step < 0.5 * usual || step > 1.5 * usual) continue;
+    sum += step;
+    count += 1;
+  }
+  return count > 0 ? sum / count : usual;
+}
+
+void RecordBuilder::fill_lost_samples(double step) {
+  const std::vector<double> time = std::move(record_.time_s);
+  std::vector<std::size_t> missing_before(time.size(), 0);
+  std::size_t missing = 0;
+  const std::size_t most = std::max(time.size(), missing_allowed_);
+  for (std::size_t i = 1; i < time.size(); ++i) {
+    const double steps = (time[i] - time[i - 1]) / step;
+    const double whole = std::max(1.0, std::round(steps));
+    if (std::abs(steps - whole) > kStepTolerance + kRateError * (whole - 1))
+      problems_.add(lines_[i], fmt::format("uneven step: {:.6g} s where the others are {:.6g} s",
+                                           time[i] - time[i - 1], step));
+    if (whole - 1 > static_cast<double>(most - missing)) {
+      problems_.add(lines_[i],
+                    fmt::format("a loss of {:.6g} s: more samples are missing than there "
+                                "are",
+                                time[i] - time[i - 1]));
+      break;
+    }
+    missing_before[i] = static_cast<std::size_t>(whole) - 1;
+    missing += missing_before[i];
+  }
+  record_.time_s = time;
+  if (problems_.any() || missing == 0) return;
+
+  std::vector<double> filled_time;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    for (std::size_t k = missing_before[i]; k > 0; --k)
+      filled_time.push_back(time[i] - static_cast<double>(k) * (time[i] - time[i - 1]) /
+                                          static_cast<double>(missing_before[i] + 1));
+    filled_time.push_back(time[i]);
+  }
+  record_.time_s = std::move(filled_time);
+  for (std::vector<double>& axis : record_.accel_mps2) {
+    std::vector<double> filled;
+    filled.reserve(rows());
+    for (std::size_t i = 0; i < time.size(); ++i) {
+      filled.insert(filled.end(), missing_before[i], std::numeric_limits<double>::quiet_NaN());
+      filled.push_back(axis[i]);
+    }
+    axis = std::move(filled);
+  }
+  note(fmt::format("{} instants are missing and were filled with NaN", missing));
+}
+
+std::optional<Record> RecordBuilder::finish() {
+  if (problems_.any()) return std::nullopt;
+  const std::size_t least = expected_rate_hz_ > 0 ? 1 : 2;
+  if (rows() < least) {
+    problems_.add(
+        0, fmt::format("a record needs at least {} samples, this one has {}", least, rows()));
+    return std::nullopt;
+  }
+  const double step = even_step();
+  if (step * kMaxRateHz < 1) {
+    problems_.add(
+        0, fmt::format("step {:.3g} s: rates above {:g} Hz are not supported", step, kMaxRateHz));
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < record_.names.size(); ++i) {
+    const auto& values = record_.accel_mps2[i];
+    const auto missing =
+        std::count_if(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+    if (missing > 0)
+      note(fmt::format("{}: {} of {} samples have no value", record_.names[i], missing, rows()));
+  }
+  fill_lost_samples(step);
+  if (problems_.any()) return std::nullopt;
+  record_.rate_hz = 1 / step;
+  return std::move(record_);
+}
+
+void check_names(const std::vector<std::string>& names, std::int64_t line, FileProblems& problems) {
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (name.empty())
+      problems.add(line, "a channel name is empty");
+    else if (name.find_first_of("\",") != std::string::npos)
+      problems.add(line, fmt::format("channel name {}: no quotes, no commas", show_text(name)));
+    else if (!seen.insert(name).second)
+      problems.add(line, fmt::format("channel name {} appears twice", show_text(name)));
+  }
+}
+
+std::string name_of_file(const std::string& path) {
+  std::filesystem::path name = std::filesystem::path(path).filename();
+  if (name.extension() == ".gz") name = name.stem();
+  std::string stem = name.stem().string();
+  for (char& c : stem)
+    if (c == ',' || c == '"') c = '_';
+  return stem;
+}
+
+}  // namespace framewatch::drivers

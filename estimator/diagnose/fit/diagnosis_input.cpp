@@ -1,0 +1,100 @@
+#include "estimator/diagnose/fit/diagnosis_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "estimator/diagnose/fit/fit.h"
+#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/structure/natural_frequencies.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kBandLow = 0.4, kBandHigh = 1.6;  ///< of the lowest and highest natural frequency
+constexpr double kComponentBandLow = 0.1;  ///< displacement is accurate at far lower frequencies
+constexpr double kHighest = 0.4;           ///< of the sampling rate
+constexpr int kDesignFits = 2;             ///< of a building that has no design
+constexpr double kLeastOfGuess = 0.01;
+constexpr double kLeastSignal = 5;  ///< rms of a floor's motion in the band over its noise
+
+/// The records in the band of the design's natural frequencies.
+std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& plant,
+                                       const VectorXd& design, const ComponentTest& component,
+                                       const std::vector<RecordSamples>& records) {
+  const std::vector<double> hz =
+      natural_frequencies_hz(structure, ParameterTable(structure), design);
+  const std::vector<char> displaced = displaced_axes(plant, component);
+  std::vector<RecordSegment> out;
+  for (const RecordSamples& record : records) {
+    VectorXd noise = VectorXd::Zero(plant.axis_count());
+    for (Index i = 0; i < plant.axis_count(); ++i)
+      noise[i] =
+          plant.axes[static_cast<std::size_t>(i)].noise_density * std::sqrt(record.rate_hz / 2);
+    const Band band{(component.any() ? kComponentBandLow : kBandLow) * hz.front(),
+                    std::min(kHighest * record.rate_hz, kBandHigh * hz.back())};
+    out.push_back(make_segment(record.accel, record.rate_hz, noise, band, displaced, record.lead));
+  }
+  return out;
+}
+
+/// Of the axes above the base, the upper median of motion in the band over noise.
+double signal_ratio(const Plant& plant, const RecordSegment& s) {
+  std::vector<double> ratios;
+  for (Index a = 0; a < plant.axis_count(); ++a)
+    if (plant.axes[static_cast<std::size_t>(a)].story > 0)
+      ratios.push_back(std::sqrt(s.spectrum.row(a).squaredNorm() /
+                                 (static_cast<double>(s.bins() * s.intervals()) * s.variance[a])));
+  std::erase_if(ratios, [](double ratio) { return std::isnan(ratio); });
+  if (ratios.empty()) return 0;
+  const auto middle = ratios.begin() + std::ssize(ratios) / 2;
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle;
+}
+
+}  // namespace
+
+VectorXd fitted_linear(const Plant& plant, const std::vector<RecordSegment>& segments,
+                       const Tolerances& tolerances) {
+  const FitResult fit = Fitter(plant, segments, tolerances).fit(initial_model(plant), {}, {});
+  return fit.good ? fit.model.theta : VectorXd();
+}
+
+std::optional<DiagnosisInput> diagnosis_input(const Structure& structure,
+                                              const std::vector<SensorAxis>& axes,
+                                              const VectorXd& given, const ComponentTest& component,
+                                              const std::vector<RecordSamples>& records) {
+  const ParameterTable table(structure);
+  VectorXd design = given.size() > 0 ? given : guessed_design(structure, table);
+  const auto input_of = [&]() -> std::optional<DiagnosisInput> {
+    const auto plant = make_plant(structure, axes, design, records.front().rate_hz);
+    if (!plant) return std::nullopt;
+    DiagnosisInput out{component_plant(*plant, component), {}};
+    out.segments = segments_of(structure, out.plant, design, component, records);
+    return out;
+  };
+  std::optional<DiagnosisInput> out = input_of();
+  if (given.size() > 0 || component.any()) return out;
+  for (int i = 0; i < kDesignFits && out; ++i) {
+    const VectorXd theta = fitted_linear(out->plant, out->segments, {});
+    if (theta.size() == 0) break;
+    for (int p = 0; p < table.size(); ++p)
+      if (const auto at = out->plant.table.find(table[p].name))
+        design[p] = std::max(theta[*at], kLeastOfGuess * design[p]);
+    out = input_of();
+  }
+  return out;
+}
+
+SegmentFault fault_of(const Plant& plant, const RecordSegment& segment,
+                      const ComponentTest& component) {
+  if (segment.bins() < kFewestBins) return SegmentFault::too_short;
+  if (!component.any() && !(signal_ratio(plant, segment) > kLeastSignal))
+    return SegmentFault::no_excitation;
+  return SegmentFault::none;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,193 @@
+#include "estimator/diagnose/fit/fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "estimator/diagnose/fit/fit_columns.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kLongestStep = 0.5;  ///< of a stiffness, relative to the design
+constexpr int kTries = 7;
+
+double total_misfit(const std::vector<Whitened>& systems) {
+  double out = 0;
+  for (const Whitened& s : systems) out += s.misfit;
+  return out;
+}
+
+}  // namespace
+
+double FitResult::total_misfit() const {
+  return std::accumulate(misfit.begin(), misfit.end(), 0.0);
+}
+
+FitOptions thorough(const Model& model, int max_steps) {
+  FitOptions out;
+  out.forcing = forcing_of(model);
+  out.max_steps = max_steps;
+  out.through_run = true;
+  return out;
+}
+
+Fitter::Fitter(const Plant& plant, const std::vector<RecordSegment>& segments,
+               const Tolerances& tolerances)
+    : plant_(plant), segments_(segments), tolerances_(tolerances) {
+  for (const RecordSegment& s : segments) ratio_.push_back(steps_per_sample(plant, s.rate_hz));
+}
+
+double Fitter::expected(std::size_t record, const Model& model) const {
+  double n = static_cast<double>(plant_.equations());
+  for (const ModelEffect& e : model.effects)
+    n -= e.form == LawForm::clipped || e.form == LawForm::broadband;
+  return n * static_cast<double>(segments_[record].bins()) - 2 * n;
+}
+
+double Fitter::expected(const Model& model) const {
+  double out = 0;
+  for (std::size_t r = 0; r < segments_.size(); ++r) out += expected(r, model);
+  return out;
+}
+
+double Fitter::prior_cost(const Model& model) const {
+  double sum = 0;
+  for (const Unknown& u : unknowns_of(plant_, model, tolerances_))
+    if (u.sigma > 0) {
+      const double away = (value_of(model, u) - u.centre) / u.sigma;
+      sum += 0.5 * away * away;
+    }
+  return sum;
+}
+
+std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<MatrixXcd>& motion,
+                                      Forcing forcing, const std::vector<Whitened>* weights) const {
+  std::vector<Whitened> out;
+  for (std::size_t r = 0; r < segments_.size(); ++r) {
+    std::optional<std::vector<LawTrack>> tracks =
+        tracks_of(plant_, model, segments_[r], r, forcing,
+                  r < motion.size() ? motion[r] : MatrixXcd(), ratio_[r]);
+    if (!tracks) return {};
+    out.push_back(whiten(plant_, model, segments_[r], r, std::move(*tracks), ratio_[r],
+                         weights ? (*weights)[r].weights : nullptr));
+    if (!out.back().good) return {};
+  }
+  return out;
+}
+
+Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
+                             bool through_run) const {
+  Linearised out;
+  out.unknowns = unknowns_of(plant_, model, tolerances_);
+  out.systems = std::move(systems);
+  const auto count = static_cast<Index>(out.unknowns.size());
+  out.prior = VectorXd::Zero(count);
+  out.pull = VectorXd::Zero(count);
+  for (Index u = 0; u < count; ++u) {
+    const Unknown& unknown = out.unknowns[static_cast<std::size_t>(u)];
+    if (unknown.sigma <= 0) continue;
+    // The misfit is half of a sum of squares with variance one.
+    out.prior[u] = 0.5 / (unknown.sigma * unknown.sigma);
+    out.pull[u] = out.prior[u] * (unknown.centre - value_of(model, unknown));
+  }
+  for (std::size_t r = 0; r < segments_.size(); ++r)
+    out.columns.push_back(columns_of(plant_, model, segments_[r], r, out.systems[r], out.unknowns,
+                                     ratio_[r], through_run));
+  out.level = std::max(1.0, total_misfit(out.systems) / expected(model));
+  out.prior *= out.level;
+  out.pull *= out.level;
+  return out;
+}
+
+FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
+                      const FitOptions& options) const {
+  FitResult out;
+  out.model = start;
+  const auto store = [&](const std::vector<Whitened>& systems) {
+    out.motion.clear();
+    out.misfit.clear();
+    for (const Whitened& s : systems) {
+      out.motion.push_back(s.motion);
+      out.misfit.push_back(s.misfit);
+    }
+    out.cost = out.total_misfit() + prior_cost(out.model);
+  };
+  std::vector<Whitened> now = systems(out.model, motion, options.forcing);
+  if (now.empty()) return out;
+  store(now);
+  FitResult best = out;
+  double damping = 1e-6;
+  int worse = 0;
+  for (; out.steps < options.max_steps; ++out.steps) {
+    const Linearised at = linearise(out.model, std::move(now), options.through_run);
+    NormalEquations equations = normal_equations(at);
+    // Within a step the weights stay those of `at`: a wrong model must not reduce its misfit by
+    // weights that grow soft. Near the noise the change of the weights is part of the gradient.
+    const double before = at.level * prior_cost(out.model) + total_misfit(at.systems);
+    equations.normal.diagonal() += at.prior;
+    bool better = false;
+    for (int i = 0; i < kTries && !better; ++i) {
+      MatrixXd damped = equations.normal;
+      damped.diagonal().array() += 1e-12 + damping * equations.normal.diagonal().array();
+      const VectorXd step =
+          bounded_step(damped, at.pull - equations.gradient, out.model, at.unknowns);
+      if (!step.allFinite()) {
+        damping = std::max(1e-4, damping * 20);
+        continue;
+      }
+      const Model trial = moved(out.model, at.unknowns, step);
+      const std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems);
+      const bool falls =
+          !then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before;
+      if (falls || (!then.empty() && at.level < kNearNoise)) now = reweighted(trial, then);
+      better = falls || (!now.empty() && total_misfit(now) + prior_cost(trial) < out.cost);
+      if (better) out.model = trial;
+      damping = better ? std::max(1e-9, damping / 10) : std::max(1e-3, damping * 10);
+    }
+    if (!better || now.empty()) break;
+    store(now);
+    const double gained = best.cost - out.cost;
+    if (gained > 0) best = out;
+    worse = gained > std::max(options.tolerance, 1e-4 * out.cost) ? 0 : worse + 1;
+    if (worse >= 2 || (worse == 1 && std::abs(gained) < options.tolerance)) break;
+  }
+  best.steps = out.steps;
+  best.good = true;
+  return best;
+}
+
+Model Fitter::moved(const Model& model, const std::vector<Unknown>& unknowns,
+                    const VectorXd& step) const {
+  const auto is_stiffness = [&](const Unknown& u) {
+    return u.kind == Unknown::Kind::theta && u.index < plant_.element_count();
+  };
+  double share = 1;
+  for (std::size_t u = 0; u < unknowns.size(); ++u)
+    if (is_stiffness(unknowns[u]))
+      share =
+          std::min(share, kLongestStep / std::max(std::abs(step[static_cast<Index>(u)]), 1e-300));
+  Model out = model;
+  for (std::size_t u = 0; u < unknowns.size(); ++u) {
+    const double from = value_of(model, unknowns[u]);
+    set_value(out, unknowns[u], from + share * step[static_cast<Index>(u)]);
+  }
+  return out;
+}
+
+std::vector<Whitened> Fitter::reweighted(const Model& model,
+                                         const std::vector<Whitened>& systems) const {
+  std::vector<Whitened> out;
+  for (std::size_t r = 0; r < segments_.size(); ++r) {
+    out.push_back(whiten(plant_, model, segments_[r], r, systems[r].tracks, ratio_[r]));
+    if (!out.back().good) return {};
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

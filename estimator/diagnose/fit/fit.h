@@ -1,0 +1,73 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/diagnose/fit/linearised.h"
+
+namespace framewatch::estimator {
+
+struct FitOptions {
+  Forcing forcing = Forcing::measured;
+  int max_steps = 12;
+  double tolerance = 0.3;  ///< converged when the cost falls by less than this
+  /// Derivatives include those of the free run's motion: exact where laws act strongly, but slower.
+  bool through_run = false;
+};
+
+/// Options of an exact fit: free runs with their derivatives where the model has element laws.
+FitOptions thorough(const Model& model, int max_steps);
+
+struct FitResult {
+  bool good = false;
+  Model model;
+  double cost = 0;                       ///< misfit and prior
+  std::vector<double> misfit;            ///< of each segment
+  std::vector<Eigen::MatrixXcd> motion;  ///< of each segment
+  int steps = 0;
+
+  double total_misfit() const;
+};
+
+/// Fits models of one plant to several segments by Gauss-Newton (Levenberg-Marquardt) on the
+/// whitened equations.
+class Fitter {
+ public:
+  Fitter(const Plant& plant, const std::vector<RecordSegment>& segments,
+         const Tolerances& tolerances);
+
+  FitResult fit(const Model& start, const std::vector<Eigen::MatrixXcd>& motion,
+                const FitOptions& options) const;
+  /// The whitened equations of every segment; empty when the model cannot be computed.
+  /// weights: systems whose weights are used; null: the model's own.
+  std::vector<Whitened> systems(const Model& model, const std::vector<Eigen::MatrixXcd>& motion,
+                                Forcing forcing,
+                                const std::vector<Whitened>* weights = nullptr) const;
+  /// systems: those of systems() for the same model.
+  Linearised linearise(const Model& model, std::vector<Whitened> systems,
+                       bool through_run = false) const;
+  double prior_cost(const Model& model) const;
+  /// The model moved by a step of the unknowns, within their bounds; shortened so that no stiffness
+  /// changes by more than half of its design.
+  Model moved(const Model& model, const std::vector<Unknown>& unknowns,
+              const Eigen::VectorXd& step) const;
+  /// Expected misfit of a segment when only noise is left: its degrees of freedom.
+  double expected(std::size_t record, const Model& model) const;
+  double expected(const Model& model) const;  ///< of all segments
+  const Plant& plant() const { return plant_; }
+  const std::vector<RecordSegment>& segments() const { return segments_; }
+  const Tolerances& tolerances() const { return tolerances_; }
+  int ratio(std::size_t record) const { return ratio_[record]; }
+
+ private:
+  /// Systems of the model with its own weights and the law tracks of `systems`.
+  std::vector<Whitened> reweighted(const Model& model, const std::vector<Whitened>& systems) const;
+
+  const Plant& plant_;
+  const std::vector<RecordSegment>& segments_;
+  Tolerances tolerances_;
+  std::vector<int> ratio_;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,140 @@
+#include "estimator/diagnose/fit/gap.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/numeric/complex.h"
+#include "estimator/numeric/solve.h"
+
+namespace framewatch::estimator {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Subtracts from e what arbitrary forces explain of it, estimated with the noise covariance.
+void subtract_forces(const MatrixXcd& directions, const MatrixXcd& covariance, VectorXcd& e) {
+  const ComplexCholesky factor(covariance);
+  if (!factor.good()) return;
+  const MatrixXcd u = factor.whitened(directions);
+  const VectorXcd white = factor.whitened(e);
+  const VectorXcd force = solve_ldlt(u.adjoint() * u, u.adjoint() * white);
+  e -= directions * force;
+}
+
+/// Sets the difference of a clipped axis: the simulated reading is clipped like the measured one.
+void clip_difference(const RecordSegment& segment, const VectorXcd& measured, Index axis,
+                     MatrixXcd& difference) {
+  const Eigen::VectorXd reading = signal_of(measured, segment, 1);
+  const Eigen::VectorXd simulated =
+      signal_of(VectorXcd(measured - difference.row(axis).transpose()), segment, 1);
+  const Eigen::VectorXd raw = segment.accel.col(axis).head(reading.size());
+  const double level = 0.5 * (raw.maxCoeff() - raw.minCoeff());
+  // Outside the band the simulated reading is taken to be the measured one.
+  const Eigen::VectorXd outside = raw - reading;
+  const Eigen::VectorXd cut = (simulated + outside).cwiseMax(-level).cwiseMin(level) - outside;
+  difference.row(axis) = band_of(reading - cut, segment, 1).transpose();
+}
+
+/// Gap of the force, where a component's motion is prescribed and the force measured.
+Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segment,
+              const Whitened& system) {
+  const Index n = plant.equations(), axes = plant.axis_count(), bins = system.bins();
+  Gap out;
+  out.difference = MatrixXcd::Zero(axes, bins);
+  out.axis = out.floor = VectorXd::Zero(axes);
+  double error = 0, noise = 0, power = 0;
+  Index axis = 0;
+  while (axis + 1 < axes && !plant.is_force(axis)) ++axis;
+  for (Index b = 0; b < bins; ++b) {
+    const auto at = static_cast<std::size_t>(b);
+    VectorXcd e(n);
+    e.real() = system.rest.segment(2 * n * b, n);
+    e.imag() = system.rest.segment(2 * n * b + n, n);
+    system.weights->whitener(b).triangularView<Eigen::Lower>().solveInPlace(e);
+    out.difference(axis, b) = plant.push.col(axis).cast<Complex>().dot(e);
+    const VectorXcd row = system.operation[at].adjoint() * plant.push.col(axis).cast<Complex>();
+    error += std::norm(out.difference(axis, b));
+    noise += row.cwiseAbs2().dot(bin_noise(model, segment, b));
+    power += std::norm(system.calibrated(axis, b));
+  }
+  out.axis[axis] = out.overall = out.worst = std::sqrt(error / std::max(power, 1e-300));
+  out.floor[axis] = out.overall_floor = std::sqrt(noise / std::max(power, 1e-300));
+  out.worst_axis = static_cast<int>(axis);
+  return out;
+}
+
+}  // namespace
+
+Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
+           const Whitened& system) {
+  const Index n = plant.equations(), axes = plant.axis_count(), bins = system.bins();
+  const MatrixXd back = plant.motion.transpose() * inverse(plant.motion * plant.motion.transpose());
+  MatrixXd seen = MatrixXd::Zero(axes, n);  // motion of the coordinates -> axes
+  VectorXd is_base = VectorXd::Zero(axes);
+  for (Index a = 0; a < axes; ++a) {
+    const SensorAxis& axis = plant.axes[static_cast<std::size_t>(a)];
+    if (plant.is_input(a))
+      is_base[a] = 1;
+    else
+      seen.row(a) = plant.constraint.row(plant.structure.dof(axis.story, axis.frame));
+  }
+  if (plant.prescribed) return force_gap(plant, model, segment, system);
+  Gap out;
+  out.difference = MatrixXcd::Zero(axes, bins);
+  VectorXd noise = VectorXd::Zero(axes), power = VectorXd::Zero(axes), error = noise;
+  MatrixXcd pushed(n, 0);
+  for (const ModelEffect& effect : model.effects)
+    if (effect.form == LawForm::broadband) {
+      pushed.conservativeResize(n, pushed.cols() + 1);
+      pushed.rightCols(1) =
+          node_direction(plant, effect.place.story, effect.place.frame).cast<Complex>();
+    }
+  for (Index b = 0; b < bins; ++b) {
+    const auto at = static_cast<std::size_t>(b);
+    const VectorXd variance = bin_noise(model, segment, b);
+    VectorXcd e(n);
+    e.real() = system.rest.segment(2 * n * b, n);
+    e.imag() = system.rest.segment(2 * n * b + n, n);
+    system.weights->whitener(b).triangularView<Eigen::Lower>().solveInPlace(e);
+    if (pushed.cols() > 0)
+      subtract_forces(
+          pushed, system.operation[at] * variance.asDiagonal() * system.operation[at].adjoint(), e);
+    const MatrixXcd own = system.operation[at] * back.cast<Complex>();
+    const ComplexLu solver(own);
+    const VectorXcd difference = solver.solve(e);
+    const MatrixXcd from_base =
+        solver.solve(MatrixXcd(system.operation[at] * is_base.cast<Complex>().asDiagonal()));
+    out.difference.col(b) = seen.cast<Complex>() * difference;
+    const MatrixXcd carried = seen.cast<Complex>() * from_base;
+    // The gap of an axis that measures displacement is one of displacement.
+    VectorXd square = (1 - is_base.array()).matrix();
+    for (Index a = 0; a < axes; ++a)
+      if (segment.is_displaced(a)) square[a] *= std::pow(segment.w[b], -4);
+    out.difference.col(b).array() *= square.array().sqrt();
+    noise += square.cwiseProduct(carried.cwiseAbs2() * variance + variance);
+    power += square.cwiseProduct(system.calibrated.col(b).cwiseAbs2());
+  }
+  for (const ModelEffect& effect : model.effects)
+    if (effect.form == LawForm::clipped)
+      clip_difference(segment, system.calibrated.row(effect.place.channel).transpose(),
+                      effect.place.channel, out.difference);
+  error = out.difference.rowwise().squaredNorm();
+  out.axis = (error.array() / power.array().max(1e-300)).sqrt();
+  out.floor = (noise.array() / power.array().max(1e-300)).sqrt();
+  out.axis = (is_base.array() > 0).select(0.0, out.axis.array());
+  out.floor = (is_base.array() > 0).select(0.0, out.floor.array());
+  out.overall = std::sqrt(error.sum() / std::max(power.sum(), 1e-300));
+  out.overall_floor = std::sqrt(noise.sum() / std::max(power.sum(), 1e-300));
+  Index worst = 0;
+  out.worst = out.axis.maxCoeff(&worst);
+  out.worst_axis = static_cast<int>(worst);
+  return out;
+}
+
+}  // namespace framewatch::estimator

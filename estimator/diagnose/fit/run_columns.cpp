@@ -1,0 +1,58 @@
+#include "estimator/diagnose/fit/run_columns.h"
+
+#include <algorithm>
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
+
+}  // namespace
+
+bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
+  using Kind = Unknown::Kind;
+  if (unknown.kind == Kind::parameter || unknown.kind == Kind::record_parameter) return true;
+  const Structure& s = plant.structure;
+  int frame = -1;  // none: of all directions
+  if (unknown.kind == Kind::theta) {
+    if (unknown.index >= plant.element_count()) return false;
+    frame = plant.table[unknown.index].frame;
+    if (frame < 0) return false;
+  } else if (unknown.kind == Kind::mass) {
+    if (plant.equations() == s.degrees_of_freedom()) frame = unknown.index % s.frames();
+  } else {
+    return false;
+  }
+  return std::any_of(model.effects.begin(), model.effects.end(), [&](const ModelEffect& e) {
+    return e.element_law() &&
+           (e.place.frame < 0 || frame < 0 || s.direction(e.place.frame) == s.direction(frame));
+  });
+}
+
+std::optional<VectorXd> run_column(const Plant& plant, const Model& model,
+                                   const RecordSegment& segment, std::size_t record,
+                                   const Whitened& system, const Unknown& unknown, int ratio) {
+  const double change = unknown.kind == Unknown::Kind::theta ? kChange : 1.0;
+  Model moved = model;
+  set_value(moved, unknown, value_of(model, unknown) + change);
+  const FreeRun run = free_run(plant, moved, segment, record, ratio);
+  if (!run.good) return std::nullopt;
+  VectorXd out = VectorXd::Zero(system.residual.size());
+  std::size_t law = 0;
+  for (const ModelEffect& e : model.effects) {
+    if (!e.element_law()) continue;
+    const LawTrack &from = system.tracks[law], &to = run.tracks[law];
+    const VectorXcd force = band_of((to.force - from.force) / change, segment, ratio);
+    const VectorXcd d = band_of((to.d - from.d) / change, segment, ratio);
+    out += whiten_rows(system, plant.building.act.col(element_of(plant, e.place)),
+                       beyond(system.linear[law], force, d, segment.w));
+    ++law;
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+
+#include "estimator/diagnose/fit/unknowns.h"
+#include "estimator/diagnose/fit/whitened.h"
+
+namespace framewatch::estimator {
+
+/// Whether the derivative of the free run's motion by an unknown is computed: for the parameters of
+/// effects, and for stiffness and mass of frames in the direction of a law's frame.
+bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown);
+
+/// Derivative of the whitened equations by one unknown through the forces of the laws, whose motion
+/// is that of the free run. system: of the model, whitened with
+/// Forcing::simulated. Empty when the changed model cannot be run.
+std::optional<Eigen::VectorXd> run_column(const Plant& plant, const Model& model,
+                                          const RecordSegment& segment, std::size_t record,
+                                          const Whitened& system, const Unknown& unknown,
+                                          int ratio);
+
+}  // namespace framewatch::estimator

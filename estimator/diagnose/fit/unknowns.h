@@ -1,0 +1,37 @@
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "estimator/diagnose/model/model.h"
+
+namespace framewatch::estimator {
+
+/// One standard deviation of quantities that are declared but not exactly known. 0: exact.
+struct Tolerances {
+  double mass = 0.01;        ///< relative, of the mass at every degree of freedom
+  double gain = 0.005;       ///< relative, of every axis
+  double clock_s = 0.25e-3;  ///< of every axis
+};
+
+/// One unknown of a fit: which member of a model it is, its unit, prior and bounds.
+struct Unknown {
+  enum class Kind { theta, mass, gain, clock, parameter, record_parameter } kind;
+  int index = 0;      ///< of theta, coordinate or axis; of the effect where it is a parameter
+  int parameter = 0;  ///< of that effect
+  int record = 0;
+  double scale = 1;  ///< one unit of the unknown in the member
+  double sigma = 0;  ///< of the prior, in units of the unknown; 0: none
+  double centre = 0;
+  double low = -std::numeric_limits<double>::infinity();  ///< bounds, in units of the unknown
+  double high = std::numeric_limits<double>::infinity();
+};
+
+std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
+                                 const Tolerances& tolerances);
+/// In units of the unknown.
+double value_of(const Model& model, const Unknown& unknown);
+/// Sets the member, within the unknown's bounds.
+void set_value(Model& model, const Unknown& unknown, double value);
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,185 @@
+#include "estimator/diagnose/fit/whitened.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/diagnose/model/linear_operation.h"
+#include "estimator/diagnose/spectra/whiteners.h"
+#include "estimator/numeric/complex.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+constexpr double kArbitrary = 1e6;     ///< variance of an arbitrary signal, over that of noise
+constexpr Index kLeastNeighbours = 8;  ///< bins either side over which the misfit is averaged
+
+void put(VectorXd& rows, Index bin, const VectorXcd& values) {
+  const Index n = values.size();
+  rows.segment(2 * n * bin, n) = values.real();
+  rows.segment(2 * n * bin + n, n) = values.imag();
+}
+
+}  // namespace
+
+VectorXd whiten_rows(const Whitened& s, const MatrixXcd& forces) {
+  VectorXd out(2 * forces.size());
+  for (Index b = 0; b < forces.cols(); ++b) put(out, b, s.weights->whitener(b) * forces.col(b));
+  return out;
+}
+
+VectorXd whiten_rows(const Whitened& s, const VectorXd& direction, const VectorXcd& signal) {
+  VectorXd out(2 * direction.size() * signal.size());
+  for (Index b = 0; b < signal.size(); ++b)
+    put(out, b, s.weights->whitener(b) * (direction.cast<Complex>() * signal[b]));
+  return out;
+}
+
+VectorXd whiten_axis(const Whitened& s, Index axis, const VectorXcd& signal) {
+  const Index n = s.operation.empty() ? 0 : s.operation[0].rows();
+  VectorXd out(2 * n * signal.size());
+  for (Index b = 0; b < signal.size(); ++b) {
+    const auto at = static_cast<std::size_t>(b);
+    put(out, b, s.weights->whitener(b) * (s.operation[at].col(axis) * signal[b]));
+  }
+  return out;
+}
+
+namespace {
+
+/// bin_noise() with the variance of clipped axes raised: their readings count for nothing.
+VectorXd believed_noise(const Model& model, const RecordSegment& segment, Index bin) {
+  VectorXd out = bin_noise(model, segment, bin);
+  for (const ModelEffect& e : model.effects)
+    if (e.form == LawForm::clipped) out[e.place.channel] *= kArbitrary;
+  return out;
+}
+
+/// believed_noise() of every bin: axes x bins.
+MatrixXd noise_of(const Model& model, const RecordSegment& segment) {
+  MatrixXd out(model.gain.size(), segment.bins());
+  for (Index b = 0; b < out.cols(); ++b) out.col(b) = believed_noise(model, segment, b);
+  return out;
+}
+
+HiddenOscillator hidden_oscillator(const Plant& plant, const ModelEffect& e, const VectorXd& w) {
+  HiddenOscillator out{node_direction(plant, e.place.story, e.place.frame), VectorXcd(w.size())};
+  for (Index b = 0; b < w.size(); ++b) out.transmissibility[b] = transmissibility(e, w[b]);
+  return out;
+}
+
+/// The likeliest motion, docs/equations.md (34), with which the gradient is exact. Where the model
+/// does not fit, less of the residual is subtracted: it is not noise.
+MatrixXcd shown_motion(const Model& model, const RecordSegment& segment, const Whitened& system) {
+  MatrixXcd out = system.calibrated;
+  const Index bins = segment.bins(), n = system.rest.size() / (2 * bins);
+  VectorXd level(bins);
+  for (Index b = 0; b < bins; ++b) level[b] = system.rest.segment(2 * n * b, 2 * n).squaredNorm();
+  const bool fits = level.mean() < kNearNoise * static_cast<double>(n);
+  const Index around = std::max<Index>(kLeastNeighbours, bins / 60);
+  for (Index b = 0; b < bins; ++b) {
+    const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
+    const double local = level.segment(from, to - from).mean() / static_cast<double>(n);
+    const double share = fits ? 1.0 : std::min(1.0, 1 / std::max(local, 1e-300));
+    VectorXcd r(n);
+    r.real() = system.rest.segment(2 * n * b, n);
+    r.imag() = system.rest.segment(2 * n * b + n, n);
+    const std::size_t at = static_cast<std::size_t>(b);
+    const VectorXd noise = believed_noise(model, segment, b);
+    out.col(b) -= share * (noise.asDiagonal() * (system.operation[at].adjoint() *
+                                                 (system.weights->whitener(b).adjoint() * r)));
+  }
+  return out;
+}
+
+}  // namespace
+
+Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& segment,
+                std::size_t record, Forcing forcing, const MatrixXcd& motion, int ratio) {
+  std::optional<std::vector<LawTrack>> tracks =
+      tracks_of(plant, model, segment, record, forcing, motion, ratio);
+  return tracks ? whiten(plant, model, segment, record, std::move(*tracks), ratio) : Whitened{};
+}
+
+Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& segment,
+                std::size_t record, std::vector<LawTrack> tracks, int ratio,
+                std::shared_ptr<const Weights> weights) {
+  Whitened out;
+  const Index n = plant.equations(), bins = segment.bins(), elements = plant.element_count();
+  out.calibrated = calibrated(model, segment);
+  out.tracks = std::move(tracks);
+
+  VectorXd theta = model.theta;
+  MatrixXcd forces = MatrixXcd::Zero(n, bins);
+  MatrixXd pushed;  // covariance of arbitrary forces
+  std::vector<HiddenOscillator> hidden;
+  std::vector<LinearOperation> additions;
+  std::size_t law = 0;
+  for (const ModelEffect& e : model.effects) {
+    if (e.element_law()) {
+      const LawTrack& track = out.tracks[law++];
+      if (!track.force.allFinite()) return out;
+      const Equivalent& linear = out.linear.emplace_back(equivalent_of(track));
+      const int element = element_of(plant, e.place);
+      theta[element] += linear.stiffness;
+      theta[element + elements] += linear.damping;
+      out.force.push_back(band_of(track.force, segment, ratio));
+      forces +=
+          plant.building.act.col(element) *
+          beyond(linear, out.force.back(), band_of(track.d, segment, ratio), segment.w).transpose();
+    } else if (e.form == LawForm::harmonic) {
+      // A force from outside is on the other side of the equation.
+      forces -= node_direction(plant, e.place.story, e.place.frame) *
+                harmonic_bins(e, segment, record).transpose();
+    } else if (e.form == LawForm::broadband) {
+      const VectorXd at = node_direction(plant, e.place.story, e.place.frame);
+      if (pushed.size() == 0) pushed = MatrixXd::Zero(n, n);
+      pushed += at * at.transpose() / at.squaredNorm();
+    } else {
+      additions.emplace_back(plant, model, e);
+      if (e.form == LawForm::resonator) hidden.push_back(hidden_oscillator(plant, e, segment.w));
+    }
+  }
+
+  const MatrixXd& act = plant.building.act;
+  const MatrixXd& sense = plant.building.sense;
+  const MatrixXd mass =
+      (1 + model.mass_change.array()).matrix().asDiagonal() * plant.building.mass + plant.push;
+  const MatrixXd stiffness = act * theta.head(elements).asDiagonal() * sense;
+  const MatrixXd damping = act * theta.tail(elements).asDiagonal() * sense;
+  out.operation.resize(static_cast<std::size_t>(bins));
+  for (Index b = 0; b < bins; ++b) {
+    const double w = segment.w[b];
+    MatrixXcd& d = out.operation[static_cast<std::size_t>(b)];
+    d.resize(n, plant.axis_count());
+    d.real() = mass - stiffness / (w * w);
+    d.imag() = damping / -w;
+    for (const LinearOperation& l : additions) l.add_to(w, d);
+  }
+  if (!weights) {
+    std::vector<MatrixXcd> own =
+        whiteners(out.operation, noise_of(model, segment), kArbitrary * pushed);
+    if (own.empty()) return out;
+    weights = std::make_shared<const Weights>(std::move(own), segment.w, std::move(hidden));
+  }
+  out.weights = std::move(weights);
+  out.residual.resize(2 * n * bins);
+  for (Index b = 0; b < bins; ++b)
+    put(out.residual, b,
+        out.weights->whitener(b) *
+            (out.operation[static_cast<std::size_t>(b)] * out.calibrated.col(b) + forces.col(b)));
+  out.rest = out.weights->without_ends(out.residual);
+  out.misfit = out.rest.squaredNorm();
+  if (!std::isfinite(out.misfit)) return out;
+  out.motion = shown_motion(model, segment, out);
+  out.good = true;
+  return out;
+}
+
+}  // namespace framewatch::estimator

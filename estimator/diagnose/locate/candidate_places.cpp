@@ -1,0 +1,182 @@
+#include "estimator/diagnose/locate/candidate_places.h"
+
+#include <cmath>
+#include <complex>
+#include <utility>
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+bool same_direction(const MatrixXd& a, const MatrixXd& b) {
+  if (a.cols() != 1 || b.cols() != 1) return false;
+  const double cosine = std::abs(a.col(0).dot(b.col(0))) / (a.norm() * b.norm());
+  return cosine > 1 - 1e-9;
+}
+
+void add_forces(std::vector<CandidatePlace>& out, CandidatePlace candidate_place) {
+  if (!(candidate_place.directions.colwise().norm().minCoeff() > 0)) return;
+  for (const CandidatePlace& s : out)
+    if (s.directions.size() > 0 && same_direction(s.directions, candidate_place.directions)) return;
+  out.push_back(std::move(candidate_place));
+}
+
+/// Forces of a rotation of the base, through the stiffnesses of the frames in one direction.
+MatrixXd moment_of(const Plant& plant, const Model& model, Direction direction) {
+  const Structure& s = plant.structure;
+  MatrixXd out = MatrixXd::Zero(plant.equations(), 1);
+  for (const Element& e : plant.elements)
+    if (e.frame >= 0 && s.direction(e.frame) == direction)
+      out += model.theta[e.stiffness] * s.story_height[static_cast<std::size_t>(e.story - 1)] *
+             plant.building.act.col(e.stiffness);
+  return out;
+}
+
+std::vector<CandidatePlace> axes_of(const Plant& plant) {
+  std::vector<CandidatePlace> out;
+  for (Index a = 0; a < plant.axis_count(); ++a) {
+    CandidatePlace axis;
+    axis.kind = CandidatePlace::Kind::axis;
+    axis.axis = static_cast<int>(a);
+    axis.place.kind = PlaceKind::channel;
+    axis.place.channel = axis.axis;
+    out.push_back(axis);
+  }
+  return out;
+}
+
+void add_floors(const Plant& plant, std::vector<CandidatePlace>& out) {
+  const Structure& s = plant.structure;
+  for (int story = 1; story <= s.stories; ++story) {
+    CandidatePlace floor;
+    floor.kind = CandidatePlace::Kind::floor;
+    floor.place.kind = PlaceKind::floor;
+    floor.place.story = story;
+    floor.directions.resize(plant.equations(), s.panels());
+    for (int p = 0; p < s.panels(); ++p)
+      floor.directions.col(p) = plant.building.act.col(plant.table.panel_stiffness(story, p));
+    add_forces(out, floor);
+  }
+}
+
+void add_elements(const Plant& plant, std::vector<CandidatePlace>& out) {
+  for (const Element& e : plant.elements) {
+    if (plant.stiff_floors && e.panel >= 0) continue;
+    CandidatePlace element;
+    element.kind = CandidatePlace::Kind::element;
+    element.element = e.stiffness;
+    element.place.kind = e.frame >= 0 ? PlaceKind::frame : PlaceKind::panel;
+    element.place.story = e.story;
+    element.place.frame = e.frame;
+    element.place.panel = e.panel;
+    element.directions = plant.building.act.col(e.stiffness);
+    add_forces(out, element);
+  }
+}
+
+/// Forces on every frame at every floor, and pairs of them between floors that are not neighbours.
+void add_nodes_and_links(const Plant& plant, std::vector<CandidatePlace>& out) {
+  const Structure& s = plant.structure;
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f) {
+      CandidatePlace node;
+      node.kind = CandidatePlace::Kind::node;
+      node.place.kind = PlaceKind::node;
+      node.place.story = story;
+      node.place.frame = f;
+      node.directions = node_direction(plant, story, f);
+      add_forces(out, node);
+      for (int to = 1; to <= story - 2; ++to) {
+        CandidatePlace link = node;
+        link.kind = CandidatePlace::Kind::link;
+        link.place.kind = PlaceKind::node_pair;
+        link.place.to_story = to;
+        link.directions -= node_direction(plant, to, f);
+        add_forces(out, link);
+      }
+    }
+}
+
+void add_crossings(const Plant& plant, std::vector<CandidatePlace>& out) {
+  const Structure& s = plant.structure;
+  for (int story = 1; story <= s.stories; ++story)
+    for (int crossing = 0; crossing < s.n() * s.m(); ++crossing) {
+      CandidatePlace mass;
+      mass.kind = CandidatePlace::Kind::crossing;
+      mass.place.kind = PlaceKind::crossing;
+      mass.place.story = story;
+      mass.place.crossing = crossing;
+      mass.directions.resize(plant.equations(), 2);
+      const std::vector<int> frames = frames_at(s, crossing);
+      mass.directions << node_direction(plant, story, frames[0]),
+          node_direction(plant, story, frames[1]);
+      add_forces(out, mass);
+    }
+}
+
+void add_rocking(const Plant& plant, const Model& model, std::vector<CandidatePlace>& out) {
+  const Structure& s = plant.structure;
+  for (const Direction direction : {Direction::x, Direction::y}) {
+    if ((direction == Direction::x ? s.n() : s.m()) == 0) continue;
+    CandidatePlace rocking;
+    rocking.kind = CandidatePlace::Kind::rocking;
+    rocking.place.kind = PlaceKind::building;
+    rocking.place.direction = direction;
+    rocking.directions = moment_of(plant, model, direction);
+    add_forces(out, rocking);
+  }
+}
+
+}  // namespace
+
+void update_directions(const Plant& plant, const Model& model,
+                       std::vector<CandidatePlace>& candidate_places) {
+  for (CandidatePlace& s : candidate_places)
+    if (s.kind == CandidatePlace::Kind::rocking)
+      s.directions = moment_of(plant, model, s.place.direction);
+}
+
+std::vector<CandidatePlace> candidate_places_of(const Plant& plant, const Model& model) {
+  std::vector<CandidatePlace> out;
+  // With one equation an error of a reading cannot be told from a force.
+  if (plant.equations() > 1) out = axes_of(plant);
+  if (plant.stiff_floors) add_floors(plant, out);
+  add_elements(plant, out);
+  add_nodes_and_links(plant, out);
+  add_crossings(plant, out);
+  add_rocking(plant, model, out);
+  return out;
+}
+
+MatrixXcd candidate_basis(const Whitened& system, Index bin,
+                          const std::vector<CandidatePlace>& candidate_places) {
+  const auto at = static_cast<std::size_t>(bin);
+  const Index n = system.operation[at].rows();
+  Index count = 0;
+  for (const CandidatePlace& s : candidate_places) count += s.size();
+  MatrixXcd out(n, count);
+  Index next = 0;
+  for (const CandidatePlace& s : candidate_places) {
+    if (s.directions.size() > 0) {
+      for (Index c = 0; c < s.directions.cols(); ++c)
+        out.col(next++) = s.directions.col(c).cast<std::complex<double>>();
+    } else {
+      out.col(next++) = system.operation[at].col(s.axis);
+    }
+  }
+  out = (system.weights->whitener(bin) * out).eval();
+  for (Index c = 0; c < count; ++c) {
+    const double before = out.col(c).norm();
+    for (Index b = 0; b < c; ++b) out.col(c) -= out.col(b) * out.col(b).dot(out.col(c));
+    const double norm = out.col(c).norm();
+    out.col(c) /= norm > 1e-9 * before ? norm : 1e300;
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,221 @@
+#include "estimator/diagnose/locate/localise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <span>
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kConverged = 1e-3;   ///< change of the misfit, relative
+constexpr std::size_t kTogether = 8;  ///< lists that are processed in one pass over the rows
+
+/// Which unknowns a step may change; masses, gains and clocks within tolerance only if
+/// `tolerances`.
+std::vector<Index> moving(const Linearised& at, bool tolerances) {
+  using Kind = Unknown::Kind;
+  std::vector<Index> out;
+  for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
+    const Unknown& unknown = at.unknowns[u];
+    const bool tolerated =
+        unknown.kind == Kind::mass || unknown.kind == Kind::gain || unknown.kind == Kind::clock;
+    if (tolerances || !tolerated || unknown.sigma <= 0) out.push_back(static_cast<Index>(u));
+  }
+  return out;
+}
+
+/// For each list: the Gram matrix of the unknowns, the residual and the end terms with the whitened
+/// directions of the list's places projected out.
+std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std::size_t record,
+                              const std::vector<Index>& kept,
+                              std::span<const std::vector<CandidatePlace>> lists) {
+  const Whitened& system = at.systems[record];
+  const Index n = system.weights->equations();
+  std::vector<RowGram> along(lists.size(), RowGram(square.cols()));
+  const Index own = static_cast<Index>(kept.size()) + 1;
+  RowGram here(own);
+  RowMatrix part;
+  for (Index b = 0; b < system.bins(); ++b) {
+    put_rows(at, record, kept, b, here.rows(2 * n));
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      const MatrixXcd basis = candidate_basis(system, b, lists[i]);
+      RowMatrix directions(2 * basis.cols(), 2 * n);
+      directions << basis.real().transpose(), basis.imag().transpose(), -basis.imag().transpose(),
+          basis.real().transpose();
+      auto rows = along[i].rows(directions.rows());
+      multiply(directions, here.written(), part);
+      rows.leftCols(own) = part.leftCols(own);
+      rows.rightCols(rows.cols() - own) = system.weights->times_ends(b, directions);
+      along[i].add();
+    }
+  }
+  std::vector<MatrixXd> out;
+  for (const RowGram& g : along) out.push_back(square - g.sum());
+  return out;
+}
+
+struct Reduced {
+  NormalEquations equations;
+  double expected = 0;
+  std::vector<double> record_ratio;
+};
+
+Index size_of(const std::vector<CandidatePlace>& candidate_places) {
+  Index out = 0;
+  for (const CandidatePlace& s : candidate_places) out += s.size();
+  return out;
+}
+
+/// Normal equations with the places of each list projected out. squares: of each segment.
+std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Model& model,
+                            const std::vector<Index>& kept, const std::vector<MatrixXd>& squares,
+                            std::span<const std::vector<CandidatePlace>> lists) {
+  const auto count = static_cast<Index>(kept.size());
+  const double n = static_cast<double>(fitter.plant().equations());
+  std::vector<Reduced> out(lists.size(),
+                           {{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0}, 0, {}});
+  for (std::size_t r = 0; r < at.systems.size(); ++r) {
+    const std::vector<MatrixXd> rest = without(squares[r], at, r, kept, lists);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      const NormalEquations one = without_ends(rest[i], at.systems[r].weights->ends());
+      const double expected =
+          fitter.expected(r, model) * (1 - static_cast<double>(size_of(lists[i])) / n);
+      out[i].equations += one;
+      out[i].expected += expected;
+      out[i].record_ratio.push_back(one.misfit / expected);
+    }
+  }
+  return out;
+}
+
+/// Change of the unknowns `kept`.
+VectorXd step_of(const Reduced& reduced, const Linearised& at, const Model& model, double level,
+                 const std::vector<Index>& kept) {
+  std::vector<Unknown> unknowns;
+  for (const Index u : kept) unknowns.push_back(at.unknowns[static_cast<std::size_t>(u)]);
+  MatrixXd normal = reduced.equations.normal;
+  VectorXd right = -reduced.equations.gradient;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const auto c = static_cast<Index>(i);
+    normal(c, c) += level / at.level * at.prior[kept[i]];
+    right[c] += level / at.level * at.pull[kept[i]];
+  }
+  normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().array();
+  return bounded_step(normal, right, model, unknowns);
+}
+
+bool explains_everything(const Fitter& fitter,
+                         const std::vector<CandidatePlace>& candidate_places) {
+  return size_of(candidate_places) >= fitter.plant().equations();
+}
+
+/// Places with as many directions as there are equations explain any misfit: the localisation
+/// with nothing left.
+Localisation everything(const Fitter& fitter, const Model& model,
+                        const std::vector<CandidatePlace>& candidate_places,
+                        const std::vector<Whitened>& systems) {
+  Localisation out;
+  out.candidate_places = candidate_places;
+  out.misfit = 0;
+  out.ratio = 1;
+  out.model = model;
+  for (std::size_t r = 0; r < systems.size(); ++r) {
+    out.misfit += fitter.expected(r, model);
+    out.record_ratio.push_back(1);
+    out.motion.push_back(systems[r].calibrated);
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& at,
+                                        const Model& model,
+                                        const std::vector<std::vector<CandidatePlace>>& lists,
+                                        const Parallel& parallel) {
+  const std::vector<Index> kept = moving(at, false);
+  std::vector<MatrixXd> squares;
+  for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
+  const double prior = fitter.prior_cost(model);
+  std::vector<Localisation> out(lists.size());
+  const auto store = [&](std::size_t i, const Reduced& reduced) {
+    Localisation& one = out[i];
+    one.candidate_places = lists[i];
+    if (explains_everything(fitter, one.candidate_places)) {
+      one = everything(fitter, model, one.candidate_places, at.systems);
+      return;
+    }
+    const VectorXd step = step_of(reduced, at, model, 1.0, kept);
+    if (!step.allFinite()) return;
+    const double left = reduced.equations.misfit + step.dot(reduced.equations.normal * step) +
+                        2 * step.dot(reduced.equations.gradient);
+    one.misfit = left + prior;
+    one.ratio = left / reduced.expected;
+    one.record_ratio = reduced.record_ratio;
+    VectorXd whole = VectorXd::Zero(static_cast<Index>(at.unknowns.size()));
+    whole(kept) = step;
+    one.model = fitter.moved(model, at.unknowns, whole);
+  };
+  const std::size_t groups = (lists.size() + kTogether - 1) / kTogether;
+  run_all(parallel, static_cast<int>(groups), [&](int group) {
+    const std::size_t first = static_cast<std::size_t>(group) * kTogether;
+    const std::span together =
+        std::span(lists).subspan(first, std::min(kTogether, lists.size() - first));
+    const std::vector<Reduced> reduced = reduce(fitter, at, model, kept, squares, together);
+    for (std::size_t i = 0; i < reduced.size(); ++i) store(first + i, reduced[i]);
+  });
+  return out;
+}
+
+Localisation localise(const Fitter& fitter, const Model& start,
+                      const std::vector<MatrixXcd>& motion,
+                      const std::vector<CandidatePlace>& candidate_places, int steps) {
+  const Plant& plant = fitter.plant();
+  Localisation out;
+  out.candidate_places = candidate_places;
+  Model model = start;
+  std::vector<MatrixXcd> driving = motion;
+  driving.resize(fitter.segments().size());
+  double before = 1e300;
+  for (int step = 0; step <= steps; ++step) {
+    std::vector<Whitened> systems = fitter.systems(model, driving, Forcing::measured);
+    if (systems.empty()) return out;
+    const Linearised at = fitter.linearise(model, std::move(systems));
+    if (explains_everything(fitter, candidate_places))
+      return everything(fitter, model, candidate_places, at.systems);
+    const std::vector<Index> kept = moving(at, true);
+    std::vector<MatrixXd> squares;
+    for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
+    std::vector<CandidatePlace> current = candidate_places;
+    update_directions(plant, model, current);
+    const Reduced reduced =
+        reduce(fitter, at, model, kept, squares, std::span(&current, 1)).front();
+    const double left = reduced.equations.misfit, misfit = left + fitter.prior_cost(model);
+    if (misfit < out.misfit) {
+      out.candidate_places = current;
+      out.misfit = misfit;
+      out.ratio = left / reduced.expected;
+      out.record_ratio = reduced.record_ratio;
+      out.model = model;
+      out.motion.clear();
+      for (const Whitened& system : at.systems) out.motion.push_back(system.calibrated);
+    }
+    out.converged = std::abs(before - left) < kConverged * left;
+    if (step == steps || out.converged) break;
+    before = left;
+    const VectorXd change =
+        step_of(reduced, at, model, std::max(1.0, left / reduced.expected), kept);
+    if (!change.allFinite()) break;
+    model = fitter.moved(model, at.unknowns, change);
+    for (std::size_t r = 0; r < at.systems.size(); ++r) driving[r] = at.systems[r].calibrated;
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

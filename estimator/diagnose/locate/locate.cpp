@@ -1,0 +1,182 @@
+#include "estimator/diagnose/locate/locate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <utility>
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
+constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
+constexpr std::size_t kContenders = 3, kMostContenders = 5;
+constexpr std::size_t kMostAsLikely = 16;
+constexpr std::size_t kPairLeaders = 6, kPairs = 3;
+constexpr int kSteps = 8, kPairSteps = 6;
+constexpr int kTrialSteps = 3;     ///< before the ratios are compared
+constexpr double kWideMargin = 2;  ///< times the margin: places above it then are not iterated on
+
+void sort_by_ratio(std::vector<Localisation>& list) {
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Localisation& a, const Localisation& b) { return a.ratio < b.ratio; });
+}
+
+/// Ratio above which a place is too far from the best to be tried.
+double margin_of(const Localisation& best) {
+  return 1 + 2 * std::max(best.ratio - 1, 0.05) + 0.1;
+}
+
+/// The same for places that have not converged.
+double wide_margin_of(const Localisation& best) {
+  return 1 + kWideMargin * (margin_of(best) - 1);
+}
+
+/// Iterates localisations from their first step. Those whose ratio after a few steps exceeds the
+/// limit, a function of the best, are not iterated on.
+std::vector<Localisation> iterated(const Fitter& fitter, const FitResult& now,
+                                   const std::vector<const Localisation*>& starts, int steps,
+                                   const std::function<double(const Localisation&)>& limit_of,
+                                   const Parallel& parallel) {
+  std::vector<Localisation> out(starts.size());
+  run_all(parallel, static_cast<int>(starts.size()), [&](int i) {
+    const Localisation& from = *starts[static_cast<std::size_t>(i)];
+    out[static_cast<std::size_t>(i)] =
+        localise(fitter, from.model.theta.size() > 0 ? from.model : now.model, {},
+                 from.candidate_places, kTrialSteps);
+  });
+  std::erase_if(out, [](const Localisation& l) { return l.model.theta.size() == 0; });
+  if (out.empty()) return out;
+  sort_by_ratio(out);
+  const double limit = limit_of(out.front());
+  run_all(parallel, static_cast<int>(out.size()), [&](int i) {
+    Localisation& one = out[static_cast<std::size_t>(i)];
+    // A large error of a reading converges slowly, and is considered before physical effects.
+    const bool axis = one.candidate_places.front().kind == CandidatePlace::Kind::axis;
+    if (one.converged || (one.ratio > limit && !axis)) return;
+    const Localisation on =
+        localise(fitter, one.model, one.motion, one.candidate_places, steps - kTrialSteps);
+    if (on.misfit < one.misfit) one = on;
+  });
+  sort_by_ratio(out);
+  return out;
+}
+
+std::vector<CandidatePlace> of_one_direction(const std::vector<Localisation>& once) {
+  std::vector<CandidatePlace> out;
+  for (const Localisation& l : once)
+    if (l.candidate_places.front().size() == 1) out.push_back(l.candidate_places.front());
+  return out;
+}
+
+/// Localisations of all lists after one step, best first; empty when the model cannot be computed.
+std::vector<Localisation> one_step(const Fitter& fitter, const FitResult& now,
+                                   const std::vector<std::vector<CandidatePlace>>& lists,
+                                   const Parallel& parallel) {
+  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, Forcing::measured);
+  if (systems.empty()) return {};
+  const Linearised at = fitter.linearise(now.model, std::move(systems));
+  std::vector<Localisation> out = localise_once(fitter, at, now.model, lists, parallel);
+  sort_by_ratio(out);
+  return out;
+}
+
+/// The best lists after one step, iterated. Best first.
+std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
+                                     const std::vector<std::vector<CandidatePlace>>& lists,
+                                     const Parallel& parallel) {
+  const std::vector<Localisation> all = one_step(fitter, now, lists, parallel);
+  std::vector<const Localisation*> starts;
+  for (std::size_t i = 0; i < std::min(kPairs, all.size()); ++i) starts.push_back(&all[i]);
+  return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
+}
+
+bool is_global(const CandidatePlace& s) {
+  return s.kind == CandidatePlace::Kind::rocking || s.kind == CandidatePlace::Kind::floor;
+}
+
+}  // namespace
+
+double chance_of(const Fitter& fitter, const Model& model) {
+  return kSignificant / std::sqrt(fitter.expected(model));
+}
+
+Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel) {
+  Located out;
+  std::vector<std::vector<CandidatePlace>> lists;
+  for (const CandidatePlace& s : candidate_places_of(fitter.plant(), now.model))
+    lists.push_back({s});
+  out.once = one_step(fitter, now, lists, parallel);
+  std::vector<const Localisation*> starts;
+  std::size_t global = 0;
+  for (std::size_t i = 0; i < out.once.size(); ++i) {
+    const bool more = is_global(out.once[i].candidate_places.front()) && global < kOfOneKind;
+    if (i >= kPlaces && !more) continue;
+    global += is_global(out.once[i].candidate_places.front());
+    starts.push_back(&out.once[i]);
+  }
+  out.places = iterated(fitter, now, starts, kSteps, wide_margin_of, parallel);
+  return out;
+}
+
+std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
+                                       const std::vector<Localisation>& once,
+                                       const Parallel& parallel) {
+  const std::vector<CandidatePlace> all = of_one_direction(once);
+  std::vector<std::vector<CandidatePlace>> lists;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j)
+      if (i < kPairLeaders ||
+          (all[i].kind == CandidatePlace::Kind::axis && all[j].kind == CandidatePlace::Kind::axis))
+        lists.push_back({all[i], all[j]});
+  return best_lists(fitter, now, lists, parallel);
+}
+
+std::vector<Localisation> locate_beside(const Fitter& fitter, const FitResult& now,
+                                        const std::vector<Localisation>& once,
+                                        const CandidatePlace& known, const Parallel& parallel) {
+  std::vector<std::vector<CandidatePlace>> lists;
+  for (const CandidatePlace& s : of_one_direction(once))
+    if (!(s.place == known.place)) lists.push_back({s, known});
+  return best_lists(fitter, now, lists, parallel);
+}
+
+std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
+                                    const Located& located, const Parallel& parallel) {
+  if (located.once.empty() || located.places.empty()) return {};
+  const double chance = chance_of(fitter, now.model);
+  const double most = located.once.front().ratio + chance;
+  std::vector<const Localisation*> starts;
+  for (const Localisation& l : located.once) {
+    const CandidatePlace& s = l.candidate_places.front();
+    const bool seen = std::any_of(
+        located.places.begin(), located.places.end(),
+        [&](const Localisation& place) { return place.candidate_places.front().place == s.place; });
+    if (l.ratio > most || starts.size() >= kMostAsLikely) break;
+    if (s.kind != CandidatePlace::Kind::element && !seen) starts.push_back(&l);
+  }
+  const double limit = located.places.front().ratio + chance;
+  std::vector<Localisation> out = iterated(
+      fitter, now, starts, kSteps, [&](const Localisation&) { return limit + chance; }, parallel);
+  std::erase_if(out, [&](const Localisation& l) { return l.ratio > limit; });
+  return out;
+}
+
+std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
+  std::vector<Localisation> out;
+  std::map<CandidatePlace::Kind, int> of_kind;
+  if (places.empty()) return out;
+  const double limit = margin_of(places.front()), wide = wide_margin_of(places.front());
+  for (const Localisation& place : places) {
+    // Bending frames are located by a moment at the base, which explains only a part of them.
+    const bool moment = place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
+    if (place.ratio > (moment ? wide : limit)) continue;
+    const bool another_kind = of_kind[place.candidate_places.front().kind]++ == 0;
+    const bool worth = out.size() < kContenders || (another_kind && out.size() < kMostContenders);
+    if (worth || moment) out.push_back(place);
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/locate/localise.h"
+
+namespace framewatch::estimator {
+
+constexpr double kSignificant = 4;  ///< standard deviations of the misfit under noise
+
+/// Increase of Localisation::ratio above 1 that is more than chance.
+double chance_of(const Fitter& fitter, const Model& model);
+
+/// Places where arbitrary signals would make a model fit.
+struct Located {
+  std::vector<Localisation> places;  ///< the most likely ones, iterated, best first
+  std::vector<Localisation> once;    ///< all places after one step, best first
+};
+
+/// Tries every place of the plant.
+Located locate(const Fitter& fitter, const FitResult& now, const Parallel& parallel);
+
+/// Further places other than elements that are as good as the best within chance; their effects are
+/// quick to fit. Best first.
+std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
+                                    const Located& located, const Parallel& parallel);
+
+/// Pairs of places: the best single ones with every other, and every two axes. Best first.
+std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
+                                       const std::vector<Localisation>& once,
+                                       const Parallel& parallel);
+
+/// Pairs of a place with `known`: effects beside a law whose force the noisy measured motion does
+/// not determine well enough. Best first.
+std::vector<Localisation> locate_beside(const Fitter& fitter, const FitResult& now,
+                                        const std::vector<Localisation>& once,
+                                        const CandidatePlace& known, const Parallel& parallel);
+
+/// The places whose laws are fitted: near the best, few of each kind.
+std::vector<Localisation> contenders(const std::vector<Localisation>& places);
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,203 @@
+#include "estimator/diagnose/model/free_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "estimator/diagnose/model/modal_system.h"
+#include "estimator/diagnose/model/run_system.h"
+#include "estimator/diagnose/model/upsampled.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kStepsPerPeriod = 30;
+constexpr double kDiverged_m = 1e6;
+constexpr int kSweeps = 2;  ///< over several laws within a step
+constexpr int kGrows = 60, kIllinois = 60;
+constexpr double kRootPart = 1e-10, kLeastForce_n = 1e-12;
+
+/// Root of `miss` near `start`. It falls by at least one per unit where the law does not soften:
+/// then the root lies between start and start + miss(start).
+template <typename Miss>
+double root_near(const Miss& miss, double start) {
+  double before = start, value_before = miss(before);
+  double f = before + value_before, value = miss(f);
+  for (int i = 0; i < kGrows && value * value_before > 0; ++i) {
+    const double width = 2 * (f - before);
+    before = std::exchange(f, f + width);
+    value_before = std::exchange(value, miss(f));
+  }
+  const double small = kRootPart * std::max({std::abs(f), std::abs(before), kLeastForce_n});
+  for (int i = 0; i < kIllinois && std::abs(value) > small && std::abs(f - before) > small; ++i) {
+    const double next = (before * value - f * value_before) / (value - value_before);
+    const double found = miss(next);
+    if (found * value < 0) {
+      before = f;
+      value_before = value;
+    } else {
+      value_before /= 2;
+    }
+    f = next;
+    value = found;
+  }
+  return f;
+}
+
+std::vector<Index> driving_axes(const Plant& plant) {
+  std::vector<Index> out;
+  for (Index a = 0; a < plant.axis_count(); ++a)
+    if (plant.ground.col(a).cwiseAbs().maxCoeff() > 0 || plant.is_force(a)) out.push_back(a);
+  return out;
+}
+
+/// Readings of the driving axes at every step, the lead first, without the model's errors of gain
+/// and clock: axes x steps.
+MatrixXd driving_signals(const Model& model, const RecordSegment& segment,
+                         const std::vector<Index>& driving, int ratio) {
+  const Index lead = segment.lead.rows(), samples = lead + segment.intervals();
+  MatrixXd out(static_cast<Index>(driving.size()), samples * ratio);
+  for (std::size_t i = 0; i < driving.size(); ++i) {
+    VectorXd signal(samples);
+    signal.head(lead) = segment.lead.col(driving[i]);
+    signal.tail(segment.intervals()) = segment.accel.col(driving[i]).head(segment.intervals());
+    signal /= 1 + model.gain[driving[i]];
+    const double late = model.clock_s[driving[i]] * segment.rate_hz;
+    out.row(static_cast<Index>(i)) = upsampled(signal, ratio, -late).transpose();
+  }
+  return out;
+}
+
+/// The forces of a model's effects during a run: those of harmonic forces are known beforehand,
+/// those of element laws depend on the motion at the end of the step.
+class RunForces {
+ public:
+  /// first_input: index of the first effect's force among the inputs.
+  RunForces(const Plant& plant, const Model& model, std::size_t record, const ModalSystem& system,
+            Index coordinates, Index first_input)
+      : record_(record) {
+    Index input = first_input;
+    for (const ModelEffect& e : model.effects) {
+      if (e.element_law()) {
+        VectorXd row = VectorXd::Zero(coordinates);
+        row.head(plant.equations()) = plant.building.act.col(element_of(plant, e.place));
+        laws_.push_back({LawMotion(e.law(record)), system.observe(row), input++});
+      } else if (e.form == LawForm::harmonic) {
+        harmonics_.emplace_back(&e, input++);
+      }
+    }
+    at_step_.resize(laws_.size());
+  }
+
+  std::size_t laws() const { return laws_.size(); }
+
+  /// Harmonic forces at time t.
+  void set_harmonics(double t, VectorXd& inputs) const {
+    for (const auto& [e, at] : harmonics_) {
+      const double phase = 2 * M_PI * e->parameters[0].plain() * t;
+      const std::vector<LawParameter>& r = e->record_parameters[record_];
+      inputs[at] =
+          t < e->onset_s[record_] ? 0 : r[0].value * std::cos(phase) + r[1].value * std::sin(phase);
+    }
+  }
+
+  /// Forces of the laws at the end of a step that `system` has predicted.
+  void solve_laws(const ModalSystem& system, double t, VectorXd& inputs) {
+    const int sweeps = laws_.size() > 1 ? kSweeps : 1;
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+      for (std::size_t l = 0; l < laws_.size(); ++l) {
+        solve(system, l, t);
+        inputs[laws_[l].input] = laws_[l].force;
+      }
+  }
+
+  /// Ends the step. false: the motion has diverged.
+  bool accept(std::size_t law, double t) {
+    laws_[law].motion.accept(at_step_[law].d, at_step_[law].v, t);
+    return std::abs(at_step_[law].d) < kDiverged_m;
+  }
+
+  void store(std::size_t law, Index step, LawTrack& track) const {
+    track.d[step] = at_step_[law].d;
+    track.v[step] = at_step_[law].v;
+    track.force[step] = laws_[law].force;
+  }
+
+ private:
+  struct ActiveLaw {
+    LawMotion motion;
+    ModalSystem::Observer seen;
+    Index input;
+    double force = 0;
+  };
+  struct Step {
+    double d, v;
+  };
+
+  /// Force of one law, the forces of the others held.
+  void solve(const ModalSystem& system, std::size_t l, double t) {
+    ActiveLaw& law = laws_[l];
+    double d = system.displacement(law.seen), v = system.velocity(law.seen);
+    for (std::size_t other = 0; other < laws_.size(); ++other) {
+      if (other == l) continue;
+      d += law.seen.displacement_gain[laws_[other].input] * laws_[other].force;
+      v += law.seen.velocity_gain[laws_[other].input] * laws_[other].force;
+    }
+    const double gd = law.seen.displacement_gain[law.input];
+    const double gv = law.seen.velocity_gain[law.input];
+    // f = F(d + gd f, v + gv f): gd, gv < 0, F rises, so the root is bracketed.
+    const auto miss = [&](double f) { return law.motion.force(d + gd * f, v + gv * f, t) - f; };
+    law.force = root_near(miss, law.force);
+    at_step_[l] = {d + gd * law.force, v + gv * law.force};
+  }
+
+  std::size_t record_;
+  std::vector<ActiveLaw> laws_;
+  std::vector<std::pair<const ModelEffect*, Index>> harmonics_;
+  std::vector<Step> at_step_;
+};
+
+}  // namespace
+
+int steps_per_sample(const Plant& plant, double rate_hz) {
+  return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * plant.highest_hz / rate_hz)), 2,
+                    12);
+}
+
+FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& segment,
+                 std::size_t record, int ratio) {
+  FreeRun out;
+  const std::vector<Index> driving = driving_axes(plant);
+  const RunSystem parts = run_system(plant, model, driving);
+  const double step_s = 1 / (segment.rate_hz * ratio);
+  ModalSystem system(parts.mass, parts.damping, parts.stiffness, parts.inputs, step_s);
+  if (!system.good()) return out;
+  const MatrixXd ground = driving_signals(model, segment, driving, ratio);
+  const Index steps = segment.intervals() * ratio, lead = segment.lead.rows() * ratio;
+  RunForces forces(plant, model, record, system, parts.mass.rows(), ground.rows());
+  out.tracks.assign(forces.laws(), {VectorXd(steps), VectorXd(steps), VectorXd(steps)});
+
+  VectorXd now = VectorXd::Zero(parts.inputs.cols());
+  VectorXd law_forces = now;
+  for (Index i = -lead; i < steps; ++i) {
+    const double t = step_s * static_cast<double>(i);
+    now.head(ground.rows()) = ground.col(lead + i);
+    forces.set_harmonics(t, now);
+    system.predict(now);
+    law_forces.setZero();
+    forces.solve_laws(system, t, law_forces);
+    system.correct(law_forces);
+    for (std::size_t l = 0; l < forces.laws(); ++l) {
+      if (!forces.accept(l, t)) return out;
+      if (i >= 0) forces.store(l, i, out.tracks[l]);
+    }
+  }
+  out.good = true;
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,154 @@
+#include "estimator/diagnose/model/linear_operation.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/numeric/solve.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Absolute motion of the ground under a frame, as a row over the axes.
+Eigen::RowVectorXd ground_row(const Plant& plant, int frame) {
+  return plant.ground.row(plant.structure.dof(1, frame));
+}
+
+/// Heights h and hinge membership: rows hinges x elements, entry h_i where the hinge turns element
+/// i.
+MatrixXd hinges(const Plant& plant, const ModelEffect& effect) {
+  const Structure& s = plant.structure;
+  const bool bending = effect.form == LawForm::bending;
+  std::vector<VectorXd> rows;
+  const auto add = [&](int frame, int above) {
+    VectorXd row = VectorXd::Zero(plant.element_count());
+    for (const Element& e : plant.elements)
+      if (e.frame >= 0 && s.direction(e.frame) == effect.place.direction &&
+          (frame < 0 || e.frame == frame) && e.story > above)
+        row[e.stiffness] = s.story_height[static_cast<std::size_t>(e.story - 1)];
+    rows.push_back(row);
+  };
+  if (!bending) {
+    add(-1, 0);
+  } else {
+    for (int f = 0; f < s.frames(); ++f)
+      if (s.direction(f) == effect.place.direction)
+        for (int j = 0; j < s.stories; ++j) add(f, j);
+  }
+  MatrixXd out(static_cast<Index>(rows.size()), plant.element_count());
+  for (std::size_t r = 0; r < rows.size(); ++r) out.row(static_cast<Index>(r)) = rows[r];
+  return out;
+}
+
+}  // namespace
+
+Complex transmissibility(const ModelEffect& resonator, double w) {
+  const double wr = 2 * M_PI * resonator.parameters[1].plain();
+  const Complex spring = wr * wr + 2.0 * resonator.parameters[2].plain() * wr * w * kJ;
+  return spring / (spring - w * w);
+}
+
+LinearOperation::LinearOperation(const Plant& plant, const Model& model, const ModelEffect& effect)
+    : rows_(plant.equations()), cols_(plant.axis_count()), effect_(effect) {
+  using Factor = Shape::Factor;
+  const Structure& s = plant.structure;
+  const EffectPlace& place = effect.place;
+  const double size = effect.parameters.empty() ? 0 : effect.parameters[0].plain();
+  switch (effect.form) {
+    case LawForm::mass: {
+      MatrixXd inertia = MatrixXd::Zero(rows_, cols_);
+      for (const int frame : frames_at(s, place.crossing)) {
+        const VectorXd at = node_direction(plant, place.story, frame);
+        inertia += size * at * (at.transpose() * plant.motion);
+      }
+      shapes_ = {{Factor::inertia, inertia}};
+      break;
+    }
+    case LawForm::resonator: {
+      const VectorXd at = node_direction(plant, place.story, place.frame);
+      shapes_ = {{Factor::resonance, size * at * (at.transpose() * plant.motion)}};
+      break;
+    }
+    case LawForm::spring:
+    case LawForm::damper: {
+      VectorXd at = node_direction(plant, place.story, place.frame);
+      Eigen::RowVectorXd sense = at.transpose() * plant.motion;
+      if (place.to_story > 0) {
+        const VectorXd lower = node_direction(plant, place.to_story, place.frame);
+        at -= lower;
+        sense -= lower.transpose() * plant.motion;
+      } else {
+        sense -= ground_row(plant, place.frame);
+      }
+      shapes_ = {{effect.form == LawForm::spring ? Factor::stiffness : Factor::damping,
+                  size * at * sense}};
+      break;
+    }
+    case LawForm::panels: {
+      MatrixXd stiff = MatrixXd::Zero(rows_, cols_), damped = stiff;
+      for (const Element& e : plant.elements) {
+        if (e.panel < 0 || e.story != place.story) continue;
+        const Index at = e.stiffness;
+        const MatrixXd one = plant.building.act.col(at) * plant.building.sense.row(at);
+        stiff += (size - model.theta[at]) * one;
+        damped += (effect.parameters[1].plain() - model.theta[at + plant.element_count()]) * one;
+      }
+      shapes_ = {{Factor::stiffness, stiff}, {Factor::damping, damped}};
+      break;
+    }
+    case LawForm::rocking:
+    case LawForm::bending: {
+      // d = q - H' phi, (1/size) phi = H k d: size is the flexibility 1/K.
+      const Index n = plant.element_count();
+      const MatrixXd h = hinges(plant, effect);
+      const VectorXd k = model.theta.head(n), c = model.theta.tail(n);
+      const MatrixXd hk = h * k.asDiagonal();
+      MatrixXd inner = size * hk * h.transpose();
+      inner.diagonal().array() += 1;
+      const MatrixXd turn = size * solve_lu(inner, hk);  // phi = turn q
+      const MatrixXd kept = MatrixXd::Identity(n, n) - h.transpose() * turn;
+      MatrixXd stiff = k.asDiagonal() * kept;
+      stiff.diagonal() -= k;
+      MatrixXd damped = kept.transpose() * c.asDiagonal() * kept;
+      damped.diagonal() -= c;
+      const MatrixXd &act = plant.building.act, &sense = plant.building.sense;
+      shapes_ = {{Factor::stiffness, act * stiff * sense}, {Factor::damping, act * damped * sense}};
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+Complex LinearOperation::factor(Shape::Factor of, double w) const {
+  switch (of) {
+    case Shape::Factor::inertia:
+      return 1;
+    case Shape::Factor::stiffness:
+      return -1 / (w * w);
+    case Shape::Factor::damping:
+      return 1.0 / (kJ * w);
+    case Shape::Factor::resonance:
+      return transmissibility(effect_, w);
+  }
+  return 0;
+}
+
+void LinearOperation::add_to(double w, Eigen::MatrixXcd& operation) const {
+  for (const Shape& shape : shapes_) {
+    const Complex f = factor(shape.factor, w);
+    operation.real() += f.real() * shape.of_axes;
+    operation.imag() += f.imag() * shape.of_axes;
+  }
+}
+
+Eigen::MatrixXcd LinearOperation::at(double w) const {
+  Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(rows_, cols_);
+  add_to(w, out);
+  return out;
+}
+
+}  // namespace framewatch::estimator

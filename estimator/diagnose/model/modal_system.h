@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace framewatch::estimator {
+
+/// M y'' + C y' + K y = P u, integrated in its complex modes with u linear within a step: exact for
+/// the linear part at any step length. Sources: docs/equations.md (29), Foss (1958).
+class ModalSystem {
+ public:
+  /// P: coordinates x inputs; mass: coordinates x coordinates, positive definite.
+  ModalSystem(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& damping,
+              const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& inputs, double step_s);
+
+  /// Back to rest.
+  void reset();
+  /// Advances the state by a step with the inputs `now` at its end; inputs that depend on the
+  /// motion are zero there.
+  void predict(const Eigen::VectorXd& now);
+  /// Adds the inputs that depend on the motion, at the end of the same step.
+  void correct(const Eigen::VectorXd& now);
+
+  /// Displacement and velocity r y of the coordinates: rows that give them from the state, and what
+  /// an input at the end of a step adds to them.
+  struct Observer {
+    Eigen::RowVectorXcd displacement, velocity;           ///< over the modes
+    Eigen::RowVectorXd displacement_gain, velocity_gain;  ///< over the inputs
+  };
+  Observer observe(const Eigen::VectorXd& row) const;
+  double displacement(const Observer& o) const { return (o.displacement * state_)(0).real(); }
+  double velocity(const Observer& o) const { return (o.velocity * state_)(0).real(); }
+  /// False when the modes cannot be computed or one of them grows.
+  bool good() const { return good_; }
+
+ private:
+  bool good_ = true;
+  Eigen::Index coordinates_;
+  Eigen::MatrixXcd shapes_;        ///< 2 coordinates x modes, real part taken after weighting
+  Eigen::VectorXcd turn_;          ///< factor of each mode over a step
+  Eigen::MatrixXcd first_, last_;  ///< modes x inputs: weight of u at the step's start and end
+  Eigen::VectorXcd state_;
+  Eigen::VectorXcd before_;  ///< first_ * u at the start of the step
+};
+
+}  // namespace framewatch::estimator

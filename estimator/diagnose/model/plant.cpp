@@ -1,0 +1,109 @@
+#include "estimator/diagnose/model/plant.h"
+
+#include "estimator/structure/natural_frequencies.h"
+
+#include <utility>
+
+namespace framewatch::estimator {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kStiff = 2000;         ///< of a panel that acts as rigid, over the stiffest frame
+constexpr double kStiffDamping = 1e-9;  ///< of such a panel, over its stiffness, s
+
+VectorXd with_stiff_panels(const Structure& s, const ParameterTable& all,
+                           const ParameterTable& believed, const VectorXd& design) {
+  VectorXd out = VectorXd::Zero(all.size());
+  const double stiff = kStiff * design.head(believed.elements()).maxCoeff();
+  for (int story = 1; story <= s.stories; ++story) {
+    for (int f = 0; f < s.frames(); ++f) {
+      const int to = all.frame_stiffness(story, f), from = believed.frame_stiffness(story, f);
+      out[to] = design[from];
+      out[to + all.elements()] = design[from + believed.elements()];
+    }
+    for (int p = 0; p < s.panels(); ++p) {
+      out[all.panel_stiffness(story, p)] = stiff;
+      out[all.panel_stiffness(story, p) + all.elements()] = kStiffDamping * stiff;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Plant::Plant(const Structure& s, const std::vector<SensorAxis>& sensors, VectorXd believed,
+             MeasuredBuilding equations_of_motion)
+    : structure(s),
+      table(s),
+      axes(sensors),
+      design(std::move(believed)),
+      building(std::move(equations_of_motion)),
+      elements(estimator::elements(s, table)),
+      constraint(floor_constraint(s)) {
+  const Matrices matrices = assemble(s, table, VectorXd::Zero(table.size()));
+  mass = (constraint.transpose() * matrices.mass.asDiagonal() * constraint).diagonal();
+  motion = mass.cwiseInverse().asDiagonal() * building.mass;
+  push = MatrixXd::Zero(building.equations(), building.axes());
+  ground = MatrixXd::Zero(s.degrees_of_freedom(), building.axes());
+  for (const Element& e : elements) {
+    if (e.frame < 0 || e.story != 1) continue;
+    const VectorXd share =
+        building.act.col(e.stiffness).transpose() * motion - building.sense.row(e.stiffness);
+    for (int story = 1; story <= s.stories; ++story)
+      ground.row(s.dof(story, e.frame)) = share.transpose();
+  }
+}
+
+Plant with_force_axis(const Plant& plant, const SensorAxis& axis) {
+  MeasuredBuilding wider = plant.building;
+  const Index axes = wider.axes() + 1;
+  const auto widen = [&](MatrixXd& m) {
+    m.conservativeResize(Eigen::NoChange, axes);
+    m.col(axes - 1).setZero();
+  };
+  widen(wider.mass);
+  widen(wider.sense);
+  for (VectorXd* v : {&wider.variance, &wider.delay}) {
+    v->conservativeResize(axes);
+    (*v)[axes - 1] = 0;
+  }
+  std::vector<SensorAxis> sensors = plant.axes;
+  sensors.push_back(axis);
+  Plant out(plant.structure, sensors, plant.design, std::move(wider));
+  out.stiff_floors = plant.stiff_floors;
+  out.highest_hz = plant.highest_hz;
+  out.prescribed = plant.prescribed;
+  out.push.leftCols(axes - 1) = plant.push;
+  out.push.col(axes - 1) =
+      -out.constraint.row(plant.structure.dof(axis.story, axis.frame)).transpose();
+  return out;
+}
+
+std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
+                                const VectorXd& design, double rate_hz) {
+  const ParameterTable table(structure);
+  const double highest_hz = natural_frequencies_hz(structure, table, design).back();
+  Structure flexible = structure;
+  flexible.floor = FloorModel::flexible;
+  const ParameterTable all(flexible);
+  if (structure.floor == FloorModel::rigid && flexible.panels() > 0) {
+    if (auto building = measured_building(flexible, all, axes, rate_hz)) {
+      Plant out(flexible, axes, with_stiff_panels(flexible, all, table, design),
+                std::move(*building));
+      out.stiff_floors = true;
+      out.highest_hz = highest_hz;
+      return out;
+    }
+  }
+  auto building = measured_building(structure, table, axes, rate_hz);
+  if (!building) return std::nullopt;
+  Plant out(structure, axes, design, std::move(*building));
+  out.highest_hz = highest_hz;
+  return out;
+}
+
+}  // namespace framewatch::estimator

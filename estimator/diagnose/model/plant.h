@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/refine/measured_building.h"
+#include "estimator/structure/matrices.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/sensors.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch::estimator {
+
+/// The building under diagnosis: its equations of motion in terms of the sensor axes, and its
+/// design parameters. One equation per coordinate (degree of freedom; of rigid floors: see
+/// floor_constraint).
+struct Plant {
+  Plant(const Structure& s, const std::vector<SensorAxis>& sensors, Eigen::VectorXd believed,
+        MeasuredBuilding equations);
+
+  Structure structure;
+  /// The floors are declared rigid, but the sensors could show that they are not: `structure` then
+  /// has flexible floors with panels so stiff that they act as rigid.
+  bool stiff_floors = false;
+  double highest_hz = 0;  ///< highest natural frequency of the design
+  ParameterTable table;
+  std::vector<SensorAxis> axes;
+  Eigen::VectorXd design;  ///< theta order, > 0
+  MeasuredBuilding building;
+  std::vector<Element> elements;
+  Eigen::MatrixXd constraint;  ///< degrees of freedom x coordinates
+  Eigen::VectorXd mass;        ///< of the coordinates, kg
+  Eigen::MatrixXd motion;      ///< coordinates x axes: their absolute motion
+  Eigen::MatrixXd ground;      ///< degrees of freedom x axes: the ground's motion there
+  /// equations x axes: minus the direction of the force that a force axis measures; zero for
+  /// others.
+  Eigen::MatrixXd push;
+  /// Component test with prescribed motion and measured force: the model's output is the force.
+  bool prescribed = false;
+
+  Eigen::Index equations() const { return building.equations(); }
+  Eigen::Index element_count() const { return building.elements(); }
+  Eigen::Index axis_count() const { return building.axes(); }
+  bool is_force(Eigen::Index axis) const { return !push.col(axis).isZero(0); }
+  /// Whether a simulation is driven by the axis: an axis of the base, or a force axis.
+  bool is_input(Eigen::Index axis) const {
+    return axes[static_cast<std::size_t>(axis)].story == 0 || is_force(axis);
+  }
+};
+
+/// The plant with one more axis, which measures an external force (N) on one degree of freedom,
+/// that of the frame and story of `axis`.
+Plant with_force_axis(const Plant& plant, const SensorAxis& axis);
+
+/// design: theta order of `structure`. Empty when the equations need a motion that no axis
+/// measures.
+std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
+                                const Eigen::VectorXd& design, double rate_hz);
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,77 @@
+#include "estimator/diagnose/propose/needed_signal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/numeric/complex.h"
+
+namespace framewatch::estimator {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisation& place) {
+  const Plant& plant = fitter.plant();
+  const CandidatePlace& candidate = place.candidate_places.front();
+  const std::vector<CandidatePlace> others(place.candidate_places.begin() + 1,
+                                           place.candidate_places.end());
+  const bool axis = candidate.kind == CandidatePlace::Kind::axis;
+  const Index n = plant.equations();
+  std::vector<NeededSignal> out;
+  for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
+    const RecordSegment& s = fitter.segments()[r];
+    const Whitened system =
+        whiten(plant, place.model, s, r, Forcing::measured, place.motion[r], fitter.ratio(r));
+    NeededSignal one;
+    one.force.resize(s.bins());
+    one.weight.resize(s.bins());
+    VectorXcd rest(n);
+    for (Index b = 0; b < s.bins(); ++b) {
+      const auto at = static_cast<std::size_t>(b);
+      VectorXcd u =
+          system.weights->whitener(b) * (axis ? VectorXcd(system.operation[at].col(candidate.axis))
+                                              : candidate.directions.col(0).cast<Complex>());
+      if (!others.empty()) {  // the part that the other places explain is not counted
+        const MatrixXcd basis = candidate_basis(system, b, others);
+        u -= (basis * (basis.adjoint() * u)).eval();
+      }
+      rest.real() = system.residual.segment(2 * n * b, n);
+      rest.imag() = system.residual.segment(2 * n * b + n, n);
+      one.weight[b] = std::max(u.squaredNorm(), 1e-300);
+      one.force[b] = -u.dot(rest) / one.weight[b];
+    }
+    if (candidate.kind == CandidatePlace::Kind::element) {
+      const VectorXcd q =
+          (plant.building.sense.row(candidate.element) * place.motion[r]).transpose();
+      one.d = -q.array() / s.w.array().square();
+      one.d_t = signal_of(one.d, s, fitter.ratio(r));
+      one.v_t = signal_of(one.d.array() * s.w.array() * Complex(0, 1), s, fitter.ratio(r));
+    }
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+Band fit_band(const Fitter& fitter) {
+  const VectorXd& w = fitter.segments()[0].w;
+  return {w[0] / (2 * M_PI), w.tail(1)[0] / (2 * M_PI)};
+}
+
+std::vector<VectorXcd> linear_columns(const NeededSignal& needed, const VectorXd& w) {
+  return {needed.d, needed.d.array() * w.array() * kJ};
+}
+
+std::vector<VectorXcd> columns_with(const ModelEffect& effect, const Fitter& fitter,
+                                    const std::vector<NeededSignal>& needed, std::size_t record) {
+  const RecordSegment& s = fitter.segments()[record];
+  const NeededSignal& n = needed[record];
+  const int ratio = fitter.ratio(record);
+  std::vector<VectorXcd> out = linear_columns(n, s.w);
+  const VectorXd force = law_force(effect.law(record), n.d_t, n.v_t, 1 / (s.rate_hz * ratio));
+  out.push_back(band_of(force, s, ratio));
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,139 @@
+#include "estimator/diagnose/propose/propose.h"
+
+#include <algorithm>
+#include <complex>
+
+#include "estimator/diagnose/model/linear_operation.h"
+#include "estimator/diagnose/propose/axis_proposals.h"
+#include "estimator/diagnose/propose/element_proposals.h"
+#include "estimator/diagnose/propose/node_proposals.h"
+#include "estimator/diagnose/propose/scalar_fit.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+
+Proposal with_effect(const Localisation& place, const ModelEffect& effect, EffectKind kind) {
+  Proposal out{place.model, kind, effect.place, 0};
+  out.model.effects.push_back(effect);
+  return out;
+}
+
+void add_masses(const Plant& plant, const Localisation& place, std::vector<Proposal>& out) {
+  const double typical = plant.structure.node_mass[0];
+  ModelEffect e;
+  e.form = LawForm::mass;
+  e.place = place.candidate_places.front().place;
+  e.parameters = {bounded_parameter(0.05 * typical, 0.01 * typical, -typical, 1e15)};
+  out.push_back(with_effect(place, e, EffectKind::extra_mass));
+}
+
+void add_rotations(const Plant& plant, const Localisation& place, std::vector<Proposal>& out) {
+  const double k = plant.design.head(plant.table.panel_stiffness(1, 0)).mean();
+  const double h = plant.structure.story_height[0];
+  const double flexibility = 0.05 / (k * h * h * plant.structure.frames());
+  for (const LawForm form : {LawForm::rocking, LawForm::bending}) {
+    ModelEffect e;
+    e.form = form;
+    e.place = place.candidate_places.front().place;
+    e.parameters = {bounded_parameter(flexibility, 0.1 * flexibility, 0, 1e15)};
+    out.push_back(with_effect(
+        place, e, form == LawForm::rocking ? EffectKind::base_rocking : EffectKind::frame_bending));
+  }
+}
+
+void add_floors(const Plant& plant, const Localisation& place, std::vector<Proposal>& out) {
+  const double k = plant.design.head(plant.table.panel_stiffness(1, 0)).mean();
+  for (const double share : {0.1, 1.0, 10.0}) {
+    ModelEffect e;
+    e.form = LawForm::panels;
+    e.place = place.candidate_places.front().place;
+    e.parameters = {logarithmic_parameter(share * k, 1e-3 * k, 1e3 * k),
+                    bounded_parameter(1e-3 * share * k, 1e-4 * share * k, 0, 1e15)};
+    out.push_back(with_effect(place, e, EffectKind::floor_flexibility));
+  }
+}
+
+/// Scalar fit of the size of a linear effect to the needed force.
+ScalarFit fit_of(const Fitter& fitter, const Localisation& place,
+                 const std::vector<NeededSignal>& needed, ModelEffect effect) {
+  effect.parameters[0].value = 1;
+  const Eigen::VectorXcd along =
+      place.candidate_places.front().directions.col(0).cast<std::complex<double>>();
+  const LinearOperation operation(fitter.plant(), place.model, effect);
+  std::vector<std::vector<Eigen::VectorXcd>> columns(needed.size());
+  for (std::size_t r = 0; r < needed.size(); ++r) {
+    const RecordSegment& s = fitter.segments()[r];
+    Eigen::VectorXcd force(s.bins());
+    for (Index b = 0; b < s.bins(); ++b)
+      force[b] = along.dot(operation.at(s.w[b]) * place.motion[r].col(b));
+    columns[r].push_back(force / along.squaredNorm());
+  }
+  return scalar_fit(needed, columns);
+}
+
+void add_links(const Fitter& fitter, const Localisation& place,
+               const std::vector<NeededSignal>& needed, std::vector<Proposal>& out) {
+  const Plant& plant = fitter.plant();
+  for (const bool spring : {true, false}) {
+    ModelEffect e;
+    e.form = spring ? LawForm::spring : LawForm::damper;
+    e.place = place.candidate_places.front().place;
+    e.place.kind = PlaceKind::node_pair;
+    const Index element = plant.table.frame_stiffness(1, e.place.frame);
+    const double size = plant.design[spring ? element : element + plant.element_count()];
+    e.parameters = {bounded_parameter(0.05 * size, 0.02 * size, spring ? -10 * size : 0, 1e15)};
+    const ScalarFit fit = fit_of(fitter, place, needed, e);
+    if (spring || fit.coefficients[0] > 0) e.parameters[0].value = fit.coefficients[0];
+    out.push_back(
+        with_effect(place, e, spring ? EffectKind::added_spring : EffectKind::added_damper));
+    out.back().misfit = fit.misfit;
+  }
+}
+
+}  // namespace
+
+std::vector<Proposal> propose(const Fitter& fitter, const Localisation& all, std::size_t which) {
+  const Plant& plant = fitter.plant();
+  Localisation place = all;
+  std::swap(place.candidate_places[0], place.candidate_places[which]);
+  const CandidatePlace& candidate = place.candidate_places.front();
+  std::vector<Proposal> out;
+  switch (candidate.kind) {
+    case CandidatePlace::Kind::axis:
+      add_axis_proposals(fitter, place, out);
+      return out;
+    case CandidatePlace::Kind::crossing:
+      add_masses(plant, place, out);
+      return out;
+    case CandidatePlace::Kind::rocking:
+      add_rotations(plant, place, out);
+      return out;
+    case CandidatePlace::Kind::floor:
+      add_floors(plant, place, out);
+      return out;
+    case CandidatePlace::Kind::element:
+    case CandidatePlace::Kind::node:
+    case CandidatePlace::Kind::link:
+      break;
+  }
+  const std::vector<NeededSignal> needed = needed_signals(fitter, place);
+  const bool element = candidate.kind == CandidatePlace::Kind::element;
+  if (element) out = element_proposals(fitter, place, needed, candidate.element);
+  if (candidate.kind == CandidatePlace::Kind::node ||
+      (element && plant.equations() > 1 && candidate.place.story == 1 &&
+       candidate.place.frame >= 0)) {
+    EffectPlace node = candidate.place;
+    node.kind = PlaceKind::node;
+    add_node_proposals(fitter, place, needed, node, out);
+  }
+  if (candidate.kind == CandidatePlace::Kind::link ||
+      (candidate.kind == CandidatePlace::Kind::node && candidate.place.story >= 2))
+    add_links(fitter, place, needed, out);
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Proposal& x, const Proposal& y) { return x.misfit < y.misfit; });
+  return out;
+}
+
+}  // namespace framewatch::estimator

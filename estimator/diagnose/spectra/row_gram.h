@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/numeric/row_matrix.h"
+
+namespace framewatch::estimator {
+
+/// out = a b with the instruction set that the machine has (identify/kernels.h). a: its columns
+/// beyond the rows of b are ignored; b: a multiple of kLane columns.
+void multiply(const RowMatrix& a, const RowMatrix& b, RowMatrix& out);
+
+/// Sum of the outer products of rows, with the same kernels.
+class RowGram {
+ public:
+  explicit RowGram(Eigen::Index columns);
+
+  /// Where the caller writes the next rows before add(): count x columns. Contents do not persist.
+  Eigen::Block<RowMatrix> rows(Eigen::Index count);
+  /// Adds these rows to the sum.
+  void add();
+  /// These rows, padded with zeros to whole lanes.
+  const RowMatrix& written() const { return rows_; }
+  /// columns x columns, symmetric.
+  Eigen::MatrixXd sum() const;
+
+ private:
+  Eigen::Index columns_;
+  RowMatrix rows_;
+  std::vector<double> packed_;
+};
+
+}  // namespace framewatch::estimator

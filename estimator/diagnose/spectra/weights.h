@@ -1,0 +1,76 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/diagnose/spectra/row_gram.h"
+#include "estimator/numeric/solve.h"
+
+namespace framewatch::estimator {
+
+/// A resonator, which is not at rest at the ends of a segment either: the direction of its force
+/// and its transmissibility in every bin.
+struct HiddenOscillator {
+  Eigen::VectorXd direction;
+  Eigen::VectorXcd transmissibility;
+};
+
+/// Weights of the equations of one segment, docs/equations.md (33), and the end terms (32) that are
+/// projected out of them. Whitened rows are the real parts, then the imaginary parts of every
+/// equation, bin by bin.
+class Weights {
+ public:
+  /// whitener: inverse of L of every bin, L L^H = N D S D^H. w: rad/s of the bins.
+  Weights(std::vector<Eigen::MatrixXcd> whitener, const Eigen::VectorXd& w,
+          std::vector<HiddenOscillator> hidden);
+
+  Eigen::Index bins() const { return static_cast<Eigen::Index>(whitener_.size()); }
+  Eigen::Index equations() const { return whitener_.front().rows(); }
+  const Eigen::MatrixXcd& whitener(Eigen::Index bin) const {
+    return whitener_[static_cast<std::size_t>(bin)];
+  }
+
+  /// Number of end terms. Their columns, each of unit length, are E: rows x ends().
+  Eigen::Index ends() const { return scale_.size(); }
+  /// E'E.
+  const Eigen::MatrixXd& ends_square() const { return square_; }
+  /// left E of one bin; left: any number of rows x the bin's rows.
+  RowMatrix times_ends(Eigen::Index bin, const RowMatrix& left) const;
+  /// rows - E (E'E)^-1 E' rows.
+  Eigen::VectorXd without_ends(const Eigen::VectorXd& rows) const;
+
+  /// Rows of one bin under unit forces, X: n real ones, then n of size -j; n: equations.
+  /// transposed: X'. Padded with zeros to whole lanes.
+  void put_unit_forces(Eigen::Index bin, bool transposed, RowMatrix& out) const;
+  /// sum += F along, where E = X F' in a bin. along: X' times any matrix, 2 n rows.
+  void add_shares(Eigen::Index bin, const RowMatrix& along, RowMatrix& sum) const;
+
+ private:
+  /// F' size; size: of the unscaled terms.
+  Eigen::VectorXd shared(Eigen::Index bin, const Eigen::VectorXd& size) const;
+
+  std::vector<Eigen::MatrixXcd> whitener_;
+  Eigen::VectorXd relative_;  ///< frequency of every bin over the band's middle
+  std::vector<HiddenOscillator> hidden_;
+  Eigen::VectorXd scale_;  ///< of the columns
+  Eigen::MatrixXd square_;
+  Ldlt factor_;
+};
+
+/// E' rows, summed over bins.
+class AlongEnds {
+ public:
+  explicit AlongEnds(const Weights& weights) : weights_(weights) {}
+
+  /// rows of one bin, always of as many columns, a multiple of kLane.
+  void add(Eigen::Index bin, const RowMatrix& rows);
+  /// ends x columns.
+  const RowMatrix& sum() const { return sum_; }
+
+ private:
+  const Weights& weights_;
+  RowMatrix forces_, along_, sum_;
+};
+
+}  // namespace framewatch::estimator

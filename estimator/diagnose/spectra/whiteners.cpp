@@ -1,0 +1,87 @@
+#include "estimator/diagnose/spectra/whiteners.h"
+
+#include <algorithm>
+
+#include "estimator/numeric/kernels.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using kernels::kBins;
+
+/// Complex matrices of kBins frequencies side by side, as the kernels want them.
+class SideBySide {
+ public:
+  SideBySide(Index rows, Index columns)
+      : rows_(rows),
+        columns_(columns),
+        numbers_(static_cast<std::size_t>(rows * columns * kNumber)) {}
+
+  double* data() { return numbers_.data(); }
+  double& real(Index row, Index column, Index k) { return *at(row, column, k); }
+
+  void put(const MatrixXcd& from, Index k) {
+    for (Index i = 0; i < rows_; ++i)
+      for (Index j = 0; j < columns_; ++j) {
+        at(i, j, k)[0] = from(i, j).real();
+        at(i, j, k)[kBins] = from(i, j).imag();
+      }
+  }
+
+  MatrixXcd lower_triangle(Index k) {
+    MatrixXcd out = MatrixXcd::Zero(rows_, columns_);
+    for (Index i = 0; i < rows_; ++i)
+      for (Index j = 0; j <= i; ++j) out(i, j) = {at(i, j, k)[0], at(i, j, k)[kBins]};
+    return out;
+  }
+
+ private:
+  static constexpr Index kNumber = 2 * kBins;
+
+  double* at(Index row, Index column, Index k) {
+    return numbers_.data() + (row * columns_ + column) * kNumber + k;
+  }
+
+  Index rows_, columns_;
+  std::vector<double> numbers_;
+};
+
+void add_pushed(const MatrixXd& pushed, Index k, SideBySide& covariance) {
+  const Index n = pushed.rows();
+  double mean = 0;
+  for (Index i = 0; i < n; ++i) mean += covariance.real(i, i, k) / static_cast<double>(n);
+  for (Index i = 0; i < n; ++i)
+    for (Index j = 0; j <= i; ++j) covariance.real(i, j, k) += mean * pushed(i, j);
+}
+
+}  // namespace
+
+std::vector<MatrixXcd> whiteners(const std::vector<MatrixXcd>& operation, const MatrixXd& noise,
+                                 const MatrixXd& pushed) {
+  const Index n = operation.front().rows(), axes = operation.front().cols(), bins = noise.cols();
+  std::vector<MatrixXcd> out;
+  SideBySide d(n, axes), matrix(n, n);
+  Eigen::Matrix<double, kBins, Eigen::Dynamic> variance(kBins, axes);
+  for (Index first = 0; first < bins; first += kBins) {
+    const Index here = std::min<Index>(kBins, bins - first);
+    for (Index k = 0; k < kBins; ++k) {  // the last bin fills up the block
+      const Index b = first + std::min(k, here - 1);
+      d.put(operation[static_cast<std::size_t>(b)], k);
+      variance.row(k) = noise.col(b).transpose();
+    }
+    kernels::in_use->noise_covariance(d.data(), variance.data(), static_cast<int>(n),
+                                      static_cast<int>(axes), matrix.data());
+    for (Index k = 0; k < kBins && pushed.size() > 0; ++k) add_pushed(pushed, k, matrix);
+    kernels::in_use->inverse_cholesky(matrix.data(), static_cast<int>(n));
+    for (Index k = 0; k < here; ++k) {
+      out.push_back(matrix.lower_triangle(k));
+      if (!out.back().allFinite()) return {};
+    }
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

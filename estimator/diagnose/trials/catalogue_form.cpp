@@ -1,0 +1,212 @@
+#include "estimator/diagnose/trials/catalogue_form.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kTailPower = 0.05;  ///< share of a force's power below its band, and above it
+
+void set_axis_values(Effect& out, const Plant& plant, const Model& model) {
+  const auto axis = static_cast<Eigen::Index>(out.place.channel);
+  switch (out.kind) {
+    case EffectKind::gain_error:
+      out.set("gain", model.gain[axis]);
+      break;
+    case EffectKind::time_shift:
+      out.set("shift_s",
+              model.clock_s[axis] - plant.axes[static_cast<std::size_t>(out.place.channel)].delay);
+      break;
+    default:
+      break;
+  }
+}
+
+double clipping_level(const std::vector<RecordSegment>& segments, Eigen::Index axis) {
+  double level = 1e300;
+  for (const RecordSegment& s : segments)
+    level = std::min(level, 0.5 * (s.accel.col(axis).maxCoeff() - s.accel.col(axis).minCoeff()));
+  return level;
+}
+
+/// Size and band of an arbitrary force: what nothing else explains of the first segment.
+void set_broadband(Effect& out, const Plant& plant, const std::vector<RecordSegment>& segments,
+                   const ModelEffect& e, const Model& model) {
+  Model rest = model;
+  std::erase_if(rest.effects, [&](const ModelEffect& other) {
+    return other.form == LawForm::broadband && other.place == e.place;
+  });
+  const RecordSegment& s = segments.front();
+  const Whitened system =
+      whiten(plant, rest, s, 0, forcing_of(rest), {}, steps_per_sample(plant, s.rate_hz));
+  if (!system.good) return;
+  const Eigen::Index n = plant.equations();
+  const Eigen::VectorXcd direction =
+      node_direction(plant, e.place.story, e.place.frame).cast<std::complex<double>>();
+  Eigen::VectorXd power(s.bins());
+  Eigen::VectorXcd r(n);
+  for (Eigen::Index b = 0; b < s.bins(); ++b) {
+    const Eigen::VectorXcd u = system.weights->whitener(b) * direction;
+    r.real() = system.rest.segment(2 * n * b, n);
+    r.imag() = system.rest.segment(2 * n * b + n, n);
+    const double weight = u.squaredNorm();
+    power[b] = std::max(0.0, std::norm(u.dot(r) / weight) - 1 / weight);
+  }
+  const double total = power.sum(), intervals = static_cast<double>(s.intervals());
+  double below = 0;
+  double low = s.w[0], high = s.w[s.bins() - 1];
+  for (Eigen::Index b = 0; b < s.bins(); ++b) {
+    if (below < kTailPower * total) low = s.w[b];
+    below += power[b];
+    if (below < (1 - kTailPower) * total) high = s.w[b];
+  }
+  out.set("rms_n", std::sqrt(2 * total) / intervals);
+  out.set("low_hz", low / (2 * M_PI));
+  out.set("high_hz", std::max(high, 1.01 * low) / (2 * M_PI));
+}
+
+void set_hysteresis(const ModelEffect& e, Effect& out) {
+  const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
+  out.set("kh_npm", p(0));
+  out.set("dy_m", p(1));
+  if (out.kind == EffectKind::bilinear_hysteresis) return;
+  out.set("exponent", p(2));
+  out.set("beta", p(3));
+  if (out.kind != EffectKind::pinching) return;
+  out.set("slip_ratio", p(4));
+  out.set("slip_width", p(5));
+}
+
+/// Effects of elements; others are left as they are.
+void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
+  const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
+  switch (out.kind) {
+    case EffectKind::cubic_stiffness:
+      out.set("k3_npm3", p(0) / std::pow(e.deformation, 3));
+      break;
+    case EffectKind::quadratic_stiffness:
+      out.set("k2_npm2", p(0) / std::pow(e.deformation, 2));
+      break;
+    case EffectKind::bilinear_hysteresis:
+    case EffectKind::bouc_wen:
+    case EffectKind::pinching:
+      set_hysteresis(e, out);
+      break;
+    case EffectKind::coulomb_friction:
+      out.set("fc_n", e.form == LawForm::hysteresis ? p(0) * p(1) : p(0));
+      out.set("v0_mps", e.form == LawForm::hysteresis ? 1e-3 * e.rate : p(1));
+      break;
+    case EffectKind::quadratic_damping:
+      out.set("c2_ns2pm2", p(0) / (e.rate * e.rate));
+      break;
+    case EffectKind::one_sided_gap:
+    case EffectKind::two_sided_gap:
+      out.set("kg_npm", p(0));
+      out.set("gap_m", p(1));
+      if (out.kind == EffectKind::one_sided_gap)
+        out.set("side", e.form == LawForm::gap_positive ? 1.0 : -1.0);
+      break;
+    case EffectKind::stiffness_drop:
+      out.set("dk_npm", p(0));
+      out.set("at_s", std::max(0.0, e.record_parameters[0][0].plain()));
+      break;
+    case EffectKind::stiffness_drift:
+      out.set("dk_npm", p(0));
+      out.set("from_s", std::max(0.0, e.record_parameters[0][0].plain()));
+      out.set("duration_s", e.record_parameters[0][1].plain());
+      break;
+    case EffectKind::p_delta:
+      out.set("weight_n",
+              -p(0) / e.deformation *
+                  plant.structure.story_height[static_cast<std::size_t>(e.place.story - 1)]);
+      break;
+    default:
+      break;
+  }
+}
+
+/// Linear effects that add mass, stiffness or damping; others are left as they are.
+void set_linear_values(const ModelEffect& e, Effect& out) {
+  const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
+  switch (out.kind) {
+    case EffectKind::extra_mass:
+      out.set("mass_kg", p(0));
+      break;
+    case EffectKind::tuned_mass_damper:
+      out.set("mass_kg", p(0));
+      out.set("frequency_hz", p(1));
+      out.set("damping_ratio", p(2));
+      break;
+    case EffectKind::base_rocking:
+    case EffectKind::frame_bending:
+      out.set("kr_nmprad", 1 / std::max(p(0), 1e-14));
+      break;
+    case EffectKind::added_spring:
+      out.set("k_npm", p(0));
+      break;
+    case EffectKind::added_damper:
+      out.set("c_nspm", p(0));
+      break;
+    case EffectKind::floor_flexibility:
+      out.set("gk_nprad", p(0));
+      out.set("gc_nsprad", p(1));
+      break;
+    default:
+      break;
+  }
+}
+
+void set_harmonic(const ModelEffect& e, Effect& out) {
+  const double c = e.record_parameters[0][0].plain(), s = e.record_parameters[0][1].plain();
+  out.set("amplitude_n", std::hypot(c, s));
+  out.set("frequency_hz", e.parameters[0].plain());
+  out.set("phase_rad", std::atan2(c, s));
+  out.set("from_s", e.onset_s[0]);
+}
+
+}  // namespace
+
+Eigen::VectorXd catalogue_values(const Plant& plant, const std::vector<RecordSegment>& segments,
+                                 const FoundEffect& found, const Model& model) {
+  const Effect effect = catalogue_effect(plant, segments, found, model);
+  return Eigen::Map<const Eigen::VectorXd>(effect.values.data(),
+                                           static_cast<Eigen::Index>(effect.values.size()));
+}
+
+Effect catalogue_effect(const Plant& plant, const std::vector<RecordSegment>& segments,
+                        const FoundEffect& found, const Model& model) {
+  Effect out = make_effect(found.chosen.kind, found.chosen.place);
+  if (!found.ramp_mps3.empty()) {
+    out.set("ramp_mps3", found.ramp_mps3.front());
+    out.set("from_s", found.ramp_from_s.front());
+    return out;
+  }
+  if (found.index < 0) {
+    set_axis_values(out, plant, model);
+    return out;
+  }
+  const ModelEffect& e = model.effects[static_cast<std::size_t>(found.index)];
+  switch (out.kind) {
+    case EffectKind::unmeasured_force:
+      if (e.form == LawForm::broadband)
+        set_broadband(out, plant, segments, e, model);
+      else
+        set_harmonic(e, out);
+      break;
+    case EffectKind::clipping:
+      out.set("level_mps2", clipping_level(segments, e.place.channel));
+      break;
+    case EffectKind::misalignment:
+      out.set("angle_deg", e.parameters[0].plain() * 180 / M_PI);
+      break;
+    default:
+      set_element_values(plant, e, out);
+      set_linear_values(e, out);
+      break;
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/trials/found_effect.h"
+
+namespace framewatch::estimator {
+
+/// The model fitted again with masses, gains and clocks held at their declared values (except those
+/// that are effects) and with the exponents of the catalogue's laws.
+Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segments,
+                     const Model& fitted,
+                     const std::vector<const std::vector<FoundEffect>*>& effects);
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/trials/trial.h"
+
+namespace framewatch::estimator {
+
+/// One effect of a diagnosis.
+struct FoundEffect {
+  Trial chosen;
+  std::vector<Trial> alternatives;  ///< best first
+  std::vector<EffectKind> like;     ///< names that the data cannot tell from it
+  double confidence = 0;            ///< in the name, 0 to 1
+  /// More than noise is left: the effect differs from the law of its name, or another one acts too.
+  bool approximate = false;
+  double before = 0, after = 0;   ///< held-out free-run NRMSE
+  int index = -1;                 ///< among the model's effects; -1: gain or clock of an axis
+  std::vector<double> ramp_mps3;  ///< bias_drift: slope in every segment
+  std::vector<double> ramp_from_s;
+  std::vector<double> std_error;  ///< of the catalogue's parameters; 0: not known
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,263 @@
+#include "estimator/diagnose/trials/known_effects.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+constexpr double kBilinear = 40;  ///< exponent of hysteresis with a corner
+
+LawParameter fixed(double value) {
+  return bounded_parameter(value, 1, -1e300, 1e300, false);
+}
+
+LawParameter sized(double value) {
+  return linear_parameter(value, 0.02 * std::max(std::abs(value), 1e-12));
+}
+
+/// Largest measured deformation and rate of an element.
+void set_scales(const Plant& plant, const std::vector<RecordSegment>& segments, ModelEffect& e) {
+  e.deformation = e.rate = 1e-12;
+  const int element = element_of(plant, e.place);
+  for (const RecordSegment& s : segments) {
+    const VectorXcd q = (plant.building.sense.row(element) * s.spectrum).transpose();
+    const VectorXcd d = -q.array() / s.w.array().square();
+    const VectorXcd v = d.array() * s.w.array() * std::complex<double>(0, 1);
+    e.deformation = std::max(e.deformation, signal_of(d, s, 1).cwiseAbs().maxCoeff());
+    e.rate = std::max(e.rate, signal_of(v, s, 1).cwiseAbs().maxCoeff());
+  }
+}
+
+/// Sets an error of an axis; false when the effect is another one.
+bool add_axis_error(const Effect& effect, Model& model) {
+  const int axis = effect.place.channel;
+  switch (effect.kind) {
+    case EffectKind::gain_error:
+      model.gain[axis] += effect.value("gain");
+      break;
+    case EffectKind::polarity:
+      model.gain[axis] -= 2;
+      break;
+    case EffectKind::time_shift:
+      model.clock_s[axis] += effect.value("shift_s");
+      model.free_clock.push_back(axis);
+      return true;
+    default:
+      return false;
+  }
+  model.free_gain.push_back(axis);
+  return true;
+}
+
+LawForm form_of(const Effect& effect) {
+  using enum EffectKind;
+  switch (effect.kind) {
+    case cubic_stiffness:
+    case quadratic_stiffness:
+    case p_delta:
+      return LawForm::power;
+    case bilinear_hysteresis:
+    case bouc_wen:
+      return LawForm::hysteresis;
+    case pinching:
+      return LawForm::pinched;
+    case coulomb_friction:
+      return LawForm::friction;
+    case quadratic_damping:
+      return LawForm::power_damping;
+    case one_sided_gap:
+      return effect.value("side") > 0 ? LawForm::gap_positive : LawForm::gap_negative;
+    case two_sided_gap:
+      return LawForm::gap_both;
+    case stiffness_drop:
+    case stiffness_drift:
+      return LawForm::changing;
+    case extra_mass:
+      return LawForm::mass;
+    case tuned_mass_damper:
+      return LawForm::resonator;
+    case base_rocking:
+      return LawForm::rocking;
+    case frame_bending:
+      return LawForm::bending;
+    case added_spring:
+      return LawForm::spring;
+    case added_damper:
+      return LawForm::damper;
+    case floor_flexibility:
+      return LawForm::panels;
+    case unmeasured_force:
+      return effect.value("rms_n") > 0 ? LawForm::broadband : LawForm::harmonic;
+    case clipping:
+      return LawForm::clipped;
+    case misalignment:
+      return LawForm::misaligned;
+    default:
+      return LawForm::swapped;
+  }
+}
+
+/// Power law, or the negative stiffness of gravity (P-Delta).
+void set_power(const Plant& plant, const Effect& effect, ModelEffect& e) {
+  const double d = e.deformation;
+  if (effect.kind == EffectKind::p_delta) {
+    const double height = plant.structure.story_height[static_cast<std::size_t>(e.place.story - 1)];
+    e.parameters = {fixed(-effect.value("weight_n") / height * d), fixed(1)};
+    return;
+  }
+  const bool cubic = effect.kind == EffectKind::cubic_stiffness;
+  const double p = cubic ? 3 : 2;
+  e.parameters = {sized(effect.value(cubic ? "k3_npm3" : "k2_npm2") * std::pow(d, p)),
+                  bounded_parameter(p, 0.02, 1.2, 9)};
+}
+
+void set_hysteresis(const Effect& effect, ModelEffect& e) {
+  const auto value = [&](const char* key) { return effect.value(key); };
+  const double d = e.deformation;
+  const bool corner = effect.kind == EffectKind::bilinear_hysteresis;
+  e.parameters = {sized(value("kh_npm")), logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
+                  bounded_parameter(corner ? kBilinear : value("exponent"), 0.05, 0.5, 60, false),
+                  bounded_parameter(corner ? 0.5 : value("beta"), 0.02, 0.1, 1.0, false)};
+  if (e.form != LawForm::pinched) return;
+  e.parameters.push_back(bounded_parameter(value("slip_ratio"), 0.02, 0.0, 0.99));
+  e.parameters.push_back(logarithmic_parameter(value("slip_width"), 0.05, 1.0));
+}
+
+void set_changing(const std::vector<RecordSegment>& segments, const Effect& effect,
+                  ModelEffect& e) {
+  const bool drop = effect.kind == EffectKind::stiffness_drop;
+  e.parameters = {sized(effect.value("dk_npm"))};
+  for (const RecordSegment& s : segments) {
+    const double seconds = s.seconds();
+    e.record_parameters.push_back(
+        {bounded_parameter(std::min(effect.value(drop ? "at_s" : "from_s"), seconds), 0.1,
+                           -0.2 * seconds, seconds),
+         logarithmic_parameter(drop ? 0.05 : effect.value("duration_s"), 0.02, 2 * seconds)});
+    e.record_parameters.back()[1].free = !drop;
+  }
+}
+
+void set_harmonic(const std::vector<RecordSegment>& segments, const Effect& effect,
+                  ModelEffect& e) {
+  const double a = effect.value("amplitude_n"), p = effect.value("phase_rad");
+  e.parameters = {
+      bounded_parameter(effect.value("frequency_hz"), 0.02 / segments[0].seconds(), 1e-3, 1e3)};
+  for (std::size_t r = 0; r < segments.size(); ++r) {
+    const double step = 0.05 * std::max(a, 1e-9);
+    e.record_parameters.push_back(
+        {linear_parameter(a * std::sin(p), step), linear_parameter(a * std::cos(p), step)});
+    e.onset_s.push_back(effect.value("from_s"));
+  }
+}
+
+/// Laws of elements; others are left as they are.
+void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>& segments,
+                            const Effect& effect, ModelEffect& e) {
+  const auto value = [&](const char* key) { return effect.value(key); };
+  const double d = e.deformation, v = e.rate;
+  switch (e.form) {
+    case LawForm::power:
+      set_power(plant, effect, e);
+      break;
+    case LawForm::hysteresis:
+    case LawForm::pinched:
+      set_hysteresis(effect, e);
+      break;
+    case LawForm::friction:
+      e.parameters = {sized(value("fc_n")),
+                      logarithmic_parameter(value("v0_mps"), 1e-4 * v, 10 * v)};
+      break;
+    case LawForm::power_damping:
+      e.parameters = {sized(value("c2_ns2pm2") * v * v), bounded_parameter(2, 0.02, 0.15, 5)};
+      break;
+    case LawForm::gap_positive:
+    case LawForm::gap_negative:
+    case LawForm::gap_both:
+      e.parameters = {sized(value("kg_npm")),
+                      logarithmic_parameter(std::max(value("gap_m"), 1e-3 * d), 1e-3 * d, 10 * d)};
+      break;
+    case LawForm::changing:
+      set_changing(segments, effect, e);
+      break;
+    default:
+      break;
+  }
+}
+
+/// Every other effect of a model.
+void set_other_parameters(const std::vector<RecordSegment>& segments, const Effect& effect,
+                          ModelEffect& e) {
+  const auto value = [&](const char* key) { return effect.value(key); };
+  switch (e.form) {
+    case LawForm::mass:
+      e.parameters = {sized(value("mass_kg"))};
+      break;
+    case LawForm::resonator:
+      e.parameters = {bounded_parameter(value("mass_kg"), 0.02 * value("mass_kg"), 1e-9, 1e15),
+                      logarithmic_parameter(value("frequency_hz"), 1e-3, 1e3),
+                      logarithmic_parameter(std::max(value("damping_ratio"), 1e-3), 1e-3, 2)};
+      break;
+    case LawForm::rocking:
+    case LawForm::bending: {
+      const double flexibility = 1 / value("kr_nmprad");
+      e.parameters = {bounded_parameter(flexibility, 0.05 * flexibility, 0, 1e15)};
+      break;
+    }
+    case LawForm::spring:
+      e.parameters = {sized(value("k_npm"))};
+      break;
+    case LawForm::damper:
+      e.parameters = {bounded_parameter(value("c_nspm"), 0.02 * value("c_nspm"), 0, 1e15)};
+      break;
+    case LawForm::panels:
+      e.parameters = {logarithmic_parameter(value("gk_nprad"), 1e-3 * value("gk_nprad"),
+                                            1e3 * value("gk_nprad")),
+                      bounded_parameter(value("gc_nsprad"), 1e-4 * value("gk_nprad"), 0, 1e15)};
+      break;
+    case LawForm::harmonic:
+      set_harmonic(segments, effect, e);
+      break;
+    case LawForm::misaligned:
+      e.parameters = {bounded_parameter(value("angle_deg") * M_PI / 180, 1e-3, -1.5, 1.5)};
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace
+
+std::vector<FoundEffect> add_known(const Plant& plant, const std::vector<RecordSegment>& segments,
+                                   const std::vector<Effect>& effects, Model& model) {
+  std::vector<FoundEffect> out;
+  for (const Effect& effect : effects) {
+    FoundEffect known;
+    known.chosen.kind = effect.kind;
+    known.chosen.place = effect.place;
+    known.confidence = 1;
+    if (effect.kind == EffectKind::bias_drift) {
+      known.ramp_mps3.assign(segments.size(), effect.value("ramp_mps3"));
+      known.ramp_from_s.assign(segments.size(), effect.value("from_s"));
+    } else if (!add_axis_error(effect, model)) {
+      ModelEffect e;
+      e.form = form_of(effect);
+      e.place = effect.place;
+      if (e.element_law()) {
+        set_scales(plant, segments, e);
+        set_element_parameters(plant, segments, effect, e);
+      } else {
+        set_other_parameters(segments, effect, e);
+      }
+      known.index = static_cast<int>(model.effects.size());
+      model.effects.push_back(std::move(e));
+    }
+    out.push_back(std::move(known));
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

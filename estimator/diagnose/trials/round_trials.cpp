@@ -1,0 +1,64 @@
+#include "estimator/diagnose/trials/round_trials.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
+
+}  // namespace
+
+bool is_element(const Localisation& place) {
+  return place.candidate_places.front().kind == CandidatePlace::Kind::element;
+}
+
+double bound_of(const Plant& plant, const Localisation& places) {
+  const auto equations = static_cast<double>(plant.equations());
+  double unseen = 0;
+  for (const CandidatePlace& s : places.candidate_places) unseen += static_cast<double>(s.size());
+  return places.misfit * equations / std::max(equations - unseen, 1.0);
+}
+
+void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>& found,
+                     Located& located) {
+  const Localisation& place = located.places.front();
+  const bool of_law = std::any_of(found.begin(), found.end(), [&](const FoundEffect& e) {
+    return e.chosen.place == place.candidate_places.front().place && is_element(place);
+  });
+  if (!of_law || place.ratio < 1 + chance_of(context.fitter, context.now.model)) return;
+  std::vector<Localisation> beside = locate_beside(
+      context.fitter, context.now, located.once, place.candidate_places.front(), context.parallel);
+  if (!beside.empty() && beside.front().ratio - 1 < kPairShare * (place.ratio - 1))
+    located.places = std::move(beside);
+}
+
+std::vector<Trial> trials_of_places(const TrialContext& context, const Located& located,
+                                    bool small) {
+  std::vector<Localisation> places = contenders(located.places);
+  if (small) std::erase_if(places, is_element);
+  const std::vector<Localisation> more =
+      as_likely(context.fitter, context.now, located, context.parallel);
+  places.insert(places.end(), more.begin(), more.end());
+  return try_places(context, places);
+}
+
+std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,
+                                   double& bound) {
+  context.progress("two places", 0);
+  const Localisation& best = located.places.front();
+  const std::vector<Localisation> pairs =
+      locate_pairs(context.fitter, context.now, located.once, context.parallel);
+  const double limit = best.ratio > kOnePlace ? 1 + kPairShare * (best.ratio - 1) : kOnePlace;
+  std::vector<Trial> out;
+  if (pairs.empty() || pairs.front().ratio >= limit) return out;
+  bound = std::min(context.now.cost, bound_of(context.fitter.plant(), pairs.front()));
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, pairs.size()); ++i) {
+    if (pairs[i].ratio > 2 * pairs.front().ratio) break;
+    append(out, try_pair(context, pairs[i]));
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/locate/locate.h"
+#include "estimator/diagnose/trials/found_effect.h"
+#include "estimator/diagnose/trials/trials.h"
+
+namespace framewatch::estimator {
+
+constexpr double kOnePlace = 1.6;  ///< ratio above which one place does not suffice
+
+/// Whether the best place is an element.
+bool is_element(const Localisation& place);
+
+/// Misfit that effects at these places should leave: that under arbitrary signals, scaled up by the
+/// equations which these remove.
+double bound_of(const Plant& plant, const Localisation& places);
+
+/// Replaces the located places by those that leave least beside the best one, if that is the place
+/// of an element law found before and does not suffice alone.
+void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>& found,
+                     Located& located);
+
+/// Fits the laws of the likeliest places. small: linear effects and those of axes only.
+std::vector<Trial> trials_of_places(const TrialContext& context, const Located& located,
+                                    bool small);
+
+/// Fits two laws at two places, if two places explain what one does not; sets bound to theirs then.
+std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,
+                                   double& bound);
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,102 @@
+#include "estimator/diagnose/trials/select_trial.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/diagnose/fit/onset.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kExplains = 0.97;  ///< share of the misfit beyond noise, else a law is not named
+constexpr double kExplainsMost = 0.9;  ///< the same where the rest is within chance
+constexpr double kSharp = 0.995;       ///< share above which a fit need not be sharpened
+constexpr double kBlunt = 0.4;         ///< share below which it is not worth it
+constexpr std::size_t kSharpened = 3;
+constexpr double kWorse = 1.02;  ///< misfit of a record, relative
+/// By how much an arbitrary force must be better than a law, of the misfit beyond noise.
+constexpr double kArbitraryPrice = 1 - kExplains;
+
+/// Number of fitted values of a model beyond those of the linear building.
+double fitted_values(const Model& model) {
+  const auto free = [](const std::vector<LawParameter>& parameters) {
+    return std::count_if(parameters.begin(), parameters.end(),
+                         [](const LawParameter& k) { return k.free; });
+  };
+  auto out = static_cast<double>(model.free_gain.size() + model.free_clock.size());
+  for (const ModelEffect& e : model.effects) {
+    out += static_cast<double>(free(e.parameters));
+    for (const std::vector<LawParameter>& parameters : e.record_parameters)
+      out += static_cast<double>(free(parameters));
+  }
+  return out;
+}
+
+/// Fits the leading trials on with everything free. enough: cost above which more than chance is
+/// left.
+void sharpen(const TrialContext& context, double enough, std::vector<Trial>& trials) {
+  run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
+    Trial& t = trials[static_cast<std::size_t>(i)];
+    if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt) return;
+    const bool late = ends_with_harmonic(t.model) && t.cost > enough;
+    if (late || t.fraction < kSharp) t = sharpened(context, t, t.model);
+  });
+}
+
+/// Fits the leading trials again from a fit to the record with the weakest effect alone.
+void approach(const TrialContext& context, std::vector<Trial>& trials) {
+  run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
+    Trial& t = trials[static_cast<std::size_t>(i)];
+    if (t.outcome == TrialOutcome::fitted && t.fraction > kBlunt)
+      t = sharpened(context, t, fitted_to_the_weakest(context, t.model));
+  });
+}
+
+}  // namespace
+
+bool worsens(const Trial& trial, const FitResult& now, double chance) {
+  for (std::size_t r = 0; r < now.misfit.size(); ++r)
+    if (trial.misfit[r] > kWorse * now.misfit[r] + chance) return true;
+  return false;
+}
+
+bool select_trial(const TrialContext& context, double bound, double needed,
+                  std::vector<Trial>& trials) {
+  if (std::none_of(trials.begin(), trials.end(),
+                   [](const Trial& t) { return t.outcome == TrialOutcome::fitted; }))
+    return false;
+  const FitResult& now = context.now;
+  const double to_explain = now.cost - bound;
+  // Penalties: two effects must beat one by more than chance, an arbitrary force must beat a law,
+  // and every fitted value must explain more than a value explains of noise.
+  const double of_value = 0.5 * std::log(context.fitter.expected(now.model));
+  const auto price = [&](const Trial& t) {
+    const bool arbitrary = t.model.effects.size() > now.model.effects.size() &&
+                           t.model.effects.back().form == LawForm::broadband;
+    return t.cost + of_value * fitted_values(t.model) + (t.second ? needed : 0.0) +
+           (arbitrary ? needed + kArbitraryPrice * std::max(to_explain, 0.0) : 0.0);
+  };
+  const auto rank = [&] {
+    std::stable_sort(trials.begin(), trials.end(), [&](const Trial& a, const Trial& b) {
+      const bool fitted_a = a.outcome == TrialOutcome::fitted,
+                 fitted_b = b.outcome == TrialOutcome::fitted;
+      return fitted_a != fitted_b ? fitted_a : price(a) < price(b);
+    });
+    for (Trial& t : trials) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1e-9);
+  };
+  rank();
+  sharpen(context, bound + needed, trials);
+  rank();
+  if (trials.front().fraction < kExplains) {
+    approach(context, trials);
+    rank();
+  }
+  const Trial& best = trials.front();
+  // In a component test the place is known, and real parts follow no law exactly.
+  const bool component = context.fitter.plant().equations() == 1;
+  const bool most = best.fraction >= (component ? kExplainsMost : kExplains) ||
+                    (best.fraction >= kExplainsMost && best.cost - bound < needed);
+  return most && now.cost - best.cost > needed && !worsens(best, now, needed);
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,91 @@
+#include "estimator/diagnose/trials/trial_names.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/diagnose/propose/name_of_fit.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kDissipates = 0.15;     ///< dissipation() below which a law counts as elastic
+constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
+
+/// Energy dissipated in a cycle to the peak deformation, over that of the box around its loop.
+double dissipation(const ModelEffect& effect) {
+  constexpr int kSteps = 400, kCycles = 2;
+  Eigen::VectorXd d(kSteps * kCycles);
+  for (Eigen::Index i = 0; i < d.size(); ++i)
+    d[i] = effect.deformation * std::sin(2 * M_PI * static_cast<double>(i) / kSteps);
+  const Eigen::VectorXd f = law_force(effect.law(0), d, Eigen::VectorXd::Zero(d.size()), 1);
+  double work = 0, peak = 0;
+  for (Eigen::Index i = kSteps; i < d.size(); ++i) {
+    work += 0.5 * (f[i] + f[i - 1]) * (d[i] - d[i - 1]);
+    peak = std::max(peak, std::abs(f[i]));
+  }
+  return work / std::max(4 * peak * effect.deformation, 1e-300);
+}
+
+double highest_hz(const Fitter& fitter) {
+  double out = 0;
+  for (const RecordSegment& s : fitter.segments()) out = std::max(out, s.w.maxCoeff() / (2 * M_PI));
+  return out;
+}
+
+/// A parameter at its bound means that another law acts.
+bool at_bound(const LawParameter& parameter) {
+  constexpr double kNear = 1e-6;
+  return parameter.value <= parameter.low + kNear || parameter.value >= parameter.high - kNear;
+}
+
+/// A resonator that is none: its frequency lies above the band, its mass exceeds that of its frame,
+/// or its damping is at its bound.
+bool is_no_oscillator(const TrialContext& c, const ModelEffect& effect) {
+  const EffectPlace& place = effect.place;
+  return effect.parameters[1].plain() > highest_hz(c.fitter) || at_bound(effect.parameters[2]) ||
+         effect.parameters[0].plain() >
+             c.fitter.plant().structure.frame_mass(place.story, place.frame);
+}
+
+/// A negative spring, damper or rotational flexibility.
+bool has_wrong_sign(const ModelEffect& effect) {
+  using F = LawForm;
+  const bool positive = effect.form == F::spring || effect.form == F::damper ||
+                        effect.form == F::rocking || effect.form == F::bending;
+  return positive && effect.parameters[0].plain() < 0;
+}
+
+}  // namespace
+
+bool is_excluded(const TrialContext& c, EffectKind kind) {
+  return std::find(c.without.begin(), c.without.end(), kind) != c.without.end();
+}
+
+void set_fit(const TrialContext& c, const FitResult& run, Trial& t) {
+  std::size_t next = c.now.model.effects.size();
+  const auto name = [&](EffectKind guess) {
+    return !is_axis_error(guess) && next < run.model.effects.size()
+               ? name_of_fit(run.model.effects[next++], c.fitter.segments().front())
+               : guess;
+  };
+  t.kind = name(t.kind);
+  if (t.second) t.second->first = name(t.second->first);
+  t.cost = run.cost + removed_misfit(c.fitter, run.model) - removed_misfit(c.fitter, c.now.model);
+  t.misfit = run.misfit;
+  t.model = run.model;
+}
+
+bool may_be_named(const TrialContext& c, const Trial& t) {
+  for (std::size_t e = c.now.model.effects.size(); e < t.model.effects.size(); ++e) {
+    const ModelEffect& effect = t.model.effects[e];
+    if (has_wrong_sign(effect)) return false;
+    if (effect.form == LawForm::resonator && is_no_oscillator(c, effect)) return false;
+    if (effect.form == LawForm::pinched &&
+        (dissipation(effect) < kDissipates || effect.parameters[5].plain() < kNarrowestSlip ||
+         at_bound(effect.parameters[4]) || at_bound(effect.parameters[5])))
+      return false;
+  }
+  return !is_excluded(c, t.kind) && !(t.second && is_excluded(c, t.second->first));
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,243 @@
+#include "estimator/diagnose/trials/trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "estimator/diagnose/fit/free_run_start.h"
+#include "estimator/diagnose/fit/onset.h"
+#include "estimator/diagnose/propose/propose.h"
+#include "estimator/diagnose/trials/trial_names.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
+constexpr double kSmooth = 20;  ///< exponent of hysteresis below which it has no corner
+constexpr int kSharpSteps = 12;
+constexpr int kTrialSteps = 3;    ///< of a free run's fit, before the costs are compared
+constexpr double kCostLimit = 4;  ///< times the least cost then: fits above it end there
+constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
+
+/// A start model and the names of its new effects.
+struct Candidate {
+  Model model;
+  std::vector<Eigen::MatrixXcd> motion;
+  EffectKind kind;
+  EffectPlace place;
+  std::optional<std::pair<EffectKind, EffectPlace>> second;
+  std::size_t from = 0;  ///< index of its place
+  int steps = kFirstSteps;
+};
+
+struct Fitted {
+  FitResult fit;
+  const Candidate* candidate;
+};
+
+FitOptions full_fit(const Model& model) {
+  FitOptions options;
+  options.forcing = forcing_of(model);
+  options.max_steps = options.forcing == Forcing::simulated ? kRunSteps : kLinearSteps;
+  return options;
+}
+
+Trial trial_of(const TrialContext& c, const Candidate& candidate, const FitResult& fit,
+               TrialOutcome outcome) {
+  Trial out;
+  out.outcome = outcome;
+  out.kind = candidate.kind;
+  out.place = candidate.place;
+  out.second = candidate.second;
+  set_fit(c, fit, out);
+  return out;
+}
+
+/// The candidates that get a free run: the best of each place, and as many whose names may be
+/// given. The others are added to `screened_out`.
+std::vector<Fitted> worth_a_free_run(const TrialContext& c, std::vector<Fitted> first,
+                                     std::vector<Trial>& screened_out) {
+  std::stable_sort(first.begin(), first.end(), [](const Fitted& a, const Fitted& b) {
+    return a.candidate->from != b.candidate->from ? a.candidate->from < b.candidate->from
+                                                  : a.fit.cost < b.fit.cost;
+  });
+  std::vector<Fitted> out;
+  std::size_t place = 0, of_place = 0, named_of_place = 0;
+  for (Fitted& f : first) {
+    if (f.candidate->from != place) of_place = named_of_place = 0;
+    place = f.candidate->from;
+    Trial driven = trial_of(c, *f.candidate, f.fit, TrialOutcome::screened_out);
+    const bool named = may_be_named(c, driven);
+    if (!f.candidate->second && of_place >= kLawsRun && (!named || named_of_place >= kLawsRun)) {
+      screened_out.push_back(std::move(driven));
+      continue;
+    }
+    ++of_place;
+    named_of_place += named;
+    out.push_back(std::move(f));
+  }
+  return out;
+}
+
+/// Fits candidates in parallel: all under the measured motion, then the best of each place with
+/// free runs.
+std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& candidates) {
+  std::vector<Fitted> first(candidates.size());
+  run_all(c.parallel, static_cast<int>(candidates.size()), [&](int i) {
+    const Candidate& candidate = candidates[static_cast<std::size_t>(i)];
+    FitOptions options;
+    options.max_steps = candidate.steps;
+    first[static_cast<std::size_t>(i)] = {c.fitter.fit(candidate.model, candidate.motion, options),
+                                          &candidate};
+  });
+  std::erase_if(first, [](const Fitted& f) { return !f.fit.good; });
+  std::vector<Trial> trials;
+  std::vector<Fitted> kept = worth_a_free_run(c, std::move(first), trials);
+  std::vector<FitResult> runs(kept.size());
+  std::vector<Trial> out;
+  for (const Fitted& f : kept)
+    out.push_back(trial_of(c, *f.candidate, f.fit, TrialOutcome::diverged));
+  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    const FitResult from = free_run_start(c.fitter, std::move(kept[at].fit));
+    FitOptions options = full_fit(from.model);
+    options.max_steps = kTrialSteps;
+    runs[at] = c.fitter.fit(from.model, from.motion, options);
+  });
+  double least = 1e300;
+  for (const FitResult& r : runs)
+    if (r.good) least = std::min(least, r.cost);
+  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (!runs[at].good) return;
+    if (runs[at].cost < kCostLimit * least && runs[at].steps == kTrialSteps) {
+      const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion, full_fit(runs[at].model));
+      if (on.good && on.cost < runs[at].cost) runs[at] = on;
+    }
+    Trial& t = out[at] = trial_of(c, *kept[at].candidate, runs[at], TrialOutcome::fitted);
+    if (!may_be_named(c, t)) t.outcome = TrialOutcome::other_law;
+  });
+  append(trials, std::move(out));
+  return trials;
+}
+
+void unite(std::vector<int>& list, const std::vector<int>& more) {
+  for (const int i : more)
+    if (std::find(list.begin(), list.end(), i) == list.end()) list.push_back(i);
+}
+
+/// Two proposals of one pair together.
+Candidate joined(const Localisation& pair, const Proposal& p, const Proposal& q) {
+  const std::size_t common = pair.model.effects.size();
+  Model model = p.model;
+  model.effects.insert(model.effects.end(), q.model.effects.begin() + static_cast<long>(common),
+                       q.model.effects.end());
+  model.theta += q.model.theta - pair.model.theta;
+  model.gain += q.model.gain - pair.model.gain;
+  model.clock_s += q.model.clock_s - pair.model.clock_s;
+  unite(model.free_gain, q.model.free_gain);
+  unite(model.free_clock, q.model.free_clock);
+  return {model, pair.motion, p.kind, p.place, std::pair(q.kind, q.place), 0, kPairSteps};
+}
+
+}  // namespace
+
+void free_shapes(Model& model) {
+  for (ModelEffect& e : model.effects) {
+    const bool hysteretic = e.form == LawForm::hysteresis || e.form == LawForm::pinched;
+    if (!hysteretic || e.parameters[2].plain() > kSmooth) continue;
+    e.parameters[2].free = e.parameters[3].free = true;
+    e.parameters[2].low = 1;
+    e.parameters[3].low = 0.5;
+  }
+}
+
+Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
+  const bool of_records =
+      std::any_of(model.effects.begin(), model.effects.end(),
+                  [](const ModelEffect& e) { return !e.record_parameters.empty(); });
+  const std::vector<RecordSegment>& all = c.fitter.segments();
+  if (all.size() < 2 || of_records) return model;
+  const auto strength = [&](std::size_t r) {
+    return c.now.misfit[r] / c.fitter.expected(r, c.now.model);
+  };
+  std::size_t weakest = 0;
+  for (std::size_t r = 1; r < all.size(); ++r)
+    if (strength(r) < strength(weakest)) weakest = r;
+  const std::vector<RecordSegment> one{all[weakest]};
+  const Fitter alone(c.fitter.plant(), one, c.fitter.tolerances());
+  const FitResult run = alone.fit(model, {}, thorough(model, kSharpSteps));
+  return run.good ? run.model : model;
+}
+
+Trial sharpened(const TrialContext& c, const Trial& trial, const Model& from) {
+  Model start = from;
+  free_shapes(start);
+  FitResult run = c.fitter.fit(start, {}, thorough(start, kSharpSteps));
+  if (!run.good) return trial;
+  if (ends_with_harmonic(run.model)) run = with_onsets(c.fitter, std::move(run));
+  Trial out = trial;
+  set_fit(c, run, out);
+  return out.cost < trial.cost && may_be_named(c, out) ? out : trial;
+}
+
+std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisation>& places) {
+  std::vector<std::vector<Proposal>> proposals(places.size());
+  c.progress("laws at " + std::to_string(places.size()) + " places", 0);
+  run_all(c.parallel, static_cast<int>(places.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    proposals[at] = propose(c.fitter, places[at], 0);
+  });
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const bool axis = places[i].candidate_places.front().kind == CandidatePlace::Kind::axis;
+    std::size_t count = 0;
+    for (const Proposal& p : proposals[i]) {
+      // A family of laws with several names is judged by the name that its fit has.
+      if (is_excluded(c, p.kind) && p.kind != EffectKind::cubic_stiffness &&
+          p.kind != EffectKind::bilinear_hysteresis && p.kind != EffectKind::bouc_wen)
+        continue;
+      if (!axis && count++ >= kLawsFitted) break;
+      candidates.push_back({p.model, places[i].motion, p.kind, p.place, {}, i, kFirstSteps});
+    }
+  }
+  c.progress(std::to_string(candidates.size()) + " laws", 0.3);
+  return fit_all(c, candidates);
+}
+
+std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
+  const CandidatePlace &a = pair.candidate_places[0], &b = pair.candidate_places[1];
+  std::vector<Candidate> candidates;
+  if (a.kind == CandidatePlace::Kind::axis && b.kind == CandidatePlace::Kind::axis) {
+    ModelEffect swap;
+    swap.form = LawForm::swapped;
+    swap.place.kind = PlaceKind::channel_pair;
+    swap.place.channel = std::min(a.axis, b.axis);
+    swap.place.with_channel = std::max(a.axis, b.axis);
+    Candidate one{pair.model, {}, EffectKind::swapped, swap.place, {}, 1, 12};
+    one.model.effects.push_back(swap);
+    candidates.push_back(one);
+  }
+  std::vector<Proposal> first = propose(c.fitter, pair, 0), second = propose(c.fitter, pair, 1);
+  for (std::vector<Proposal>* list : {&first, &second}) {
+    std::erase_if(*list, [&](const Proposal& p) {
+      return p.kind == EffectKind::clipping || p.kind == EffectKind::misalignment ||
+             (p.model.effects.size() > pair.model.effects.size() &&
+              p.model.effects.back().form == LawForm::broadband) ||
+             is_excluded(c, p.kind);
+    });
+    if (list->size() > kPairLaws) list->resize(kPairLaws);
+  }
+  for (const Proposal& p : first)
+    for (const Proposal& q : second) candidates.push_back(joined(pair, p, q));
+  // One of the two may suffice alone, though its place was not found alone.
+  std::size_t from = 0;
+  for (const std::vector<Proposal>* list : {&first, &second}) {
+    ++from;
+    for (const Proposal& p : *list)
+      candidates.push_back({p.model, pair.motion, p.kind, p.place, {}, from, kPairSteps});
+  }
+  return fit_all(c, candidates);
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/locate/localise.h"
+#include "estimator/diagnose/trials/trial_context.h"
+
+namespace framewatch::estimator {
+
+/// A trial fitted on from a model of its kind, with the shape of hysteresis free; unchanged when
+/// that is no better.
+Trial sharpened(const TrialContext& context, const Trial& trial, const Model& from);
+
+/// A model fitted to the one record with the smallest relative misfit. A strongly nonlinear law
+/// converges there where a fit to all records does not.
+Model fitted_to_the_weakest(const TrialContext& context, const Model& model);
+
+/// Frees the exponent and the unloading parameter of smooth hysteresis.
+void free_shapes(Model& model);
+
+/// Fits the laws of each place.
+std::vector<Trial> try_places(const TrialContext& context, const std::vector<Localisation>& places);
+
+/// Fits two laws at the two places of a pair, and of two axes their exchange.
+std::vector<Trial> try_pair(const TrialContext& context, const Localisation& pair);
+
+}  // namespace framewatch::estimator

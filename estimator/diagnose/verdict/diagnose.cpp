@@ -1,0 +1,315 @@
+#include "estimator/diagnose/verdict/diagnose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "estimator/diagnose/trials/declared.h"
+#include "estimator/diagnose/trials/implausible_masses.h"
+#include "estimator/diagnose/trials/known_effects.h"
+#include "estimator/diagnose/trials/parameter_errors.h"
+#include "estimator/diagnose/trials/round_trials.h"
+#include "estimator/diagnose/trials/select_trial.h"
+#include "estimator/diagnose/verdict/ramps.h"
+#include "estimator/diagnose/verdict/verdict.h"
+#include "estimator/diagnose/verdict/where.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+
+/// Fraction above which a second law at the place of the first does not call the first in question.
+constexpr double kOneLaw = 0.99;
+constexpr double kSame = 8;        ///< difference of costs that does not decide between names
+constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong as right
+constexpr double kLeastGain = 50;
+constexpr int kPolishSteps = 6, kBackSteps = 8;
+
+/// A force on the lowest story of a frame is one at its floor.
+bool same_spot(const EffectPlace& a, const EffectPlace& b) {
+  if (a == b) return true;
+  const auto element_or_node = [](const EffectPlace& p) {
+    return p.kind == PlaceKind::frame || p.kind == PlaceKind::node;
+  };
+  const bool alike = a.kind == b.kind || (a.story == 1 && b.story == 1);
+  return element_or_node(a) && element_or_node(b) && alike && a.story == b.story &&
+         a.frame == b.frame;
+}
+
+bool is_same(const Trial& a, const Trial& b) {
+  return a.kind == b.kind && a.place == b.place && a.second == b.second;
+}
+
+/// The first trial of every name and place; the others came from other start values.
+std::vector<Trial> without_duplicates(const std::vector<Trial>& trials) {
+  std::vector<Trial> out;
+  for (const Trial& t : trials)
+    if (std::none_of(out.begin(), out.end(), [&](const Trial& o) { return is_same(o, t); }))
+      out.push_back(t);
+  return out;
+}
+
+/// Whether a trial contradicts the best one: other effects, not the same with one more. An
+/// arbitrary force does as well as any law and is no rival.
+bool is_rival(const Trial& t, const Trial& best) {
+  const bool arbitrary =
+      !t.model.effects.empty() && t.model.effects.back().form == LawForm::broadband;
+  const bool first = t.kind == best.kind && t.place == best.place;
+  const bool second = t.second == std::pair(best.kind, best.place);
+  return t.outcome == TrialOutcome::fitted && !arbitrary &&
+         !(best.second ? is_same(t, best) : first || second);
+}
+
+class Search {
+ public:
+  Search(const Plant& plant, const std::vector<RecordSegment>& segments,
+         const DiagnosisOptions& options)
+      : plant_(plant),
+        segments_(segments),
+        options_(options),
+        fitter_(plant, segments, options.tolerances) {}
+
+  Diagnosis run(std::vector<FoundEffect> ramps) {
+    report("linear model", 0.02);
+    Model start = initial_model(plant_);
+    out_.known = add_known(plant_, segments_, options_.known, start);
+    FitResult now = fit(start, {}, 12);
+    if (!now.good) {
+      out_.reason = "the model cannot be fitted to these records";
+      return out_;
+    }
+    out_.linear = now.model;
+    out_.ratio_before = ratio(now);
+    bool more = true;
+    for (int round = 0; round < options_.rounds && more; ++round) more = one_round(now, round);
+    report("what stays", 0.92);
+    if (!out_.effects.empty()) polish(now);
+    out_.model = now.model;
+    out_.declared = declared_model(plant_, segments_, now.model, {&out_.known, &out_.effects});
+    out_.ratio_after = ratio(now);
+    mark_approximate(now.model);
+    set_errors(fitter_, now.model, now.motion, out_.effects);
+    set_errors(fitter_, now.model, now.motion, out_.known);
+    out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
+    set_gaps(fitter_, options_.holdout_from, out_);
+    judge(fitter_, out_);
+    return out_;
+  }
+
+ private:
+  void report(const std::string& what, double share) const {
+    if (options_.progress) options_.progress(what, share);
+  }
+
+  FitResult fit(const Model& model, const std::vector<MatrixXcd>& motion, int steps) const {
+    return fitter_.fit(model, motion, thorough(model, steps));
+  }
+
+  /// Until neither kind of derivative improves the fit: an unfinished fit would show up as one more
+  /// effect.
+  FitResult fit_to_the_end(const Model& model, const std::vector<MatrixXcd>& motion) const {
+    FitResult out = fit(model, motion, kPolishSteps);
+    FitOptions along = thorough(out.model, kPolishSteps);
+    along.through_run = false;
+    FitResult more = fitter_.fit(out.model, out.motion, along);
+    return more.good && more.cost < out.cost ? more : out;
+  }
+
+  double ratio(const FitResult& now) const {
+    return now.total_misfit() / fitter_.expected(now.model);
+  }
+
+  /// Marks the effects as approximate if more than noise is left.
+  void mark_approximate(const Model& model) {
+    if (out_.ratio_after < 1 + chance_of(fitter_, model)) return;
+    for (FoundEffect& e : out_.effects) {
+      e.approximate = true;
+      e.confidence = std::min(e.confidence, kDoubtful);
+    }
+  }
+
+  /// Fits everything once more, with the shape of hysteresis free.
+  void polish(FitResult& now) {
+    Model start = now.model;
+    free_shapes(start);
+    const FitResult better = fit_to_the_end(start, now.motion);
+    if (better.good && better.cost < now.cost) now = better;
+  }
+
+  TrialContext context_of(const FitResult& now) const {
+    return {fitter_, now, options_.without, options_.parallel, [](const std::string&, double) {}};
+  }
+
+  /// With progress reports of a step that begins at the share `from` of the whole.
+  TrialContext context_of(const FitResult& now, double from) const {
+    TrialContext context = context_of(now);
+    context.progress = [this, from](const std::string& what, double share) {
+      report(what, from + 0.2 * share);
+    };
+    return context;
+  }
+
+  bool one_round(FitResult& now, int round) {
+    const double begin = 0.06 + 0.28 * round;
+    report("where", begin);
+    Located located = locate(fitter_, now, options_.parallel);
+    if (located.places.empty()) return false;
+    relocate_beside(context_of(now), out_.effects, located);
+    const Localisation& place = located.places.front();
+    const double expected_now = fitter_.expected(now.model);
+    const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;
+    if (out_.where.empty()) {
+      out_.where = where_of(fitter_, located.places);
+      out_.map = map_of(located);
+    }
+    const double needed = std::max(kLeastGain, kSignificant * std::sqrt(expected_now));
+    if (excess < needed) return find_mass(now, located);
+
+    // Beside laws that fit, a small rest is a linear effect or the shape of these laws: no further
+    // law.
+    const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
+    if (small && is_element(place)) return false;
+    std::vector<Trial> trials;
+    double bound = std::min(now.cost, bound_of(plant_, place));
+    const bool pairs = place.ratio > kOnePlace;
+    const TrialContext context = context_of(now, begin + 0.05);
+    if (pairs) trials = trials_of_pairs(context, located, bound);
+    append(trials, trials_of_places(context, located, small));
+    bool holds = select_trial(context, bound, needed, trials);
+    // Several forces at one place may be those of two effects.
+    if (!holds && !pairs && place.candidate_places.front().size() > 1) {
+      append(trials, trials_of_pairs(context, located, bound));
+      holds = select_trial(context, bound, needed, trials);
+    }
+    if (trials.empty() || trials.front().outcome != TrialOutcome::fitted) return false;
+    if (!holds) {
+      out_.rejected = without_duplicates(trials);
+      return false;
+    }
+    const Trial& best = trials.front();
+    for (std::size_t i = 0; i < out_.effects.size(); ++i) {
+      const FoundEffect& earlier = out_.effects[i];
+      if (!same_spot(earlier.chosen.place, best.place)) continue;
+      // Two laws at one place are a single law that the catalogue does not have.
+      if (earlier.chosen.fraction < kOneLaw && plant_.equations() > 1) withdraw(now, i);
+      return false;
+    }
+    adopt(trials, now);
+    return true;
+  }
+
+  bool find_mass(FitResult& now, const Located& located) {
+    std::vector<Trial> trials = implausible_masses(context_of(now), located);
+    std::erase_if(trials, [&](const Trial& t) { return worsens(t, now, kImplausibleMasses); });
+    if (trials.empty()) return false;
+    adopt(trials, now);
+    return true;
+  }
+
+  /// Goes back to the model before the effect `first` was added.
+  void withdraw(FitResult& now, std::size_t first) {
+    out_.reason = "no single law of the catalogue is what acts at " +
+                  place_text(out_.effects[first].chosen.place, plant_.structure, plant_.axes);
+    out_.rejected.clear();
+    for (std::size_t i = first; i < out_.effects.size(); ++i)
+      out_.rejected.push_back(out_.effects[i].chosen);
+    out_.effects.resize(first);
+    now = fit(first == 0 ? out_.linear : out_.effects.back().chosen.model, {}, kBackSteps);
+  }
+
+  void adopt(const std::vector<Trial>& trials, FitResult& now) {
+    const std::size_t known = out_.effects.size();
+    const Trial& best = trials.front();
+    FoundEffect found;
+    found.chosen = best;
+    found.before = mean_gap(gaps_of(fitter_, now.model), options_.holdout_from);
+    found.after = mean_gap(gaps_of(fitter_, best.model), options_.holdout_from);
+    found.alternatives = without_duplicates(trials);
+    found.alternatives.erase(found.alternatives.begin());
+    for (const Trial& t : found.alternatives)
+      if (is_rival(t, best) && t.cost < best.cost + kSame && t.kind != best.kind &&
+          std::find(found.like.begin(), found.like.end(), t.kind) == found.like.end())
+        found.like.push_back(t.kind);
+    const auto rival = std::find_if(trials.begin(), trials.end(),
+                                    [&](const Trial& t) { return is_rival(t, best); });
+    const double margin = rival == trials.end() ? 1e3 : std::max(0.0, rival->cost - best.cost);
+    found.confidence =
+        found.like.empty() ? std::min(0.999, 1 - kDoubtful * std::exp(-margin / 20)) : kDoubtful;
+    auto next = static_cast<int>(now.model.effects.size());
+    const auto place = [&](FoundEffect& effect) {
+      effect.index = is_axis_error(effect.chosen.kind) ? -1 : next++;
+    };
+    FoundEffect other = found;
+    place(found);
+    out_.effects.push_back(std::move(found));
+    if (best.second) {
+      other.chosen.kind = best.second->first;
+      other.chosen.place = best.second->second;
+      place(other);
+      out_.effects.push_back(std::move(other));
+    }
+    const Model before = now.model;
+    now = fit_to_the_end(best.model, now.motion);
+    if (known > 0 && removes_needless(before, now)) {
+      out_.effects.resize(known);
+      return;
+    }
+    remove_needless_earlier(now);
+  }
+
+  /// Replaces `now` by the fit of a smaller model, started from it, unless that is worse; whether
+  /// it did so.
+  bool replaced_by(const Model& smaller, FitResult& now) const {
+    FitResult less = fit_to_the_end(smaller, now.motion);
+    if (!less.good || less.cost > now.cost + kLeastGain) return false;
+    now = std::move(less);
+    return true;
+  }
+
+  /// Removes what was added to the model `before` if that, fitted on from here, does as well: after
+  /// an unfinished fit a needless effect looks useful. Whether it did so.
+  bool removes_needless(const Model& before, FitResult& now) const {
+    Model start = now.model;
+    start.effects.resize(before.effects.size());
+    start.free_gain = before.free_gain;
+    start.free_clock = before.free_clock;
+    return replaced_by(start, now);
+  }
+
+  /// Removes earlier masses, springs and dampers that the effects found later replace.
+  void remove_needless_earlier(FitResult& now) {
+    for (std::size_t i = 0; i + 1 < out_.effects.size(); ++i) {
+      const int index = out_.effects[i].index;
+      if (index < 0 || now.model.effects[static_cast<std::size_t>(index)].element_law()) continue;
+      Model start = now.model;
+      start.effects.erase(start.effects.begin() + index);
+      if (!replaced_by(start, now)) continue;
+      out_.effects[i + 1].before = out_.effects[i].before;
+      out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(i));
+      for (FoundEffect& e : out_.effects) e.index -= e.index > index;
+      out_.effects.back().chosen.model = now.model;
+      --i;
+    }
+  }
+
+  const Plant& plant_;
+  const std::vector<RecordSegment>& segments_;
+  const DiagnosisOptions& options_;
+  Fitter fitter_;
+  Diagnosis out_;
+};
+
+}  // namespace
+
+Diagnosis diagnose(const Plant& plant, const std::vector<RecordSegment>& segments,
+                   const DiagnosisOptions& options) {
+  std::vector<RecordSegment> straight = segments;
+  const std::vector<FoundEffect> ramps = remove_ramps(plant, options, straight);
+  Diagnosis out = Search(plant, straight, options).run(ramps);
+  add_ramps_to_gaps(straight, options.holdout_from, out);
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/diagnose/fit/gap.h"
+#include "estimator/diagnose/fit/unknowns.h"
+#include "estimator/diagnose/trials/found_effect.h"
+#include "estimator/numeric/parallel.h"
+
+namespace framewatch::estimator {
+
+enum class Verdict { adequate, explained, partly_explained, unexplained };
+
+struct WhereEntry {
+  EffectPlace place;
+  double ratio = 0;  ///< Localisation::ratio: misfit left under an arbitrary signal here; 1: noise
+  /// Time and frequency span of nine tenths of the needed signal, in the segment `record`; 0, 0:
+  /// not known.
+  std::size_t record = 0;
+  double from_s = 0, to_s = 0, low_hz = 0, high_hz = 0;
+  double peak = 0;  ///< of that signal: N, of an axis m/s^2
+};
+
+struct Diagnosis {
+  Verdict verdict = Verdict::unexplained;
+  std::string reason;
+  Model linear, model;  ///< fitted to all segments
+  /// declared_model(): what a configuration file can hold.
+  Model declared;
+  std::vector<Gap> before, after;  ///< of each segment, models fitted to the training ones alone
+  /// The training segments alone do not determine the effects: `after` is of `model`.
+  bool after_of_all = false;
+  std::vector<FoundEffect> known;            ///< effects of the configuration, fitted again
+  std::vector<FoundEffect> effects;          ///< found, in their order
+  std::vector<WhereEntry> where;             ///< the likeliest places, best first
+  std::vector<WhereEntry> map;               ///< every place, without the signal
+  std::vector<Trial> rejected;               ///< trials of the last round, if none was adopted
+  double ratio_before = 0, ratio_after = 0;  ///< misfit over its expectation
+};
+
+struct DiagnosisOptions {
+  Tolerances tolerances;
+  int rounds = 3;
+  std::size_t holdout_from = 1;     ///< first segment that is held out
+  std::vector<Effect> known;        ///< effects that the building is known to have
+  std::vector<EffectKind> without;  ///< excluded names
+  Parallel parallel;                ///< the result does not depend on it
+  /// Called with a name of the current step and the share of the whole that is done, 0 to 1.
+  std::function<void(const std::string&, double)> progress;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,113 @@
+#include "estimator/diagnose/verdict/verdict.h"
+
+#include <algorithm>
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kAdequateGap = 2;     ///< NRMSE over its floor
+constexpr double kExplainsAll = 0.97;  ///< of the misfit beyond noise
+constexpr double kNearFloor = 2.5;     ///< NRMSE over its floor
+constexpr double kAtFloor = 1.15;      ///< the same
+constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
+constexpr int kTrainSteps = 8;
+/// Of the misfit beyond noise that is left at most when each record is fitted separately.
+constexpr double kApart = 0.25;
+
+/// Whether every segment fits a linear building of its own.
+bool fits_separately(const Fitter& fitter, double ratio_before) {
+  double misfit = 0, noise = 0;
+  for (const RecordSegment& s : fitter.segments()) {
+    const std::vector<RecordSegment> one{s};
+    const Fitter alone(fitter.plant(), one, fitter.tolerances());
+    const FitResult fitted = alone.fit(initial_model(fitter.plant()), {}, {});
+    if (!fitted.good) return false;
+    misfit += fitted.total_misfit();
+    noise += alone.expected(0, fitted.model);
+  }
+  return misfit / noise - 1 < kApart * (ratio_before - 1);
+}
+
+}  // namespace
+
+const char* verdict_word(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::adequate:
+      return "adequate";
+    case Verdict::explained:
+      return "explained";
+    case Verdict::partly_explained:
+      return "partly_explained";
+    case Verdict::unexplained:
+      break;
+  }
+  return "unexplained";
+}
+
+std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
+  std::vector<Gap> out;
+  for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
+    const RecordSegment& s = fitter.segments()[r];
+    const Whitened system =
+        whiten(fitter.plant(), model, s, r, Forcing::simulated, {}, fitter.ratio(r));
+    if (system.good) out.push_back(gap_of(fitter.plant(), model, s, system));
+  }
+  return out;
+}
+
+double mean_gap(const std::vector<Gap>& gaps, std::size_t from) {
+  double error = 0;
+  for (std::size_t r = from; r < gaps.size(); ++r) error += gaps[r].overall;
+  return gaps.size() > from ? error / static_cast<double>(gaps.size() - from) : 0;
+}
+
+void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
+  const std::vector<RecordSegment>& segments = fitter.segments();
+  const std::vector<RecordSegment> seen(
+      segments.begin(),
+      segments.begin() + static_cast<long>(std::min(holdout_from, segments.size())));
+  const Fitter train(fitter.plant(), seen, fitter.tolerances());
+  const auto of_train = [&](const Model& start) {
+    const FitResult fitted = train.fit(start, {}, thorough(start, kTrainSteps));
+    return gaps_of(fitter, fitted.good ? fitted.model : start);
+  };
+  out.before = of_train(out.linear);
+  if (out.effects.empty()) {
+    out.after = out.before;
+    return;
+  }
+  out.after = of_train(out.model);
+  const std::vector<Gap> all = gaps_of(fitter, out.model);
+  if (mean_gap(out.after, holdout_from) > kUndetermined * mean_gap(all, holdout_from)) {
+    out.after = all;
+    out.after_of_all = true;
+  }
+}
+
+void judge(const Fitter& fitter, Diagnosis& out) {
+  double worst = 0, gap = 0, floor = 0, before = 0;
+  for (const Gap& g : out.after) {
+    worst = std::max(worst, g.overall / std::max(g.overall_floor, 1e-12));
+    gap += g.overall;
+    floor += g.overall_floor;
+  }
+  for (const Gap& g : out.before)
+    before = std::max(before, g.overall / std::max(g.overall_floor, 1e-12));
+  const bool fits = out.ratio_after < kAdequate || worst < kAtFloor;
+  if (out.effects.empty()) {
+    const bool adequate = fits && (before < kAdequateGap || out.rejected.empty());
+    out.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
+    if (!adequate && out.reason.empty() && fits_separately(fitter, out.ratio_before))
+      out.reason =
+          "each record alone fits a linear building, all of them together do not: they are of "
+          "different buildings, or the building changed between them";
+    return;
+  }
+  const double fraction =
+      (out.ratio_before - out.ratio_after) / std::max(out.ratio_before - 1, 1e-9);
+  out.verdict = fits || (fraction > kExplainsAll && gap < kNearFloor * floor)
+                    ? Verdict::explained
+                    : Verdict::partly_explained;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/structure/effect.h"
+#include "estimator/structure/sensors.h"
+
+namespace framewatch::estimator {
+
+/// Corrects the measured accelerations for the sensor errors that a model knows (effects of
+/// channels), so that they compare with the building's motion. A drifting bias is left to the
+/// high-pass.
+class AxisCorrection {
+ public:
+  /// axes: with the remaining fractions of their delays.
+  AxisCorrection(const std::vector<SensorAxis>& axes, const std::vector<Effect>& effects,
+                 double rate_hz);
+
+  /// Instants by which all axes are held back to wait for the latest.
+  int held_back() const { return longest_; }
+  /// The fraction of each axis' delay that remains, at most half an instant, in instants.
+  const std::vector<double>& rest() const { return rest_; }
+  /// accel: one value per axis, NaN where missing; valid until the next call.
+  const std::vector<double>& apply(const std::vector<double>& accel);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(ring_, newest_);
+  }
+
+ private:
+  std::vector<Effect> effects_;
+  std::size_t axes_;
+  int longest_ = 0;
+  std::vector<int> whole_;  ///< delays, instants
+  std::vector<double> rest_;
+  std::vector<double> ring_;  ///< instants x axes
+  int newest_ = 0, length_ = 1;
+  std::vector<double> aligned_;
+};
+
+}  // namespace framewatch::estimator

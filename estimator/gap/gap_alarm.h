@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "estimator/gap/gap.h"
+#include "estimator/watch/watch.h"
+
+namespace framewatch::estimator {
+
+/// A lasting gap between simulation and measurement begins or ends.
+struct GapNews {
+  std::int64_t id = 0;  ///< sensor time it was raised, microseconds; the same when it is cleared
+  AlarmState state = AlarmState::raised;
+  Time found, since;  ///< end and start of windows
+  double excess = 0;  ///< sqrt(nrmse^2 - floor^2)
+  int worst_axis = -1;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(id, state, found, since, excess, worst_axis);
+  }
+};
+
+/// Decides when a gap lasts. Windows in which noise alone would be as large as a gap are ignored.
+class GapAlarm {
+ public:
+  explicit GapAlarm(const GapOptions& options) : options_(options) {}
+
+  /// One window per second. Null when nothing begins or ends; valid until the next call.
+  const GapNews* push(const GapWindow& window);
+  bool raised() const { return raised_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(raised_, seconds_, since_, news_);
+  }
+
+ private:
+  GapOptions options_;
+  bool raised_ = false;
+  int seconds_ = 0;  ///< for which the windows have contradicted the alarm
+  Time since_{};
+  GapNews news_;
+};
+
+}  // namespace framewatch::estimator

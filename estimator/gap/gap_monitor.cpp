@@ -1,0 +1,157 @@
+#include "estimator/gap/gap_monitor.h"
+
+#include <cmath>
+#include <limits>
+
+#include "estimator/numeric/nan.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr int kHeld = RunningModel::kDelay + 1;
+
+Direction direction_of(const Structure& s, const SensorAxis& axis) {
+  return axis.frame >= 0 ? s.direction(axis.frame) : axis.direction;
+}
+
+std::vector<DerivativeTriple> triples(const AxisCorrection& correction, double rate_hz) {
+  std::vector<DerivativeTriple> out;
+  for (const double rest : correction.rest()) out.push_back(matched_triple(rate_hz, rest));
+  return out;
+}
+
+std::vector<char> compared(const std::vector<int>& dof) {
+  std::vector<char> out;
+  for (const int d : dof) out.push_back(d >= 0);
+  return out;
+}
+
+}  // namespace
+
+GapMonitor::Current::Current(const GapMonitor& m, const GapModel& model)
+    : correction(m.axes_, model.effects, m.rate_hz_),
+      filter(triples(correction, m.rate_hz_), HighPass(m.high_pass_hz_, m.rate_hz_)),
+      running(m.structure_, m.table_, model, m.rate_hz_, m.high_pass_hz_,
+              m.base_mean(correction.rest())),
+      noise(m.structure_, m.table_, model, m.rate_hz_, m.high_pass_hz_),
+      meter(compared(m.dof_), m.rate_hz_, static_cast<int>(m.options_.window_s)),
+      delay(std::llround(
+          1e6 / m.rate_hz_ *
+          (matched_triple(m.rate_hz_).delay + RunningModel::kDelay + correction.held_back()))),
+      held(m.axes_.size() * kHeld, kNaN) {}
+
+GapMonitor::GapMonitor(const Structure& structure, const std::vector<SensorAxis>& axes,
+                       const EstimatorOptions& estimation, const GapOptions& options,
+                       const std::optional<GapModel>& model)
+    : structure_(structure),
+      table_(structure),
+      axes_(axes),
+      rate_hz_(estimation.rate_hz),
+      high_pass_hz_(estimation.high_pass_hz),
+      options_(options),
+      learner_(std::vector<Watched>(static_cast<std::size_t>(table_.size())), kInfinity),
+      alarm_(options),
+      noise_variance_(axes.size()) {
+  for (const SensorAxis& axis : axes)
+    dof_.push_back(axis.story > 0 ? structure.dof(axis.story, axis.frame) : -1);
+  if (model) adopt(*model);
+}
+
+void GapMonitor::adopt(const GapModel& model) {
+  theta_ = model.theta;
+  current_.emplace(*this, model);
+}
+
+void GapMonitor::learn(const WindowEstimate& estimate, const Eigen::VectorXd& believed) {
+  if (current_) return;
+  (void)learner_.push(estimate);
+  if (learner_.seconds() < options_.learn_s) return;
+  const Baseline seen = learner_.so_far();
+  GapModel model{believed, {}};
+  for (Eigen::Index p = 0; p < model.theta.size(); ++p)
+    if (seen.knows(static_cast<std::size_t>(p)))
+      model.theta[p] = seen.value[static_cast<std::size_t>(p)];
+  adopt(model);
+}
+
+Eigen::Vector2d GapMonitor::base_mean(const std::vector<double>& of_axes) const {
+  Eigen::Vector2d sum(0, 0), count(0, 0);
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    if (dof_[a] >= 0) continue;
+    const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
+    sum[d] += of_axes[a];
+    count[d] += 1;
+  }
+  return sum.array() / count.array().max(1);
+}
+
+void GapMonitor::hold(Current& c) {
+  c.newest = c.newest == 0 ? kHeld - 1 : c.newest - 1;
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    c.held[static_cast<std::size_t>(c.newest) * axes_.size() + a] =
+        c.filter.valid(static_cast<int>(a)) ? c.filter.value(static_cast<int>(a)) : kNaN;
+}
+
+void GapMonitor::compare(Current& c) const {
+  const int then = (c.newest + RunningModel::kDelay) % kHeld;
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const double measured = c.held[static_cast<std::size_t>(then) * axes_.size() + a];
+    if (dof_[a] >= 0 && std::isfinite(measured))
+      c.meter.add(a, measured, c.running.accel_abs(dof_[a]));
+  }
+}
+
+void GapMonitor::noise_variances(const Current& c, const std::vector<double>& noise_density) {
+  Eigen::Vector2d base(0, 0), count(0, 0);
+  const auto variance = [&](std::size_t a) {
+    return c.noise.known() && a < noise_density.size()
+               ? noise_density[a] * noise_density[a] * rate_hz_ / 2
+               : kNaN;
+  };
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    if (dof_[a] >= 0) continue;
+    const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
+    base[d] += variance(a);
+    count[d] += 1;
+  }
+  base = base.array() / count.array().max(1).square();
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    if (dof_[a] >= 0)
+      noise_variance_[a] = variance(a) * c.noise.own() + c.noise.base().row(dof_[a]).dot(base);
+}
+
+const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double>& noise_density) {
+  news_ = nullptr;
+  if (!current_) return nullptr;
+  Current& c = *current_;
+  const bool gap = set.index != c.expected_index;
+  c.expected_index = set.index + 1;
+  if (gap) {
+    c.filter.reset();
+    c.settled_s = 0;
+  }
+  const std::vector<double>& accel = c.correction.apply(set.accel);
+  c.filter.push(accel);
+  hold(c);
+  c.noise.advance();
+  const Eigen::Vector2d base = base_mean(accel);
+  if (!base.allFinite()) {
+    c.settled_s = 0;
+    return nullptr;
+  }
+  if (c.settled_s == 0) {
+    c.running.restart();
+    c.meter.restart();
+  }
+  c.running.push(base);
+  c.settled_s += 1 / rate_hz_;
+  if (c.settled_s < c.running.settle_s()) return nullptr;
+  compare(c);
+  if (c.meter.ends_second()) noise_variances(c, noise_density);
+  if (!c.meter.close(set.time - c.delay, noise_variance_)) return nullptr;
+  news_ = alarm_.push(c.meter.gap());
+  return &c.meter.gap();
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "estimator/gap/axis_correction.h"
+#include "estimator/gap/gap_alarm.h"
+#include "estimator/gap/gap_meter.h"
+#include "estimator/gap/noise_path.h"
+#include "estimator/gap/running_model.h"
+#include "estimator/motion/drift_controlled_integrator.h"
+#include "estimator/setup/options.h"
+#include "estimator/structure/sensors.h"
+
+namespace framewatch::estimator {
+
+/// Simulates the current model under the measured base motion continuously and gives the gap to
+/// what the axes above measure. docs/gap.md, docs/equations.md (42) to (44). Base axes of one
+/// direction are averaged: a turning base is a gap.
+class GapMonitor {
+ public:
+  /// axes: with the remaining fractions of their delays (Pipeline::axes). model: none: it is
+  /// learned.
+  GapMonitor(const Structure& structure, const std::vector<SensorAxis>& axes,
+             const EstimatorOptions& estimation, const GapOptions& options,
+             const std::optional<GapModel>& model);
+
+  /// Replaces the model and begins anew. Not bounded in time, and allocates.
+  void adopt(const GapModel& model);
+  bool has_model() const { return current_.has_value(); }
+
+  /// An estimate of the main window, to learn a model from. believed: values of the parameters that
+  /// windows do not show, theta order.
+  void learn(const WindowEstimate& estimate, const Eigen::VectorXd& believed);
+  /// One calibrated instant; noise_density of each axis, m/s^2/sqrt(Hz), or none. Once a second,
+  /// while there is something to compare, the gap of the last window; valid until the next call.
+  const GapWindow* push(const SampleSet& set, const std::vector<double>& noise_density);
+  /// The alarm that began or ended at the last push(), or null.
+  const GapNews* news() const { return news_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    bool modelled = has_model();
+    std::vector<double> theta;
+    if (modelled) theta.assign(theta_.begin(), theta_.end());
+    a(learner_, alarm_, modelled, theta);
+    if constexpr (Archive::kReading) {
+      if (modelled && !has_model() && theta.size() == static_cast<std::size_t>(table_.size()))
+        adopt({Eigen::Map<const Eigen::VectorXd>(theta.data(), table_.size()), {}});
+    }
+    if (modelled && has_model()) a(*current_);
+  }
+
+ private:
+  /// One model and everything that depends on it.
+  struct Current {
+    Current(const GapMonitor& monitor, const GapModel& model);
+
+    AxisCorrection correction;
+    DriftControlledIntegrator filter;
+    RunningModel running;
+    NoisePath noise;
+    GapMeter meter;
+    SensorClock::duration delay;  ///< of what is compared
+    std::vector<double> held;     ///< ring of instants x axes: filtered, NaN where not valid
+    int newest = 0;
+    double settled_s = 0;
+    std::int64_t expected_index = -1;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(correction, filter, running, noise, meter, held, newest, settled_s, expected_index);
+    }
+  };
+  /// Mean over the base axes, x and y.
+  Eigen::Vector2d base_mean(const std::vector<double>& of_axes) const;
+  void hold(Current& c);
+  void compare(Current& c) const;
+  void noise_variances(const Current& c, const std::vector<double>& noise_density);
+
+  Structure structure_;
+  ParameterTable table_;
+  std::vector<SensorAxis> axes_;
+  std::vector<int> dof_;  ///< of each axis; -1: base
+  double rate_hz_, high_pass_hz_;
+  GapOptions options_;
+  BaselineLearner learner_;
+  Eigen::VectorXd theta_;
+  std::optional<Current> current_;
+  GapAlarm alarm_;
+  std::vector<double> noise_variance_;
+  const GapNews* news_ = nullptr;
+};
+
+}  // namespace framewatch::estimator

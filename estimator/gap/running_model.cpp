@@ -1,0 +1,112 @@
+#include "estimator/gap/running_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/simulate/building_model.h"
+#include "estimator/simulate/linear_building.h"
+#include "estimator/simulate/nonlinear_building.h"
+#include "estimator/structure/matrices.h"
+#include "estimator/structure/natural_frequencies.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kLongestStep_s = 1e-3;
+constexpr double kBias_s = 150;  ///< far slower than any motion
+constexpr double kLeft = 0.01;   ///< of a free vibration, after the time to settle
+constexpr double kLeastSettle_s = 2, kMostSettle_s = 120;
+
+std::unique_ptr<SimulatedBuilding> building_of(const Structure& structure,
+                                               const ParameterTable& table, const GapModel& model,
+                                               double step_s) {
+  std::vector<Effect> effects;
+  for (const Effect& e : model.effects)
+    if (!is_channel_effect(e.kind) && e.kind != EffectKind::unmeasured_force) effects.push_back(e);
+  if (!concerns_building(effects))
+    return std::make_unique<LinearBuilding>(structure, table, model.theta, step_s);
+  return std::make_unique<NonlinearBuilding>(structure, table, model.theta, effects, step_s);
+}
+
+/// By the frames' share of damping in the first mode.
+double settle_time(const Structure& structure, const ParameterTable& table,
+                   const Eigen::VectorXd& theta) {
+  const double w1 = 2 * M_PI * natural_frequencies_hz(structure, table, theta).front();
+  double k = 0, c = 0;
+  for (int i = 0; i < table.elements(); ++i) {
+    if (table[i].frame < 0) continue;
+    k += theta[i];
+    c += theta[i + table.elements()];
+  }
+  const double decay = c / k * w1 * w1 / 2;
+  return std::clamp(-std::log(kLeft) / decay, kLeastSettle_s, kMostSettle_s);
+}
+
+}  // namespace
+
+RunningModel::RunningModel(const Structure& structure, const ParameterTable& table,
+                           const GapModel& model, double rate_hz, double high_pass_hz,
+                           const Eigen::Vector2d& late)
+    : steps_(static_cast<int>(std::ceil(1 / (rate_hz * kLongestStep_s) - 1e-9))),
+      building_(building_of(structure, table, model, 1 / (rate_hz * steps_))),
+      rest_(building_->motion()),
+      settle_s_(settle_time(structure, table, model.theta)),
+      taps_x_(taps(steps_, late.x())),
+      taps_y_(taps(steps_, late.y())),
+      base_(2 * kTaps),
+      bias_share_(1 / (kBias_s * rate_hz)),
+      filter_(
+          std::vector<DerivativeTriple>(static_cast<std::size_t>(structure.degrees_of_freedom()),
+                                        matched_triple(rate_hz)),
+          HighPass(high_pass_hz, rate_hz)),
+      unfiltered_(static_cast<std::size_t>(structure.degrees_of_freedom())) {
+  restart();
+}
+
+RunningModel::Taps RunningModel::taps(int steps, double late) {
+  Taps out(steps, kTaps);
+  // The step from kDelay + 1 instants ago to kDelay ago ends at these places between samples.
+  for (int step = 0; step < steps; ++step) {
+    const double end = static_cast<double>(step + 1) / steps + late;
+    for (int age = 0; age < kTaps; ++age) {
+      const double at = age - kDelay - 1 + end;
+      const double window = std::abs(at) <= kDelay ? std::cos(M_PI * at / (2 * kDelay)) : 0;
+      const double sinc = std::abs(at) < 1e-12 ? 1 : std::sin(M_PI * at) / (M_PI * at);
+      out(step, age) = sinc * window * window;
+    }
+    out.row(step) /= out.row(step).sum();
+  }
+  return out;
+}
+
+void RunningModel::restart() {
+  (void)building_->resume(rest_);
+  building_->set_time(kAfterEverything_s);
+  std::fill(base_.begin(), base_.end(), 0.0);
+  before_.setZero();
+  bias_.setZero();
+  filter_.reset();
+}
+
+void RunningModel::push(const Eigen::Vector2d& base) {
+  bias_ += bias_share_ * (base - bias_);
+  newest_ = newest_ == 0 ? kTaps - 1 : newest_ - 1;
+  base_[static_cast<std::size_t>(2 * newest_)] = base.x() - bias_.x();
+  base_[static_cast<std::size_t>(2 * newest_ + 1)] = base.y() - bias_.y();
+  building_->set_time(kAfterEverything_s);
+  for (int step = 0; step < steps_; ++step) {
+    Eigen::Vector2d after(0, 0);
+    for (int age = 0; age < kTaps; ++age) {
+      const auto at = static_cast<std::size_t>(2 * ((newest_ + age) % kTaps));
+      after.x() += taps_x_(step, age) * base_[at];
+      after.y() += taps_y_(step, age) * base_[at + 1];
+    }
+    building_->advance(before_, after);
+    before_ = after;
+  }
+  const Eigen::VectorXd& accel = building_->accel_abs();
+  std::copy(accel.begin(), accel.end(), unfiltered_.begin());
+  filter_.push(unfiltered_);
+}
+
+}  // namespace framewatch::estimator

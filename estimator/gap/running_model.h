@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/gap/gap.h"
+#include "estimator/motion/drift_controlled_integrator.h"
+#include "estimator/simulate/simulated_building.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch::estimator {
+
+/// A model that is simulated in step with the building, under its measured base motion. Between the
+/// samples the base motion is interpolated by a windowed sinc, at steps of 1 ms at most. The
+/// floors' accelerations pass drift control and filter as the measured ones do; the base motion
+/// does not, because nonlinear laws do not commute with a filter.
+class RunningModel {
+ public:
+  /// late: delay of the base's samples (x, y), less than an instant, in instants.
+  RunningModel(const Structure& structure, const ParameterTable& table, const GapModel& model,
+               double rate_hz, double high_pass_hz, const Eigen::Vector2d& late = {0, 0});
+
+  /// Model and base at rest, also in the past.
+  void restart();
+  /// Absolute acceleration of the base (x, y) at the next instant, m/s^2.
+  void push(const Eigen::Vector2d& base);
+  /// Filtered absolute acceleration of a degree of freedom (Structure::dof), m/s^2: what a sensor
+  /// there and a DriftControlledIntegrator give kDelay instants before the newest.
+  double accel_abs(int dof) const { return filter_.value(dof); }
+  /// Time after which the initial state is forgotten.
+  double settle_s() const { return settle_s_; }
+
+  static constexpr int kDelay = 16;  ///< instants
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    std::vector<double> motion = building_->motion();
+    a(base_, newest_, bias_, before_, motion, filter_);
+    if constexpr (Archive::kReading) {
+      if (!building_->resume(motion)) restart();
+    }
+  }
+
+ private:
+  static constexpr int kTaps = 2 * kDelay + 1;
+  static constexpr double kAfterEverything_s = 1e6;
+
+  int steps_;  ///< per instant
+  std::unique_ptr<SimulatedBuilding> building_;
+  std::vector<double> rest_;  ///< its motion
+  double settle_s_;
+  using Taps = Eigen::Matrix<double, Eigen::Dynamic, kTaps>;
+  static Taps taps(int steps, double late);
+  Taps taps_x_, taps_y_;      ///< steps x instants, newest first
+  std::vector<double> base_;  ///< ring of kTaps instants, x and y
+  int newest_ = 0;
+  double bias_share_;  ///< of a sample in the slow mean that is no motion
+  Eigen::Vector2d bias_{0, 0};
+  Eigen::Vector2d before_{0, 0};
+  DriftControlledIntegrator filter_;
+  std::vector<double> unfiltered_;
+};
+
+}  // namespace framewatch::estimator

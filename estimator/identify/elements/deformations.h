@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "estimator/identify/elements/floor_layout.h"
+#include "estimator/motion/drift_controlled_integrator.h"
+#include "estimator/structure/sensors.h"
+
+namespace framewatch::estimator {
+
+/// Motion of the whole building at one instant as the regressor rows need it, floor by floor:
+/// [p of the frames, p' of the frames, p of the panels, p' of the panels] as element deformations
+/// (absolute motion of the upper end minus the lower, panels sheared), then mass times p'' of the
+/// frames, absolute. stride() values per floor; the first own() of them follow FloorLayout.
+struct DeformationSet {
+  std::vector<double> values;
+  /// One flag per (floor 0..N, frame): its motion is known. Floor 0 is the base.
+  std::vector<std::uint8_t> known;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(values, known);
+  }
+};
+
+/// Turns filtered axis motion into element deformations.
+class Deformations {
+ public:
+  Deformations(const Structure& structure, const FloorLayout& layout,
+               const std::vector<SensorAxis>& axes);
+
+  int stride() const { return layout_->own() + layout_->frames(); }
+  int floors() const { return layout_->floors(); }
+  void compute(const DriftControlledIntegrator& motion, DeformationSet& set) const;
+  DeformationSet make_set() const;
+
+  /// An axis' share in the motion of a place.
+  struct Weighted {
+    int axis;
+    double weight;
+  };
+  /// The axes that give the motion at (floor 0..N, frame); empty when no sensor does.
+  const std::vector<Weighted>& at(int floor, int frame) const {
+    return place_[static_cast<std::size_t>(floor * layout_->frames() + frame)];
+  }
+  /// Configured noise of every axis, m/s^2/sqrt(Hz); kDefaultNoiseDensity where it is not.
+  const std::vector<double>& noise_density() const { return noise_density_; }
+
+ private:
+  const FloorLayout* layout_;
+  std::vector<std::vector<Weighted>> place_;  ///< axes that give the motion at a place
+  std::vector<double> noise_density_;
+  std::vector<double> mass_;
+  struct Panel {
+    int u0, u1, v0, v1;
+    double bu, bv;
+  };
+  std::vector<Panel> panels_;
+};
+
+/// Variance of one sample of white sensor noise, (m/s^2)^2; density one-sided, m/s^2/sqrt(Hz).
+inline double noise_variance(double density, double rate_hz) {
+  return density * density * rate_hz / 2;
+}
+
+/// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
+/// axes matter to the estimate: the level is taken from the residuals.
+inline constexpr double kDefaultNoiseDensity = 1e-4;
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimator/motion/sample.h"
+
+namespace framewatch::estimator {
+
+enum class WindowStatus { warming_up, valid, nothing_identifiable };
+
+/// Why a parameter has no value; observable means it has one. quiet: its element moves too little
+/// above the sensors' noise; floor_too_stiff: the frames move, but this floor panel does not shear
+/// enough; symmetric_plan: it cannot shear, because the frames of each direction are alike.
+enum class Observability {
+  observable,
+  warming_up,
+  quiet,
+  floor_too_stiff,
+  symmetric_plan,
+  channel_lost
+};
+
+/// Statistics of one parameter over the last windows in which it was observable, as MATLAB's
+/// boxplot draws them; NaN when there was none.
+struct BoxplotStatistics {
+  double q1;
+  double median;
+  double q3;
+  double whisker_low;
+  double whisker_high;
+  int outliers = 0;
+  int count = 0;  ///< windows behind the numbers
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(q1, median, q3, whisker_low, whisker_high, outliers, count);
+  }
+};
+
+/// What one window says. Vectors follow the parameter table; entries that are not observable are
+/// NaN. A value-initialised estimate is not valid.
+struct WindowEstimate {
+  WindowEstimate() = default;
+  explicit WindowEstimate(std::size_t parameters);
+
+  int window = 0;  ///< 0 = the main window, i = EstimatorOptions::other_windows_s[i - 1]
+  Time start;
+  Time end;
+  std::int64_t sequence = -1;
+  WindowStatus status = WindowStatus::warming_up;
+  int rows = 0;                   ///< sample sets in the window
+  double residual_ratio = 0;      ///< rms residual over rms response
+  std::vector<double> value;      ///< SI
+  std::vector<double> std_error;  ///< SI, one standard deviation
+  std::vector<Observability> reason;
+  std::vector<double> snr;          ///< regressor energy over its expected noise energy
+  std::vector<double> prior_share;  ///< 0..1: share of the prior in the value
+  std::vector<double> noise_share;  ///< 0..1: of the noise that remains in the regressors
+  /// The newest value that was observable, this window's or an older one's, with the end of its
+  /// window; NaN when there was none. Main window only.
+  std::vector<double> last_value, last_std_error;
+  std::vector<Time> last_end;
+  std::vector<BoxplotStatistics> boxplot;
+  /// What the normal equations say before the gate, SI; for study, never published.
+  std::vector<double> solution;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(start, end, sequence, status, rows, residual_ratio, value, std_error, reason, snr);
+    a(prior_share, noise_share, last_value, last_std_error, last_end, boxplot, solution);
+  }
+};
+
+}  // namespace framewatch::estimator

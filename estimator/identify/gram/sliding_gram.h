@@ -1,0 +1,149 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimator/identify/elements/floor_layout.h"
+#include "estimator/identify/regressors/regressor_filter.h"
+
+namespace framewatch::estimator {
+
+/// Where the packed Gram matrix of each floor lies in one flat array.
+struct GramShape {
+  explicit GramShape(const FloorLayout& layout);
+  struct Floor {
+    std::size_t offset;
+    int front;
+    int stride;
+  };
+  std::vector<Floor> floor;
+  std::size_t size = 0;
+};
+
+/// A window's sum of H^T H in three parts that are to be added.
+struct WindowParts {
+  const GramShape* shape;
+  const double* newest;
+  const double* middle;
+  const double* oldest;
+  int rows;                          ///< instants
+  const std::vector<int>* instants;  ///< per floor: those in which it had rows
+};
+
+/// The Gram matrix of the sliding window, floor by floor: the sum of H^T H over the rows [h, z] of
+/// the regression, kept up recursively as rows enter and leave, without a single subtraction: sums
+/// of whole blocks, of the block being filled, and prepared sums of what remains of the oldest
+/// block. Rounding errors of a strong motion therefore leave with its rows. docs/equations.md,
+/// block sums.
+///
+/// In block b, row j (1-based): window = suffix of block b-blocks (rows j+1..) + blocks between +
+/// rows 1..j of block b. The suffixes are built backwards, one row per instant, during block b-1,
+/// from rows that a second, delayed regressor filter formed during block b-2.
+///
+/// Spans are further windows of whole blocks, summed from the same blocks a fifth of their length
+/// apart, at most once per block.
+class SlidingGram {
+ public:
+  /// spans: their lengths in blocks.
+  SlidingGram(const FloorLayout& layout, int blocks, int block_rows,
+              const std::vector<int>& spans = {});
+
+  void reset();
+  /// Instants by which the delayed regressor filter lags behind the first.
+  int lag() const { return (blocks_ - 2) * block_rows_; }
+
+  /// Adds one instant; the window's sum is then that of window().
+  void push(const RegressorFilter& entering);
+  /// Prepares the next instant, once the sum has been used. delayed: the delayed filter at the
+  /// instant lag() before the one pushed, or null while there is none. True when a block closed.
+  bool maintain(const RegressorFilter* delayed);
+
+  bool full() const { return pushed_ >= static_cast<std::int64_t>(blocks_) * block_rows_; }
+  /// After push(): maintain() will close a block.
+  bool block_full() const { return pushed_ % block_rows_ == 0; }
+  int window_rows() const { return blocks_ * block_rows_; }
+  /// Instants in the window so far.
+  int rows() const;
+
+  const GramShape& shape() const { return shape_; }
+  /// Valid from push() to maintain().
+  WindowParts window();
+  /// The block that maintain() closed is the last of a whole span.
+  bool span_full(int i) const {
+    const Span& span = spans_[static_cast<std::size_t>(i)];
+    const std::int64_t closed = pushed_ / block_rows_;
+    return closed >= span.blocks && closed % span.every == 0;
+  }
+  /// Valid from the maintain() that closed its last block to the one that closes the next.
+  WindowParts span(int i);
+  /// Instants of the longest window.
+  int longest_rows() const { return held_blocks_ * block_rows_; }
+  int spans() const { return static_cast<int>(spans_.size()); }
+  int blocks() const { return blocks_; }
+  int block_rows() const { return block_rows_; }
+  /// Completed block, age 0 = the newest; valid after maintain().
+  const double* block(int age) const;
+
+  /// Per floor: instants of the newest completed block in which it had rows.
+  const int* newest_instants() { return counts(pushed_ / block_rows_ - 1); }
+
+  /// A completed block as a number, -1 for none, and back.
+  std::int64_t number_of(const double* block) const {
+    return block == nullptr ? -1 : (block - blocks_ring_.data()) / std::ptrdiff_t(shape_.size);
+  }
+  const double* block_of(std::int64_t number) const {
+    return number < 0 || number >= held_blocks_
+               ? nullptr
+               : &blocks_ring_[static_cast<std::size_t>(number) * shape_.size];
+  }
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(pushed_, current_, middle_, next_middle_, spans_, blocks_ring_, suffixes_, stored_rows_);
+    a(stored_counts_, forward_, middle_instants_, counts_);
+    oldest_ = zero_.data();
+  }
+
+ private:
+  double* suffix(int slot) { return &suffixes_[static_cast<std::size_t>(slot - 1) * shape_.size]; }
+  void build_suffix(int j);
+  void store_delayed(const RegressorFilter& delayed, int j);
+  void count_instants(std::int64_t first, std::int64_t last, std::vector<int>& instants);
+  /// Adds the part-th of `parts` slices of the completed blocks first..last - 1 to a sum.
+  void add_slice(std::int64_t first, std::int64_t last, int part, int parts,
+                 std::vector<double>& sum);
+  void add_slices(int j);
+  void close_block();
+  int* counts(std::int64_t block) {
+    return &counts_[static_cast<std::size_t>(block % (held_blocks_ + 1) * floors_)];
+  }
+
+  GramShape shape_;
+  int floors_;
+  int blocks_, block_rows_;
+  int held_blocks_;  ///< of the longest window
+  std::int64_t pushed_ = 0;
+  std::vector<double> current_, middle_, next_middle_, zero_;
+  struct Span {
+    int blocks, every;
+    std::vector<double> next, sum;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(next, sum);
+    }
+  };
+  std::vector<Span> spans_;
+  std::vector<double> blocks_ring_;      ///< held blocks x state
+  std::vector<double> suffixes_;         ///< (block_rows - 1) x state
+  std::vector<double> stored_rows_;      ///< block_rows x rows of one instant
+  std::vector<int> stored_counts_;       ///< block_rows x floors
+  std::vector<std::size_t> row_offset_;  ///< of a floor in one instant's rows
+  std::size_t instant_rows_ = 0;
+  bool forward_ = true;  ///< direction in which this block uses the slots
+  const double* oldest_ = nullptr;
+  std::vector<int> instants_;
+  std::vector<int> middle_instants_;  ///< of the main window's completed blocks
+  std::vector<int> counts_;  ///< (held blocks + 1) x floors, the current block's among them
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/elements/deformations.h"
+#include "estimator/identify/elements/floor_layout.h"
+
+namespace framewatch::estimator {
+
+/// How the sensor axes' noise enters one floor's motion and deformations.
+struct FloorNoise {
+  std::vector<int> axes;        ///< those that do
+  Eigen::VectorXd variance;     ///< of one sample, per axis, (m/s^2)^2
+  Eigen::MatrixXd motion;       ///< frames x axes
+  Eigen::MatrixXd deformation;  ///< front unknowns x axes
+  Eigen::MatrixXd covariance;   ///< front unknowns x front unknowns, of deformations
+  std::vector<bool> damping;    ///< per unknown: multiplies a rate, not a deformation
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(variance, covariance);
+  }
+};
+
+/// noise_density: of every axis, m/s^2/sqrt(Hz).
+FloorNoise floor_noise(const FloorLayout& layout, const Deformations& deformations,
+                       const std::vector<double>& noise_density, double rate_hz, int floor);
+
+/// Other densities for the same axes: variance and covariance anew, without allocating.
+void set_noise_density(FloorNoise& noise, const std::vector<double>& density, double rate_hz);
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimator/identify/regressors/regressor_tuning.h"
+
+namespace framewatch::estimator {
+
+/// Forms the regression's rows of every floor from p, p' and p'' of the element deformations: each
+/// row passes its oscillator section (docs/equations.md (12), the last part of the drift-controlled
+/// integrator) and is weighted, (13). A pure function of the deformation sets since the start: two
+/// filters given the same sets make the same rows to the bit, so the rows that leave the window are
+/// formed again instead of stored.
+class RegressorFilter {
+ public:
+  /// settle: instants a floor's filters run before its rows count, after a start or when another
+  /// set of motions is known. The tuning must outlive the filter. Allocates when constructed, never
+  /// after.
+  RegressorFilter(RegressorTuning& tuning, const FloorLayout& layout, int settle);
+
+  /// Back to the state of a new filter, with the tuning as it is now.
+  void reset(int settle);
+  void push(const DeformationSet& set);
+
+  /// rows x padded(front) of a floor at the last push; count() is 0 while it settles.
+  const double* rows(int floor) const { return &rows_[offset_[static_cast<std::size_t>(floor)]]; }
+  int count(int floor) const {
+    const Floor& f = floor_[static_cast<std::size_t>(floor)];
+    return f.settling > 0 ? 0 : f.rows->rows;
+  }
+  const FloorRows& floor_rows(int floor) const {
+    return *floor_[static_cast<std::size_t>(floor)].rows;
+  }
+  /// Doubles of all floors' rows, and where a floor's begin.
+  std::size_t size() const { return rows_.size(); }
+  std::size_t offset(int floor) const { return offset_[static_cast<std::size_t>(floor)]; }
+  const double* data() const { return rows_.data(); }
+
+  /// Where floor_rows() comes from: 1 the tuning, 2 what some known motions leave, 0 neither.
+  std::uint8_t origin_of(int floor, const FloorRows* rows) const {
+    if (rows == nullptr) return 0;
+    if (rows == &tuning_->rows(floor)) return 1;
+    return rows == &floor_[static_cast<std::size_t>(floor)].some_known ? 2 : 0;
+  }
+  const FloorRows* floor_rows_from(int floor, std::uint8_t origin) const {
+    if (origin == 1) return &tuning_->rows(floor);
+    return origin == 2 ? &floor_[static_cast<std::size_t>(floor)].some_known : nullptr;
+  }
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(settle_, known_, rows_);
+    for (int floor = 0; floor < layout_->floors(); ++floor) {
+      Floor& f = floor_[static_cast<std::size_t>(floor)];
+      std::uint8_t origin = origin_of(floor, f.rows);
+      a(origin, f.some_known, f.s1, f.s2, f.settling);
+      f.rows = floor_rows_from(floor, origin == 2 ? 2 : 1);
+    }
+  }
+
+ private:
+  struct Floor {
+    const FloorRows* rows = nullptr;  ///< the tuning's, or those below
+    FloorRows some_known;
+    std::vector<double> s1, s2;
+    int settling = 0;
+  };
+  void rebuild(int floor);
+  bool all_known_around(int floor) const;
+  bool same_surroundings(int floor, const std::vector<std::uint8_t>& known) const;
+
+  RegressorTuning* tuning_;
+  const FloorLayout* layout_;
+  int settle_;
+  std::vector<std::uint8_t> known_;
+  std::vector<int> changed_;
+  std::vector<Floor> floor_;
+  std::vector<std::size_t> offset_;
+  std::vector<double> rows_;
+  std::vector<double> signal_, response_;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/identify/elements/floor_layout.h"
+#include "estimator/identify/elements/perturbed_designs.h"
+#include "estimator/identify/gram/sliding_gram.h"
+#include "estimator/identify/solve/noise_compensation.h"
+#include "estimator/identify/solve/story_factor.h"
+#include "estimator/identify/solve/story_solver.h"
+
+namespace framewatch::estimator {
+
+/// Standard deviation of every relative unknown: spread, by batch means (the scores of the window's
+/// blocks, nearly independent although the residuals inside a block are not, carried through the
+/// factored normal equations), and bias: how far prior and noise can move the solution toward a
+/// design that is wrong by its tolerance. docs/equations.md, batch means.
+///
+/// A pass begins when a block closes and takes steps(), spread over the instants of the next block
+/// by their count, so that no instant is late. Results are those of the last completed pass. The
+/// scores are those of the newest kBlocks blocks about a solution that fits them, whatever the
+/// window's length: a short window has too few blocks, so it takes these, scaled to its own
+/// information.
+class BatchMeans {
+ public:
+  static constexpr int kBlocks = 20;
+
+  /// compensation: share of the noise, see NoiseCompensation.
+  explicit BatchMeans(const FloorLayout& layout, double compensation = kCompensatedShare);
+
+  /// The window of kBlocks blocks and the solution that fits it.
+  struct Fit {
+    const std::vector<double>* solution;
+    const std::vector<double>* information;
+  };
+  /// sums: SlidingGram, after maintain() closed the block that ends the window `solver` solved and
+  /// `fit` fits, and before the next one closes: the pass must be done by then; or other blocks
+  /// that last as long. Takes the solver's factor; its solution stays. noise_level: variance of the
+  /// noise over the tuning's.
+  template <typename Sums>
+  void begin(const Sums& sums, StorySolver& solver, const Fit& fit,
+             const std::vector<double>& prior, const NoiseCompensation& noise, double noise_level) {
+    for (int b = 0; b < kBlocks; ++b) block_[static_cast<std::size_t>(b)] = sums.block(b);
+    begin(sums.shape(), solver, fit, prior, noise, noise_level);
+  }
+  /// Of a whole pass.
+  int steps() const { return 2 * layout_.floors(); }
+  bool running() const { return next_step_ < steps(); }
+  /// Goes on by at most `count` steps; true when that completed the pass.
+  bool advance(int count);
+  /// Abandons the pass under way, if any; results stay.
+  void cancel() { next_step_ = steps(); }
+
+  /// From now on the unknown is relative to another theta0: times `factor`.
+  void rescale(int unknown, double factor) {
+    std_error_[static_cast<std::size_t>(unknown)] *= factor;
+  }
+  /// Internal order, relative to theta0.
+  const std::vector<double>& std_error() const { return std_error_; }
+  /// Share of the prior in the solution, 0..1 and rounding.
+  const std::vector<double>& prior_share() const { return prior_share_; }
+  /// Share of the noise that remains in the equations, 0..1 and rounding.
+  const std::vector<double>& noise_share() const { return noise_share_; }
+
+  /// rows, sums: those of the pass under way, if any.
+  template <typename Archive, typename Sums>
+  void archive(Archive& a, const RegressorFilter& rows, const Sums& sums) {
+    a(next_step_, factor_, inverse_, noise_level_, columns_values_, solution_, score_scale_);
+    a(prior_, inverse_diagonal_, new_error_, new_share_, new_noise_share_);
+    a(std_error_, prior_share_, noise_share_);
+    noise_.archive(a, rows);
+    shape_ = &sums.shape();
+    for (const double*& block : block_) {
+      std::int64_t number = running() ? sums.number_of(block) : -1;
+      a(number);
+      block = sums.block_of(number);
+    }
+  }
+
+ private:
+  void begin(const GramShape& shape, StorySolver& solver, const Fit& fit,
+             const std::vector<double>& prior, const NoiseCompensation& noise, double noise_level);
+  void assemble(int floor);
+  void add_block_scores(int floor);
+  void add_bias_columns(int floor);
+  void finish(int floor);
+  double* columns(int unknown) { return columns_values_.data() + unknown * columns_; }
+
+  FloorLayout layout_;
+  int columns_;
+  StoryFactor factor_;
+  InverseDiagonal inverse_;
+  NoiseCompensation noise_;
+  double noise_level_ = 0;
+  int next_step_;
+  const GramShape* shape_ = nullptr;
+  std::vector<const double*> block_;
+  std::vector<double> columns_values_;  ///< unknowns x (blocks, then perturbations)
+  PerturbedDesigns perturbed_;
+  std::vector<double> solution_, score_scale_, prior_, x_, score_, inverse_diagonal_;
+  std::vector<double> new_error_, new_share_, new_noise_share_;
+  std::vector<double> std_error_, prior_share_, noise_share_;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/identify/window/tuned_regression.h"
+#include "estimator/identify/window/window_solution.h"
+
+namespace framewatch::estimator {
+
+/// The normal equations of a long window, an hour for instance, in BatchMeans::kBlocks pieces of
+/// whole blocks: it identifies what moves too weakly for an ordinary window. Five windows per
+/// length. docs/equations.md (44).
+///
+/// A block whose response has more than kMostOfUsual times the usual energy is scaled down to that,
+/// so that one strong motion, a single piece without a spread, does not dominate the hour. A block
+/// whose residual under the last solution has more than kMostOfUsualMisfit times the usual energy,
+/// a sensor's spike for instance, is scaled down by the square of the excess. The equations hold
+/// with any weights. Nearly all of the expected sensor noise is subtracted, because over an hour
+/// its sum is hardly random any more.
+class LongWindow {
+ public:
+  static constexpr double kMostOfUsual = 10, kMostOfUsualMisfit = 4, kCompensatedShare = 0.98;
+
+  /// options.long_window_s: at least that of BatchMeans::kBlocks blocks. window: of its estimates.
+  /// Without configured noise the gate is that of ordinary windows: measured noise is too inexact
+  /// to be subtracted from a motion as weak as itself.
+  LongWindow(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
+             const EstimatorOptions& options, int block_rows, int window, bool noise_configured);
+
+  int rows() const { return kPieces * piece_blocks_ * block_rows_; }
+  /// The tuning has changed: everything so far is of other rows and is discarded.
+  void retuned();
+  /// A block has closed at `time`, the end of its last instant. known: places with a working
+  /// sensor. Blocks with other places than the rest are left out; when more of them than a piece
+  /// holds come in a row, the window begins anew with them.
+  void block_closed(SlidingGram& sums, const std::vector<std::uint8_t>& known, Time time);
+
+  struct Context {
+    TunedRegression* regression;
+    const std::vector<std::uint8_t>* known;
+    WindowSolution::Trust trust;
+    bool tuned;
+  };
+  /// One instant's share of the work; the estimate that it completed, or null.
+  const WindowEstimate* advance(const Context& context);
+  /// Of the newest estimate.
+  const WindowSolution& solution() const { return solution_; }
+
+  // Completed pieces as SlidingGram has blocks.
+  const GramShape& shape() const { return shape_; }
+  const double* block(int age) const;
+  std::int64_t number_of(const double* block) const {
+    return block == nullptr ? -1 : (block - ring_.data()) / std::ptrdiff_t(shape_.size);
+  }
+  const double* block_of(std::int64_t number) const {
+    return number < 0 || number >= kPieces ? nullptr
+                                           : &ring_[static_cast<std::size_t>(number) * shape_.size];
+  }
+
+  template <typename Archive>
+  void archive(Archive& a, TunedRegression& regression) {
+    a(ring_, current_, sum_, ring_instants_, instants_, begins_, end_, since_, usual_, blocks_);
+    a(pieces_, rows_, ring_rows_, work_, added_, known_, left_out_, usual_misfit_, fit_);
+    solution_.archive(a, regression.rows(), *this);
+    a(estimate_);
+  }
+
+ private:
+  static constexpr int kPieces = BatchMeans::kBlocks;
+  enum class Work { none, adding, solving, errors };
+  bool fits(const std::vector<std::uint8_t>& known);
+  double weight(const double* block);
+  /// Of the response, or of its residual under the last solution.
+  double energy(const double* block, bool residual);
+  void close_piece();
+  void add_some();
+  void solve(const Context& context);
+  const WindowEstimate& give(const Context& context);
+
+  GramShape shape_;
+  int floors_;
+  std::size_t own_;
+  int block_rows_, piece_blocks_;
+  double rate_hz_;
+  WindowSolution solution_;
+  WindowEstimate estimate_;
+  std::vector<double> ring_, current_, sum_, zero_;
+  std::vector<double> ring_instants_, instants_;  ///< floors of every piece; of the current one
+  std::vector<double> ring_rows_;                 ///< of every piece, weighted
+  std::vector<Time> begins_;                      ///< of every piece
+  Time end_{}, since_{};                          ///< of the newest piece; of the current one
+  std::vector<int> whole_instants_;
+  double usual_ = 0;         ///< energy of a block, about the median; 0: none seen
+  double usual_misfit_ = 0;  ///< likewise, of its residual
+  std::vector<double> fit_;  ///< the last solution
+  std::vector<double> x_;    ///< of one call
+  double rows_ = 0;          ///< of the current piece, weighted
+  int blocks_ = 0;           ///< of the current piece
+  std::int64_t pieces_ = 0;
+  std::vector<std::uint8_t> known_;  ///< of all blocks so far
+  int left_out_ = 0;                 ///< blocks in a row that were left out
+  Work work_ = Work::none;
+  std::size_t added_ = 0;  ///< doubles, in Work::adding
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,111 @@
+#include "estimator/identify/window/self_tuning.h"
+
+#include <algorithm>
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr int kMostPasses = 6;    // of tuning before the first estimate
+constexpr double kDetuned = 0.1;  // change of a filter's corner that asks for re-tuning
+constexpr int kLeastFloors = 4;   // checked or tuned per instant
+/// Instants a newly tuned regression takes in per instant of input: many for a small building, so
+/// that it starts soon, and few for a large one, so that no shift is late.
+constexpr int kMostCatchUp = 8, kLeastCatchUp = 2;
+constexpr double kCatchUpWork = 6e5;  // entries of the floors' fronts, per instant
+
+}  // namespace
+
+SelfTuning::SelfTuning(const FloorLayout& layout, const ParameterTable& table,
+                       std::unique_ptr<TunedRegression> standby, int blocks, int fill,
+                       bool noise_known)
+    : layout_(layout),
+      table_(table),
+      standby_(std::move(standby)),
+      blocks_(blocks),
+      fill_(fill),
+      floors_per_instant_(std::max(kLeastFloors, (layout.floors() + blocks - 1) / blocks)),
+      noise_known_(noise_known),
+      noise_(standby_->tuning().noise_density()),
+      work_(table.size()),
+      next_theta0_(table.size()) {
+  const double front = layout.own() + 2.0 * layout.frames() + 1;
+  catch_up_per_instant_ = static_cast<int>(std::clamp<double>(
+      kCatchUpWork / (layout.floors() * front * front), kLeastCatchUp, kMostCatchUp));
+}
+
+bool SelfTuning::due() {
+  if (phase_ != Phase::idle) return false;
+  if (tuned_ && ++since_check_ < blocks_) return false;
+  since_check_ = 0;
+  return true;
+}
+
+void SelfTuning::begin_check(const TunedRegression& active, const std::vector<double>& ratio,
+                             const std::vector<double>& std_error,
+                             const std::vector<std::uint8_t>& shown, const AxisNoise& noise) {
+  if (std::none_of(shown.begin(), shown.end(), [](auto s) { return s != 0; })) return;
+  retuned_design(layout_, table_, active.tuning().theta0(), ratio, std_error, shown, work_,
+                 next_theta0_);
+  noise_measured_ = noise.densities(noise_);
+  noise_differs_ =
+      noise_measured_ && (!noise_known_ || noise.differs(noise_, active.tuning().noise_density()));
+  phase_ = Phase::checking;
+  next_floor_ = 0;
+  detuning_ = 0;
+}
+
+bool SelfTuning::step(std::unique_ptr<TunedRegression>& active, const MotionRing& ring) {
+  switch (phase_) {
+    case Phase::idle:
+      break;
+    case Phase::checking:
+      check_floors(*active);
+      break;
+    case Phase::tuning:
+      tune_floors(ring);
+      break;
+    case Phase::catching_up:
+      if (!catch_up(*active, ring)) break;
+      active.swap(standby_);
+      noise_known_ = noise_measured_;
+      phase_ = Phase::idle;
+      ++retunes_;
+      return true;
+  }
+  return false;
+}
+
+void SelfTuning::check_floors(TunedRegression& active) {
+  for (int i = 0; i < floors_per_instant_ && next_floor_ < layout_.floors(); ++i)
+    detuning_ = std::max(detuning_, active.tuning().detuning(next_floor_++, next_theta0_));
+  if (next_floor_ < layout_.floors()) return;
+  phase_ = Phase::idle;
+  if ((detuning_ <= kDetuned && !noise_differs_) || passes_ >= kMostPasses) {
+    tuned_ = true;
+    passes_ = 0;
+    return;
+  }
+  if (!tuned_) ++passes_;
+  phase_ = Phase::tuning;
+  next_floor_ = 0;
+  standby_->set_theta0(next_theta0_, noise_measured_ ? noise_ : active.tuning().noise_density());
+}
+
+void SelfTuning::tune_floors(const MotionRing& ring) {
+  for (int i = 0; i < floors_per_instant_ && next_floor_ < layout_.floors(); ++i)
+    standby_->tune(next_floor_++);
+  if (next_floor_ < layout_.floors()) return;
+  const std::int64_t back = standby_->warm_up() + fill_;
+  standby_->start(std::max(ring.begin(), ring.end() - back));
+  phase_ = Phase::catching_up;
+}
+
+bool SelfTuning::catch_up(const TunedRegression& active, const MotionRing& ring) {
+  for (int i = 0; i < catch_up_per_instant_ && standby_->next() < ring.end(); ++i) {
+    standby_->advance(ring);
+    standby_->finish(ring);
+  }
+  return standby_->next() == ring.end() && (standby_->full() || !active.full());
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,208 @@
+#include "estimator/identify/window/sliding_window_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/identify/elements/guessed_design.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr int kBlocks = BatchMeans::kBlocks;  // per window
+constexpr int kFewestBlocks = 4;              // of another window
+
+DerivativeTriple triple_of(const EstimatorOptions& o, double advance) {
+  return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz)
+                                     : matched_triple(o.rate_hz, advance);
+}
+
+/// Acquisition subtracts whole samples of a delay from the stamps; the triple undoes the rest.
+std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o,
+                                         const std::vector<SensorAxis>& axes) {
+  std::vector<DerivativeTriple> triples;
+  for (const SensorAxis& axis : axes) {
+    const double samples = axis.delay * o.rate_hz;
+    triples.push_back(triple_of(o, samples - std::round(samples)));
+  }
+  return triples;
+}
+
+int rows_of(double seconds, double rate) {
+  return std::max(1, static_cast<int>(std::lround(seconds * rate)));
+}
+
+std::vector<int> blocks_of(const std::vector<double>& windows_s, double rate_hz, int block_rows) {
+  std::vector<int> blocks;
+  for (const double s : windows_s)
+    blocks.push_back(
+        std::max(kFewestBlocks, static_cast<int>(std::lround(s * rate_hz / block_rows))));
+  return blocks;
+}
+
+/// Instants that the slowest possible row filter needs to settle: no corner is below the high-pass.
+int longest_settle(const EstimatorOptions& o) {
+  const double slowest_s = 3 / (std::min(o.filter_damping, 0.7) * 2 * M_PI * o.high_pass_hz);
+  return rows_of(std::max(o.settle_s, slowest_s), o.rate_hz) + 1;
+}
+
+int longest_window(int block_rows, const std::vector<int>& other_blocks) {
+  int longest = kBlocks;
+  for (const int blocks : other_blocks) longest = std::max(longest, blocks);
+  return longest * block_rows;
+}
+
+SensorClock::duration duration_of(double rows, double rate_hz) {
+  return SensorClock::duration(std::llround(rows * 1e6 / rate_hz));
+}
+
+}  // namespace
+
+SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
+                                               const ParameterTable& table)
+    : structure_(config.structure),
+      axes_(config.axes),
+      options_(config.options),
+      matched_(options_.variant == Variant::matched),
+      table_(table),
+      layout_(structure_, table_),
+      deformations_(structure_, layout_, axes_),
+      triple_(triple_of(options_, 0)),
+      high_pass_(options_.high_pass_hz, options_.rate_hz),
+      blocks_(kBlocks),
+      block_rows_(std::max(2, rows_of(options_.window_s / kBlocks, options_.rate_hz))),
+      hop_rows_(rows_of(options_.hop_s, options_.rate_hz)),
+      settle_rows_(rows_of(options_.settle_s, options_.rate_hz)),
+      other_blocks_(blocks_of(options_.other_windows_s, options_.rate_hz, block_rows_)),
+      integrator_(triples_of(options_, axes_), high_pass_),
+      noise_(axes_, options_.rate_hz),
+      ring_(deformations_,
+            SelfTuning::ring_rows(longest_settle(options_) +
+                                  longest_window(block_rows_, other_blocks_) + triple_.length())),
+      main_(structure_, layout_, table_, options_),
+      others_(structure_, layout_, table_, options_, other_blocks_, block_rows_),
+      estimate_(static_cast<std::size_t>(table_.size())) {
+  steps_per_instant_ = (main_.error_steps() + block_rows_ - 2) / (block_rows_ - 1);
+  boxplots_.reserve(estimate_.value.size());  // copies would not keep what they reserve
+  for (std::size_t p = 0; p < estimate_.value.size(); ++p)
+    boxplots_.emplace_back(options_.boxplot_windows);
+  shown_.assign(static_cast<std::size_t>(layout_.unknowns()), 0);
+  active_ = make_regression(config.design.size() > 0 ? config.design
+                                                     : guessed_design(structure_, table_));
+  if (options_.self_tune && matched_)
+    self_tuning_ =
+        std::make_unique<SelfTuning>(layout_, table_, make_regression(active_->tuning().theta0()),
+                                     kBlocks, triple_.length(), noise_.configured());
+  if (options_.long_window_s > 0)
+    long_ = std::make_unique<LongWindow>(structure_, layout_, table_, options_, block_rows_,
+                                         static_cast<int>(other_blocks_.size()) + 1,
+                                         noise_.configured());
+}
+
+std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
+    const Eigen::VectorXd& design) const {
+  const RegressorTuning tuning(structure_, layout_, deformations_, options_, triple_, high_pass_,
+                               design);
+  return std::make_unique<TunedRegression>(tuning, layout_, blocks_, block_rows_, other_blocks_,
+                                           settle_rows_);
+}
+
+std::vector<int> SlidingWindowEstimator::other_window_rows() const {
+  std::vector<int> rows;
+  for (const int blocks : other_blocks_) rows.push_back(blocks * block_rows_);
+  if (long_) rows.push_back(long_->rows());
+  return rows;
+}
+
+void SlidingWindowEstimator::restart() {
+  integrator_.reset();
+  ring_.reset();
+  active_->start(0);
+  if (self_tuning_) self_tuning_->restart();
+  main_.restart();
+  others_.restart();
+  since_hop_ = 0;
+}
+
+const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
+  other_ = nullptr;
+  if (set.index != expected_index_) {
+    if (expected_index_ >= 0) ++interruptions_;
+    restart();
+  }
+  expected_index_ = set.index + 1;
+
+  integrator_.push(set.accel);
+  noise_.push(set.accel);
+  deformations_.compute(integrator_, ring_.push());
+  active_->advance(ring_);
+  ++since_hop_;
+  const bool due = since_hop_ >= hop_rows_;
+  if (active_->full() && (due || active_->closes_block()))
+    main_.solve(active_->sums().window(), active_->rows(), trust(), active_->closes_block());
+  const Time window_end = set.time - duration_of(triple_.delay, options_.rate_hz);
+  advance_errors(window_end);
+  // The first sets only fill the filters: a window cannot end before the first sample.
+  const bool given = due && ring_.end() > triple_.length();
+  if (due) since_hop_ = 0;
+  if (given) fill_estimate(window_end);
+  if (self_tuning_ && self_tuning_->step(active_, ring_)) regression_exchanged();
+  return given ? &estimate_ : nullptr;
+}
+
+void SlidingWindowEstimator::advance_errors(Time window_end) {
+  if (active_->finish(ring_) && active_->full()) {
+    main_.begin_errors(active_->sums(), main_);
+    others_.block_closed(active_->sums(), window_end);
+    if (long_) long_->block_closed(active_->sums(), ring_.at(ring_.end() - 1).known, window_end);
+    return;
+  }
+  if (main_.advance_errors(steps_per_instant_)) check_tuning();
+  other_ =
+      others_.advance({active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned()});
+  if (long_ && other_ == nullptr) advance_long();
+}
+
+void SlidingWindowEstimator::advance_long() {
+  other_ = long_->advance(
+      {active_.get(), &ring_.at(ring_.end() - 1).known, {matched_, noise_.configured()}, tuned()});
+  if (other_ == nullptr || !self_tuning_ || self_tuning_->tuned() || !self_tuning_->due()) return;
+  // While no ordinary window shows a parameter, the filters are tuned to the long ones.
+  const WindowSolution& solution = long_->solution();
+  for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = solution.shown(static_cast<int>(u));
+  self_tuning_->begin_check(*active_, solution.solver().solution(), solution.std_error(), shown_,
+                            noise_);
+}
+
+void SlidingWindowEstimator::check_tuning() {
+  if (!self_tuning_ || !self_tuning_->due()) return;
+  for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = main_.shown(static_cast<int>(u));
+  self_tuning_->begin_check(*active_, main_.solver().solution(), main_.std_error(), shown_, noise_);
+}
+
+void SlidingWindowEstimator::regression_exchanged() {
+  for (int u = 0; u < layout_.unknowns(); ++u) {
+    const int p = layout_.parameter(u / layout_.own(), u % layout_.own());
+    main_.rescale(u, self_tuning_->before().tuning().theta0()[p] / theta0()[p]);
+  }
+  main_.retuned();
+  others_.retuned();
+  if (long_) long_->retuned();
+}
+
+void SlidingWindowEstimator::fill_estimate(Time end) {
+  estimate_.end = end;
+  estimate_.rows = active_->full() ? window_rows() : 0;
+  estimate_.start = end - duration_of(std::max(estimate_.rows - 1, 0), options_.rate_hz);
+  ++estimate_.sequence;
+  main_.fill({&theta0(), &ring_.at(ring_.end() - 1).known, tuned()}, estimate_);
+  for (std::size_t p = 0; p < boxplots_.size(); ++p) {
+    boxplots_[p].push(estimate_.value[p]);
+    estimate_.boxplot[p] = boxplots_[p].statistics();
+    if (estimate_.reason[p] != Observability::observable) continue;
+    estimate_.last_value[p] = estimate_.value[p];
+    estimate_.last_std_error[p] = estimate_.std_error[p];
+    estimate_.last_end[p] = end;
+  }
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "estimator/identify/estimate/boxplot.h"
+#include "estimator/identify/estimate/estimate.h"
+#include "estimator/identify/noise/axis_noise.h"
+#include "estimator/identify/window/long_window.h"
+#include "estimator/identify/window/other_windows.h"
+#include "estimator/identify/window/self_tuning.h"
+#include "estimator/identify/window/tuned_regression.h"
+#include "estimator/identify/window/window_solution.h"
+#include "estimator/setup/pipeline_config.h"
+#include "estimator/state/archive.h"
+
+namespace framewatch::estimator {
+
+/// The method, step by step, one instant after the other: drift-controlled integration, element
+/// deformations, rows of the regression, the sliding sum of H^T H, its solution with standard
+/// errors, boxplots. Calibrated sample sets in; out, every hop (0.01 s), the estimate of the window
+/// (5 s) that ends there.
+class SlidingWindowEstimator {
+ public:
+  SlidingWindowEstimator(const PipelineConfig& config, const ParameterTable& table);
+
+  /// One instant. Returns the estimate of the window that ends there, or null between hops.
+  const WindowEstimate* push(const SampleSet& set);
+  /// The estimate of another window that the last push completed, or null.
+  const WindowEstimate* other() const { return other_; }
+
+  /// The parameters that the filters are tuned to now, theta order, SI.
+  const Eigen::VectorXd& theta0() const { return active_->tuning().theta0(); }
+  /// The noise densities the rows are weighted by, per axis, m/s^2/sqrt(Hz); known: configured or
+  /// measured, of every axis.
+  const std::vector<double>& noise_density() const { return active_->tuning().noise_density(); }
+  bool noise_known() const {
+    return self_tuning_ ? self_tuning_->noise_known() : noise_.configured();
+  }
+  int window_rows() const { return blocks_ * block_rows_; }
+  std::vector<int> other_window_rows() const;
+  int hop_rows() const { return hop_rows_; }
+  std::int64_t interruptions() const { return interruptions_; }
+  std::int64_t retunes() const { return self_tuning_ ? self_tuning_->retunes() : 0; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(integrator_, noise_, ring_, *active_);
+    if (self_tuning_) a(*self_tuning_);
+    main_.archive(a, active_->rows(), active_->sums());
+    others_.archive(a, *active_);
+    archive_long(a);
+    a(boxplots_, estimate_, expected_index_, since_hop_, interruptions_);
+  }
+
+ private:
+  /// A state of its own: the rest can be read when the long window has another length or is absent.
+  template <typename Archive>
+  void archive_long(Archive& a) {
+    int rows = long_ ? long_->rows() : 0;
+    std::vector<std::uint8_t> bytes;
+    if constexpr (Archive::kReading) {
+      a(rows, bytes);
+      if (!long_) return;
+      StateReader state(bytes);
+      if (rows == long_->rows()) long_->archive(state, *active_);
+      if (rows != long_->rows() || !state.whole()) long_->retuned();
+    } else {
+      StateWriter state;
+      if (long_) long_->archive(state, *active_);
+      bytes = state.bytes();
+      a(rows, bytes);
+    }
+  }
+  void restart();
+  void advance_errors(Time window_end);
+  void check_tuning();
+  void advance_long();
+  void regression_exchanged();
+  /// The filters are right, as far as is known.
+  bool tuned() const { return self_tuning_ == nullptr || self_tuning_->tuned(); }
+  std::unique_ptr<TunedRegression> make_regression(const Eigen::VectorXd& design) const;
+  WindowSolution::Trust trust() const { return {matched_ && tuned(), noise_known()}; }
+  void fill_estimate(Time end);
+
+  Structure structure_;
+  std::vector<SensorAxis> axes_;
+  EstimatorOptions options_;
+  bool matched_;  ///< the variant
+  ParameterTable table_;
+  FloorLayout layout_;
+  Deformations deformations_;
+  DerivativeTriple triple_;
+  HighPass high_pass_;
+  int blocks_, block_rows_, hop_rows_, settle_rows_;
+  std::vector<int> other_blocks_;
+  DriftControlledIntegrator integrator_;
+  AxisNoise noise_;
+  MotionRing ring_;
+  std::unique_ptr<TunedRegression> active_;
+  std::unique_ptr<SelfTuning> self_tuning_;  ///< null when switched off
+  WindowSolution main_;
+  OtherWindows others_;
+  std::unique_ptr<LongWindow> long_;  ///< null: none
+  int steps_per_instant_ = 1;         ///< of a pass of errors: done before the next block closes
+  std::vector<std::uint8_t> shown_;   ///< of check_tuning()
+  std::vector<BoxplotWindow> boxplots_;
+  WindowEstimate estimate_;
+  const WindowEstimate* other_ = nullptr;
+  std::int64_t expected_index_ = -1, since_hop_ = 0, interruptions_ = 0;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+
+#include "estimator/identify/gram/sliding_gram.h"
+#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/regressors/regressor_tuning.h"
+#include "estimator/identify/solve/story_solver.h"
+#include "estimator/identify/solve/uncertainty.h"
+
+namespace framewatch::estimator {
+
+/// A ring of the last deformation sets, addressed by instant.
+class MotionRing {
+ public:
+  MotionRing(const Deformations& deformations, int capacity);
+  void reset() { next_ = 0; }
+  /// The slot for the next instant; counts as pushed.
+  DeformationSet& push() { return slot(next_++); }
+  const DeformationSet& at(std::int64_t instant) const {
+    return sets_[static_cast<std::size_t>(instant % capacity())];
+  }
+  /// First instant still held, and one past the newest.
+  std::int64_t begin() const { return next_ > capacity() ? next_ - capacity() : 0; }
+  std::int64_t end() const { return next_; }
+  std::int64_t capacity() const { return static_cast<std::int64_t>(sets_.size()); }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(sets_, next_);
+  }
+
+ private:
+  DeformationSet& slot(std::int64_t i) { return sets_[static_cast<std::size_t>(i % capacity())]; }
+  std::vector<DeformationSet> sets_;
+  std::int64_t next_ = 0;
+};
+
+/// The regression under one tuning: the filters that form the rows entering and leaving the window,
+/// and the window's sum of H^T H. Advances instant by instant through a motion ring, at its own
+/// pace: a new tuning catches up while the old one is in service. Allocates when constructed, never
+/// after.
+class TunedRegression {
+ public:
+  /// blocks, block_rows, spans: see SlidingGram. least_settle: see RegressorTuning::settle_rows.
+  TunedRegression(const RegressorTuning& tuning, const FloorLayout& layout, int blocks,
+                  int block_rows, const std::vector<int>& spans, int least_settle);
+
+  /// Other parameters to tune the filters to. Every floor must be tuned, and start() called, before
+  /// the regression is used again.
+  void set_theta0(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density) {
+    tuning_.set_theta0(theta0, noise_density);
+  }
+  void tune(int floor) { tuning_.tune(floor); }
+
+  /// Starts anew at an instant of the ring, with the tuning as it is now.
+  void start(std::int64_t instant);
+  std::int64_t next() const { return next_; }
+  /// Instants from the start to the first full window of every length.
+  int warm_up() const { return tuning_.settle_rows(least_settle_) + sums_.longest_rows(); }
+
+  /// Adds instant next(); the window's sum is ready for the solver until finish().
+  void advance(const MotionRing& ring);
+  /// Whether finish() will close a block.
+  bool closes_block() const { return counting_ && sums_.block_full(); }
+  /// Prepares the following instant; true when a block closed.
+  bool finish(const MotionRing& ring);
+
+  bool full() const { return counting_ && sums_.full(); }
+  const RegressorTuning& tuning() const { return tuning_; }
+  RegressorTuning& tuning() { return tuning_; }
+  SlidingGram& sums() { return sums_; }
+  const RegressorFilter& rows() const { return entering_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(tuning_, entering_, delayed_, sums_, next_, delayed_next_, counted_from_, counting_);
+  }
+
+ private:
+  RegressorTuning tuning_;
+  FloorLayout layout_;
+  int least_settle_;
+  RegressorFilter entering_, delayed_;
+  SlidingGram sums_;
+  std::int64_t next_ = 0, delayed_next_ = 0, counted_from_ = 0;
+  bool counting_ = false;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,181 @@
+#include "estimator/identify/window/window_solution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/numeric/nan.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kInflation = 4;  // information is overstated by correlated residuals
+/// Frames of a direction whose frequencies differ by less than this cannot be told from a plan that
+/// does not shear its floors.
+constexpr double kSymmetric = 0.02;
+constexpr double kRounding = 1e-12;
+constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
+
+}  // namespace
+
+WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& layout,
+                               const ParameterTable& table, const EstimatorOptions& options,
+                               double compensation)
+    : structure_(structure),
+      layout_(layout),
+      table_(table),
+      options_(options),
+      noise_(layout, compensation),
+      solver_(layout),
+      errors_(layout, compensation),
+      prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
+      warm_(static_cast<std::size_t>(layout.floors()), 0),
+      known_(static_cast<std::size_t>((layout.floors() + 1) * layout.frames()), 0),
+      place_known_(static_cast<std::size_t>(layout.unknowns()), 0) {
+  for (int u = 0; u < layout.unknowns(); ++u) {
+    const int parameter = layout.parameter(u / layout.own(), u % layout.own());
+    const ParameterKind kind = table[parameter].kind;
+    const double limit = kind == ParameterKind::frame_stiffness   ? options.max_error_k
+                         : kind == ParameterKind::panel_stiffness ? options.max_error_g
+                                                                  : options.max_error_c;
+    const double tolerance = design_tolerance(kind);
+    unknowns_.push_back({parameter, kind, kInflation / (tolerance * tolerance), limit});
+  }
+}
+
+void WindowSolution::restart() {
+  errors_.cancel();
+  errors_known_ = solved_ = false;
+  fresh_ = true;
+  overcompensated_ = false;
+  noise_scale_ = noise_level_ = residual_energy_ = 0;
+}
+
+void WindowSolution::solve(const WindowParts& sums, const RegressorFilter& rows, const Trust& trust,
+                           bool closes_block) {
+  if (fresh_) {
+    fresh_ = false;
+    noise_level_ = 0;
+    for (int i = 0; i < kFirstPasses; ++i) solve(sums, rows, trust, true);
+  }
+  solved_ = true;
+  const double compensation =
+      trust.regularise && trust.noise_known ? std::min(noise_level_, 1.0) : 0.0;
+  noise_.update(rows, sums, compensation);
+  for (std::size_t f = 0; f < warm_.size(); ++f) warm_[f] = 2 * (*sums.instants)[f] >= sums.rows;
+  const double prior_scale = trust.regularise && options_.prior ? noise_level_ : 0.0;
+  for (std::size_t u = 0; u < prior_.size(); ++u) prior_[u] = prior_scale * unknowns_[u].prior;
+  solver_.factor(sums, prior_, noise_);
+  const double residual = solver_.residual_energy() + compensation * noise_.residual();
+  overcompensated_ = compensation > 0 && residual < -kRounding * solver_.response_energy();
+  residual_energy_ = std::max(residual, 0.0);
+  noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
+  if (closes_block && !overcompensated_) noise_level_ = noise_scale_;
+}
+
+bool WindowSolution::advance_errors(int steps) {
+  if (!errors_.advance(steps)) return false;
+  errors_known_ = true;
+  return true;
+}
+
+bool WindowSolution::shown(int unknown) const {
+  const auto u = static_cast<std::size_t>(unknown);
+  return !overcompensated_ && solver_.usable(unknown) && solver_.solution()[u] > 0 &&
+         solver_.information()[u] > options_.min_snr * noise_.energy()[u] * noise_scale_;
+}
+
+bool WindowSolution::published(int unknown) const {
+  const auto u = static_cast<std::size_t>(unknown);
+  return shown(unknown) &&
+         errors_.std_error()[u] < unknowns_[u].error_limit * solver_.solution()[u];
+}
+
+bool WindowSolution::place_known(int unknown) const {
+  const int frames = layout_.frames();
+  const int floor = unknown / layout_.own();
+  const int position = unknown % layout_.own();
+  const auto is_known = [&](int level, int f) {
+    return known_[static_cast<std::size_t>(level * frames + f)] != 0;
+  };
+  if (position < 2 * frames)
+    return is_known(floor, position % frames) && is_known(floor + 1, position % frames);
+  for (int f = 0; f < frames; ++f)
+    if (layout_.coefficient(position, f) != 0 && !is_known(floor + 1, f)) return false;
+  return true;
+}
+
+void WindowSolution::see(const std::vector<std::uint8_t>& known) {
+  if (known == known_) return;
+  known_ = known;
+  for (std::size_t u = 0; u < place_known_.size(); ++u)
+    place_known_[u] = place_known(static_cast<int>(u)) ? 1 : 0;
+}
+
+/// Whether, in every direction that moves, the frames of each story are alike in stiffness over
+/// mass as far as their errors tell: then no floor shears, however flexible it is.
+bool WindowSolution::looks_symmetric(const WindowEstimate& estimate) const {
+  for (int story = 1; story <= structure_.stories; ++story) {
+    for (const Direction direction : {Direction::x, Direction::y}) {
+      double lowest = std::numeric_limits<double>::infinity(), highest = 0;
+      for (int f = 0; f < structure_.frames(); ++f) {
+        const auto p = static_cast<std::size_t>(table_.frame_stiffness(story, f));
+        if (structure_.direction(f) != direction || estimate.reason[p] != Observability::observable)
+          continue;
+        const double mass = structure_.frame_mass(story, f);
+        const double doubt = 2 * estimate.std_error[p];
+        lowest = std::min(lowest, (estimate.value[p] + doubt) / mass);
+        highest = std::max(highest, (estimate.value[p] - doubt) / mass);
+      }
+      if (highest > (1 + kSymmetric) * lowest) return false;
+    }
+  }
+  return true;
+}
+
+void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
+  see(*situation.known);
+  bool any = false, any_frame = false, warming = true;
+  for (int u = 0; u < layout_.unknowns(); ++u) {
+    const auto i = static_cast<std::size_t>(u);
+    const auto p = static_cast<std::size_t>(unknowns_[i].parameter);
+    const double theta0 = (*situation.theta0)[unknowns_[i].parameter];
+    const bool warm = solved_ && errors_known_ && situation.tuned &&
+                      warm_[static_cast<std::size_t>(u / layout_.own())] != 0;
+    e.reason[p] = place_known_[i] == 0 ? Observability::channel_lost
+                  : !warm              ? Observability::warming_up
+                  : published(u)       ? Observability::observable
+                                       : Observability::quiet;
+    const bool observable = e.reason[p] == Observability::observable;
+    any = any || observable;
+    any_frame = any_frame || (observable && unknowns_[i].kind == ParameterKind::frame_stiffness);
+    warming = warming && (e.reason[p] == Observability::warming_up ||
+                          e.reason[p] == Observability::channel_lost);
+    e.solution[p] = solved_ ? theta0 * solver_.solution()[i] : kNaN;
+    e.value[p] = observable ? e.solution[p] : kNaN;
+    e.std_error[p] = observable ? theta0 * errors_.std_error()[i] : kNaN;
+    const double noise = noise_.energy()[i] * noise_scale_;
+    e.snr[p] = solved_ && noise > 0 ? solver_.information()[i] / noise : 0;
+    const bool shares = solved_ && errors_known_;
+    e.prior_share[p] = shares ? std::clamp(errors_.prior_share()[i], 0.0, 1.0) : 0;
+    e.noise_share[p] = shares ? std::clamp(errors_.noise_share()[i], 0.0, 1.0) : 0;
+  }
+  if (any_frame && layout_.panels() > 0) {
+    const Observability why =
+        looks_symmetric(e) ? Observability::symmetric_plan : Observability::floor_too_stiff;
+    for (const Unknown& unknown : unknowns_) {
+      Observability& reason = e.reason[static_cast<std::size_t>(unknown.parameter)];
+      const bool panel = unknown.kind == ParameterKind::panel_stiffness ||
+                         unknown.kind == ParameterKind::panel_damping;
+      if (panel && reason == Observability::quiet) reason = why;
+    }
+  }
+  e.residual_ratio = solved_ && solver_.response_energy() > 0
+                         ? std::sqrt(residual_energy_ / solver_.response_energy())
+                         : 0;
+  e.status = any       ? WindowStatus::valid
+             : warming ? WindowStatus::warming_up
+                       : WindowStatus::nothing_identifiable;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/estimate/estimate.h"
+#include "estimator/identify/gram/sliding_gram.h"
+#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/solve/noise_compensation.h"
+#include "estimator/identify/solve/story_solver.h"
+#include "estimator/identify/solve/uncertainty.h"
+#include "estimator/setup/options.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch::estimator {
+
+/// The solution of one window: its normal equations, from which the expected sensor noise is
+/// subtracted, solved, with standard errors, and a decision on every parameter whether it is
+/// published. docs/equations.md (18), (21), (22).
+class WindowSolution {
+ public:
+  /// compensation: share of the noise, see NoiseCompensation.
+  WindowSolution(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
+                 const EstimatorOptions& options, double compensation = kCompensatedShare);
+
+  /// After an interruption: errors and noise level are unknown again.
+  void restart();
+  /// What the rows of a tuning allow. regularise: noise may be subtracted and the prior be added;
+  /// noise_known: it is configured or measured, of every axis.
+  struct Trust {
+    bool regularise, noise_known;
+  };
+  /// The level of the noise is that of the last solution that closed a block: a window's numbers do
+  /// not depend on how often windows are asked for.
+  void solve(const WindowParts& sums, const RegressorFilter& rows, const Trust& trust,
+             bool closes_block);
+
+  /// A pass of standard errors, spread over instants (BatchMeans). fit: the solution that fits
+  /// BatchMeans::kBlocks blocks, this one or another.
+  template <typename Sums>
+  void begin_errors(const Sums& all, const WindowSolution& fit) {
+    const BatchMeans::Fit of{&fit.solver_.solution(), &fit.solver_.information()};
+    errors_.begin(all, solver_, of, prior_, noise_, noise_scale_);
+  }
+  bool advance_errors(int steps);
+  /// The next solution is of other rows: a pass under way is abandoned, errors stay.
+  void retuned() {
+    errors_.cancel();
+    fresh_ = true;
+  }
+  int error_steps() const { return errors_.steps(); }
+  bool errors_known() const { return errors_known_; }
+  const std::vector<double>& std_error() const { return errors_.std_error(); }
+  void rescale(int unknown, double factor) { errors_.rescale(unknown, factor); }
+
+  const StorySolver& solver() const { return solver_; }
+  /// Whether the window's motion shows the unknown above the sensors' noise.
+  bool shown(int unknown) const;
+
+  /// What the decision on a parameter depends on besides the numbers.
+  struct Situation {
+    const Eigen::VectorXd* theta0;           ///< what x is relative to, theta order
+    const std::vector<std::uint8_t>* known;  ///< places with a working sensor, DeformationSet
+    bool tuned;                              ///< the filters have been found right
+  };
+  /// Fills in what follows from this window; not times, boxplots and last values.
+  void fill(const Situation& situation, WindowEstimate& estimate);
+
+  /// rows, sums: of the active regression.
+  template <typename Archive, typename Sums>
+  void archive(Archive& a, const RegressorFilter& rows, const Sums& sums) {
+    noise_.archive(a, rows);
+    errors_.archive(a, rows, sums);
+    a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_,
+      overcompensated_);
+    a(residual_energy_, noise_scale_, noise_level_);
+  }
+
+ private:
+  struct Unknown {
+    int parameter;
+    ParameterKind kind;
+    double prior;        ///< its weight over the level of the noise
+    double error_limit;  ///< relative standard error above which it is not published
+  };
+  bool place_known(int unknown) const;
+  void see(const std::vector<std::uint8_t>& known);
+  bool published(int unknown) const;
+  bool looks_symmetric(const WindowEstimate& estimate) const;
+
+  Structure structure_;
+  FloorLayout layout_;
+  ParameterTable table_;
+  EstimatorOptions options_;
+  std::vector<Unknown> unknowns_;  ///< internal order
+  NoiseCompensation noise_;
+  StorySolver solver_;
+  BatchMeans errors_;
+  std::vector<double> prior_;
+  std::vector<std::uint8_t> warm_;         ///< floors whose rows fill most of the window
+  std::vector<std::uint8_t> known_;        ///< Situation::known when last seen
+  std::vector<std::uint8_t> place_known_;  ///< of every unknown: all motion it needs
+  bool errors_known_ = false;
+  bool solved_ = false;
+  bool fresh_ = true;  ///< the noise level is that of other rows or of none
+  /// More noise was subtracted than the window holds: its numbers mean nothing.
+  bool overcompensated_ = false;
+  double residual_energy_ = 0;
+  double noise_scale_ = 0;  ///< residual energy over what sensor noise explains
+  double noise_level_ = 0;  ///< the same of the last closed block
+};
+
+}  // namespace framewatch::estimator

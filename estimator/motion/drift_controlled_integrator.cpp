@@ -1,0 +1,76 @@
+#include "estimator/motion/drift_controlled_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framewatch::estimator {
+
+HighPass::HighPass(double corner_hz, double rate_hz) {
+  const double w = std::tan(M_PI * corner_hz / rate_hz);
+  const double norm = 1 / (1 + std::sqrt(2.0) * w + w * w);
+  gain = norm;
+  a1 = 2 * (w * w - 1) * norm;
+  a2 = (1 - std::sqrt(2.0) * w + w * w) * norm;
+}
+
+DriftControlledIntegrator::DriftControlledIntegrator(const std::vector<DerivativeTriple>& triples,
+                                                     const HighPass& high_pass)
+    : triples_(triples),
+      high_pass_(high_pass),
+      axes_(triples.size()),
+      length_(static_cast<std::size_t>(triples.front().length())) {
+  for (std::vector<double>* state : {&x1_, &x2_, &y1_, &y2_, &value_, &first_, &second_})
+    state->resize(axes_);
+  ring_.resize(axes_ * 2 * length_);
+  filled_.resize(axes_);
+  reset();
+}
+
+void DriftControlledIntegrator::reset() {
+  std::fill(filled_.begin(), filled_.end(), 0);
+  std::fill(ring_.begin(), ring_.end(), 0.0);
+  newest_ = 0;
+}
+
+void DriftControlledIntegrator::push(const std::vector<double>& accel) {
+  newest_ = newest_ == 0 ? length_ - 1 : newest_ - 1;
+  for (std::size_t axis = 0; axis < axes_; ++axis) push_axis(axis, accel[axis]);
+}
+
+void DriftControlledIntegrator::push_axis(std::size_t axis, double accel) {
+  double* ring = &ring_[axis * 2 * length_];
+  if (!std::isfinite(accel)) {
+    filled_[axis] = 0;
+    ring[newest_] = ring[newest_ + length_] = 0;
+    value_[axis] = first_[axis] = second_[axis] = 0;
+    return;
+  }
+  if (filled_[axis] == 0) {
+    x1_[axis] = x2_[axis] = accel;
+    y1_[axis] = y2_[axis] = 0;
+    std::fill(ring, ring + 2 * length_, 0.0);
+  }
+  const double change = (accel - x1_[axis]) - (x1_[axis] - x2_[axis]);
+  const double y = high_pass_.gain * change - high_pass_.a1 * y1_[axis] - high_pass_.a2 * y2_[axis];
+  x2_[axis] = x1_[axis];
+  x1_[axis] = accel;
+  y2_[axis] = y1_[axis];
+  y1_[axis] = y;
+  ring[newest_] = ring[newest_ + length_] = y;
+  filled_[axis] = std::min(filled_[axis] + 1, static_cast<int>(length_));
+
+  const DerivativeTriple& triple = triples_[axis];
+  const double* recent = ring + newest_;
+  double p0 = 0, p1 = 0, p2 = 0;
+  for (std::size_t k = 0; k < length_; ++k) {
+    p0 += triple.value[k] * recent[k];
+    p1 += triple.first[k] * recent[k];
+    p2 += triple.second[k] * recent[k];
+  }
+  const bool ready = filled_[axis] >= static_cast<int>(length_);
+  value_[axis] = ready ? p0 : 0;
+  first_[axis] = ready ? p1 : 0;
+  second_[axis] = ready ? p2 : 0;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "estimator/motion/derivative_triple.h"
+
+namespace framewatch::estimator {
+
+/// Second-order Butterworth high-pass (bilinear): removes a sensor's bias, thermal ramp and tilt.
+/// It starts as if the first sample of an axis had always been there, so there is no start step.
+/// docs/equations.md (9).
+struct HighPass {
+  HighPass(double corner_hz, double rate_hz);
+  double gain, a1, a2;
+};
+
+/// The part of the drift-controlled integrator that all rows of the regression share, for every
+/// axis: drift control by a high-pass, then p, p' and p'' of what is left by one triple of short
+/// filters. The oscillator section of each row (OscillatorSection, applied by RegressorFilter at a
+/// corner of its own) makes displacement, velocity and acceleration of them. All three have passed
+/// the same filters, so the equation of motion still holds between them.
+///
+/// docs/equations.md, the drift-controlled integrator.
+///
+/// An axis without a value is invalid until its filters are refilled.
+class DriftControlledIntegrator {
+ public:
+  /// triples: one per axis, all of one length and delay.
+  DriftControlledIntegrator(const std::vector<DerivativeTriple>& triples,
+                            const HighPass& high_pass);
+
+  /// accel: one value per axis, m/s^2, NaN where missing.
+  void push(const std::vector<double>& accel);
+  void reset();
+
+  bool valid(int axis) const { return filled_[index(axis)] >= static_cast<int>(length_); }
+  /// p, p' and p'' of the axis at the last push, m/s^2, m/s^3, m/s^4; 0 while invalid.
+  double value(int axis) const { return value_[index(axis)]; }
+  double first(int axis) const { return first_[index(axis)]; }
+  double second(int axis) const { return second_[index(axis)]; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(newest_, x1_, x2_, y1_, y2_, filled_, ring_, value_, first_, second_);
+  }
+
+ private:
+  static std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
+  void push_axis(std::size_t axis, double accel);
+
+  std::vector<DerivativeTriple> triples_;
+  HighPass high_pass_;
+  std::size_t axes_;
+  std::size_t length_;
+  std::size_t newest_ = 0;
+  std::vector<double> x1_, x2_, y1_, y2_;
+  std::vector<int> filled_;   ///< samples since the axis (re)started, saturating
+  std::vector<double> ring_;  ///< axes x 2 length, mirrored, newest first from newest_
+  std::vector<double> value_, first_, second_;
+};
+
+}  // namespace framewatch::estimator

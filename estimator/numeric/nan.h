@@ -1,0 +1,9 @@
+#pragma once
+
+#include <limits>
+
+namespace framewatch::estimator {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< no value
+
+}  // namespace framewatch::estimator

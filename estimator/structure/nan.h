@@ -1,9 +1,0 @@
-#pragma once
-
-#include <limits>
-
-namespace framewatch {
-
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< no value
-
-}  // namespace framewatch

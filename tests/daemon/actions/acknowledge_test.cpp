@@ -1,0 +1,241 @@
+#include <csignal>
+#include <filesystem>
+
+#include <framewatch/acknowledge_t.hpp>
+#include <framewatch/acknowledged_t.hpp>
+#include <framewatch/event_t.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/actions/acknowledge_command.h"
+#include "daemon/actions/acknowledge_desk.h"
+#include "daemon/base/clocks.h"
+#include "daemon/events/acknowledge_messages.h"
+#include "daemon/events/event_words.h"
+#include "daemon/events/raised_events.h"
+#include "daemon/history/summary_query.h"
+#include "drivers/base/encoded.h"
+#include "drivers/lcm/lcm_source.h"
+#include "drivers/lcm/message_check.h"
+#include "estimator/state/archive.h"
+#include "tests/support/child.h"
+#include "tests/support/history_fixture.h"
+#include "tests/support/temporary.h"
+
+namespace framewatch::daemon {
+namespace acknowledge_test {
+
+using namespace std::chrono_literals;
+
+// Limits.
+constexpr auto kSoon = 20s;  // for what takes a second or two on a machine with time
+
+event_t event(std::int64_t id, int state = event_state::raised) {
+  event_t e{};
+  e.id = id;
+  e.state = state;
+  e.kind = "gap";
+  e.place = "F1-Y1";
+  return e;
+}
+
+TEST(RaisedEvents, WhatIsKnownIsForgottenWhenItIsCleared) {
+  RaisedEvents raised;
+  raised.note(event(1));
+  raised.note(event(2));
+  raised.acknowledge(1, {5, "me", "loose"});
+  raised.acknowledge(1, {6, "you", "fixed"});
+  ASSERT_NE(raised.acknowledgement(1), nullptr);
+  EXPECT_EQ(raised.acknowledgement(1)->who, "you");
+  EXPECT_EQ(raised.acknowledgement(2), nullptr);
+  raised.note(event(1, event_state::changed));
+  EXPECT_NE(raised.acknowledgement(1), nullptr);
+  raised.note(event(1, event_state::cleared));
+  EXPECT_EQ(raised.acknowledgement(1), nullptr);
+  raised.note(event(1));
+  EXPECT_EQ(raised.acknowledgement(1), nullptr);
+}
+
+TEST(RaisedEvents, WhatIsKnownIsInTheState) {
+  RaisedEvents raised, again;
+  raised.note(event(1));
+  raised.acknowledge(1, {5, "me", "loose"});
+  estimator::StateWriter writer;
+  writer(raised);
+  estimator::StateReader reader(writer.bytes());
+  reader(again);
+  ASSERT_NE(again.acknowledgement(1), nullptr);
+  EXPECT_EQ(again.acknowledgement(1)->time_us, 5);
+  EXPECT_EQ(again.acknowledgement(1)->comment, "loose");
+}
+
+class Desk : public testing::Test {
+ protected:
+  Desk() : desk_(config_, lcm_) {
+    lcm_.subscribe("FRAMEWATCH_ACKNOWLEDGED", &Desk::on_answer, this);
+  }
+  void on_answer(const lcm::ReceiveBuffer* buffer, const std::string&) {
+    auto found = drivers::decoded<acknowledged_t>(
+        {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
+    ASSERT_TRUE(found);
+    answers_.push_back(std::move(*found));
+  }
+  void send(const acknowledge_t& request) {
+    lcm_.publish("FRAMEWATCH_ACKNOWLEDGE", &request);
+    handle();
+  }
+  void handle() {
+    while (lcm_.handleTimeout(50) > 0) {
+    }
+  }
+  void look(std::int64_t now_us) {
+    desk_.look(
+        {&here_, &there_}, [this](const event_t& e, auto&) { done_.push_back(e.id); }, now_us);
+    handle();
+  }
+
+  Config config_;
+  lcm::LCM lcm_{"memq://"};
+  AcknowledgeDesk desk_;
+  RaisedEvents here_, there_;
+  std::vector<acknowledged_t> answers_;
+  std::vector<std::int64_t> done_;
+};
+
+TEST_F(Desk, AnswersOnceAndSaysEverySecondWhatIsKnown) {
+  here_.note(event(1));
+  there_.note(event(2));
+  look(0);
+  ASSERT_EQ(answers_.size(), 1u);
+  EXPECT_EQ(answers_[0].events, 0);
+  const acknowledge_t request = acknowledge_request(2, "me", "loose");
+  send(request);
+  send(request);
+  look(10);
+  ASSERT_EQ(answers_.size(), 2u);
+  EXPECT_EQ(done_, std::vector<std::int64_t>{2});
+  EXPECT_EQ(answers_[1].answered, request.request);
+  EXPECT_EQ(answers_[1].refused, "");
+  EXPECT_EQ(answers_[1].id, std::vector<std::int64_t>{2});
+  EXPECT_EQ(answers_[1].comment, std::vector<std::string>{"loose"});
+  look(500'000);
+  EXPECT_EQ(answers_.size(), 2u);
+  look(1'000'010);
+  EXPECT_EQ(answers_.size(), 3u);
+}
+
+TEST_F(Desk, RefusesWhatIsNotRaisedAndTakesEverything) {
+  send(acknowledge_request(9, "me", ""));
+  look(0);
+  EXPECT_EQ(answers_.back().refused, "no event 9 is raised");
+  send(acknowledge_request(0, "me", ""));
+  look(1);
+  EXPECT_EQ(answers_.back().refused, "no event is raised");
+  here_.note(event(1));
+  here_.acknowledge(1, {1, "somebody else", ""});
+  here_.note(event(3));
+  there_.note(event(2));
+  send(acknowledge_request(0, "me", ""));
+  look(2);
+  EXPECT_EQ(done_, (std::vector<std::int64_t>{3, 2}));
+  EXPECT_EQ(here_.acknowledgement(1)->who, "somebody else");
+}
+
+TEST_F(Desk, BytesThatAreNoRequestChangeNothing) {
+  const std::string junk = "junk";
+  lcm_.publish("FRAMEWATCH_ACKNOWLEDGE", junk.data(), 4);
+  handle();
+  look(0);
+  EXPECT_EQ(answers_.size(), 1u);
+}
+
+// --- the daemon, its command, its history
+
+/// The tower, whose CAN bus is not there: that is an alarm.
+class Tower : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
+    std::filesystem::copy(FRAMEWATCH_SOURCE_DIR "/configs/can", directory_.path("can"));
+    test::write_file(directory_.path("hook"),
+                     "#!/bin/sh\necho \"$FRAMEWATCH_STATE "
+                     "$FRAMEWATCH_KIND $FRAMEWATCH_EVENT_ID\" >>" +
+                         directory_.path("told") + "\n");
+    std::filesystem::permissions(directory_.path("hook"), std::filesystem::perms::owner_all);
+    test::write_file(config(), test::read_file(config()) + "\n[history]\ndirectory = \"h\"\n" +
+                                   "[actions]\ncommand = [\"" + directory_.path("hook") + "\"]\n");
+    std::string error;
+    lcm_ = drivers::open_lcm(LcmSettings().url, 1 << 20, error);
+    ASSERT_TRUE(lcm_) << error;
+    source_.emplace(
+        *lcm_, std::vector<std::string>{"FRAMEWATCH_ACKNOWLEDGED"}, 100,
+        [this](const std::string&, const void* data, std::size_t size, std::int64_t) {
+          known_ = drivers::decoded<acknowledged_t>({static_cast<const std::uint8_t*>(data), size});
+        });
+  }
+  std::string config() const { return directory_.path("can/tower.toml"); }
+  std::string told() const { return test::read_file(directory_.path("told")); }
+  test::Child run() const {
+    return test::Child({FRAMEWATCH_PROGRAM, "run", config(), "--state", directory_.path("state"),
+                        "--state-every", "1", "--quiet"});
+  }
+  int acknowledge(std::int64_t id) const {
+    AcknowledgeArguments arguments;
+    arguments.event = std::to_string(id);
+    arguments.config = config();
+    arguments.who = "me";
+    arguments.comment = "no bus here";
+    return acknowledge_command(arguments);
+  }
+  template <typename Condition>
+  bool heard(Condition condition) {
+    return test::comes_true(
+        [&] {
+          (void)source_->handle(10);
+          return known_ && condition(*known_);
+        },
+        kSoon);
+  }
+
+  test::TemporaryDirectory directory_;
+  std::unique_ptr<lcm::LCM> lcm_;
+  std::optional<drivers::LcmSource> source_;
+  std::optional<acknowledged_t> known_;
+};
+
+TEST_F(Tower, AnAcknowledgedEventIsKnownOverARestartAndInTheHistory) {
+  std::int64_t id = 0;
+  {
+    test::Child daemon = run();
+    ASSERT_TRUE(test::comes_true([&] { return !told().empty(); }, kSoon));
+    ASSERT_TRUE(told().starts_with("raised interface_gone "));
+    id = std::stoll(told().substr(22));
+    EXPECT_EQ(acknowledge(id + 1), 1);
+    EXPECT_EQ(acknowledge(id), 0);
+    EXPECT_EQ(daemon.stop(SIGTERM), 0);
+  }
+  known_.reset();
+  const std::int64_t again_us = host_clock_us();
+  {
+    test::Child daemon = run();
+    EXPECT_TRUE(heard([&](const acknowledged_t& a) {
+      return a.time_us > again_us && a.id == std::vector<std::int64_t>{id} &&
+             a.comment[0] == "no bus here";
+    }));
+    EXPECT_EQ(daemon.stop(SIGTERM), 0);
+  }
+  EXPECT_EQ(told(), "raised interface_gone " + std::to_string(id) + "\n");
+  SummaryQuery history;
+  ASSERT_EQ(history.open(directory_.path("can/h")), "");
+  const auto stored = history.acknowledgements(0, INT64_MAX);
+  ASSERT_EQ(stored.size(), 1u);
+  EXPECT_EQ(stored[0].id, id);
+  EXPECT_EQ(stored[0].kind, "interface_gone");
+  EXPECT_EQ(stored[0].who, "me");
+  EXPECT_EQ(acknowledge(id), 2);  // nobody is there
+  EXPECT_EQ(acknowledge_command({"3x", config(), "", "", ""}), 2);
+}
+
+}  // namespace acknowledge_test
+}  // namespace framewatch::daemon

@@ -1,0 +1,80 @@
+#include "drivers/lcm/axis_binding.h"
+
+#include <gtest/gtest.h>
+
+namespace framewatch::drivers {
+namespace axis_binding_test {
+
+using Names = std::vector<std::string>;
+constexpr int kNone = AxisBinding::kNone;
+
+int axis_at(const AxisBinding& binding, const std::string& stream, int node, std::size_t axis) {
+  const AxisBinding::NodeAxes* axes = binding.axes_of(stream, node);
+  return axes == nullptr ? kNone : (*axes)[axis];
+}
+
+TEST(AxisBinding, UsesConfiguredAddressesWithoutATable) {
+  const AxisBinding binding({{"a", "ACCEL", 3, 0}, {"b", "ACCEL", 3, 1}, {"c", "OTHER", 3, 0}});
+  EXPECT_EQ(axis_at(binding, "ACCEL", 3, 0), 0);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 3, 1), 1);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 3, 2), kNone);
+  EXPECT_EQ(axis_at(binding, "OTHER", 3, 0), 2);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 4, 0), kNone);
+  EXPECT_TRUE(binding.unbound().empty());
+  EXPECT_EQ(binding.streams(), (Names{"ACCEL", "OTHER"}));
+}
+
+TEST(AxisBinding, NamesInATableBindFirst) {
+  AxisBinding binding({{"a", "ACCEL", 1, 0}, {"b", "ACCEL", 2, 0}});
+  binding.apply("ACCEL", {100, {{"b", 1, 0}, {"a", 2, 0}}});
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 1);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), 0);
+}
+
+TEST(AxisBinding, AddressGivenAwayByATableIsNotUsedTwice) {
+  AxisBinding binding({{"a", "ACCEL", 1, 0}, {"file only", "", -1, 0}});
+  EXPECT_EQ(binding.unbound(), Names{"file only"});
+  binding.apply("ACCEL", {100, {{"file only", 1, 0}}});
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 1);
+  EXPECT_EQ(binding.unbound(), Names{"a"});
+}
+
+TEST(AxisBinding, FileOnlyAxesListenOnAccelAndBindByName) {
+  AxisBinding binding({{"a", "", -1, 0}});
+  EXPECT_EQ(binding.streams(), Names{"ACCEL"});
+  EXPECT_FALSE(binding.carries("RECORD"));
+  binding.apply("RECORD", {0, {{"a", 7, 2}}});
+  EXPECT_TRUE(binding.carries("RECORD"));
+  EXPECT_EQ(axis_at(binding, "RECORD", 7, 2), 0);
+}
+
+TEST(AxisBinding, TablesOfOthersChangeNothing) {
+  AxisBinding binding({{"a", "ACCEL", 1, 0}});
+  binding.apply("ELSEWHERE", {0, {{"x", 1, 0}, {"y", 1, 1}}});
+  EXPECT_FALSE(binding.carries("ELSEWHERE"));
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
+}
+
+TEST(AxisBinding, ImpossibleAxisInATableIsIgnored) {
+  AxisBinding binding({{"a", "", -1, 0}, {"b", "", -1, 0}});
+  binding.apply("ACCEL", {0, {{"a", 1, 3}, {"b", 1, -1}}});
+  EXPECT_EQ(binding.unbound(), (Names{"a", "b"}));
+}
+
+TEST(AxisBinding, NameInTwoPlacesBindsOnce) {
+  AxisBinding binding({{"a", "", -1, 0}});
+  binding.apply("ACCEL", {0, {{"a", 1, 0}, {"a", 2, 0}}});
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), kNone);
+}
+
+TEST(AxisBinding, NewTableOfTheSameStreamReplacesTheOld) {
+  AxisBinding binding({{"a", "", -1, 0}});
+  binding.apply("ACCEL", {0, {{"a", 1, 0}}});
+  binding.apply("ACCEL", {0, {{"a", 2, 1}}});
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), kNone);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 2, 1), 0);
+}
+
+}  // namespace axis_binding_test
+}  // namespace framewatch::drivers

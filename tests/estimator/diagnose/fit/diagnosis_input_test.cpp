@@ -1,0 +1,67 @@
+#include "estimator/diagnose/fit/diagnosis_input.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/estimator/diagnose/small_building.h"
+
+namespace framewatch::estimator {
+namespace diagnosis_input_test {
+
+using test::kRate_hz;
+using test::Small;
+
+constexpr double kDesignOff = 0.1;  // of a stiffness estimated from one record, relative
+
+std::vector<RecordSamples> one_record(const Small& small) {
+  return {{kRate_hz, small.record({}, 1), 0}};
+}
+
+TEST(DiagnosisInput, KeepsTheDesignThatIsGiven) {
+  const Small small;
+  const auto input =
+      diagnosis_input(small.structure, small.axes, small.design, {}, one_record(small));
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->plant.design, small.design);
+  ASSERT_EQ(input->segments.size(), 1U);
+  const std::vector<double> hz = natural_frequencies_hz(small.structure, small.table, small.design);
+  EXPECT_GE(input->segments[0].w[0], 2 * M_PI * 0.4 * hz.front());
+  EXPECT_LE(input->segments[0].w.tail(1)[0], 2 * M_PI * 1.6 * hz.back());
+}
+
+TEST(DiagnosisInput, EstimatesADesignFromTheRecords) {
+  const Small small;
+  const auto input = diagnosis_input(small.structure, small.axes, {}, {}, one_record(small));
+  ASSERT_TRUE(input);
+  for (int f = 0; f < 4; ++f) {
+    const int at = small.table.frame_stiffness(1, f);
+    EXPECT_NEAR(input->plant.design[at] / small.truth[at], 1, kDesignOff) << f;
+  }
+}
+
+TEST(DiagnosisInput, NeedsEveryMotionOfTheEquations) {
+  Small small;
+  const std::vector<RecordSamples> records = one_record(small);
+  small.axes.erase(small.axes.begin() + 4);  // base-x
+  EXPECT_FALSE(diagnosis_input(small.structure, small.axes, small.design, {}, records));
+}
+
+TEST(DiagnosisInput, RecordsAreTooShortOrWithoutExcitation) {
+  const Small small;
+  std::vector<RecordSamples> records = one_record(small);
+  const auto fault = [&] {
+    const auto input = diagnosis_input(small.structure, small.axes, small.design, {}, records);
+    return fault_of(input->plant, input->segments.front(), {});
+  };
+  EXPECT_EQ(fault(), SegmentFault::none);
+  const Eigen::MatrixXd whole = records[0].accel;
+  records[0].accel = whole.topRows(static_cast<Eigen::Index>(2 * kRate_hz));
+  EXPECT_EQ(fault(), SegmentFault::too_short);
+  Random random(1);
+  records[0].accel = whole.unaryExpr([&](double) { return test::kNoise_mps2 * random.normal(); });
+  EXPECT_EQ(fault(), SegmentFault::no_excitation);
+}
+
+}  // namespace diagnosis_input_test
+}  // namespace framewatch::estimator

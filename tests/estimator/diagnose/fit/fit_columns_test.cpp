@@ -1,0 +1,138 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/fit/fit_columns.h"
+#include "estimator/diagnose/fit/law_tracks.h"
+#include "estimator/diagnose/fit/unknowns.h"
+#include "tests/estimator/diagnose/exact_record.h"
+
+namespace framewatch::estimator {
+namespace fit_columns_test {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+using test::effect_of;
+using test::Small;
+
+constexpr double kDifference = 0.1;  // units of an unknown, either way
+constexpr double kTolerance = 3e-3;  // of a column
+constexpr double kOfOneSide = 0.02;  // of an effect's values, which are differences to one side
+
+/// What an unknown's change does to the whitened residual, weights and law motion held.
+VectorXd difference(const Plant& plant, const Model& model, const RecordSegment& segment,
+                    const Whitened& at, const Unknown& unknown, int ratio) {
+  const auto residual = [&](double change) {
+    Model moved = model;
+    set_value(moved, unknown, value_of(model, unknown) + change);
+    auto tracks = tracks_of(plant, moved, segment, 0, Forcing::measured, at.motion, ratio);
+    return whiten(plant, moved, segment, 0, std::move(*tracks), ratio, at.weights).residual;
+  };
+  return (residual(kDifference) - residual(-kDifference)) / (2 * kDifference);
+}
+
+/// Columns hold an effect as it is: what it makes of the stiffnesses that it goes with, or of the
+/// readings that it mixes, is left out.
+bool held(const ModelEffect& effect, const Plant& plant, const Unknown& unknown) {
+  switch (effect.form) {
+    case LawForm::rocking:
+    case LawForm::bending:
+      return unknown.kind == Unknown::Kind::theta;
+    case LawForm::panels:
+      return unknown.kind == Unknown::Kind::theta && plant.table[unknown.index].panel >= 0;
+    case LawForm::misaligned:
+      return (unknown.kind == Unknown::Kind::gain || unknown.kind == Unknown::Kind::clock) &&
+             (unknown.index == effect.place.channel || unknown.index == effect.place.with_channel);
+    default:
+      return false;
+  }
+}
+
+std::vector<ModelEffect> one_of_every_form();
+
+class FitColumns : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(FitColumns, AreTheDerivativesOfTheResidual) {
+  const Small small;
+  const Plant plant = small.plant();
+  const RecordSegment segment = small.segments({small.record({}, 1)}).front();
+  const int ratio = steps_per_sample(plant, segment.rate_hz);
+  const ModelEffect effect = one_of_every_form()[GetParam()];
+  Model model = test::with_effects(test::true_model(small, plant), {effect});
+  // Away from where everything is zero.
+  model.mass_change[1] = 0.01;
+  model.gain[2] = -0.01;
+  model.clock_s[3] = 0.4e-3;
+  Whitened at = whiten(plant, model, segment, 0, Forcing::measured, {}, ratio);
+  ASSERT_TRUE(at.good);
+  at.motion = at.calibrated;
+  const std::vector<Unknown> unknowns = unknowns_of(plant, model, {});
+  const RowMatrix columns = columns_of(plant, model, segment, 0, at, unknowns, ratio, false);
+  ASSERT_EQ(columns.cols(), static_cast<Index>(unknowns.size()));
+  for (std::size_t u = 0; u < unknowns.size(); ++u) {
+    if (held(effect, plant, unknowns[u])) continue;
+    const VectorXd expected = difference(plant, model, segment, at, unknowns[u], ratio);
+    const VectorXd column = columns.col(static_cast<Index>(u));
+    EXPECT_GT(expected.norm(), 0) << u;
+    const bool linear = unknowns[u].kind < Unknown::Kind::parameter;
+    EXPECT_LT((column - expected).norm(), (linear ? kTolerance : kOfOneSide) * expected.norm())
+        << "kind " << static_cast<int>(unknowns[u].kind) << ", index " << unknowns[u].index
+        << ", parameter " << unknowns[u].parameter;
+  }
+}
+
+std::vector<ModelEffect> one_of_every_form() {
+  const auto frame = test::frame_place(2);
+  const auto node = test::node_place(1);
+  const auto building = test::building_place(Direction::x);
+  std::vector<ModelEffect> out = {
+      effect_of(LawForm::power, frame, {5e3, 2.6}),
+      effect_of(LawForm::hysteresis, frame, {2e6, 3e-3, 2, 0.6}),
+      effect_of(LawForm::pinched, frame, {2e6, 3e-3, 2, 0.6, 0.5, 0.3}),
+      effect_of(LawForm::friction, frame, {2e3, 5e-3}),
+      effect_of(LawForm::power_damping, frame, {4e3, 1.8}),
+      effect_of(LawForm::gap_positive, frame, {3e6, 2e-3}),
+      effect_of(LawForm::gap_negative, frame, {3e6, 2e-3}),
+      effect_of(LawForm::gap_both, frame, {3e6, 2e-3}),
+      effect_of(LawForm::changing, frame, {-4e5}, {6, 8}),
+      effect_of(LawForm::mass, test::crossing_place(3), {800}),
+      effect_of(LawForm::resonator, node, {700, 2.3, 0.1}),
+      effect_of(LawForm::spring, test::pair_place(0), {3e5}),
+      effect_of(LawForm::damper, test::pair_place(0), {4e4}),
+      effect_of(LawForm::rocking, building, {1e-9}),
+      effect_of(LawForm::bending, building, {1e-9}),
+      effect_of(LawForm::panels, test::floor_place(), {3e6, 2e4}),
+      effect_of(LawForm::harmonic, node, {2.9}, {800, -500}),
+      effect_of(LawForm::misaligned, test::channel_place(0, 2), {0.08}),
+  };
+  out[0].deformation = 0.01;
+  out[4].rate = 0.1;
+  out[16].parameters[0].step = 2e-5;  // Hz: its phase runs away over the record
+  return out;
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEveryForm, FitColumns,
+                         testing::Range(std::size_t{0}, one_of_every_form().size()));
+
+TEST(FitColumnsOfRecords, OnlyARecordsOwnValuesMoveIt) {
+  const Small small;
+  const Plant plant = small.plant();
+  const std::vector<RecordSegment> segments = small.segments({small.record({}, 1)});
+  ModelEffect drift = effect_of(LawForm::changing, test::frame_place(2), {-4e5}, {6, 8});
+  drift.record_parameters.push_back(drift.record_parameters.front());
+  const Model model = test::with_effects(test::true_model(small, plant), {drift});
+  const Fitter fitter(plant, segments, {});
+  const Linearised at = fitter.linearise(model, fitter.systems(model, {}, Forcing::measured));
+  int others = 0;
+  for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
+    const bool other =
+        at.unknowns[u].kind == Unknown::Kind::record_parameter && at.unknowns[u].record == 1;
+    EXPECT_EQ(at.columns[0].col(static_cast<Index>(u)).isZero(0), other);
+    others += other;
+  }
+  EXPECT_EQ(others, 2);
+}
+
+}  // namespace fit_columns_test
+}  // namespace framewatch::estimator

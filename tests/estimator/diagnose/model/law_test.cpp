@@ -1,0 +1,168 @@
+#include "estimator/diagnose/model/law.h"
+
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "estimator/simulate/element_law.h"
+#include "tests/estimator/diagnose/effect_of.h"
+#include "tests/estimator/diagnose/small_building.h"
+
+namespace framewatch::estimator {
+namespace law_test {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kRounding = 1e-12;
+constexpr double kStiffness = 4e6, kYields_m = 2e-3;  // of the hysteretic laws
+
+TEST(Law, ForcesAreThoseOfTheFormulas) {
+  struct Case {
+    LawValues law;
+    double d, v, t, force;
+  };
+  const LawValues cubic{LawForm::power, {2, 3}, 0.5, 1};
+  const LawValues root{LawForm::power, {3, 0.5}, 1, 1};
+  const LawValues friction{LawForm::friction, {5, 0.1}, 1, 1};
+  const LawValues square_rate{LawForm::power_damping, {3, 2}, 1, 0.5};
+  const LawValues drift{LawForm::changing, {-10, 2, 4}, 1, 1};
+  const auto gap = [](LawForm form) { return LawValues{form, {100, 0.02}, 1, 1}; };
+  const Case cases[] = {
+      {cubic, 0.25, 9, 9, 0.25},
+      {cubic, -0.5, 9, 9, -2},
+      {root, 0.16, 0, 0, 1.2},
+      {root, -0.16, 0, 0, -1.2},
+      {friction, 7, 0.2, 0, 5 * std::tanh(2.0)},
+      {friction, 7, -5, 0, -5},
+      {square_rate, 7, 1, 0, 12},
+      {square_rate, 7, -0.25, 0, -0.75},
+      {gap(LawForm::gap_positive), 0.05, 0, 0, 3},
+      {gap(LawForm::gap_positive), 0.01, 0, 0, 0},
+      {gap(LawForm::gap_positive), -0.05, 0, 0, 0},
+      {gap(LawForm::gap_negative), -0.05, 0, 0, -3},
+      {gap(LawForm::gap_negative), 0.05, 0, 0, 0},
+      {gap(LawForm::gap_both), 0.03, 0, 0, 1},
+      {gap(LawForm::gap_both), -0.03, 0, 0, -1},
+      {gap(LawForm::gap_both), 0.02, 0, 0, 0},
+      {drift, 0.1, 0, 1, 0},
+      {drift, 0.1, 0, 3, -0.25},
+      {drift, 0.1, 0, 6, -1},
+      {drift, -0.1, 0, 60, 1},
+  };
+  for (const Case& c : cases)
+    EXPECT_NEAR(LawMotion(c.law).force(c.d, c.v, c.t), c.force, 1e-9)
+        << static_cast<int>(c.law.form) << " at " << c.d << ", " << c.v << ", " << c.t;
+}
+
+TEST(Law, OnlyThoseOfElementsPullThere) {
+  for (const LawForm form : {LawForm::power, LawForm::hysteresis, LawForm::pinched,
+                             LawForm::friction, LawForm::power_damping, LawForm::gap_positive,
+                             LawForm::gap_negative, LawForm::gap_both, LawForm::changing})
+    EXPECT_TRUE(is_element_law(form)) << static_cast<int>(form);
+  for (const LawForm form :
+       {LawForm::mass, LawForm::resonator, LawForm::spring, LawForm::damper, LawForm::rocking,
+        LawForm::bending, LawForm::panels, LawForm::harmonic, LawForm::broadband,
+        LawForm::misaligned, LawForm::swapped, LawForm::clipped}) {
+    EXPECT_FALSE(is_element_law(form)) << static_cast<int>(form);
+    EXPECT_EQ(LawMotion({form, {1, 1, 1}, 1, 1}).force(1, 1, 1), 0);
+  }
+}
+
+/// Back and forth, each time farther, so that loops are nested and pass the yield deformation.
+VectorXd growing_cycles(Index steps) {
+  VectorXd out(steps);
+  for (Index i = 0; i < steps; ++i) {
+    const double turn = static_cast<double>(i) / static_cast<double>(steps);
+    out[i] = 4 * kYields_m * turn * std::sin(2 * M_PI * 5 * turn);
+  }
+  return out;
+}
+
+/// Forces of the simulator's own law, integrated in steps of a two-hundredth.
+VectorXd simulated_force(const Effect& effect, const VectorXd& d) {
+  constexpr int kFine = 200;
+  const std::unique_ptr<ElementLaw> law = make_law(effect, test::Small::one_story());
+  std::vector<double> z(static_cast<std::size_t>(law->states())), rate = z;
+  VectorXd out(d.size());
+  double at = 0;
+  for (Index i = 0; i < d.size(); ++i) {
+    const double step = (d[i] - at) / kFine;
+    for (int fine = 0; fine < kFine; ++fine) {
+      law->begin_step(0, at);
+      if (!z.empty()) law->rates(at, step, z, rate);
+      for (std::size_t s = 0; s < z.size(); ++s) z[s] += rate[s];
+      at += step;
+    }
+    out[i] = law->force(0, d[i], 0, z);
+  }
+  return out;
+}
+
+TEST(Law, HysteresisIsThatOfTheSimulator) {
+  constexpr double kTolerance = 0.01;  // of the force at yielding
+  struct Case {
+    LawForm form;
+    std::vector<double> shape;  // after stiffness and yield deformation
+    EffectKind kind;
+  };
+  for (const Case& c : {Case{LawForm::hysteresis, {1, 0.5}, EffectKind::bouc_wen},
+                        Case{LawForm::hysteresis, {2, 0.7}, EffectKind::bouc_wen},
+                        Case{LawForm::hysteresis, {6, 0.5}, EffectKind::bouc_wen},
+                        Case{LawForm::hysteresis, {40, 0.5}, EffectKind::bilinear_hysteresis},
+                        Case{LawForm::pinched, {2, 0.5, 0.8, 0.3}, EffectKind::pinching}}) {
+    Effect effect = make_effect(c.kind, test::frame_place(0));
+    effect.values[0] = kStiffness;
+    effect.values[1] = kYields_m;
+    LawValues law{c.form, {kStiffness, kYields_m}, 1, 1};
+    for (std::size_t i = 0; i < c.shape.size(); ++i) {
+      law.p.push_back(c.shape[i]);
+      if (i + 2 < effect.values.size()) effect.values[i + 2] = c.shape[i];
+    }
+    const VectorXd d = growing_cycles(800);
+    const VectorXd force = law_force(law, d, VectorXd::Zero(d.size()), 0.01);
+    EXPECT_LT((force - simulated_force(effect, d)).cwiseAbs().maxCoeff(),
+              kTolerance * kStiffness * kYields_m)
+        << name_of(c.kind) << " " << c.shape.front();
+    EXPECT_GT(force.maxCoeff(), 0.6 * kStiffness * kYields_m);
+  }
+}
+
+TEST(Law, ASteadyBilinearLoopDissipatesItsArea) {
+  constexpr double kAmplitude_m = 3 * kYields_m, kTolerance = 1e-3;
+  constexpr Index kCycle = 4000;
+  VectorXd d(2 * kCycle);
+  for (Index i = 0; i < d.size(); ++i)
+    d[i] = kAmplitude_m * std::sin(2 * M_PI * static_cast<double>(i) / kCycle);
+  const VectorXd force = law_force({LawForm::hysteresis, {kStiffness, kYields_m, 40, 0.5}, 1, 1}, d,
+                                   VectorXd::Zero(d.size()), 0.01);
+  double work = 0;
+  for (Index i = kCycle; i < d.size(); ++i)
+    work += 0.5 * (force[i] + force[i - 1]) * (d[i] - d[i - 1]);
+  EXPECT_NEAR(work / (4 * kStiffness * kYields_m * (kAmplitude_m - kYields_m)), 1, kTolerance);
+}
+
+TEST(Law, AskingForAForceChangesNothing) {
+  const LawValues law{LawForm::hysteresis, {kStiffness, kYields_m, 2, 0.5}, 1, 1};
+  LawMotion asked(law), silent(law);
+  for (const double d : {0.001, 0.004, 0.002, -0.003}) {
+    asked.force(10 * d, 1, 0);
+    asked.force(-d, 1, 0);
+    EXPECT_EQ(asked.force(d, 1, 0), silent.force(d, 1, 0));
+    asked.accept(d, 1, 0);
+    silent.accept(d, 1, 0);
+  }
+  EXPECT_NEAR(asked.force(-0.003, 0, 0), silent.force(-0.003, 7, 7), kRounding);
+}
+
+TEST(Law, ForceOfAKnownMotionGoesThroughItsTime) {
+  const LawValues law{LawForm::changing, {8, 0.25, 0.5}, 1, 1};
+  const VectorXd force = law_force(law, VectorXd::Ones(5), VectorXd::Zero(5), 0.25);
+  const VectorXd expected = (VectorXd(5) << 0, 0, 4, 8, 8).finished();
+  EXPECT_LT((force - expected).norm(), kRounding);
+  EXPECT_EQ(law_force(law, VectorXd(), VectorXd(), 0.25).size(), 0);
+}
+
+}  // namespace law_test
+}  // namespace framewatch::estimator

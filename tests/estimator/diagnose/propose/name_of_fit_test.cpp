@@ -1,0 +1,113 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/propose/name_of_fit.h"
+#include "estimator/diagnose/propose/needed_signal.h"
+#include "estimator/diagnose/propose/propose.h"
+
+namespace framewatch::estimator {
+namespace name_of_fit_test {
+
+// What the names depend on.
+constexpr double kExponent = 2.45;     // above: cubic
+constexpr double kRigidShare = 0.02;   // of the peak deformation: a yield below is friction
+constexpr double kCorner = 20;         // exponent of hysteresis, above: bilinear
+constexpr double kSuddenShare = 0.06;  // of the record: a change shorter than it is a drop
+constexpr double kNear = 1e-3;         // either side, relative
+constexpr double kPeak_m = 0.012, kSeconds = 30, kRate_hz = 10;
+
+RecordSegment half_minute() {
+  RecordSegment out;
+  out.rate_hz = kRate_hz;
+  out.accel.setZero(static_cast<Eigen::Index>(kSeconds * kRate_hz) + 1, 1);
+  return out;
+}
+
+ModelEffect effect_with(LawForm form, const std::vector<double>& values) {
+  ModelEffect out;
+  out.form = form;
+  out.deformation = kPeak_m;
+  for (const double value : values) out.parameters.push_back(linear_parameter(value, 1));
+  return out;
+}
+
+std::string_view name(const ModelEffect& effect) {
+  return name_of(name_of_fit(effect, half_minute()));
+}
+
+TEST(NameOfFit, ExponentTellsQuadraticFromCubic) {
+  EXPECT_EQ(name(effect_with(LawForm::power, {1, 1.2})), "quadratic_stiffness");
+  EXPECT_EQ(name(effect_with(LawForm::power, {1, kExponent * (1 - kNear)})), "quadratic_stiffness");
+  EXPECT_EQ(name(effect_with(LawForm::power, {1, kExponent * (1 + kNear)})), "cubic_stiffness");
+  EXPECT_EQ(name(effect_with(LawForm::power, {-1, 9})), "cubic_stiffness");
+}
+
+TEST(NameOfFit, YieldAndSharpnessTellHysteresisApart) {
+  const auto hysteresis = [](double yield_share, double exponent) {
+    return name(effect_with(LawForm::hysteresis, {1e6, yield_share * kPeak_m, exponent, 0.5}));
+  };
+  EXPECT_EQ(hysteresis(0.3, 2), "bouc_wen");
+  EXPECT_EQ(hysteresis(0.3, kCorner * (1 - kNear)), "bouc_wen");
+  EXPECT_EQ(hysteresis(0.3, kCorner * (1 + kNear)), "bilinear_hysteresis");
+  EXPECT_EQ(hysteresis(kRigidShare * (1 + kNear), 40), "bilinear_hysteresis");
+  // What yields at once is friction, however sharp its corner.
+  EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 40), "coulomb_friction");
+  EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 2), "coulomb_friction");
+}
+
+TEST(NameOfFit, AYieldIsReadFromItsLogarithm) {
+  ModelEffect effect = effect_with(LawForm::hysteresis, {1e6, 0, 2, 0.5});
+  effect.parameters[1] = logarithmic_parameter(0.3 * kPeak_m, 1e-9, 1);
+  EXPECT_EQ(name(effect), "bouc_wen");
+  effect.parameters[1] = logarithmic_parameter(0.5 * kRigidShare * kPeak_m, 1e-9, 1);
+  EXPECT_EQ(name(effect), "coulomb_friction");
+}
+
+TEST(NameOfFit, TheShortestDurationTellsDropFromDrift) {
+  const auto change = [](std::initializer_list<double> durations_s) {
+    ModelEffect out = effect_with(LawForm::changing, {-1e5});
+    for (const double duration_s : durations_s)
+      out.record_parameters.push_back(
+          {linear_parameter(3, 0.1), logarithmic_parameter(duration_s, 0.01, 100)});
+    return name(out);
+  };
+  const double sudden = kSuddenShare * kSeconds;
+  EXPECT_EQ(change({sudden * (1 - kNear)}), "stiffness_drop");
+  EXPECT_EQ(change({sudden * (1 + kNear)}), "stiffness_drift");
+  EXPECT_EQ(change({10, 20}), "stiffness_drift");
+  // A record that is over before the change ends does not know how long it takes.
+  EXPECT_EQ(change({10, 0.05}), "stiffness_drop");
+}
+
+TEST(NameOfFit, OtherFormsHaveOneName) {
+  struct Named {
+    LawForm form;
+    std::string_view name;
+  };
+  const Named all[] = {
+      {LawForm::pinched, "pinching"},
+      {LawForm::friction, "coulomb_friction"},
+      {LawForm::power_damping, "quadratic_damping"},
+      {LawForm::gap_positive, "one_sided_gap"},
+      {LawForm::gap_negative, "one_sided_gap"},
+      {LawForm::gap_both, "two_sided_gap"},
+      {LawForm::mass, "extra_mass"},
+      {LawForm::resonator, "tuned_mass_damper"},
+      {LawForm::spring, "added_spring"},
+      {LawForm::damper, "added_damper"},
+      {LawForm::rocking, "base_rocking"},
+      {LawForm::bending, "frame_bending"},
+      {LawForm::panels, "floor_flexibility"},
+      {LawForm::harmonic, "unmeasured_force"},
+      {LawForm::broadband, "unmeasured_force"},
+      {LawForm::misaligned, "misalignment"},
+      {LawForm::swapped, "swapped"},
+      {LawForm::clipped, "clipping"},
+  };
+  for (const Named& one : all) EXPECT_EQ(name(effect_with(one.form, {1, 1, 1, 1})), one.name);
+}
+
+}  // namespace name_of_fit_test
+}  // namespace framewatch::estimator

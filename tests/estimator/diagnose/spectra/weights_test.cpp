@@ -1,0 +1,125 @@
+#include "estimator/diagnose/spectra/weights.h"
+
+#include <cmath>
+#include <complex>
+
+#include <gtest/gtest.h>
+
+#include "estimator/numeric/kernels.h"
+#include "estimator/simulate/random.h"
+
+namespace framewatch::estimator {
+namespace weights_test {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kEquations = 3, kBins = 40;
+
+/// Any lower triangles, and an oscillator at the second equation.
+struct Some {
+  std::vector<MatrixXcd> whitener;
+  VectorXd w = VectorXd::LinSpaced(kBins, 2.0, 9.0);
+  HiddenOscillator hidden{VectorXd::Unit(kEquations, 1), Eigen::VectorXcd(kBins)};
+  Random random{11};
+
+  Some() {
+    for (Index b = 0; b < kBins; ++b) {
+      MatrixXcd one = MatrixXcd::Zero(kEquations, kEquations);
+      for (Index i = 0; i < kEquations; ++i)
+        for (Index j = 0; j <= i; ++j)
+          one(i, j) =
+              i == j ? Complex(2 + random.uniform(), 0) : Complex(random.normal(), random.normal());
+      whitener.push_back(one);
+      hidden.transmissibility[b] = 30.0 / (30.0 - w[b] * w[b] + Complex(0, 0.5 * w[b]));
+    }
+  }
+};
+
+/// The end terms' columns as docs/equations.md (32) has them, each of length one.
+MatrixXd columns_of_ends(const Some& some) {
+  MatrixXd out(2 * kEquations * kBins, 4 * kEquations + 2);
+  const double middle = std::sqrt(some.w[0] * some.w[kBins - 1]);
+  for (Index b = 0; b < kBins; ++b) {
+    const MatrixXcd& l = some.whitener[static_cast<std::size_t>(b)];
+    const Complex jr(0, some.w[b] / middle);
+    MatrixXcd here(kEquations, out.cols());
+    here.leftCols(kEquations) = -l / (jr * jr);
+    here.middleCols(kEquations, kEquations) = l / jr;
+    here.middleCols(2 * kEquations, kEquations) = l;
+    here.middleCols(3 * kEquations, kEquations) = l * jr;
+    here.col(4 * kEquations) = l.col(1) * some.hidden.transmissibility[b];
+    here.col(4 * kEquations + 1) = here.col(4 * kEquations) * jr;
+    out.middleRows(2 * kEquations * b, kEquations) = here.real();
+    out.middleRows(2 * kEquations * b + kEquations, kEquations) = here.imag();
+  }
+  return out.colwise().normalized();
+}
+
+TEST(Weights, EndTermsAreThoseOfTheEquations) {
+  constexpr double kRounding = 1e-12;
+  Some some;
+  const Weights weights(some.whitener, some.w, {some.hidden});
+  const MatrixXd ends = columns_of_ends(some);
+  ASSERT_EQ(weights.ends(), ends.cols());
+  EXPECT_LT((weights.ends_square() - ends.transpose() * ends).cwiseAbs().maxCoeff(), kRounding);
+  const RowMatrix all = RowMatrix::Identity(2 * kEquations, 2 * kEquations);
+  AlongEnds along(weights);
+  RowMatrix rows(2 * kEquations, kernels::kBins);
+  MatrixXd wanted = MatrixXd::Zero(ends.cols(), rows.cols());
+  for (Index b = 0; b < kBins; ++b) {
+    const MatrixXd here = ends.middleRows(2 * kEquations * b, 2 * kEquations);
+    EXPECT_LT((weights.times_ends(b, all) - here).cwiseAbs().maxCoeff(), kRounding);
+    for (Index i = 0; i < rows.size(); ++i) rows.data()[i] = some.random.normal();
+    along.add(b, rows);
+    wanted += here.transpose() * rows;
+  }
+  EXPECT_LT((along.sum() - wanted).cwiseAbs().maxCoeff(), kRounding * kBins);
+}
+
+TEST(Weights, EndTermsAreProjectedOut) {
+  constexpr double kLeft = 1e-6;
+  Some some;
+  const Weights weights(some.whitener, some.w, {some.hidden});
+  const MatrixXd ends = columns_of_ends(some);
+  VectorXd rows(ends.rows());
+  for (double& r : rows) r = some.random.normal();
+  const VectorXd rest = weights.without_ends(rows);
+  EXPECT_LT((ends.transpose() * rest).cwiseAbs().maxCoeff(), kLeft);
+  EXPECT_LT((weights.without_ends(rest) - rest).norm(), kLeft);
+  EXPECT_LT(weights.without_ends(ends * VectorXd::Ones(ends.cols())).norm(), kLeft);
+}
+
+TEST(Weights, OneBinIsExplainedByItsEnds) {
+  constexpr double kLeft = 1e-6;
+  Some some;
+  some.hidden.transmissibility.conservativeResize(1);
+  const Weights weights({some.whitener.front()}, some.w.head(1), {some.hidden});
+  EXPECT_EQ(weights.bins(), 1);
+  EXPECT_LT(weights.without_ends(VectorXd::Ones(2 * kEquations)).norm(), kLeft);
+}
+
+/// X of a whitener W: forces of unit size give its real and imaginary parts, those of size -j the
+/// imaginary ones and minus the real ones.
+TEST(Weights, UnitForcesAreTheWhitenerInRealParts) {
+  const Some some;
+  const Weights weights(some.whitener, some.w, {});
+  EXPECT_EQ(weights.ends(), 4 * kEquations);
+  RowMatrix forces, transposed;
+  for (const Index b : {Index{0}, kBins - 1}) {
+    weights.put_unit_forces(b, false, forces);
+    weights.put_unit_forces(b, true, transposed);
+    MatrixXd expected(2 * kEquations, 2 * kEquations);
+    const MatrixXcd& w = weights.whitener(b);
+    expected << w.real(), w.imag(), w.imag(), -w.real();
+    EXPECT_EQ(forces.leftCols(2 * kEquations), expected);
+    EXPECT_EQ(transposed.leftCols(2 * kEquations), expected.transpose());
+    EXPECT_TRUE(forces.rightCols(forces.cols() - 2 * kEquations).isZero(0));
+  }
+}
+
+}  // namespace weights_test
+}  // namespace framewatch::estimator

@@ -1,0 +1,114 @@
+#include "estimator/diagnose/spectra/whiteners.h"
+
+#include <complex>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "estimator/simulate/random.h"
+
+namespace framewatch::estimator {
+namespace whiteners_test {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+
+constexpr double kRounding = 1e-10;
+constexpr Index kBinCounts[] = {1, 7, 8, 9, 17};  // around the kernels' eight
+constexpr Index kEquations = 3, kAxes = 5;
+
+/// Any operation on any noise.
+struct Equations {
+  std::vector<MatrixXcd> operation;
+  MatrixXd noise;
+
+  explicit Equations(Index bins, Index rows = kEquations, Index axes = kAxes) : noise(axes, bins) {
+    Random random(static_cast<std::uint64_t>(100 + bins));
+    for (Index b = 0; b < bins; ++b) {
+      MatrixXcd d(rows, axes);
+      for (Index i = 0; i < d.size(); ++i) d.data()[i] = {random.normal(), random.normal()};
+      operation.push_back(d);
+      for (Index a = 0; a < axes; ++a) noise(a, b) = 0.1 + random.uniform();
+    }
+  }
+
+  MatrixXcd covariance(Index bin) const {
+    const MatrixXcd& d = operation[static_cast<std::size_t>(bin)];
+    return d * noise.col(bin).asDiagonal() * d.adjoint();
+  }
+};
+
+/// L^-1 covariance L^-H away from the identity.
+double miss(const MatrixXcd& whitener, const MatrixXcd& covariance) {
+  return (whitener * covariance * whitener.adjoint() -
+          MatrixXcd::Identity(covariance.rows(), covariance.cols()))
+      .cwiseAbs()
+      .maxCoeff();
+}
+
+TEST(Whiteners, NoiseOfEveryBinGetsUnitCovariance) {
+  for (const Index bins : kBinCounts) {
+    const Equations e(bins);
+    const std::vector<MatrixXcd> all = whiteners(e.operation, e.noise, {});
+    ASSERT_EQ(all.size(), static_cast<std::size_t>(bins));
+    for (Index b = 0; b < bins; ++b)
+      EXPECT_LT(miss(all[static_cast<std::size_t>(b)], e.covariance(b)), kRounding)
+          << b << " of " << bins;
+  }
+}
+
+TEST(Whiteners, AreLowerTrianglesWithAPositiveDiagonal) {
+  const Equations e(9);
+  for (const MatrixXcd& w : whiteners(e.operation, e.noise, {})) {
+    EXPECT_TRUE(w.isLowerTriangular(0.0));
+    EXPECT_GT(w.diagonal().real().minCoeff(), 0);
+    EXPECT_EQ(w.diagonal().imag().cwiseAbs().maxCoeff(), 0);
+  }
+}
+
+TEST(Whiteners, OfOneEquationIsOneOverItsDeviation) {
+  const Equations e(3, 1, 2);
+  const std::vector<MatrixXcd> all = whiteners(e.operation, e.noise, {});
+  for (std::size_t b = 0; b < all.size(); ++b)
+    EXPECT_NEAR(all[b](0, 0).real(),
+                1 / std::sqrt(e.covariance(static_cast<Index>(b))(0, 0).real()), kRounding);
+}
+
+TEST(Whiteners, PushedForcesAddTheirCovariance) {
+  constexpr double kSize = 1e3;
+  const Equations e(9);
+  const Eigen::Vector3d at(0, 1, 0.5);
+  const MatrixXd pushed = kSize * at * at.transpose();
+  const std::vector<MatrixXcd> all = whiteners(e.operation, e.noise, pushed);
+  ASSERT_EQ(all.size(), 9U);
+  for (Index b = 0; b < 9; ++b) {
+    const MatrixXcd sensors = e.covariance(b);
+    const double mean = sensors.diagonal().real().mean();
+    EXPECT_LT(miss(all[static_cast<std::size_t>(b)], sensors + mean * pushed.cast<Complex>()),
+              kRounding * kSize);
+    // What lies along the force hardly counts any more.
+    EXPECT_LT((all[static_cast<std::size_t>(b)] * at).squaredNorm() * mean, 1.01 / kSize);
+  }
+}
+
+TEST(Whiteners, ThereAreNoneWhereAnEquationHasNoNoise) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const Index bad : {0, 8, 10}) {
+    Equations silent(11), dependent(11, 2), unknown(11);
+    const auto at = static_cast<std::size_t>(bad);
+    silent.operation[at].row(1).setZero();
+    EXPECT_TRUE(whiteners(silent.operation, silent.noise, {}).empty()) << bad;
+    unknown.operation[at](2, 2) = kNan;
+    EXPECT_TRUE(whiteners(unknown.operation, unknown.noise, {}).empty()) << bad;
+    unknown = Equations(11);
+    unknown.noise(3, bad) = kNan;
+    EXPECT_TRUE(whiteners(unknown.operation, unknown.noise, {}).empty()) << bad;
+    dependent.noise.col(bad).setZero();
+    EXPECT_TRUE(whiteners(dependent.operation, dependent.noise, {}).empty()) << bad;
+  }
+}
+
+}  // namespace whiteners_test
+}  // namespace framewatch::estimator

@@ -1,0 +1,178 @@
+#include "estimator/diagnose/trials/select_trial.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/propose/needed_signal.h"
+#include "tests/estimator/diagnose/hand_made_trials.h"
+
+namespace framewatch::estimator {
+namespace select_trial_test {
+
+using test::HandMade;
+
+// Shares of the excess that a trial has to take away.
+constexpr double kMost = 0.97, kMostWhereChanceIsLeft = 0.9, kNear = 0.005;
+constexpr double kExcess = 4000, kNeeded = 100;
+constexpr double kWorse = 1.02;  // misfit of a record, relative
+
+/// A model with an excess of kExcess. Trials whose models cannot be fitted on (they have no theta)
+/// stay as they are made.
+struct Excess {
+  HandMade made;
+  double bound;
+
+  Excess() {
+    made.now.cost = 10 * kExcess;
+    bound = made.now.cost - kExcess;
+  }
+
+  Trial with_share(double share, EffectKind kind = EffectKind::extra_mass) const {
+    Trial out = made.trial(kind, share * kExcess);
+    out.model.theta.setConstant(std::nan(""));
+    return out;
+  }
+  bool adopted(std::vector<Trial>& trials, double needed = kNeeded) const {
+    return select_trial(made.context(), bound, needed, trials);
+  }
+};
+
+TEST(AdoptTrials, NoneIsAdoptedWhenNoneWasFitted) {
+  const Excess excess;
+  std::vector<Trial> none;
+  EXPECT_FALSE(excess.adopted(none));
+  std::vector<Trial> unfitted{excess.with_share(1), excess.with_share(1), excess.with_share(1)};
+  unfitted[0].outcome = TrialOutcome::screened_out;
+  unfitted[1].outcome = TrialOutcome::diverged;
+  unfitted[2].outcome = TrialOutcome::other_law;
+  EXPECT_FALSE(excess.adopted(unfitted));
+}
+
+TEST(AdoptTrials, BestFirstAndUnfittedLast) {
+  const Excess excess;
+  std::vector<Trial> trials;
+  for (const double share : {0.2, 0.99, 0.98, 0.5}) trials.push_back(excess.with_share(share));
+  trials[1].outcome = TrialOutcome::diverged;
+  excess.adopted(trials);
+  const double order[] = {0.98, 0.5, 0.2, 0.99};
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    EXPECT_NEAR(trials[i].fraction, order[i], 1e-9) << i;
+  EXPECT_EQ(trials.back().outcome, TrialOutcome::diverged);
+}
+
+TEST(AdoptTrials, ALawTakesMostOfTheExcessAway) {
+  struct Share {
+    double share, needed;
+    bool adopted;
+  };
+  const double left = (1 - kMostWhereChanceIsLeft) * kExcess;
+  const Share all[] = {
+      {kMost + kNear, kNeeded, true},
+      {kMost - kNear, kNeeded, false},
+      // The rest is within chance: less will do.
+      {kMost - kNear, left, true},
+      {kMostWhereChanceIsLeft + kNear, left, true},
+      {kMostWhereChanceIsLeft - kNear, 2 * left, false},
+      {1.2, kNeeded, true},
+      {-0.2, kNeeded, false},
+  };
+  for (const Share& s : all) {
+    const Excess excess;
+    std::vector<Trial> trials{excess.with_share(s.share)};
+    EXPECT_EQ(excess.adopted(trials, s.needed), s.adopted) << s.share << " " << s.needed;
+  }
+}
+
+TEST(AdoptTrials, WhatChanceDoesAsWellIsNotAdopted) {
+  const Excess excess;
+  std::vector<Trial> trials{excess.with_share(1)};
+  EXPECT_FALSE(excess.adopted(trials, 1.01 * kExcess));
+  EXPECT_TRUE(excess.adopted(trials, 0.99 * kExcess));
+}
+
+TEST(AdoptTrials, NoRecordMayGetWorse) {
+  const Excess excess;
+  const double record = excess.made.now.misfit[0];
+  for (const double near : {-1.0, 1.0}) {
+    std::vector<Trial> trials{excess.with_share(1)};
+    trials[0].misfit[0] = kWorse * record + kNeeded + near;
+    EXPECT_EQ(worsens(trials[0], excess.made.now, kNeeded), near > 0);
+    EXPECT_EQ(excess.adopted(trials), near < 0);
+  }
+}
+
+TEST(AdoptTrials, TwoEffectsMustBeatOneByMoreThanChance) {
+  for (const double better : {0.5 * kNeeded, 1.5 * kNeeded}) {
+    const Excess excess;
+    std::vector<Trial> trials{excess.with_share(0.98), excess.with_share(0.98 + better / kExcess)};
+    trials[1].second = std::pair(EffectKind::gain_error, test::at_channel(0));
+    excess.adopted(trials);
+    EXPECT_EQ(trials[0].second.has_value(), better > kNeeded) << better;
+  }
+}
+
+TEST(AdoptTrials, EveryFittedValueHasItsPrice) {
+  const Excess excess;
+  const double of_value =
+      0.5 * std::log(excess.made.recorded.fitter.expected(excess.made.now.model));
+  constexpr int kValues = 4;
+  for (const double beside : {-0.1, 0.1}) {
+    Trial plain = excess.with_share(0.98);
+    Trial rich = excess.with_share(0.98);
+    rich.cost -= kValues * of_value + beside;
+    rich.kind = EffectKind::pinching;
+    ModelEffect effect;
+    effect.form = LawForm::mass;
+    effect.place = test::at_crossing(1);
+    effect.parameters.assign(kValues + 2, linear_parameter(1, 1));
+    effect.parameters[0].free = effect.parameters[1].free = false;
+    rich.model.effects.push_back(effect);
+    std::vector<Trial> trials{plain, rich};
+    excess.adopted(trials);
+    EXPECT_EQ(trials[0].kind == EffectKind::pinching, beside > 0) << beside;
+  }
+}
+
+TEST(AdoptTrials, AForceThatMayBeAnythingYieldsToALaw) {
+  const Excess excess;
+  Trial any = excess.with_share(1, EffectKind::unmeasured_force);
+  ModelEffect effect;
+  effect.form = LawForm::broadband;
+  effect.place = test::at_node(2);
+  any.model.effects.push_back(effect);
+  std::vector<Trial> trials{any, excess.with_share(0.975)};
+  excess.adopted(trials);
+  EXPECT_EQ(trials[0].kind, EffectKind::extra_mass);
+  trials = {any, excess.with_share(0.9)};
+  excess.adopted(trials);
+  EXPECT_EQ(trials[0].kind, EffectKind::unmeasured_force);
+}
+
+TEST(AdoptTrials, ABluntFitIsSharpened) {
+  // A mass that is hidden, in a trial that has half of it.
+  constexpr double kMass_kg = 6000, kOff = 0.1;
+  HandMade made(test::records_with(
+      {test::effect_of(EffectKind::extra_mass, test::at_crossing(1), {kMass_kg})}));
+  Trial half = made.trial(EffectKind::extra_mass, 0);
+  ModelEffect mass;
+  mass.form = LawForm::mass;
+  mass.place = test::at_crossing(1);
+  mass.parameters = {linear_parameter(0.5 * kMass_kg, 100)};
+  half.model.effects.push_back(mass);
+  FitOptions stay;
+  stay.max_steps = 0;
+  const FitResult begun = made.recorded.fitter.fit(half.model, {}, stay);
+  const double expected = made.recorded.fitter.expected(made.now.model);
+  made.now.cost = 10 * begun.cost;  // the trial has most of it
+  half.cost = begun.cost;
+  half.misfit = begun.misfit;
+  std::vector<Trial> trials{half};
+  select_trial(made.context(), 0.8 * expected, kNeeded, trials);
+  EXPECT_LT(trials[0].cost, begun.cost);
+  EXPECT_NEAR(trials[0].model.effects.back().parameters[0].plain() / kMass_kg, 1, kOff);
+}
+
+}  // namespace select_trial_test
+}  // namespace framewatch::estimator

@@ -1,0 +1,94 @@
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include "estimator/numeric/kernels.h"
+#include "estimator/simulate/random.h"
+
+namespace framewatch::estimator {
+namespace kernels_bins_test {
+
+using kernels::kBins;
+constexpr int kNumber = 2 * kBins;
+
+struct Case {
+  int n, axes;
+  std::vector<double> d, noise;
+
+  Case(int equations, int sensors) : n(equations), axes(sensors) {
+    Random random(static_cast<std::uint64_t>(100 * equations + sensors));
+    for (int i = 0; i < n * axes * kNumber; ++i) d.push_back(random.normal());
+    for (int i = 0; i < axes * kBins; ++i) noise.push_back(0.1 + random.uniform());
+  }
+
+  std::vector<double> covariance(const kernels::Table& table) const {
+    std::vector<double> out(static_cast<std::size_t>(n * n * kNumber), 0.0);
+    table.noise_covariance(d.data(), noise.data(), n, axes, out.data());
+    return out;
+  }
+};
+
+Eigen::MatrixXcd at_bin(const std::vector<double>& numbers, int rows, int columns, int bin) {
+  Eigen::MatrixXcd out(rows, columns);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const double* number = &numbers[static_cast<std::size_t>((i * columns + j) * kNumber + bin)];
+      out(i, j) = {number[0], number[kBins]};
+    }
+  return out;
+}
+
+TEST(KernelsOfBins, InverseFactorWhitensTheNoise) {
+  constexpr double kRounding = 1e-12;
+  for (const auto& [n, axes] : {std::pair(1, 2), std::pair(8, 10), std::pair(17, 20)}) {
+    const Case c(n, axes);
+    std::vector<double> matrix = c.covariance(*kernels::in_use);
+    kernels::in_use->inverse_cholesky(matrix.data(), n);
+    for (int bin = 0; bin < kBins; ++bin) {
+      const Eigen::MatrixXcd d = at_bin(c.d, n, axes, bin);
+      Eigen::VectorXd noise(axes);
+      for (int a = 0; a < axes; ++a) noise[a] = c.noise[static_cast<std::size_t>(a * kBins + bin)];
+      const Eigen::MatrixXcd w =
+          at_bin(matrix, n, n, bin).triangularView<Eigen::Lower>().toDenseMatrix();
+      const Eigen::MatrixXcd white = w * d * noise.asDiagonal() * d.adjoint() * w.adjoint();
+      EXPECT_LT((white - Eigen::MatrixXcd::Identity(n, n)).norm(), kRounding * n)
+          << n << " " << bin;
+    }
+  }
+}
+
+TEST(KernelsOfBins, WhatIsNotPositiveDefiniteIsNotFinite) {
+  std::vector<double> matrix(4 * kNumber, 0.0);
+  for (int bin = 0; bin < kBins; ++bin) {
+    matrix[static_cast<std::size_t>(bin)] = 1;                // (0, 0)
+    matrix[static_cast<std::size_t>(2 * kNumber + bin)] = 2;  // (1, 0)
+    matrix[static_cast<std::size_t>(3 * kNumber + bin)] = bin == 3 ? 5 : 1;
+  }
+  kernels::in_use->inverse_cholesky(matrix.data(), 2);
+  for (int bin = 0; bin < kBins; ++bin)
+    EXPECT_EQ(std::isfinite(matrix[static_cast<std::size_t>(3 * kNumber + bin)]), bin == 3);
+}
+
+TEST(KernelsOfBins, EveryInstructionSetGivesTheSameBits) {
+  int others = 0;
+  for (const kernels::Table* table : {kernels::x86_64_v3(), kernels::x86_64_v4()}) {
+    if (table == nullptr) continue;
+    ++others;
+    for (const auto& [n, axes] : {std::pair(1, 2), std::pair(8, 10), std::pair(17, 20)}) {
+      const Case c(n, axes);
+      std::vector<double> wanted = c.covariance(*kernels::portable()), got = c.covariance(*table);
+      kernels::portable()->inverse_cholesky(wanted.data(), n);
+      table->inverse_cholesky(got.data(), n);
+      for (std::size_t i = 0; i < got.size(); ++i)
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(got[i]), std::bit_cast<std::uint64_t>(wanted[i]));
+    }
+  }
+  if (others == 0) GTEST_SKIP() << "this machine has one instruction set only";
+}
+
+}  // namespace kernels_bins_test
+}  // namespace framewatch::estimator

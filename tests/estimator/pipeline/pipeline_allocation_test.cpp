@@ -1,0 +1,113 @@
+// After its construction a pipeline never asks the heap for anything, whatever the samples: Eigen
+// included. Counted by this program's own malloc, in front of glibc's.
+#include <atomic>
+#include <cstdlib>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "estimator/pipeline/pipeline.h"
+#include "tests/support/paper_buildings.h"
+#include "tests/support/pipeline_run.h"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define FRAMEWATCH_COUNTS_ALLOCATIONS
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+}
+#endif
+
+namespace framewatch::estimator {
+namespace {
+
+#ifdef FRAMEWATCH_COUNTS_ALLOCATIONS
+
+/// What a run of samples did; `delivered` says which came.
+struct Watched {
+  long allocations = 0;
+  int values = 0;
+  PipelineCounters counters;
+};
+Watched watch(const PipelineConfig& config, const Eigen::MatrixXd& accel,
+              const test::Delivered& delivered = {}) {
+  Watched out;
+  Pipeline pipeline(config, [&](const WindowEstimate& e) {
+    out.values += e.status == WindowStatus::valid ? 1 : 0;
+  });
+  const long before = allocations;
+  for (int t = 0; t < accel.rows(); ++t)
+    for (int axis = 0; axis < accel.cols(); ++axis)
+      if (!delivered || delivered(t, axis)) pipeline.push(test::sample_at(accel, 100, t, axis));
+  pipeline.finish();
+  out.allocations = allocations - before;
+  out.counters = pipeline.counters();
+  return out;
+}
+
+TEST(PipelineAllocation, CountsNewAndEigen) {
+  const long before = allocations;
+  const auto probe = std::make_unique<Eigen::VectorXd>(Eigen::VectorXd::Ones(7));
+  ASSERT_EQ(probe->sum(), 7);
+  EXPECT_EQ(allocations - before, 2);
+}
+
+/// Warming up, estimating, and looking once a window whether the filters still fit.
+TEST(PipelineAllocation, SamplesAllocateNothing) {
+  for (const bool small : {true, false}) {
+    const Structure s = small ? test::table1() : test::table2();
+    PipelineConfig config = test::pipeline_config(s);
+    config.design = small ? test::table1_theta() : test::table2_theta('c');
+    config.options.long_window_s = 8;
+    const Watched run = watch(config, test::shaken(s, config.design, 100, 25, 0.01));
+    EXPECT_EQ(run.allocations, 0);
+    EXPECT_GT(run.values, 500);
+    EXPECT_LE(run.counters.retunes, 1);  // to the noise that was measured
+  }
+}
+
+TEST(PipelineAllocation, TuningTheFiltersAnewAllocatesNothing) {
+  const Structure s = test::table1();
+  PipelineConfig config = test::pipeline_config(s);  // guesses its design, far off
+  const Watched run = watch(config, test::shaken(s, test::table1_theta(), 100, 25, 0.01));
+  EXPECT_EQ(run.allocations, 0);
+  EXPECT_GT(run.values, 500);
+  EXPECT_GE(run.counters.retunes, 1);
+}
+
+TEST(PipelineAllocation, LossesGapsAndSilentAxesAllocateNothing) {
+  const Structure s = test::table1();
+  PipelineConfig config = test::pipeline_config(s);
+  config.design = test::table1_theta();
+  config.options.long_window_s = 8;
+  for (SensorAxis& axis : config.axes) axis.noise_density = 1e-3;
+  const Watched run =
+      watch(config, test::shaken(s, config.design, 100, 40, 0.01), [](int t, int axis) {
+        if (t == 1400) return axis != 3;              // a single loss
+        if (t >= 1500 && t < 1503) return axis != 7;  // a short one
+        if (t >= 1600 && t < 1900) return axis != 5;  // a silent axis
+        return t < 2000 || t >= 2300;                 // nobody
+      });
+  EXPECT_EQ(run.allocations, 0);
+  EXPECT_GT(run.values, 500);
+  EXPECT_GE(run.counters.interruptions, 1);
+}
+
+#else
+
+TEST(PipelineAllocation, SamplesAllocateNothing) {
+  GTEST_SKIP() << "a sanitizer or another C library owns malloc";
+}
+
+#endif
+
+}  // namespace
+}  // namespace framewatch::estimator

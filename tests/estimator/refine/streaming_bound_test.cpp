@@ -1,0 +1,24 @@
+// How far the streaming estimator is from the Cramer-Rao bound; framewatch reproduce has the whole
+// table on twenty motions (docs/accuracy.md).
+
+#include <gtest/gtest.h>
+
+#include "daemon/lab/accuracy_study.h"
+
+namespace framewatch::estimator {
+namespace streaming_bound_test {
+
+constexpr int kMotions = 3;
+constexpr double kMost = 2.0;   // three motions only; 1.6 is held over twenty
+constexpr double kLeast = 0.7;  // lower would mean that the bound is wrong
+
+TEST(StreamingBound, TableOneStiffnessIsWithinTwiceTheBound) {
+  const daemon::AccuracyRow row =
+      daemon::study_accuracy(daemon::accuracy_cases().front(), kMotions, daemon::Workers(1));
+  const double ratio = row.of(daemon::Method::matched, 0).quantile(0.5) / row.least_median(0);
+  EXPECT_LT(ratio, kMost);
+  EXPECT_GT(ratio, kLeast);
+}
+
+}  // namespace streaming_bound_test
+}  // namespace framewatch::estimator

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/estimation/estimation.h"
+#include "drivers/can/can_source.h"
+
+namespace framewatch::test {
+
+/// `configs/can/NAME.toml` with its (one) bus on another interface.
+daemon::Config example_on(const std::string& name, const std::string& interface);
+
+/// Runs a command of a shell that must succeed.
+void shell(const std::string& command);
+
+/// A virtual bus of its own while it lives.
+struct Vcan {
+  explicit Vcan(std::string name_) : name(std::move(name_)) { up(); }
+  ~Vcan() { down(); }
+  Vcan(const Vcan&) = delete;
+  Vcan& operator=(const Vcan&) = delete;
+  void up() const { shell("ip link add " + name + " type vcan && ip link set " + name + " up"); }
+  void down() const { shell("ip link del " + name); }
+  std::string name;
+};
+
+/// configs/can/scenario_tower.toml
+inline constexpr const char* kTowerScenario =
+    FRAMEWATCH_SOURCE_DIR "/configs/can/scenario_tower.toml";
+
+/// Estimates of a scenario's samples, quantised as its CAN nodes do, over LCM messages.
+std::vector<estimator::WindowEstimate> estimates_over_lcm(const std::string& scenario,
+                                                          double seconds);
+
+/// Windows whose values, errors or reasons are not byte for byte the same; all when their numbers
+/// differ.
+std::size_t different(const std::vector<estimator::WindowEstimate>& a,
+                      const std::vector<estimator::WindowEstimate>& b);
+
+/// A process; waited for at the end.
+class Process {
+ public:
+  explicit Process(std::vector<std::string> arguments);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  bool ended();
+
+ private:
+  pid_t pid_;
+  bool ended_ = false;
+};
+
+/// The buses of a configuration, live, in this process.
+class LiveBuses {
+ public:
+  explicit LiveBuses(const daemon::Config& config);
+  /// Handles frames until `done` is true, and half a second more.
+  void run(const std::function<bool()>& done);
+
+  std::vector<estimator::WindowEstimate> estimates;
+  daemon::Estimation estimation;
+  drivers::CanSource source;
+};
+
+}  // namespace framewatch::test

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include <fmt/core.h>
+
+#include "daemon/keys/option_table.h"
+
+namespace framewatch::test {
+
+/// A value that the key may have and that is not its default, as TOML writes it.
+inline std::string another_value(const daemon::Option& o) {
+  using daemon::OptionType;
+  switch (o.type) {
+    case OptionType::text:
+      return "\"another\"";
+    case OptionType::texts:
+      return "[\"another\"]";
+    case OptionType::boolean:
+      return o.default_value == "true" ? "false" : "true";
+    case OptionType::choice:
+      // Not the first of them: a field that is not written has that one, mostly.
+      return "\"" + daemon::choices(o).back() + "\"";
+    case OptionType::integer:
+    case OptionType::number:
+    case OptionType::grid: {
+      const double low = o.min > -1e12 ? o.min : -1, high = o.max < 1e12 ? o.max : 1e6;
+      // A fortieth of the range: few defaults are there.
+      const double value = low + (high - low) / 40;
+      std::string text = o.type == OptionType::integer
+                             ? fmt::format("{}", static_cast<long>(value) + 1)
+                             : fmt::format("{:.6g}", value);
+      if (text == o.default_value) text = fmt::format("{:.6g}", low);
+      return o.type == OptionType::grid ? "[" + text + "]" : text;
+    }
+    case OptionType::table:
+      break;
+  }
+  return "{}";
+}
+
+}  // namespace framewatch::test
