@@ -31,8 +31,8 @@ VectorXcd slow_transform(const VectorXd& signal) {
   VectorXcd out = VectorXcd::Zero(signal.size() / 2 + 1);
   for (Index k = 0; k < out.size(); ++k)
     for (Index i = 0; i < signal.size(); ++i)
-      out[k] += std::polar(
-          signal[i], -2 * M_PI * static_cast<double>(k * i) / static_cast<double>(signal.size()));
+      out[k] += signal[i] * std::polar(1.0, -2 * M_PI * static_cast<double>(k * i) /
+                                                static_cast<double>(signal.size()));
   return out;
 }
 
