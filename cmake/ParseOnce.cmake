@@ -1,14 +1,16 @@
-# Most of a build is headers, read again for every source. FRAMEWATCH_PARSE_ONCE precompiles them and
-# joins the sources of a room by eight. Off in `dev`, where a missing #include must be seen.
+# Most of a build is headers, read again for every source. FRAMEWATCH_PRECOMPILE reads those of other
+# people once (tests/purity/check-missing-includes sees what the compiler then does not);
+# FRAMEWATCH_JOIN compiles the sources of a room eight at a time, so is off where a missing #include of
+# ours must be seen.
 set(framewatch_standard_headers <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream>
   <functional> <map> <memory> <mutex> <numeric> <optional> <set> <string> <thread> <utility> <vector>)
 
-# framewatch_precompile(<name> LINKS <library>... HEADERS <header>... FOR <target>...): these headers and the
-# standard library's, read once for all targets, which are compiled with the options that users of LINKS
-# have and with OPTIONS.
+# framewatch_precompile(<name> LINKS <library>... HEADERS <header>... FOR <target>... OPTIONS <option>...):
+# these headers and the standard library's, read once for all targets, which are compiled with the
+# options that users of LINKS have and with OPTIONS.
 function(framewatch_precompile name)
   cmake_parse_arguments(ARG "" "" "LINKS;HEADERS;FOR;OPTIONS" ${ARGN})
-  if(NOT FRAMEWATCH_PARSE_ONCE)
+  if(NOT FRAMEWATCH_PRECOMPILE)
     return()
   endif()
   set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
@@ -26,7 +28,7 @@ endfunction()
 # framewatch_join(<target>...): their sources are compiled eight at a time. What they name in a
 # namespace without a name must then differ from one source to the next.
 function(framewatch_join)
-  if(FRAMEWATCH_PARSE_ONCE)
+  if(FRAMEWATCH_JOIN)
     set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ON)
   endif()
 endfunction()

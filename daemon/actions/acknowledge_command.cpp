@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cstdlib>
 #include <optional>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <framewatch/acknowledge_t.hpp>

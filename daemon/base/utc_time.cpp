@@ -3,6 +3,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <system_error>
 
 #include <fmt/core.h>
 

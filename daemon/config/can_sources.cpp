@@ -1,6 +1,7 @@
 #include "daemon/config/can_reader.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 

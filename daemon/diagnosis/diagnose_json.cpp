@@ -1,9 +1,8 @@
 #include "daemon/diagnosis/diagnose_json.h"
 
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 
+#include "daemon/documents/json_values.h"
 #include "daemon/simulation/effect_json.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
@@ -11,15 +10,9 @@
 namespace framewatch::daemon {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 /// [from, to]; null where it is not known.
 Json span(double from, double to) {
-  return to > from ? Json{number(from), number(to)} : Json(nullptr);
+  return to > from ? Json{json_value(from), json_value(to)} : Json(nullptr);
 }
 
 /// Gap (or its floor) of every channel and overall, averaged over the training or the held-out
@@ -39,8 +32,8 @@ Json gap_json(const DiagnoseOutput& o, const std::vector<estimator::Gap>& gaps, 
   if (count == 0) return {{"overall", nullptr}, {"channels", Json::object()}};
   for (Eigen::Index a = 0; a < sum.size(); ++a)
     if (!o.plant.is_input(a) || o.plant.prescribed)
-      channels[o.plant.axes[static_cast<std::size_t>(a)].name] = number(sum[a] / count);
-  return {{"overall", number(overall / count)}, {"channels", channels}};
+      channels[o.plant.axes[static_cast<std::size_t>(a)].name] = json_value(sum[a] / count);
+  return {{"overall", json_value(overall / count)}, {"channels", channels}};
 }
 
 Json both(const DiagnoseOutput& o, const std::vector<estimator::Gap>& gaps, bool floor) {
@@ -54,7 +47,7 @@ Json effect_json(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
   std::size_t index = 0;
   for (auto& [key, value] : parameters.items()) {
     if (index < f.std_error.size() && f.std_error[index] > 0)
-      value["std_error"] = number(f.std_error[index]);
+      value["std_error"] = json_value(f.std_error[index]);
     ++index;
   }
   return {{"effect", std::string(name_of(effect.kind))},
@@ -79,8 +72,8 @@ const char* outcome_word(estimator::TrialOutcome outcome) {
 Json trial_json(const DiagnoseOutput& o, const estimator::Trial& t) {
   Json out{{"effect", std::string(name_of(t.kind))},
            {"location", location_json(t.place, o.plant.structure, o.plant.axes)},
-           {"explained_share", number(t.fraction)},
-           {"misfit", number(t.cost)},
+           {"explained_share", json_value(t.fraction)},
+           {"misfit", json_value(t.cost)},
            {"fate", outcome_word(t.outcome)}};
   if (t.second)
     out["together_with"] = {
@@ -99,15 +92,15 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
                 {"after", both(o, d.after, false)},
                 {"noise_floor", both(o, d.before, true)},
                 {"after_is_of_a_model_fitted_to", d.after_of_all ? "all records" : "train"},
-                {"misfit_ratio_before", number(d.ratio_before)},
-                {"misfit_ratio_after", number(d.ratio_after)}};
+                {"misfit_ratio_before", json_value(d.ratio_before)},
+                {"misfit_ratio_after", json_value(d.ratio_after)}};
   out["effects"] = Json::array();
   for (const estimator::FoundEffect& f : d.effects) {
     Json one = effect_json(o, f);
-    one.update(Json{{"holdout_nrmse_before", number(f.before)},
-                    {"holdout_nrmse_after", number(f.after)},
-                    {"explained_share", number(f.chosen.fraction)},
-                    {"confidence", number(f.confidence)},
+    one.update(Json{{"holdout_nrmse_before", json_value(f.before)},
+                    {"holdout_nrmse_after", json_value(f.after)},
+                    {"explained_share", json_value(f.chosen.fraction)},
+                    {"confidence", json_value(f.confidence)},
                     {"approximate", f.approximate},
                     {"alternatives", Json::array()},
                     {"indistinguishable_from", Json::array()}});
@@ -126,18 +119,18 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
   for (const estimator::WhereEntry& w : d.where)
     out["where"].push_back(
         {{"location", location_json(w.place, o.plant.structure, o.plant.axes)},
-         {"misfit_ratio_if_free", number(w.ratio)},
+         {"misfit_ratio_if_free", json_value(w.ratio)},
          {"record", o.records[w.record].path},
          {"time_s", span(w.from_s, w.to_s)},
          {"band_hz", span(w.low_hz, w.high_hz)},
-         {"peak", w.peak > 0 ? number(w.peak) : Json(nullptr)},
+         {"peak", w.peak > 0 ? json_value(w.peak) : Json(nullptr)},
          {"peak_unit", w.place.kind == estimator::PlaceKind::channel ? "m/s^2" : "N"}});
   Json parameters = Json::object();
   for (int p = 0; p < o.plant.table.size(); ++p)
     if (!o.plant.stiff_floors || o.plant.table[p].panel < 0)
-      parameters[o.plant.table[p].name] = {{"value", number(d.model.theta[p])},
+      parameters[o.plant.table[p].name] = {{"value", json_value(d.model.theta[p])},
                                            {"unit", o.plant.table[p].unit},
-                                           {"design", number(o.plant.design[p])}};
+                                           {"design", json_value(o.plant.design[p])}};
   out["parameters"] = parameters;
   Json files = Json::array();
   for (std::size_t r = 0; r < o.records.size(); ++r)

@@ -1,5 +1,6 @@
 #include "daemon/diagnosis/diagnose_report.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>

@@ -1,6 +1,8 @@
 #include "daemon/documents/toml_document.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include <fmt/core.h>
 #include <toml++/toml.h>

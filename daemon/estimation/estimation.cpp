@@ -30,11 +30,8 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
 void Estimation::begin_watch() {
   watch_.reset();
   if (!config_.watch) return;
-  std::vector<double> windows_s{config_.pipeline.options.window_s};
-  windows_s.insert(windows_s.end(), config_.pipeline.options.other_windows_s.begin(),
-                   config_.pipeline.options.other_windows_s.end());
-  watch_.emplace(pipeline_.parameters(), config_.watch->options, windows_s,
-                 config_.watch->baseline);
+  watch_.emplace(pipeline_.parameters(), config_.watch->options,
+                 window_lengths_s(config_.pipeline.options), config_.watch->baseline);
 }
 
 void Estimation::begin_gap() {

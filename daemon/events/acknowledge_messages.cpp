@@ -1,16 +1,14 @@
 #include "daemon/events/acknowledge_messages.h"
 
-#include <random>
-
 #include "daemon/base/clocks.h"
+#include "daemon/base/random_id.h"
 
 namespace framewatch::daemon {
 
 acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
                                   const std::string& comment) {
-  std::random_device source;
   acknowledge_t out{};
-  out.request = 1 + (std::int64_t{source()} << 20 | std::int64_t{source() >> 12});
+  out.request = random_id();
   out.time_us = host_clock_us();
   out.id = id;
   out.who = who;

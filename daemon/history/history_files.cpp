@@ -6,6 +6,8 @@
 #include <cmath>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 #include <fmt/core.h>
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "daemon/history/history_files.h"
 #include "daemon/history/history_schema.h"

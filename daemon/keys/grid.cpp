@@ -1,6 +1,7 @@
 #include "daemon/keys/grid.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/core.h>
 

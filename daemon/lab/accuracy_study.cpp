@@ -1,6 +1,7 @@
 #include "daemon/lab/accuracy_study.h"
 
 #include <cmath>
+#include <utility>
 
 #include "daemon/base/median.h"
 #include "daemon/lab/paper_buildings.h"

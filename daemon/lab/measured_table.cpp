@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "drivers/records/record_file.h"
 #include "drivers/records/record_merge.h"

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "daemon/lab/paper_buildings.h"
 #include "daemon/lab/paper_motions.h"

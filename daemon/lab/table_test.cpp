@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "daemon/lab/demo_files.h"
 #include "daemon/lab/measured_table.h"

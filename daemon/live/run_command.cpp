@@ -30,11 +30,6 @@ namespace {
 
 constexpr int kPoll_ms = 100;
 
-int refuse(const std::string& problem) {
-  fmt::print(stderr, "framewatch run: {}\n", problem);
-  return kBadInput;
-}
-
 /// Resumes from the state file, if there is one. One that does not fit is renamed, and the log says
 /// why. Whether the run was resumed.
 bool resume(const std::string& path, const Config& config, lcm::LCM& lcm,
@@ -79,11 +74,11 @@ int run(const RunArguments& a) {
   catch_reload_signal();
   ServiceManager manager;
   const auto lcm = open_lcm_with_retry(*config, a.url, manager, error);
-  if (!lcm) return stop_requested() ? 0 : refuse(error);
+  if (!lcm) return stop_requested() ? 0 : refuse("run", error);
 
   drivers::CanLogWriter can_log;
   if (!a.can_log.empty() && !can_log.open(a.can_log))
-    return refuse(a.can_log + ": " + can_log.error());
+    return refuse("run", a.can_log + ": " + can_log.error());
   drivers::CanLogWriter* const recorder = a.can_log.empty() ? nullptr : &can_log;
   std::optional<LiveEstimation> estimation(std::in_place, *config, *lcm, recorder);
   StartCount starts;
@@ -122,7 +117,8 @@ int run(const RunArguments& a) {
     error = count_clean_stop(a.state, starts);
     if (!error.empty()) log(LogLevel::error, fmt::format("the stop is not counted: {}", error));
   }
-  if (recorder != nullptr && !can_log.close()) return refuse(a.can_log + ": " + can_log.error());
+  if (recorder != nullptr && !can_log.close())
+    return refuse("run", a.can_log + ": " + can_log.error());
   if (!a.quiet) log_summary(live.estimation());
   return 0;
 }

@@ -8,6 +8,7 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/config/config_problems.h"
+#include "daemon/documents/json_values.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/estimation/segment_collector.h"
 #include "daemon/replay/replay_survey.h"
@@ -20,7 +21,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kNotRefined = 1;
-using Json = nlohmann::ordered_json;
 
 /// Everything a person is told.
 struct Report {
@@ -28,11 +28,6 @@ struct Report {
   estimator::Refinement refinement;
   std::vector<double> streaming;  ///< theta order; NaN: not published
 };
-
-/// A number, or null when there is none.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 std::string json(const RefineArguments& a, const Config& config,
                  const estimator::ParameterTable& table, const Report& report) {
@@ -48,18 +43,18 @@ std::string json(const RefineArguments& a, const Config& config,
            {"status", status_word(r.status)}};
   if (r.has_values()) {
     out["iterations"] = r.iterations;
-    out["log_likelihood"] = number(r.log_likelihood);
-    out["misfit_ratio"] = number(r.misfit_ratio);
+    out["log_likelihood"] = json_value(r.log_likelihood);
+    out["misfit_ratio"] = json_value(r.misfit_ratio);
     out["band_hz"] = {r.band.low_hz, r.band.high_hz};
     out["bins"] = r.bins;
     out["parameters"] = Json::array();
     for (int p = 0; p < table.size(); ++p)
       out["parameters"].push_back({{"name", table[p].name},
                                    {"unit", table[p].unit},
-                                   {"streaming", number(report.streaming[std::size_t(p)])},
-                                   {"refined", number(r.theta[p])},
-                                   {"std_error", number(r.std_error[p])},
-                                   {"cramer_rao_bound", number(r.bound[p])}});
+                                   {"streaming", json_value(report.streaming[std::size_t(p)])},
+                                   {"refined", json_value(r.theta[p])},
+                                   {"std_error", json_value(r.std_error[p])},
+                                   {"cramer_rao_bound", json_value(r.bound[p])}});
   }
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <ratio>
 #include <thread>
 
 #include <framewatch/event_t.hpp>

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/log.h"
+#include "daemon/estimation/estimate_channels.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/live/heard_channels.h"
 #include "drivers/base/text_output.h"
@@ -58,12 +59,9 @@ Recorder::Recorder(const Config& config, std::string sessions, Ended ended)
 
 std::vector<std::string> Recorder::channels() const {
   std::vector<std::string> out = heard_channels(config_);
-  for (const char* name : {"PARAMETERS", "ESTIMATE", "STATUS", "EVENT", "GAP", "CAN"})
+  for (const char* name : {"PARAMETERS", "STATUS", "EVENT", "GAP", "CAN"})
     out.push_back(config_.lcm.prefix + name);
-  for (const double window_s : config_.pipeline.options.other_windows_s)
-    out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));
-  if (const double window_s = config_.pipeline.options.long_window_s; window_s > 0)
-    out.push_back(fmt::format("{}ESTIMATE_{:g}S", config_.lcm.prefix, window_s));
+  for (std::string& channel : estimate_channels(config_)) out.push_back(std::move(channel));
   return out;
 }
 

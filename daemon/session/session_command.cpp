@@ -1,12 +1,13 @@
 #include "daemon/session/session_command.h"
 
-#include <random>
+#include <utility>
 
 #include <framewatch/session_status_t.hpp>
 
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/random_id.h"
 #include "drivers/base/encoded.h"
 #include "drivers/lcm/lcm_source.h"
 #include "drivers/lcm/message_check.h"
@@ -19,9 +20,8 @@ constexpr int kTries = 10, kWait_ms = 300;
 }  // namespace
 
 session_command_t session_command(const std::string& verb, const SessionRequest& request) {
-  std::random_device source;
   session_command_t c{};
-  c.id = 1 + (std::int64_t{source()} << 20 | std::int64_t{source() >> 12});
+  c.id = random_id();
   c.verb = verb;
   c.test = request.test;
   c.operator_name = request.operator_name;

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include <fmt/core.h>
 

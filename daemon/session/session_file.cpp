@@ -11,30 +11,26 @@
 
 #include "daemon/base/file_digest.h"
 #include "daemon/base/utc_time.h"
+#include "daemon/documents/json_values.h"
 
 namespace framewatch::daemon {
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr const char* kSchema = "framewatch.session/1";
 constexpr double kLongest_s = 7 * 86400, kLongestBefore_s = 60, kHighest_mps2 = 1000;
 constexpr std::size_t kLongestName = 200, kLongestNotes = 4000, kLongestSlug = 40;
 constexpr std::array<std::pair<const char*, StageKind>, 3> kStages{
     {{"quiet", StageKind::quiet}, {"forced", StageKind::forced}, {"free", StageKind::free}}};
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json channels_json(const std::vector<ChannelResult>& results) {
   Json out = Json::array();
   for (const ChannelResult& r : results)
     out.push_back({{"name", r.name},
-                   {"noise_mps2_per_rthz", number(r.noise_density)},
-                   {"rms_mps2", number(r.rms)},
-                   {"offset_mps2", number(r.offset)},
-                   {"peak_mps2", number(r.peak)},
-                   {"range_mps2", number(r.range)},
+                   {"noise_mps2_per_rthz", json_value(r.noise_density)},
+                   {"rms_mps2", json_value(r.rms)},
+                   {"offset_mps2", json_value(r.offset)},
+                   {"peak_mps2", json_value(r.peak)},
+                   {"range_mps2", json_value(r.range)},
                    {"samples", r.samples},
                    {"missing", r.missing},
                    {"saturated", r.saturated},

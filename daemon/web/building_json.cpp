@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/web/json_values.h"
+#include "daemon/documents/json_values.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {

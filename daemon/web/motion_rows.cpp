@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/web/json_values.h"
+#include "daemon/documents/json_values.h"
 
 namespace framewatch::daemon {
 

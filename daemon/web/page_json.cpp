@@ -1,8 +1,10 @@
 #include "daemon/web/page_json.h"
 
+#include <utility>
+
 #include <nlohmann/json.hpp>
 
-#include "daemon/web/json_values.h"
+#include "daemon/documents/json_values.h"
 
 namespace framewatch::daemon {
 

@@ -5,17 +5,12 @@
 
 #include <fmt/core.h>
 
+#include "daemon/estimation/estimation_events.h"
 #include "daemon/events/event_words.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
-
-std::vector<double> window_lengths(const estimator::EstimatorOptions& o) {
-  std::vector<double> out{o.window_s};
-  out.insert(out.end(), o.other_windows_s.begin(), o.other_windows_s.end());
-  return out;
-}
 
 estimator::Watch fresh_watch(const estimator::ParameterTable& table,
                              const std::vector<double>& windows_s) {
@@ -48,7 +43,7 @@ estimator::WindowEstimate decoded(int window, const window_estimate_t& m) {
 
 PageWatch::PageWatch(const Config& config, std::int64_t first_id)
     : table_(config.pipeline.structure),
-      windows_s_(window_lengths(config.pipeline.options)),
+      windows_s_(window_lengths_s(config.pipeline.options)),
       watch_(fresh_watch(table_, windows_s_)),
       first_id_(first_id) {}
 
@@ -78,21 +73,15 @@ std::vector<double> PageWatch::baseline() const {
 
 event_t PageWatch::event(const estimator::Alarm& alarm) const {
   const bool over = alarm.state == estimator::AlarmState::cleared;
-  const std::string& name = table_[alarm.parameter].name;
-  event_t e{};
-  e.time_us = to_microseconds(alarm.found);
-  e.since_us = to_microseconds(alarm.change.since);
+  event_t e = stiffness_event(alarm, table_);
   e.id = first_id_ + alarm.id - 1;
-  e.state = static_cast<std::int32_t>(alarm.state);
   e.severity = over ? severity::information : severity::alarm;
-  e.kind = "stiffness_change";
-  e.place = name;
   e.value = alarm.change.ratio;
   e.std_error = alarm.change.std_error;
   e.unit = "ratio";
-  e.message = over ? fmt::format("{} is back at its baseline", name)
-                   : fmt::format("{} is {:+.1f} % from its baseline, standard error {:.1f} %", name,
-                                 100 * e.value, 100 * e.std_error);
+  e.message = over ? fmt::format("{} is back at its baseline", e.place)
+                   : fmt::format("{} is {:+.1f} % from its baseline, standard error {:.1f} %",
+                                 e.place, 100 * e.value, 100 * e.std_error);
   return e;
 }
 

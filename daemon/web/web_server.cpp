@@ -8,6 +8,7 @@
 #include <atomic>
 #include <charconv>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include <fmt/core.h>

@@ -4,14 +4,15 @@
 #include <cctype>
 #include <filesystem>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/file_digest.h"
+#include "daemon/documents/json_values.h"
 #include "daemon/session/session_file.h"
 #include "daemon/session/session_log.h"
-#include "daemon/web/json_values.h"
 
 namespace framewatch::daemon {
 namespace {

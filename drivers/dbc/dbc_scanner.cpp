@@ -1,6 +1,7 @@
 #include "drivers/dbc/dbc_scanner.h"
 
 #include <charconv>
+#include <system_error>
 
 #include "drivers/base/number_text.h"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include <framewatch/accel_t.hpp>
 #include <framewatch/window_estimate_t.hpp>

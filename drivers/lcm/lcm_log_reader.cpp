@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "drivers/base/zstd_file.h"
 #include "drivers/lcm/lcm_log.h"

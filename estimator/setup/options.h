@@ -33,4 +33,11 @@ struct EstimatorOptions {
   double max_error_c = 0.20;       ///< damping of frames and panels
 };
 
+/// Lengths of the main and of the other windows, s, by WindowEstimate::window.
+inline std::vector<double> window_lengths_s(const EstimatorOptions& options) {
+  std::vector<double> out{options.window_s};
+  out.insert(out.end(), options.other_windows_s.begin(), options.other_windows_s.end());
+  return out;
+}
+
 }  // namespace framewatch::estimator

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
+#include <utility>
 
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/solve.h"

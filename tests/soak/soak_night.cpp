@@ -1,5 +1,6 @@
 #include "tests/soak/soak_night.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/numeric/nan.h"

@@ -162,13 +162,6 @@ Json truth_of(const Json& in) {
             {"noise_ratio", 0.01}}}};
 }
 
-bool write_text(const std::string& path, const std::string& text, std::string& error) {
-  drivers::TextOutput out;
-  if (out.open(path) && out.write(text) && out.close()) return true;
-  error = out.error();
-  return false;
-}
-
 }  // namespace
 
 bool import_practice(const std::string& source, const std::string& directory, std::string& error) {
@@ -186,10 +179,13 @@ bool import_practice(const std::string& source, const std::string& directory, st
     if (code) error = source + from + ": " + code.message();
     return !code;
   };
+  const auto write = [&](const char* file, const std::string& text) {
+    error = drivers::write_text_file(directory + file, text);
+    return error.empty();
+  };
   return copy("/record_1.csv.gz", "/train.csv.gz") && copy("/record_2.csv.gz", "/holdout.csv.gz") &&
-         write_text(directory + "/config.toml",
-                    config_toml(belief(structure), structure["sampling_hz"]), error) &&
-         write_text(directory + "/truth.json", truth_of(truth).dump(1) + "\n", error);
+         write("/config.toml", config_toml(belief(structure), structure["sampling_hz"])) &&
+         write("/truth.json", truth_of(truth).dump(1) + "\n");
 }
 
 }  // namespace framewatch::study

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -110,13 +111,6 @@ std::string truth_text(const StudyCase& c, const std::string& name) {
   return out.dump(1) + "\n";
 }
 
-bool write_text(const std::string& path, const std::string& text, std::string& error) {
-  drivers::TextOutput out;
-  if (out.open(path) && out.write(text) && out.close()) return true;
-  error = out.error();
-  return false;
-}
-
 bool write_record(const StudyCase& c, int record, const std::string& path, std::string& error) {
   const Eigen::MatrixXd accel = measured(c, record);
   std::vector<std::string> names;
@@ -163,11 +157,14 @@ bool write_case(const StudyCase& c, const std::string& directory, std::string& e
   std::error_code code;
   std::filesystem::create_directories(directory, code);
   const std::string name = std::filesystem::path(directory).filename().string();
-  return write_text(directory + "/config.toml", config_toml(c.building, c.options.rate_hz),
-                    error) &&
+  const auto write = [&](const char* file, const std::string& text) {
+    error = drivers::write_text_file(directory + file, text);
+    return error.empty();
+  };
+  return write("/config.toml", config_toml(c.building, c.options.rate_hz)) &&
          write_record(c, 0, directory + "/train.csv.gz", error) &&
          write_record(c, 1, directory + "/holdout.csv.gz", error) &&
-         write_text(directory + "/truth.json", truth_text(c, name), error);
+         write("/truth.json", truth_text(c, name));
 }
 
 }  // namespace framewatch::study

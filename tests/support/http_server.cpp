@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 namespace framewatch::test {
 

@@ -13,10 +13,7 @@ ShakenMinute::ShakenMinute()
     : structure_(daemon::table1()), table_(structure_), frame_(table_.frame_stiffness(1, 0)) {}
 
 std::vector<double> ShakenMinute::windows_s() const {
-  const estimator::EstimatorOptions options;
-  std::vector<double> out{options.window_s};
-  out.insert(out.end(), options.other_windows_s.begin(), options.other_windows_s.end());
-  return out;
+  return estimator::window_lengths_s({});
 }
 
 Eigen::MatrixXd ShakenMinute::motion(std::uint64_t seed, bool damaged) const {

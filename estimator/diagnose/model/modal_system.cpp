@@ -1,6 +1,8 @@
 #include "estimator/diagnose/model/modal_system.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "estimator/numeric/complex.h"

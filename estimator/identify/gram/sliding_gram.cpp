@@ -1,6 +1,7 @@
 #include "estimator/identify/gram/sliding_gram.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "estimator/numeric/kernels.h"
 

@@ -13,8 +13,8 @@
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/drift_controlled_integrator.h"
 #include "estimator/motion/oscillator_section.h"
+#include "estimator/numeric/jacobi_eigen.h"
 #include "estimator/numeric/kernels.h"
-#include "estimator/numeric/symmetric_eigen.h"
 #include "estimator/setup/options.h"
 
 namespace framewatch::estimator {
@@ -128,7 +128,7 @@ class RegressorTuning {
   Eigen::MatrixXd basis_, modes_, stiffness_;  ///< frames x rows, frames x rows, frames x frames
   std::vector<double> projected_;
   Eigen::VectorXd frequency_hz_, force_, inertia_, common_;
-  SymmetricEigen eigen_;
+  JacobiEigen eigen_;
 };
 
 }  // namespace framewatch::estimator

@@ -1,5 +1,6 @@
 #include "estimator/identify/window/other_windows.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace framewatch::estimator {

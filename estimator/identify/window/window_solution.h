@@ -51,7 +51,6 @@ class WindowSolution {
     fresh_ = true;
   }
   int error_steps() const { return errors_.steps(); }
-  bool errors_known() const { return errors_known_; }
   const std::vector<double>& std_error() const { return errors_.std_error(); }
   void rescale(int unknown, double factor) { errors_.rescale(unknown, factor); }
 

@@ -1,5 +1,7 @@
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <utility>
 
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/acknowledged_t.hpp>

@@ -1,3 +1,5 @@
+#include <cstdlib>
+
 #include "daemon/commands/check_command.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,6 @@
+#include <ostream>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "daemon/config/config.h"

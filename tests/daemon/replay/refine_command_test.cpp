@@ -1,6 +1,7 @@
 #include "daemon/replay/refine_command.h"
 
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

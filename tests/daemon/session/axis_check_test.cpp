@@ -1,7 +1,10 @@
 #include "daemon/session/axis_check.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "daemon/simulation/scenario.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 #include "drivers/can/resampler.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <map>

@@ -1,7 +1,9 @@
 #include "drivers/lcm/message_layout.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "drivers/lcm/message_types.h"
 
 #include <set>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 #include "drivers/records/record_merge.h"
 
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 

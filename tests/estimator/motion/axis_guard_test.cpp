@@ -1,5 +1,6 @@
 #include "estimator/motion/axis_guard.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>

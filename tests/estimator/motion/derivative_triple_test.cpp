@@ -1,5 +1,6 @@
 #include "estimator/motion/derivative_triple.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 

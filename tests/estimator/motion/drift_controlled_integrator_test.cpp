@@ -1,5 +1,6 @@
 #include "estimator/motion/drift_controlled_integrator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,8 @@
 #include "estimator/motion/lost_sample_filler.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 

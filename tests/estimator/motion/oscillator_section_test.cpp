@@ -1,5 +1,6 @@
 #include "estimator/motion/oscillator_section.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>

@@ -1,5 +1,6 @@
 #include "estimator/pipeline/pipeline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 

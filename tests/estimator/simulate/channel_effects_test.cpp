@@ -1,6 +1,8 @@
 #include "estimator/simulate/channel_effects.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 #include "estimator/simulate/element_law.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -1,6 +1,8 @@
 #include "estimator/simulate/linear_building.h"
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>

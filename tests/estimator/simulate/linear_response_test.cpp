@@ -1,5 +1,6 @@
 #include "estimator/simulate/linear_response.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include <gtest/gtest.h>
 #include <Eigen/Dense>

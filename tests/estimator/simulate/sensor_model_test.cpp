@@ -1,6 +1,7 @@
 #include "estimator/simulate/sensor_model.h"
 
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 

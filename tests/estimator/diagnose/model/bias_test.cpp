@@ -1,5 +1,6 @@
 #include "estimator/diagnose/model/bias.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>

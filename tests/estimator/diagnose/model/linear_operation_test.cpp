@@ -1,5 +1,6 @@
 #include "estimator/diagnose/model/linear_operation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 

@@ -1,5 +1,6 @@
 #include "estimator/identify/gram/sliding_gram.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>

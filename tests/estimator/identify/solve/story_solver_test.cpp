@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "estimator/identify/solve/story_solver.h"
 
 #include <gtest/gtest.h>

@@ -6,9 +6,9 @@ namespace framewatch::estimator {
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors of a small symmetric matrix, by cyclic
 /// Jacobi rotations. Allocates when constructed, never after.
-class SymmetricEigen {
+class JacobiEigen {
  public:
-  explicit SymmetricEigen(int most) : most_(most) {
+  explicit JacobiEigen(int most) : most_(most) {
     for (std::vector<double>* work : {&matrix_, &vectors_})
       work->resize(static_cast<std::size_t>(most * most));
     values_.resize(static_cast<std::size_t>(most));

@@ -1,4 +1,4 @@
-#include "estimator/numeric/symmetric_eigen.h"
+#include "estimator/numeric/jacobi_eigen.h"
 
 #include <cmath>
 #include <utility>
@@ -11,7 +11,7 @@ constexpr double kNegligible = 1e-17;
 
 }  // namespace
 
-void SymmetricEigen::rotate(int p, int q, int size) {
+void JacobiEigen::rotate(int p, int q, int size) {
   const double theta = (a(q, q) - a(p, p)) / (2 * a(p, q));
   const double t = std::copysign(1 / (std::abs(theta) + std::sqrt(theta * theta + 1)), theta);
   const double c = 1 / std::sqrt(t * t + 1);
@@ -32,7 +32,7 @@ void SymmetricEigen::rotate(int p, int q, int size) {
   a(p, q) = a(q, p) = 0;
 }
 
-void SymmetricEigen::compute(const double* matrix, int size) {
+void JacobiEigen::compute(const double* matrix, int size) {
   double scale = 0;
   for (int i = 0; i < size; ++i) {
     for (int j = 0; j < size; ++j) {

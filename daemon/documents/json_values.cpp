@@ -1,4 +1,4 @@
-#include "daemon/web/json_values.h"
+#include "daemon/documents/json_values.h"
 
 #include <nlohmann/json.hpp>
 
