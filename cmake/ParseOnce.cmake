@@ -1,7 +1,7 @@
 # Most of a build is headers, read again for every source. FRAMEWATCH_PRECOMPILE reads those of other
 # people once (tests/purity/check-missing-includes sees what the compiler then does not);
-# FRAMEWATCH_JOIN compiles the sources of a room eight at a time, so is off where a missing #include of
-# ours must be seen.
+# FRAMEWATCH_JOIN compiles the sources of a room as one, so is off where a missing #include of ours must
+# be seen.
 set(framewatch_standard_headers <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream>
   <functional> <map> <memory> <mutex> <numeric> <optional> <set> <string> <thread> <utility> <vector>)
 
@@ -25,10 +25,10 @@ function(framewatch_precompile name)
   endforeach()
 endfunction()
 
-# framewatch_join(<target>...): their sources are compiled eight at a time. What they name in a
-# namespace without a name must then differ from one source to the next.
+# framewatch_join(<target>...): the sources of each are compiled as one. What they name in a namespace
+# without a name must then differ from one source to the next.
 function(framewatch_join)
   if(FRAMEWATCH_JOIN)
-    set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ON)
+    set_target_properties(${ARGN} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
   endif()
 endfunction()

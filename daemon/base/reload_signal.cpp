@@ -5,10 +5,10 @@
 namespace framewatch::daemon {
 namespace {
 
-volatile std::sig_atomic_t requested = 0;
+volatile std::sig_atomic_t reload_signalled = 0;
 
 extern "C" void request_reload(int) {
-  requested = 1;
+  reload_signalled = 1;
 }
 
 }  // namespace
@@ -20,8 +20,8 @@ void catch_reload_signal() {
 }
 
 bool reload_requested() {
-  if (requested == 0) return false;
-  requested = 0;
+  if (reload_signalled == 0) return false;
+  reload_signalled = 0;
   return true;
 }
 

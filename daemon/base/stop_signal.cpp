@@ -5,10 +5,10 @@
 namespace framewatch::daemon {
 namespace {
 
-volatile std::sig_atomic_t requested = 0;
+volatile std::sig_atomic_t stop_signalled = 0;
 
 extern "C" void request_stop(int) {
-  requested = 1;
+  stop_signalled = 1;
 }
 
 }  // namespace
@@ -22,7 +22,7 @@ void catch_stop_signals() {
 }
 
 bool stop_requested() {
-  return requested != 0;
+  return stop_signalled != 0;
 }
 
 }  // namespace framewatch::daemon

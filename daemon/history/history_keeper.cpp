@@ -17,7 +17,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::chrono::seconds kLook{10};
+constexpr std::chrono::seconds kBetweenLooks{10};
 
 HistoryKeeper::Room room_in(const std::string& directory) {
   HistoryKeeper::Room room;
@@ -76,7 +76,7 @@ void HistoryKeeper::work() {
     close_retired();
     look();
     std::unique_lock<std::mutex> lock(mutex_);
-    wake_.wait_for(lock, kLook, [this] { return stop_.load() || !retired_.empty(); });
+    wake_.wait_for(lock, kBetweenLooks, [this] { return stop_.load() || !retired_.empty(); });
   }
 }
 

@@ -1,7 +1,6 @@
 #include "daemon/history/raw_export.h"
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -14,11 +13,10 @@
 #include "daemon/history/history_files.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/records/record_csv_writer.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<std::string> names_of(const std::vector<RawChannel>& channels) {
   std::vector<std::string> out;
@@ -51,7 +49,7 @@ class LogExport : public RawExport {
       open_.emplace();
       open_->time = estimator::from_microseconds(time_us);
       open_->node = a.node;
-      open_->accel_abs_mps2.fill(kNone);
+      open_->accel_abs_mps2.fill(estimator::kNaN);
       stream_ = a.lcm_channel;
     }
     open_->accel_abs_mps2[static_cast<std::size_t>(a.axis)] = accel_mps2;
@@ -111,7 +109,7 @@ class CsvExport : public RawExport {
       ++out_of_order_;
       return true;
     }
-    auto& row = rows_.try_emplace(time_us, channels_, kNone).first->second;
+    auto& row = rows_.try_emplace(time_us, channels_, estimator::kNaN).first->second;
     row[channel] = accel_mps2;
     // Nodes are never so far behind each other.
     while (rows_.size() > 1 && rows_.begin()->first < time_us - kSecond_us)

@@ -1,22 +1,20 @@
 #include "daemon/history/summary_export.h"
-#include "daemon/base/utc_time.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include <fmt/core.h>
 
+#include "daemon/base/utc_time.h"
 #include "daemon/documents/mat_file.h"
 #include "daemon/history/history_files.h"
 #include "drivers/base/number_text.h"
 #include "drivers/base/text_output.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct Column {
   const char* name;
@@ -81,7 +79,7 @@ std::string write_mat(const std::string& path, std::int64_t period_s,
                 file.matrix("period_s", {static_cast<double>(period_s)}, 1) &&
                 file.matrix("start_s", start_s, 1);
     for (const Column& column : kColumns) {
-      std::vector<double> values(cells, kNone);
+      std::vector<double> values(cells, estimator::kNaN);
       for (std::size_t p = 0; p < summaries.size(); ++p)
         for (const SummaryRow& row : summaries[p].rows)
           values[row_of[row.start_us] * summaries.size() + p] = column.value(row);

@@ -19,7 +19,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{200};
+constexpr std::chrono::milliseconds kBetweenPuts{200};
 constexpr std::chrono::seconds kAgain{1};  // after a commit that failed
 constexpr std::chrono::hours kPrune{1};
 
@@ -75,7 +75,7 @@ void SummaryHistory::work() {
     std::vector<Message> messages;
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      wake_.wait_for(lock, kLook, [this] { return stop_; });
+      wake_.wait_for(lock, kBetweenPuts, [this] { return stop_; });
       last = stop_;
       messages.swap(queue_);
       queued_ = 0;

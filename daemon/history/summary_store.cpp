@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 
 #include "daemon/base/clocks.h"
 #include "daemon/estimates/session_estimates.h"
 #include "daemon/history/history_files.h"
 #include "daemon/history/history_schema.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -149,12 +149,11 @@ bool SummaryStore::add_period(const PeriodData& data) {
     before.again();
     box.insert(box.end(), d.box.begin(), d.box.end());
     values.bind(1, parameter_ids_[p]).bind(2, data.start_us).bind(3, std::span<const double>(box));
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     const auto n = static_cast<double>(d.observable);
     put.bind(1, parameter_ids_[p]).bind(2, period_s).bind(3, data.start_us);
-    bind_summary(put, 4, d.observable, n > 0 ? d.sum / n : kNone,
-                 n > 0 ? std::sqrt(d.error_squares / n) : kNone, n > 0 ? d.min : kNone,
-                 n > 0 ? d.max : kNone, box);
+    bind_summary(put, 4, d.observable, n > 0 ? d.sum / n : estimator::kNaN,
+                 n > 0 ? std::sqrt(d.error_squares / n) : estimator::kNaN,
+                 n > 0 ? d.min : estimator::kNaN, n > 0 ? d.max : estimator::kNaN, box);
     if (!values.run() || !put.run()) return false;
   }
   for (std::size_t i = 1; i < settings_.summary_s.size(); ++i)

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kStudyDuration_s = 15;
 constexpr double kStudyEvery_s = 1;
-constexpr double kPaper_s = 10;
 constexpr double kRandomNoise = 0.01;
 /// Only a window a second is looked at: no need to solve every hundredth.
 constexpr double kStudyHop_s = 0.25;

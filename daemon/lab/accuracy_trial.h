@@ -13,6 +13,8 @@ namespace framewatch::daemon {
 
 /// Sampling rate of the accuracy trials.
 inline constexpr double kTrialRate_hz = 100;
+/// What the paper's batch least squares takes of a motion.
+inline constexpr double kPaper_s = 10;
 /// Two-sided 95 % point of Student's t with 19 degrees of freedom: batch means have 20 blocks.
 inline constexpr double kStudent95 = 2.093;
 

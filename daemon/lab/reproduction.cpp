@@ -12,7 +12,6 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kPaper_s = 10;
 constexpr double kReproductionHop_s = 0.25;
 constexpr int kExcitationSeeds = 8;
 constexpr int kExactMotions = 4;

@@ -8,13 +8,13 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
+using Kind = Unknown::Kind;
 
 constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
 
 }  // namespace
 
 bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
-  using Kind = Unknown::Kind;
   if (unknown.kind == Kind::parameter || unknown.kind == Kind::record_parameter) return true;
   const Structure& s = plant.structure;
   int frame = -1;  // none: of all directions

@@ -6,6 +6,8 @@
 namespace framewatch::estimator {
 namespace {
 
+using Kind = Unknown::Kind;
+
 constexpr double kTightK = 0.6, kTightG = 1.0, kTightC = 3.0;  ///< weak priors, relative
 constexpr double kMostSigmas = 4;  ///< of masses, gains and clocks from their declared values
 /// Of the design's stiffness or damping. Structures dissipate; and a mode that neither dissipates
@@ -18,7 +20,6 @@ constexpr double kAny = std::numeric_limits<double>::infinity();
 
 std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
                                  const Tolerances& tolerances) {
-  using Kind = Unknown::Kind;
   std::vector<Unknown> out;
   const auto elements = static_cast<int>(plant.element_count());
   for (int p = 0; p < 2 * elements; ++p) {
@@ -75,7 +76,6 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
 namespace {
 
 double& member(Model& model, const Unknown& u) {
-  using Kind = Unknown::Kind;
   switch (u.kind) {
     case Kind::theta:
       return model.theta[u.index];

@@ -6,7 +6,7 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kSteps = 5;  ///< of each fit
+constexpr int kFitSteps = 5;  ///< of each fit
 
 void fix_exponent(EffectKind kind, ModelEffect& effect) {
   if (effect.form != LawForm::power && effect.form != LawForm::power_damping) return;
@@ -39,7 +39,7 @@ Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segme
     shrink(&Model::mass_change, share, {});
     shrink(&Model::gain, share, out.free_gain);
     shrink(&Model::clock_s, share, out.free_clock);
-    const FitResult next = exact.fit(out, {}, thorough(out, kSteps));
+    const FitResult next = exact.fit(out, {}, thorough(out, kFitSteps));
     if (next.good) out = next.model;
   }
   return out;
