@@ -24,7 +24,8 @@ struct DeliveryResult {
 using Abandoned = std::function<bool()>;
 
 /// Delivers events to one receiver (a command or a webhook) from a thread of its own, so that the
-/// caller never waits. Failed deliveries are repeated with growing pauses.
+/// caller never waits. Failed deliveries are repeated with growing pauses, for
+/// the receiver's patience (0: not at all).
 class Notifier {
  public:
   using Deliver =

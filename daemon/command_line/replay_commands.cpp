@@ -115,7 +115,7 @@ void add_refine(CommandList& commands) {
       ->capture_default_str();
   command->add_option("--to", arguments.to_s, "likewise (default: one window after --from)")
       ->check(CLI::PositiveNumber);
-  command->add_flag("!--no-prior", arguments.prior, "do not pull toward the design");
+  command->add_flag("!--no-prior", arguments.prior, "without the prior about the design");
   add_json(command, arguments.json);
   commands.set_action(command, [&arguments] { return refine(arguments); });
 }

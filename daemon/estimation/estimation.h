@@ -22,8 +22,8 @@
 
 namespace framewatch::daemon {
 
-/// Messages in, messages out: intake, pipeline, change detection and publisher. Live and replayed
-/// samples take the same path. Uses no clock.
+/// Messages in, messages out: intakes (LCM, CAN), pipeline, change detection, gap monitor, events
+/// and publisher. Live and replayed samples take the same path. Uses no clock.
 class Estimation {
  public:
   using Observer = std::function<void(const estimator::WindowEstimate&)>;

@@ -10,7 +10,7 @@ const SectionDescription kSections[] = {
      Reach::restart},
     {"structure.design", "[structure.design]",
      "Optional: what the drawings say, never taken for truth. It tunes the filters before the "
-     "first estimates and is what the prior pulls toward.",
+     "first estimates and is what the prior is about.",
      Reach::restart},
     {"channel", "[[channel]]",
      "One accelerometer axis each. Every frame has one on every floor, and the base one in every "

@@ -27,8 +27,8 @@ namespace framewatch::daemon {
 /// inside poll().
 class LiveEstimation {
  public:
-  /// `lcm` must outlive this; for memq:// everybody shares it. `can_log`, if any, gets every frame
-  /// of the buses.
+  /// `lcm` must outlive this; with memq:// every sender and receiver must use it. `can_log`, if
+  /// any, gets every frame of the buses.
   LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::CanLogWriter* can_log = nullptr);
 
   /// Opens the configured buses. One line for each problem.

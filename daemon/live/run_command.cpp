@@ -54,7 +54,7 @@ bool resume(const std::string& path, const Config& config, lcm::LCM& lcm,
 void log_summary(const Estimation& estimation) {
   const estimator::PipelineCounters counters = estimation.pipeline().counters();
   log(LogLevel::info,
-      fmt::format("stopped: {} windows, {} gaps, {} messages lost", counters.windows,
+      fmt::format("stopped: {} windows, {} interruptions, {} messages lost", counters.windows,
                   counters.interruptions, estimation.intake().lost()));
 }
 

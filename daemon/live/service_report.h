@@ -20,7 +20,7 @@ struct ReloadCount {
 };
 
 /// Reports once a second of the host's clock how the process of `framewatch run` is, whether
-/// samples come or not: without a report the process does not run.
+/// samples come or not: a missing report means that the process is not running.
 class ServiceReport {
  public:
   ServiceReport(const StartCount& starts, bool resumed);

@@ -11,7 +11,7 @@
 
 namespace framewatch::drivers {
 
-/// Of a line beside its data, more or less.
+/// Bytes of a candump line besides its data, about.
 inline constexpr std::int64_t kCandumpLineBytes = 29;
 
 /// Whether a file begins as a `candump -l` log does.

@@ -40,7 +40,7 @@ struct CanMessageMap {
   std::optional<CanField> clock;
 };
 
-/// Things that send samples: an accelerometer with one to three axes, mostly.
+/// A device that sends samples: an accelerometer with one to three axes, mostly.
 struct CanNodeMap {
   std::string name;
   int bus = 0;

@@ -8,7 +8,8 @@
 
 namespace framewatch::drivers {
 
-/// Finds the messages of a bus that a frame's id is; bounded, whatever ids a bus is flooded with.
+/// Finds the configured messages that a frame with this id can be (several when multiplexed).
+/// Memory is bounded by the map, whatever ids arrive.
 class FrameLookup {
  public:
   struct Target {

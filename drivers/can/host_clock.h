@@ -20,9 +20,9 @@ class ContinuousStamps {
   void now(const HostClockReading& reading);
   /// Nothing was left to receive after the last reading.
   void drained() { drained_us_ = newest_us_; }
-  /// Stamps may be from before a step that was noticed after them. A bus' frames come in order,
-  /// none from before it was drained and none from the future; the rest is the last stamp's
-  /// neighbour.
+  /// The stamp without the clock's steps. It may be from before a step that was noticed only after
+  /// it was made, so both offsets are possible. The one is taken that puts it after the bus was
+  /// last drained and not into the future; if both do, the one nearer to the last stamp.
   std::int64_t continuous(std::int64_t stamp_us);
   std::int64_t steps() const { return steps_; }
 

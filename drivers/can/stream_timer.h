@@ -51,9 +51,9 @@ struct TimedValues {
 ///
 /// STARTING  Frames are held; 0.2 s of them, 3 to 20, make a clock model, and are delivered.
 /// RUNNING   A frame that fits is delivered and updates the clock model.
-/// HOLDING   Frames are held. When one fits, or is later than the others by another time, those
-/// held
-///           are delivered as late. The host's clock has stepped when other streams see it too.
+/// HOLDING   Frames are held. When one fits, or its lateness differs from that of the held ones,
+///           those are delivered as late. The host's clock has stepped when other streams see it
+///           too.
 /// LATE      Frames that do not fit are delivered as they come, `patience_us` of them at most.
 ///
 /// In every state restart() leads to STARTING; a step of the host's clock that other streams found

@@ -20,10 +20,11 @@ struct SensorNodeSample {
 /// Bytes of one encoded accel_t.
 inline constexpr std::size_t kAccelBytes = 52;
 
-/// Stamps beyond this, 285 years either way, are no stamps: arithmetic on them stays exact.
+/// Times beyond this, 285 years either way, are refused: arithmetic on the others stays exact.
 inline constexpr std::int64_t kLatestTime_us = std::int64_t{1} << 53;
 
-/// Empty unless `size` and fingerprint are exactly those of accel_t and the stamp is one.
+/// Empty unless `size` and fingerprint are exactly those of accel_t and the time is within
+/// kLatestTime_us.
 std::optional<SensorNodeSample> decode_accel(const void* data, std::size_t size);
 /// The stamp alone, microseconds; empty when the fingerprint or the size is not accel_t's.
 std::optional<std::int64_t> accel_time_us(const void* data, std::size_t size);

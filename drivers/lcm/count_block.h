@@ -16,7 +16,7 @@ namespace framewatch::drivers {
 inline constexpr const char* kCountsChannel = "COUNTS";
 inline constexpr const char* kCountsTableChannel = "COUNTS_CHANNELS";
 
-/// Counts that are no number: no valid value, beyond the range.
+/// Counts with a meaning of their own: no valid value; beyond the range.
 inline constexpr std::int32_t kNoCount = INT32_MIN;
 inline constexpr std::int32_t kMostCount = INT32_MAX;
 

@@ -20,7 +20,7 @@ struct LogEvent {
 enum class LogRead {
   event,      ///< an intact event was read
   damage,     ///< bytes were skipped to find the next event; see damage()
-  truncated,  ///< the file ends inside an event or in zeros never written; see damage()
+  truncated,  ///< the file ends inside an event or in zeros that a crash left; see damage()
   end,        ///< the file ends after an event or after what damage() told
   error,      ///< the operating system refused a read; see error()
 };
@@ -40,9 +40,9 @@ bool is_event_log(const std::string& path);
 /// it.
 ///
 /// An event counts as intact when its lengths are in bounds (channel 1..kMaxChannel printable
-/// bytes, payload at most kMaxPayload) and a sync word or the end of the file follows. One that is
-/// followed by something else is still given when no such event starts inside it and none reaches
-/// over its end: the bytes after it are then the damage. A changed payload byte cannot be seen; the
+/// bytes, payload at most kMaxPayload) and a sync word or the end of the file follows. One with
+/// other bytes behind it is still given, unless another intact event begins inside it or reaches
+/// past its end; the bytes behind it are the damage. A changed payload byte cannot be seen; the
 /// format has no checksum.
 class LcmLogReader {
  public:

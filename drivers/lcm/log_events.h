@@ -11,7 +11,7 @@
 namespace framewatch::drivers {
 
 /// Gives every event of a log to `take` until it returns false. False, with the problem, when the
-/// log cannot be read, is damaged or cut off: offline work does not go on beside a hole.
+/// log cannot be read, is damaged or cut off: an offline command stops at damage.
 bool for_each_event(const std::string& path, const std::function<bool(const LogEvent&)>& take,
                     std::vector<Problem>& problems);
 

@@ -15,7 +15,7 @@
 namespace framewatch::estimator {
 
 /// Simulates the current model under the measured base motion continuously and gives the gap to
-/// what the axes above measure. docs/gap.md, docs/equations.md (42) to (44). Base axes of one
+/// what the axes above measure. docs/gap.md, docs/equations.md (42), (43). Base axes of one
 /// direction are averaged: a turning base is a gap.
 class GapMonitor {
  public:

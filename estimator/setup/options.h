@@ -20,8 +20,8 @@ struct EstimatorOptions {
   double hop_s = 0.01;  ///< between published windows; rounded to whole samples, >= 1
   int boxplot_windows = 500;
   double high_pass_hz = 0.3;       ///< drift control, second order; the paper's variant: 0.1
-  double filter_damping = 0.35;    ///< of the matched low-pass filters
-  double corner_ratio = 1;         ///< of the matched filters' corners to the floors' frequencies
+  double filter_damping = 0.35;    ///< of the oscillator sections
+  double corner_ratio = 1;         ///< of the sections' corners to the floors' frequencies
   bool prior = true;               ///< weak prior about theta0 where data say little
   bool self_tune = true;           ///< re-tune the row filters to what was identified
   double settle_s = 3;             ///< at least this long before a (re)started window counts

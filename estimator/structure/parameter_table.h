@@ -19,7 +19,8 @@ struct Parameter {
   int story;  ///< 1..N
   int frame;  ///< 0..n+m-1; -1 for a panel
   int panel;  ///< 0..panels-1, x span fastest; -1 for a frame
-  /// N/m, N*s/m; panel shear stiffness per unit length as in equation (12): N/(rad*m), N*s/(rad*m).
+  /// N/m, N*s/m; panel shear stiffness per unit length as in docs/equations.md (3): N/(rad*m),
+  /// N*s/(rad*m).
   std::string unit;
 };
 

@@ -12,8 +12,8 @@ namespace framewatch::estimator {
 bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown);
 
 /// Derivative of the whitened equations by one unknown through the forces of the laws, whose motion
-/// is that of the free run. system: of the model, whitened with
-/// Forcing::simulated. Empty when the changed model cannot be run.
+/// is that of the free run. system: of the model, whitened with Forcing::simulated. Empty when the
+/// changed model cannot be run.
 std::optional<Eigen::VectorXd> run_column(const Plant& plant, const Model& model,
                                           const RecordSegment& segment, std::size_t record,
                                           const Whitened& system, const Unknown& unknown,

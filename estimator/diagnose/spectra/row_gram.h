@@ -8,8 +8,8 @@
 
 namespace framewatch::estimator {
 
-/// out = a b with the instruction set that the machine has (identify/kernels.h). a: its columns
-/// beyond the rows of b are ignored; b: a multiple of kLane columns.
+/// out = a b with the instruction set that the machine has (estimator/numeric/kernels.h). a: its
+/// columns beyond the rows of b are ignored; b: a multiple of kLane columns.
 void multiply(const RowMatrix& a, const RowMatrix& b, RowMatrix& out);
 
 /// Sum of the outer products of rows, with the same kernels.

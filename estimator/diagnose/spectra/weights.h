@@ -9,8 +9,8 @@
 
 namespace framewatch::estimator {
 
-/// A resonator, which is not at rest at the ends of a segment either: the direction of its force
-/// and its transmissibility in every bin.
+/// A hidden resonator: the direction of its force and its transmissibility in every bin. Like the
+/// building it is not at rest at the ends of a segment.
 struct HiddenOscillator {
   Eigen::VectorXd direction;
   Eigen::VectorXcd transmissibility;
@@ -40,10 +40,11 @@ class Weights {
   /// rows - E (E'E)^-1 E' rows.
   Eigen::VectorXd without_ends(const Eigen::VectorXd& rows) const;
 
-  /// Rows of one bin under unit forces, X: n real ones, then n of size -j; n: equations.
-  /// transposed: X'. Padded with zeros to whole lanes.
+  /// X, the whitened rows of one bin under unit forces on each of its n equations: n real forces,
+  /// then n of value -j. transposed: X'. Padded with zeros to whole lanes.
   void put_unit_forces(Eigen::Index bin, bool transposed, RowMatrix& out) const;
-  /// sum += F along, where E = X F' in a bin. along: X' times any matrix, 2 n rows.
+  /// sum += F along; F': the end terms of a bin as such forces, so that E = X F'. along: X' times
+  /// any matrix, 2 n rows.
   void add_shares(Eigen::Index bin, const RowMatrix& along, RowMatrix& sum) const;
 
  private:

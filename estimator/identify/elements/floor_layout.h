@@ -27,8 +27,8 @@ class FloorLayout {
   int unknowns() const { return floors_ * own(); }
   /// theta index of unknown `position` (0..own-1) of a floor; floors count from 0.
   int parameter(int floor, int position) const;
-  /// b_e^T phi_f as coefficients: how floor `floor`'s equation f sees front unknown `position`'s
-  /// element (the rank-one vector's entry at degree of freedom f of that floor).
+  /// Entry at frame f of the floor of b_e, docs/equations.md (2) and (3); e: the element of front
+  /// unknown `position`.
   double coefficient(int position, int f) const {
     return coefficient_[static_cast<std::size_t>(position * frames_ + f)];
   }

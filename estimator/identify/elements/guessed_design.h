@@ -22,9 +22,8 @@ struct RetuningWork {
 };
 
 /// The parameters that the filters should be tuned to after a window: `design`, what they are tuned
-/// to now, times the identified ratios,
-/// each trusted as far as its standard error allows, at most a factor of 5 away; parameters the
-/// window does not show follow the median of their kind.
+/// to now, times the identified ratios, each trusted as far as its standard error allows, at most a
+/// factor of 5 away; parameters the window does not show follow the median of their kind.
 /// ratio, std_error: internal order, relative to `design`; shown: whether the window shows it.
 /// out: as long as `design`.
 void retuned_design(const FloorLayout& layout, const ParameterTable& table,

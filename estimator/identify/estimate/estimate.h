@@ -21,8 +21,8 @@ enum class Observability {
   channel_lost
 };
 
-/// Statistics of one parameter over the last windows in which it was observable, as MATLAB's
-/// boxplot draws them; NaN when there was none.
+/// Statistics of one parameter over those of the last windows in which it was observable, as
+/// MATLAB's boxplot draws them; NaN when there was none.
 struct BoxplotStatistics {
   double q1;
   double median;

@@ -16,7 +16,7 @@ class NoiseCompensation {
   /// packs it anew, which takes time.
   explicit NoiseCompensation(const FloorLayout& layout, double share = kCompensatedShare);
 
-  /// level: variance of the noise over the tuning's.
+  /// level: variance of the noise that is there, divided by what the tuning assumes.
   void update(const RegressorFilter& rows, const WindowParts& sums, double level);
 
   /// Values times scale.

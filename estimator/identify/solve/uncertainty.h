@@ -36,7 +36,7 @@ class BatchMeans {
   /// sums: SlidingGram, after maintain() closed the block that ends the window `solver` solved and
   /// `fit` fits, and before the next one closes: the pass must be done by then; or other blocks
   /// that last as long. Takes the solver's factor; its solution stays. noise_level: variance of the
-  /// noise over the tuning's.
+  /// noise that is there, divided by what the tuning assumes.
   template <typename Sums>
   void begin(const Sums& sums, StorySolver& solver, const Fit& fit,
              const std::vector<double>& prior, const NoiseCompensation& noise, double noise_level) {

@@ -102,7 +102,7 @@ class SlidingWindowEstimator {
   WindowSolution main_;
   OtherWindows others_;
   std::unique_ptr<LongWindow> long_;  ///< null: none
-  int steps_per_instant_ = 1;         ///< of a pass of errors: done before the next block closes
+  int steps_per_instant_ = 1;         ///< of BatchMeans: done before the next block closes
   std::vector<std::uint8_t> shown_;   ///< of check_tuning()
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
