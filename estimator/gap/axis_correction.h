@@ -25,7 +25,8 @@ class AxisCorrection {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(ring_, newest_);
+    a(ring_);
+    a.within(newest_, 0, length_ - 1);
   }
 
  private:

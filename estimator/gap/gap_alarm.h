@@ -17,7 +17,11 @@ struct GapNews {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(id, state, found, since, excess, worst_axis);
+    a.within(id, -2 * a.kMostCount, 2 * a.kMostCount);
+    a.within(state, 0, static_cast<double>(AlarmState::changed));
+    a(found, since);
+    a.finite(excess);
+    a.within(worst_axis, -1, 1e6);
   }
 };
 
@@ -32,7 +36,8 @@ class GapAlarm {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(raised_, seconds_, since_, news_);
+    a.within(seconds_, 0, a.kMostCount);
+    a(raised_, since_, news_);
   }
 
  private:

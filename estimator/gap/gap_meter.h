@@ -24,7 +24,10 @@ class GapMeter {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(seconds_, newest_, full_, instants_, gap_);
+    a(seconds_, gap_);
+    a.within(newest_, 0, window_s_ - 1);
+    a.within(full_, 0, window_s_);
+    a.within(instants_, 0, per_second_);
   }
 
  private:
@@ -34,7 +37,8 @@ class GapMeter {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(difference, measured, count);
+      a.finite(difference, measured);
+      a.within(count, 0, a.kMostCount);
     }
   };
   void compare(const std::vector<double>& noise_variance);

@@ -43,8 +43,11 @@ class GapMonitor {
     bool modelled = has_model();
     std::vector<double> theta;
     if (modelled) theta.assign(theta_.begin(), theta_.end());
-    a(learner_, alarm_, modelled, theta);
+    a(learner_, alarm_, modelled);
+    a.any_size(theta);
     if constexpr (Archive::kReading) {
+      for (const double value : theta)
+        if (!(value > 0 && value < a.kMost)) return a.refuse();
       if (modelled && !has_model() && theta.size() == static_cast<std::size_t>(table_.size()))
         adopt({Eigen::Map<const Eigen::VectorXd>(theta.data(), table_.size()), {}});
     }
@@ -69,7 +72,10 @@ class GapMonitor {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(correction, filter, running, noise, meter, held, newest, settled_s, expected_index);
+      a(correction, filter, running, noise, meter, held);
+      a.within(newest, 0, RunningModel::kDelay);  // of kDelay + 1 instants
+      a.finite(settled_s);
+      a.within(expected_index, -1, a.kMostCount);
     }
   };
   /// Mean over the base axes, x and y.

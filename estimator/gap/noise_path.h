@@ -28,11 +28,11 @@ class NoisePath {
   template <typename Archive>
   void archive(Archive& a) {
     std::vector<double> base(base_.data(), base_.data() + base_.size());
-    a(model_, direction_, instant_, base);
-    if constexpr (Archive::kReading) {
-      if (base.size() == static_cast<std::size_t>(base_.size()))
-        std::copy(base.begin(), base.end(), base_.data());
-    }
+    a(model_);
+    a.within(direction_, 0, 2);
+    a.within(instant_, 0, instants_ - 1);
+    a.finite(base);
+    if constexpr (Archive::kReading) std::copy(base.begin(), base.end(), base_.data());
   }
 
  private:

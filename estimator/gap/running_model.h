@@ -38,7 +38,9 @@ class RunningModel {
   template <typename Archive>
   void archive(Archive& a) {
     std::vector<double> motion = building_->motion();
-    a(base_, newest_, bias_, before_, motion, filter_);
+    a.finite(base_, bias_, before_, motion);
+    a.within(newest_, 0, kTaps - 1);
+    a(filter_);
     if constexpr (Archive::kReading) {
       if (!building_->resume(motion)) restart();
     }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/numeric/nan.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -15,14 +17,15 @@ std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
 }  // namespace
 
 Acquisition::Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOptions& options,
-                         Sink sink)
+                         Sink sink, bool lone_spikes)
     : axes_(axes),
       merger_(static_cast<int>(axes.size()), options.rate_hz, options.lateness_s),
-      guard_(guarded_axes(axes), options.rate_hz),
+      guard_(guarded_axes(axes), options.rate_hz, lone_spikes),
       calibration_(axes),
       filler_(static_cast<int>(axes.size()), options.fill_single_losses),
       sink_(std::move(sink)) {
   for (SensorAxis& axis : axes_) {
+    bound_.push_back(sample_bound(axis));
     const double whole = std::round(axis.delay * options.rate_hz) / options.rate_hz;
     whole_delay_.emplace_back(std::llround(whole * 1e6));
     axis.delay -= whole;
@@ -34,6 +37,10 @@ void Acquisition::push(const AccelSample& raw) {
   const auto a = static_cast<std::size_t>(raw.axis);
   AccelSample sample = raw;
   sample.accel *= axes_[a].scale;
+  if (!bound_[a].holds(sample.accel)) {
+    if (!std::isnan(raw.accel)) ++merger_.counters_of(raw.axis).absurd;
+    sample.accel = kNaN;  // the merger counts it as rejected
+  }
   sample.time -= whole_delay_[a];
   const bool taken = merger_.push(sample);
   drain();
@@ -66,6 +73,8 @@ std::vector<AxisCounters> Acquisition::counters() const {
     out[a].repaired = filler_.repaired()[a];
     out[a].stuck = guard_.stuck()[a];
     out[a].clipped = guard_.clipped()[a];
+    out[a].rejected += guard_.absurd()[a];
+    out[a].absurd += guard_.absurd()[a];
   }
   return out;
 }

@@ -7,19 +7,23 @@
 #include "estimator/motion/axis_guard.h"
 #include "estimator/motion/calibration.h"
 #include "estimator/motion/lost_sample_filler.h"
+#include "estimator/motion/sample_bound.h"
 #include "estimator/motion/sample_merger.h"
 #include "estimator/setup/options.h"
 
 namespace framewatch::estimator {
 
-/// Raw samples in, clean sample sets out: whole-sample delays taken off the stamps, axes merged on
-/// one grid, failing sensors' values removed, calibrated, single losses filled. The fraction of a
+/// Raw samples in, clean sample sets out: what no sensor can have measured rejected (SampleBound),
+/// whole-sample delays taken off the stamps, axes merged on one grid, failing sensors' values
+/// removed, calibrated, single losses filled. The fraction of a
 /// delay that is less than a sample remains for the reader (SensorAxis::delay of axes()).
 class Acquisition {
  public:
   using Sink = std::function<void(const SampleSet&)>;
 
-  Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOptions& options, Sink sink);
+  /// lone_spikes: whether what one axis alone does is kept (AxisGuard).
+  Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOptions& options, Sink sink,
+              bool lone_spikes = false);
 
   void push(const AccelSample& raw);
   /// The input has ended: passes on everything still held.
@@ -40,6 +44,7 @@ class Acquisition {
 
   std::vector<SensorAxis> axes_;
   std::vector<SensorClock::duration> whole_delay_;
+  std::vector<SampleBound> bound_;
   SampleMerger merger_;
   AxisGuard guard_;
   Calibration calibration_;

@@ -14,13 +14,17 @@ constexpr double kMovingFast = 50;    // smallest steps per sample: equal sample
 constexpr double kOthersMove = 10;    // the same of the other axes of the direction
 constexpr double kFullScale = 0.999;  // of the configured range
 constexpr int kClippedRun = 3;
+constexpr double kFarFiner = 16;  // times smaller than the smallest step
+constexpr int kFinerRun = 300;    // such changes that are believed
 
 }  // namespace
 
-AxisGuard::AxisGuard(const std::vector<Axis>& axes, double rate_hz)
+AxisGuard::AxisGuard(const std::vector<Axis>& axes, double rate_hz, bool lone_spikes)
     : forget_(std::min(1.0, 1 / (kMemory_s * rate_hz))),
       long_run_(std::max(kLookAhead + 1, static_cast<int>(std::lround(kLongRun_s * rate_hz)))),
+      lone_spikes_(lone_spikes),
       state_(axes.size()),
+      spikes_(static_cast<int>(axes.size()), rate_hz),
       ring_(kSlots) {
   for (std::size_t a = 0; a < axes.size(); ++a) state_[a].axis = axes[a];
   for (SampleSet& set : ring_) set.accel.resize(axes.size());
@@ -28,6 +32,7 @@ AxisGuard::AxisGuard(const std::vector<Axis>& axes, double rate_hz)
   sorted_.reserve(axes.size());
   stuck_.assign(axes.size(), 0);
   clipped_.assign(axes.size(), 0);
+  absurd_.assign(axes.size(), 0);
 }
 
 const SampleSet* AxisGuard::push(const SampleSet& set) {
@@ -40,9 +45,25 @@ const SampleSet* AxisGuard::push(const SampleSet& set) {
   ++waiting_;
   for (std::size_t a = 0; a < state_.size(); ++a) {
     if (interrupted) state_[a].run = 0;
-    if (std::isfinite(set.accel[a])) judge(a, set.accel[a]);
+    spikes_.see(static_cast<int>(a), set.accel[a], state_[a].smallest_step);
   }
+  for (std::size_t a = 0; a < state_.size(); ++a) decide(a);
   return waiting_ > kLookAhead ? give() : nullptr;
+}
+
+/// Judges the samples that are sound, the oldest first.
+void AxisGuard::decide(std::size_t a) {
+  const SpikeGuard::Decided decided =
+      lone_spikes_ ? SpikeGuard::Decided{std::isnan(held(0).accel[a]) ? 0u : 1u, 0}
+                   : spikes_.decide(static_cast<int>(a));
+  if (decided.absurd != 0) take_out_absurd(a, decided.absurd);
+  for (int age = decided.sound > 1 ? kLookAhead : 0; age >= 0; --age)
+    if ((decided.sound >> age & 1u) != 0) judge(a, held(age).accel[a], age);
+}
+
+void AxisGuard::take_out_absurd(std::size_t a, unsigned ages) {
+  for (int age = kLookAhead; age >= 0; --age)
+    if ((ages >> age & 1u) != 0) remove(a, age, absurd_);
 }
 
 void AxisGuard::watch_step(State& s, double value) const {
@@ -53,7 +74,11 @@ void AxisGuard::watch_step(State& s, double value) const {
   if (s.seen) {
     const double change = std::abs(value - s.last);
     s.step += forget_ * (change - s.step);
-    s.smallest_step = s.smallest_step == 0 ? change : std::min(s.smallest_step, change);
+    // Some far finer changes are another kind of number, not the sensor's resolution.
+    const bool far_finer = kFarFiner * change < s.smallest_step;
+    s.finer = std::max(0, s.finer + (far_finer ? 1 : -1));
+    if (s.smallest_step == 0 || (change < s.smallest_step && (!far_finer || s.finer > kFinerRun)))
+      s.smallest_step = change;
   }
   s.still = false;
   s.run = 1;
@@ -61,7 +86,7 @@ void AxisGuard::watch_step(State& s, double value) const {
   s.seen = true;
 }
 
-void AxisGuard::judge(std::size_t a, double value) {
+void AxisGuard::judge(std::size_t a, double value, int age) {
   State& s = state_[a];
   watch_step(s, value);
   constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -77,17 +102,17 @@ void AxisGuard::judge(std::size_t a, double value) {
   s.highest = std::max(s.highest, value);
   s.lowest = std::min(s.lowest, value);
   if (at_range || value >= s.clips_at || value <= s.clips_below) {
-    for (int age = flat_peak ? kClippedRun : 1; age >= 0; --age) remove(a, age, clipped_);
+    for (int back = flat_peak ? kClippedRun : 1; back >= 0; --back) remove(a, age + back, clipped_);
     s.after_clip = true;
     return;
   }
   if (s.after_clip) {
-    remove(a, 0, clipped_);
+    remove(a, age, clipped_);
     s.after_clip = false;
   }
 
   if (s.still) {
-    remove(a, 0, stuck_);
+    remove(a, age, stuck_);
     return;
   }
   const bool sudden = moving_fast && s.run == kLookAhead + 1;
@@ -95,7 +120,7 @@ void AxisGuard::judge(std::size_t a, double value) {
                        others_moving(a) > kOthersMove * s.smallest_step;
   if (!sudden && !lasting) return;
   s.still = true;
-  for (int age = 0; age <= kLookAhead; ++age) remove(a, age, stuck_);
+  for (int back = 0; back <= kLookAhead; ++back) remove(a, age + back, stuck_);
 }
 
 /// Median over the other axes of the direction of their mean step: 0 when they stand still or the
@@ -126,6 +151,8 @@ void AxisGuard::remove(std::size_t a, int age, std::vector<std::int64_t>& counte
 }
 
 const SampleSet* AxisGuard::drain() {
+  for (std::size_t a = 0; a < state_.size(); ++a)
+    take_out_absurd(a, spikes_.finish(static_cast<int>(a)).absurd);
   return waiting_ > 0 ? give() : nullptr;
 }
 

@@ -42,7 +42,9 @@ class DriftControlledIntegrator {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(newest_, x1_, x2_, y1_, y2_, filled_, ring_, value_, first_, second_);
+    a.within(newest_, 0, static_cast<double>(length_ - 1));
+    a.each_within(filled_, 0, static_cast<double>(length_));
+    a.finite(x1_, x2_, y1_, y2_, ring_, value_, first_, second_);
   }
 
  private:

@@ -24,7 +24,11 @@ class LostSampleFiller {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(ring_, next_, filled_, waiting_, repaired_);
+    a(ring_);
+    a.within(next_, 0, 4);
+    a.within(filled_, 0, 5);
+    a.within(waiting_, 0, kLookAhead + 1);
+    a(repaired_);
   }
 
  private:

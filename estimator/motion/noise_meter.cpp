@@ -24,6 +24,7 @@ NoiseMeter::NoiseMeter(int axes, double rate_hz)
     : rate_hz_(rate_hz),
       least_(std::max(4L, std::lround(kLeast_s * rate_hz / kEvery))),
       memory_(std::max(least_, std::lround(kNoiseMemory_s * rate_hz / kEvery))),
+      lasts_(std::lround(kLasts_s * rate_hz / kEvery)),
       axis_(static_cast<std::size_t>(axes)),
       ring_(static_cast<std::size_t>(axes) * 2 * kTaps, 0.0) {
   std::vector<double> window;
@@ -57,9 +58,22 @@ void NoiseMeter::push(const std::vector<double>& accel) {
     if (since_output_ != 0 || axis.filled < kTaps) continue;
     double sum = 0;
     for (std::size_t i = 0; i < kTaps; ++i) sum += taps_[i] * ring[newest_ + i];
+    if (axis.measured >= least_ && sum * sum > kBeyond * kBeyond * axis.power)
+      axis.tainted = kTaps / kEvery + 1;
+    const bool left_out = axis.tainted > 0;
+    if (left_out) --axis.tainted;
+    axis.beyond = left_out ? axis.beyond + 1 : 0;
+    if (left_out && axis.beyond <= lasts_) continue;
     axis.measured = std::min(axis.measured + 1, memory_);
     axis.power += (sum * sum - axis.power) / static_cast<double>(axis.measured);
   }
+}
+
+void NoiseMeter::reset() {
+  std::fill(axis_.begin(), axis_.end(), Axis{});
+  std::fill(ring_.begin(), ring_.end(), 0.0);
+  newest_ = 0;
+  since_output_ = 0;
 }
 
 double NoiseMeter::density(int axis) const {

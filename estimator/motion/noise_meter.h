@@ -5,34 +5,47 @@
 namespace framewatch::estimator {
 
 /// Measures the noise of the axes in a band where a building hardly moves, 0.29 to 0.45 of the
-/// sampling rate, over the last 5 s. docs/equations.md, measured noise.
+/// sampling rate, over the last 5 s. What is kBeyond times as large is no noise, and neither is
+/// what has it in its filter, unless it lasts for kLasts_s. docs/equations.md, measured noise.
 class NoiseMeter {
  public:
+  static constexpr double kBeyond = 6, kLasts_s = 2;
+
   NoiseMeter(int axes, double rate_hz);
 
   /// One calibrated sample per axis; NaN starts that axis' filter anew.
   void push(const std::vector<double>& accel);
   /// One-sided density, m/s^2/sqrt(Hz); 0 before a second has been measured.
   double density(int axis) const;
+  /// Forgets everything.
+  void reset();
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(axis_, ring_, newest_, since_output_);
+    a(axis_);
+    a.finite(ring_);
+    a.within(newest_, 0, static_cast<double>(taps_.size() - 1));
+    a.within(since_output_, 0, 1000);
   }
 
  private:
   struct Axis {
     int filled = 0;
     long measured = 0;
+    long beyond = 0;  ///< outputs in a row that were left out
+    int tainted = 0;  ///< outputs to come that have something beyond in their filter
     double power = 0;
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(filled, measured, power);
+      for (long* number : {&measured, &beyond}) a.within(*number, 0, a.kMostCount);
+      a.within(filled, 0, 1000);
+      a.within(tainted, 0, 1000);
+      a.within(power, 0, a.kMost);
     }
   };
   double rate_hz_;
-  long least_, memory_;  ///< filter outputs
+  long least_, memory_, lasts_;  ///< filter outputs
   std::vector<double> taps_;
   double gain_ = 0;  ///< sum of the taps' squares
   std::vector<Axis> axis_;

@@ -39,7 +39,9 @@ struct SampleSet {
   /// State, here and in every other archive(): estimator/state/archive.h.
   template <typename Archive>
   void archive(Archive& a) {
-    a(time, index, accel);
+    a(time);
+    a.within(index, 0, a.kMostCount);
+    a(accel);
   }
 };
 

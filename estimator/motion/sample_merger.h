@@ -15,11 +15,14 @@ struct AxisCounters {
   std::int64_t repaired = 0;  ///< single losses filled by interpolation
   std::int64_t stuck = 0;     ///< taken out: the value stood still while the building moved
   std::int64_t clipped = 0;   ///< taken out: at the end of the sensor's range
-  std::int64_t rejected = 0;  ///< NaN, infinite, duplicate, off the grid or far from the others
+  std::int64_t rejected = 0;  ///< NaN, absurd, duplicate, off the grid or far from the others
+  std::int64_t absurd = 0;    ///< of these: values that no sensor can have measured
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(received, missing, late, repaired, stuck, clipped, rejected);
+    for (std::int64_t* count :
+         {&received, &missing, &late, &repaired, &stuck, &clipped, &rejected, &absurd})
+      a.within(*count, 0, a.kMostCount);
   }
 };
 
@@ -46,8 +49,16 @@ class SampleMerger {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(open_, silent_, silent_count_, counters_, anchored_, finishing_, phase_us_, origin_);
-    a(first_open_, newest_, strays_, stray_time_us_);
+    a(open_);
+    a.each_within(silent_, 0, 1);
+    a.within(silent_count_, 0, static_cast<double>(silent_.size()));
+    a(counters_, anchored_, finishing_);
+    a.finite(phase_us_, stray_time_us_);
+    for (std::int64_t* number : {&origin_, &first_open_}) a.within(*number, 0, a.kMostCount);
+    const auto ahead = static_cast<double>(open_.size() + static_cast<std::size_t>(lateness_));
+    a.within(newest_, static_cast<double>(first_open_ - 1),
+             static_cast<double>(first_open_) + ahead);
+    a.within(strays_, 0, a.kMostCount);
   }
 
  private:
@@ -58,7 +69,9 @@ class SampleMerger {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(accel, has, delivered);
+      a(accel);
+      a.each_within(has, 0, 1);
+      a.within(delivered, 0, static_cast<double>(has.size()));
     }
   };
   Instant& instant(std::int64_t index) {

@@ -28,7 +28,8 @@ class Pipeline::Implementation {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(acquisition_, estimator_, sets_, windows_);
+    a(acquisition_, estimator_);
+    for (std::int64_t* count : {&sets_, &windows_}) a.within(*count, 0, a.kMostCount);
   }
 
   const ParameterTable& table() const { return table_; }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <cstring>
@@ -27,7 +28,11 @@ concept Archived = requires(T& value, Archive& archive) {
 };
 
 /// Common to writer and reader: how a value is divided into plain ones. Derived has
-/// plain(T&), block(std::vector<T>&) and count(std::size_t), which gives back the size to take.
+/// plain(T&), block(std::vector<T>&, bool any_size) and count(std::size_t), which gives back the
+/// size to take.
+///
+/// What is read comes from a file, so it is checked as it is read: a vector keeps its number of
+/// elements, and numbers that index or filter say with the functions below what they can be.
 template <typename Derived>
 class StateArchive {
  public:
@@ -35,6 +40,35 @@ class StateArchive {
   void operator()(T&... values) {
     (item(values), ...);
   }
+  /// Numbers, vectors and matrices of them, that are finite and within kMost.
+  template <typename... T>
+  void finite(T&... values) {
+    (item(values), ...);
+    if (!(all_finite(values) && ...)) self().refuse();
+  }
+  /// A number from `least` to `most`.
+  template <typename T>
+  void within(T& value, double least, double most) {
+    item(value);
+    const auto number = static_cast<double>(value);
+    if (!(number >= least && number <= most)) self().refuse();
+  }
+  /// Each of a vector's numbers.
+  template <typename T>
+  void each_within(std::vector<T>& values, double least, double most) {
+    item(values);
+    for (const T value : values)
+      if (!(static_cast<double>(value) >= least && static_cast<double>(value) <= most))
+        return self().refuse();
+  }
+  /// A vector whose length varies; whoever reads it checks that.
+  template <PlainState T>
+  void any_size(std::vector<T>& values) {
+    self().block(values, true);
+  }
+
+  static constexpr double kMost = 1e100;        ///< magnitude of any sum of squares of motion
+  static constexpr double kMostCount = 4.5e15;  ///< whole numbers: exact, and far from overflow
 
  private:
   Derived& self() { return static_cast<Derived&>(*this); }
@@ -49,7 +83,7 @@ class StateArchive {
   template <typename T>
   void item(std::vector<T>& values) {
     if constexpr (PlainState<T>) {
-      self().block(values);
+      self().block(values, false);
     } else {
       resize(values);
       for (T& value : values) item(value);
@@ -57,7 +91,7 @@ class StateArchive {
   }
   void item(std::string& text) {
     std::vector<char> characters(text.begin(), text.end());
-    self().block(characters);
+    self().block(characters, true);
     text.assign(characters.begin(), characters.end());
   }
   template <typename T>
@@ -72,7 +106,7 @@ class StateArchive {
   template <typename Clock, typename Duration>
   void item(std::chrono::time_point<Clock, Duration>& time) {
     std::int64_t ticks = time.time_since_epoch().count();
-    self().plain(ticks);
+    within(ticks, -2 * kMostCount, 2 * kMostCount);
     time = std::chrono::time_point<Clock, Duration>(Duration(ticks));
   }
   template <int rows, int columns>
@@ -83,6 +117,19 @@ class StateArchive {
             static_cast<std::size_t>(matrix.cols()))
       return self().refuse();
     for (Eigen::Index i = 0; i < matrix.size(); ++i) self().plain(matrix.data()[i]);
+  }
+  static bool all_finite(double value) { return std::abs(value) <= kMost; }
+  template <int rows, int columns>
+  static bool all_finite(const Eigen::Matrix<double, rows, columns>& matrix) {
+    for (Eigen::Index i = 0; i < matrix.size(); ++i)
+      if (!all_finite(matrix.data()[i])) return false;
+    return true;
+  }
+  template <typename T>
+  static bool all_finite(const T& values) {
+    for (const double value : values)
+      if (!all_finite(value)) return false;
+    return true;
   }
   /// Elements that are classes are built by the configuration: their number must fit.
   template <typename T>
@@ -102,7 +149,7 @@ class StateWriter : public StateArchive<StateWriter> {
     put(&value, sizeof value);
   }
   template <PlainState T>
-  void block(const std::vector<T>& values) {
+  void block(const std::vector<T>& values, bool) {
     (void)count(values.size());
     put(values.data(), values.size() * sizeof(T));
   }
@@ -139,12 +186,15 @@ class StateReader : public StateArchive<StateReader> {
 
   template <PlainState T>
   void plain(T& value) {
-    if (has(sizeof value)) take(&value, sizeof value);
+    if (!has(sizeof value)) return;
+    if (std::is_same_v<T, bool> && bytes_[at_] > 1) return refuse();
+    take(&value, sizeof value);
   }
   template <PlainState T>
-  void block(std::vector<T>& values) {
+  void block(std::vector<T>& values, bool any_size) {
     const std::size_t size = count(values.size());
     if (size > (bytes_.size() - at_) / sizeof(T)) return refuse();
+    if (!good_ || (!any_size && size != values.size())) return refuse();
     values.resize(size);
     if (size > 0) take(values.data(), size * sizeof(T));
   }

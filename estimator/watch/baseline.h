@@ -22,10 +22,15 @@ struct Baseline {
   int known() const;
   /// Whether it knows what `other` knows, by the same values.
   bool holds(const Baseline& other) const;
+  /// Whether it is one of so many parameters.
+  bool is_of(std::size_t parameters) const {
+    return value.size() == parameters && std_error.size() == parameters &&
+           degc.size() == parameters;
+  }
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(value, std_error, degc);
+    for (std::vector<double>* of : {&value, &std_error, &degc}) a.any_size(*of);
   }
 };
 
@@ -66,7 +71,9 @@ class BaselineLearner {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(complete, count, learned_s, weight, value, square, first, degc_weight, degc);
+      a(complete);
+      a.within(count, 0, a.kMostCount);
+      a.finite(learned_s, weight, value, square, first, degc_weight, degc);
     }
   };
   struct Mean {

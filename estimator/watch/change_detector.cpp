@@ -6,6 +6,7 @@
 namespace framewatch::estimator {
 namespace {
 
+constexpr Time kLongAgo{SensorClock::duration(-8'000'000'000'000'000)};
 constexpr double kFreedom = 19;         // of standard errors from 20 blocks
 constexpr double kMemory_s = 15;        // of the usual standard error
 constexpr double kBaselineErrors = 3;   // that a value may be off by permanently
@@ -22,13 +23,13 @@ ChangeDetector::ChangeDetector(const Baseline& baseline, const std::vector<Watch
                                double threshold)
     : baseline_(baseline), threshold_(threshold), parameters_(watched.size()) {
   for (std::size_t p = 0; p < watched.size(); ++p) parameters_[p].watched = watched[p];
-  used_until_.fill(Time::min());
+  used_until_.fill(kLongAgo);
 }
 
 void ChangeDetector::push(const WindowEstimate& e) {
   const auto length = e.end - e.start;
   const Time newest = *std::max_element(used_until_.begin(), used_until_.end());
-  if (newest != Time::min() && e.end - newest < length / kPhases) return;
+  if (newest != kLongAgo && e.end - newest < length / kPhases) return;
   const auto free = std::find_if(used_until_.begin(), used_until_.end(),
                                  [&](Time until) { return until <= e.start; });
   if (free == used_until_.end()) return;

@@ -17,7 +17,8 @@ struct Change {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(ratio, std_error, since);
+    a.finite(ratio, std_error);
+    a(since);
   }
 };
 
@@ -60,7 +61,8 @@ class ChangeDetector {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(sum, weight, off, since);
+      a.finite(sum, weight, off);
+      a(since);
     }
   };
   struct Parameter {
@@ -73,7 +75,10 @@ class ChangeDetector {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(usual_error, sign, phase, away, back);
+      a.finite(usual_error, back);
+      a.within(sign, -1, 1);
+      a.within(phase, 0, kPhases - 1);
+      a(away);
     }
   };
   const Parameter& of(int parameter) const {

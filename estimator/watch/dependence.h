@@ -29,6 +29,11 @@ class Dependence {
     double std_error;  ///< of that, from the slopes'; infinite when a condition is not known
   };
   Expected expected(std::size_t parameter, const Conditions& now) const;
+  /// Whether it is one of so many parameters.
+  bool is_of(std::size_t parameters) const {
+    return at_.size() == 2 * parameters && slope_.size() == 2 * parameters &&
+           covariance_.size() == 3 * parameters;
+  }
   /// Relative change per degC, and per unit of the logarithm of the amplitude; 0 +- 0 when it is
   /// not followed.
   struct Slope {
@@ -43,7 +48,7 @@ class Dependence {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(at_, slope_, covariance_);
+    for (std::vector<double>* of : {&at_, &slope_, &covariance_}) a.any_size(*of);
   }
 
  private:
@@ -93,7 +98,8 @@ class DependenceLearner {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(count, first, first_degc, first_log, normal, right, square);
+      a.within(count, 0, a.kMostCount);
+      a.finite(first, first_degc, first_log, normal, right, square);
     }
   };
   struct Fit {

@@ -33,7 +33,8 @@ class MeanTemperature {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(number, count, sum);
+      for (std::int64_t* n : {&number, &count}) a.within(*n, -a.kMostCount, a.kMostCount);
+      a.finite(sum);
     }
   };
   std::int64_t number_of(Time time) const { return to_microseconds(time) / bin_us_; }

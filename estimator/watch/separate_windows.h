@@ -27,7 +27,9 @@ class SeparateWindows {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(count_, seconds_, end_);
+    a.within(count_, 0, a.kMostCount);
+    a.within(seconds_, 0, a.kMostCount);
+    a(end_);
   }
 
  private:

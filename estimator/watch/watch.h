@@ -85,10 +85,17 @@ class Watch {
     a(temperature, amplitude, learner_, baseline_);
     a(quiet_known_, quiet_learner_, quiet_baseline_, dependence_);
     if constexpr (Archive::kReading) {
+      const std::size_t n = watched_.size();
+      const bool fits = (baseline_.is_of(0) || baseline_.is_of(n)) &&
+                        (!quiet_known_ || (quiet_baseline_.is_of(n) && dependence_.is_of(n)));
+      if (!fits) return a.refuse();
       begin();
       if (quiet_known_) begin_quiet();
     }
-    a(temperature_, detectors_, states_, last_id_);
+    a(temperature_, detectors_, states_);
+    a.within(last_id_, 0, a.kMostCount);
+    for (const State& state : states_)
+      if (state.detector >= detectors_.size()) a.refuse();
     if (temperature != options_.temperature || amplitude != options_.amplitude) forget_quiet();
   }
 
@@ -100,7 +107,8 @@ class Watch {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(id, detector, reported);
+      a.within(id, 0, a.kMostCount);
+      a(detector, reported);
     }
   };
   void begin();

@@ -21,7 +21,8 @@ struct DeformationSet {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(values, known);
+    a.finite(values);
+    a.each_within(known, 0, 1);
   }
 };
 

@@ -11,6 +11,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kMostValue = 1e100;  // magnitude
 
 std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
@@ -50,6 +51,18 @@ double BoxplotWindow::quartile(std::size_t q) const {
   const double* below = &sorted_[place / 8];
   const double part = static_cast<double>(place % 8) / 8;
   return part > 0 ? below[0] + part * (below[1] - below[0]) : below[0];
+}
+
+bool BoxplotWindow::consistent() const {
+  if (next_ > 0 && next_ >= ring_.size()) return false;
+  std::vector<double> sorted = ring_;
+  if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return !(v >= -kMostValue); }))
+    return false;
+  std::sort(sorted.begin(), sorted.end());
+  sorted.resize(sorted_.size(), kNone);
+  return sorted == sorted_ &&
+         static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), kNone) -
+                                  sorted.begin()) == count_;
 }
 
 BoxplotStatistics BoxplotWindow::statistics() const {

@@ -20,11 +20,16 @@ class BoxplotWindow {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(ring_, sorted_, guide_, next_, count_);
+    a(ring_, sorted_, guide_);
+    a.within(next_, 0, static_cast<double>(ring_.size()));
+    a.within(count_, 0, static_cast<double>(ring_.size()));
+    if (!consistent()) a.refuse();
   }
 
  private:
   double quartile(std::size_t q) const;
+  /// Whether the sorted values are those of the ring.
+  bool consistent() const;
 
   std::vector<double> ring_;    ///< in order of arrival; infinite: does not count
   std::vector<double> sorted_;  ///< ascending, infinite beyond the values that count

@@ -67,8 +67,13 @@ struct WindowEstimate {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(start, end, sequence, status, rows, residual_ratio, value, std_error, reason, snr);
-    a(prior_share, noise_share, last_value, last_std_error, last_end, boxplot, solution);
+    a(start, end);
+    a.within(sequence, -1, a.kMostCount);
+    a.within(status, 0, static_cast<double>(WindowStatus::nothing_identifiable));
+    a.within(rows, 0, a.kMostCount);
+    a(residual_ratio, value, std_error);
+    a.each_within(reason, 0, static_cast<double>(Observability::channel_lost));
+    a(snr, prior_share, noise_share, last_value, last_std_error, last_end, boxplot, solution);
   }
 };
 

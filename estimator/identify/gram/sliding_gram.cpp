@@ -9,6 +9,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr int kSpansPerLength = 5;
+constexpr double kMostEnergy = 1e60;  // of a block, in squares of noise: beyond any motion
 
 }  // namespace
 
@@ -25,6 +26,7 @@ SlidingGram::SlidingGram(const FloorLayout& layout, int blocks, int block_rows,
                          const std::vector<int>& spans)
     : shape_(layout),
       floors_(layout.floors()),
+      frames_(layout.frames()),
       blocks_(blocks),
       block_rows_(block_rows),
       held_blocks_(blocks) {
@@ -73,6 +75,19 @@ int SlidingGram::rows() const {
 const double* SlidingGram::block(int age) const {
   const std::int64_t newest = pushed_ / block_rows_ - 1;
   return &blocks_ring_[static_cast<std::size_t>((newest - age) % held_blocks_) * shape_.size];
+}
+
+bool SlidingGram::sane() const {
+  const double* newest = block(0);
+  for (const GramShape::Floor& floor : shape_.floor) {
+    const double* row = newest + floor.offset;
+    for (int i = 0; i < floor.front; ++i) {
+      const int begin = packed_row_begin(i);
+      if (!(row[i - begin] < kMostEnergy)) return false;
+      row += floor.stride - begin;
+    }
+  }
+  return true;
 }
 
 void SlidingGram::count_instants(std::int64_t first, std::int64_t last,

@@ -85,6 +85,8 @@ class SlidingGram {
   /// Completed block, age 0 = the newest; valid after maintain().
   const double* block(int age) const;
 
+  /// Whether the newest completed block can be sums of squares of rows; after maintain().
+  bool sane() const;
   /// Per floor: instants of the newest completed block in which it had rows.
   const int* newest_instants() { return counts(pushed_ / block_rows_ - 1); }
 
@@ -99,8 +101,12 @@ class SlidingGram {
   }
   template <typename Archive>
   void archive(Archive& a) {
-    a(pushed_, current_, middle_, next_middle_, spans_, blocks_ring_, suffixes_, stored_rows_);
-    a(stored_counts_, forward_, middle_instants_, counts_);
+    a.within(pushed_, 0, a.kMostCount);
+    a.finite(current_, middle_, next_middle_, blocks_ring_, suffixes_, stored_rows_);
+    a(spans_, forward_);
+    a.each_within(stored_counts_, 0, frames_);
+    a.each_within(middle_instants_, 0, a.kMostCount);
+    a.each_within(counts_, 0, block_rows_);
     oldest_ = zero_.data();
   }
 
@@ -119,7 +125,7 @@ class SlidingGram {
   }
 
   GramShape shape_;
-  int floors_;
+  int floors_, frames_;
   int blocks_, block_rows_;
   int held_blocks_;  ///< of the longest window
   std::int64_t pushed_ = 0;
@@ -130,7 +136,7 @@ class SlidingGram {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(next, sum);
+      a.finite(next, sum);
     }
   };
   std::vector<Span> spans_;

@@ -15,6 +15,7 @@ class AxisNoise {
   void push(const std::vector<double>& accel) {
     if (!configured_) meter_.push(accel);
   }
+  void reset() { meter_.reset(); }
   /// Of every axis.
   bool configured() const { return configured_; }
   /// m/s^2/sqrt(Hz) of every axis, into a vector of their number; false, and nothing written, while

@@ -20,7 +20,7 @@ struct FloorNoise {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(variance, covariance);
+    a.finite(variance, covariance);
   }
 };
 

@@ -49,11 +49,16 @@ class RegressorFilter {
   }
   template <typename Archive>
   void archive(Archive& a) {
-    a(settle_, known_, rows_);
+    a.within(settle_, 0, a.kMostCount);
+    a.each_within(known_, 0, 1);
+    a.finite(rows_);
     for (int floor = 0; floor < layout_->floors(); ++floor) {
       Floor& f = floor_[static_cast<std::size_t>(floor)];
       std::uint8_t origin = origin_of(floor, f.rows);
-      a(origin, f.some_known, f.s1, f.s2, f.settling);
+      a(origin, f.some_known);
+      if (!f.some_known.fits(*layout_, floor)) a.refuse();
+      a.finite(f.s1, f.s2);
+      a.within(f.settling, 0, a.kMostCount);
       f.rows = floor_rows_from(floor, origin == 2 ? 2 : 1);
     }
   }

@@ -196,6 +196,23 @@ void RegressorTuning::weigh(int floor, int r, const OscillatorSection& section, 
   }
 }
 
+bool FloorRows::fits(const FloorLayout& layout, int floor) const {
+  const auto is = [](const std::vector<double>& values, int size) {
+    return values.size() == static_cast<std::size_t>(size) &&
+           std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  };
+  const int stride = padded(layout.front(floor));
+  const int unknowns = layout.front(floor) - 1;
+  int packed = 0;
+  for (int i = 0; i <= unknowns; ++i) packed += stride - packed_row_begin(i);
+  return rows >= 0 && rows <= layout.frames() && is(gain, rows) && is(a1, rows) && is(a2, rows) &&
+         is(frequency_hz, rows) && is(beta, rows * stride) &&
+         is(response, rows * layout.frames()) && is(noise_energy, unknowns * unknowns) &&
+         is(noise_diagonal, unknowns) && is(noise_bias, unknowns * PerturbedDesigns::kCount) &&
+         is(noise_right, unknowns) && is(noise_compensation, packed) &&
+         std::isfinite(noise_response) && std::isfinite(noise_residual);
+}
+
 void RegressorTuning::form(int floor, FloorRows& out) {
   out.rows = equations_.empty() ? 0 : floor_modes(floor, theta0_);
   const auto rows = static_cast<std::size_t>(out.rows);

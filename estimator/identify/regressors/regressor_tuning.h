@@ -36,6 +36,9 @@ void pack_compensation(const FloorLayout& layout, int floor, const FloorRows& ro
 /// One floor's projected equations: each row r is sum_f phi_rf (equation f), filtered by its
 /// oscillator section and scaled by the root of its weight.
 struct FloorRows {
+  /// Whether all sizes are those of a floor of this layout; numbers from a file may be any.
+  bool fits(const FloorLayout& layout, int floor) const;
+
   int rows = 0;
   std::vector<double> gain, a1, a2;  ///< OscillatorSection of every row
   std::vector<double> frequency_hz;  ///< its corner
@@ -55,8 +58,12 @@ struct FloorRows {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(rows, gain, a1, a2, frequency_hz, beta, response, noise_energy, noise_diagonal, noise_bias);
-    a(noise_right, noise_response, noise_compensation, noise_residual);
+    a(rows);
+    for (std::vector<double>* values :
+         {&gain, &a1, &a2, &frequency_hz, &beta, &response, &noise_energy, &noise_diagonal,
+          &noise_bias, &noise_right, &noise_compensation})
+      a.any_size(*values);
+    a.finite(noise_response, noise_residual);
   }
 };
 
@@ -93,7 +100,10 @@ class RegressorTuning {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(theta0_, noise_density_, noise_, rows_);
+    a.finite(theta0_, noise_density_);
+    a(noise_, rows_);
+    for (int floor = 0; floor < layout_->floors(); ++floor)
+      if (!rows(floor).fits(*layout_, floor)) a.refuse();
   }
 
  private:

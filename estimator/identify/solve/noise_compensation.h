@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
@@ -49,10 +50,15 @@ class NoiseCompensation {
   void archive(Archive& a, const RegressorFilter& rows) {
     for (std::size_t f = 0; f < floor_.size(); ++f) {
       std::uint8_t origin = rows.origin_of(static_cast<int>(f), floor_[f].rows);
-      a(origin, floor_[f].instants, floor_[f].packed);
+      a(origin);
+      a.finite(floor_[f].instants, floor_[f].packed);
       floor_[f].rows = rows.floor_rows_from(static_cast<int>(f), origin);
     }
-    a(energy_, residual_, level_);
+    a.finite(energy_, residual_, level_);
+  }
+  /// It has been updated.
+  bool known() const {
+    return std::all_of(floor_.begin(), floor_.end(), [](const Floor& f) { return f.rows; });
   }
 
  private:

@@ -65,7 +65,8 @@ class BatchMeans {
   /// rows, sums: those of the pass under way, if any.
   template <typename Archive, typename Sums>
   void archive(Archive& a, const RegressorFilter& rows, const Sums& sums) {
-    a(next_step_, factor_, inverse_, noise_level_, columns_values_, solution_, score_scale_);
+    a.within(next_step_, 0, steps());
+    a(factor_, inverse_, noise_level_, columns_values_, solution_, score_scale_);
     a(prior_, inverse_diagonal_, new_error_, new_share_, new_noise_share_);
     a(std_error_, prior_share_, noise_share_);
     noise_.archive(a, rows);
@@ -74,6 +75,7 @@ class BatchMeans {
       std::int64_t number = running() ? sums.number_of(block) : -1;
       a(number);
       block = sums.block_of(number);
+      if (running() && (block == nullptr || !noise_.known())) a.refuse();
     }
   }
 

@@ -60,8 +60,15 @@ class LongWindow {
 
   template <typename Archive>
   void archive(Archive& a, TunedRegression& regression) {
-    a(ring_, current_, sum_, ring_instants_, instants_, begins_, end_, since_, usual_, blocks_);
-    a(pieces_, rows_, ring_rows_, work_, added_, known_, left_out_, usual_misfit_, fit_);
+    a.finite(ring_, current_, sum_, ring_instants_, instants_, usual_, usual_misfit_, fit_, rows_,
+             ring_rows_);
+    a(begins_, end_, since_);
+    a.within(blocks_, 0, piece_blocks_ - 1);
+    a.within(pieces_, 0, a.kMostCount);
+    a.within(work_, 0, static_cast<double>(Work::errors));
+    a.within(added_, 0, static_cast<double>(ring_.size()));
+    a.within(left_out_, 0, a.kMostCount);
+    a.any_size(known_);
     solution_.archive(a, regression.rows(), *this);
     a(estimate_);
   }

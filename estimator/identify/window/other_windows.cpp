@@ -61,7 +61,8 @@ const WindowEstimate* OtherWindows::advance(const Context& c) {
 
 const WindowEstimate* OtherWindows::give(const Context& c) {
   Window& window = windows_[static_cast<std::size_t>(current_)];
-  window.solution.fill({&c.regression->tuning().theta0(), c.known, c.tuned}, window.estimate);
+  window.solution.fill({&c.regression->tuning().theta0(), c.known, c.tuned, c.main},
+                       window.estimate);
   window.estimate.rows = rows_;
   window.estimate.end = end_;
   window.estimate.start = end_ - SensorClock::duration(std::llround((rows_ - 1) * 1e6 / rate_hz_));

@@ -40,7 +40,9 @@ class OtherWindows {
       window.solution.archive(a, regression.rows(), regression.sums());
       a(window.estimate);
     }
-    a(current_, solved_, rows_, end_);
+    a.within(current_, 0, count());
+    a.within(rows_, 0, a.kMostCount);
+    a(solved_, end_);
   }
 
  private:

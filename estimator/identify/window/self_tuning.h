@@ -50,8 +50,12 @@ class SelfTuning {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(*standby_, phase_, tuned_, next_floor_, passes_, since_check_, detuning_, noise_known_);
-    a(noise_measured_, noise_differs_, noise_, retunes_, next_theta0_);
+    a(*standby_, tuned_, noise_known_, noise_measured_, noise_differs_);
+    a.within(phase_, 0, static_cast<double>(Phase::catching_up));
+    a.within(next_floor_, 0, layout_.floors());
+    for (int* number : {&passes_, &since_check_}) a.within(*number, 0, a.kMostCount);
+    a.within(retunes_, 0, a.kMostCount);
+    a.finite(detuning_, noise_, next_theta0_);
   }
 
  private:

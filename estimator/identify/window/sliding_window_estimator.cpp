@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kBlocks = BatchMeans::kBlocks;  // per window
 constexpr int kFewestBlocks = 4;              // of another window
+/// Of the main window: blocks without rows would make standard errors too small.
+constexpr double kWarm = 0.9;
 
 DerivativeTriple triple_of(const EstimatorOptions& o, double advance) {
   return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz)
@@ -78,7 +80,7 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       ring_(deformations_,
             SelfTuning::ring_rows(longest_settle(options_) +
                                   longest_window(block_rows_, other_blocks_) + triple_.length())),
-      main_(structure_, layout_, table_, options_),
+      main_(structure_, layout_, table_, options_, kCompensatedShare, kWarm),
       others_(structure_, layout_, table_, options_, other_blocks_, block_rows_),
       estimate_(static_cast<std::size_t>(table_.size())) {
   steps_per_instant_ = (main_.error_steps() + block_rows_ - 2) / (block_rows_ - 1);
@@ -123,12 +125,22 @@ void SlidingWindowEstimator::restart() {
   since_hop_ = 0;
 }
 
+void SlidingWindowEstimator::recover() {
+  noise_.reset();
+  if (long_) long_->retuned();
+  ++interruptions_;
+  restart();
+}
+
 const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
   other_ = nullptr;
   if (set.index != expected_index_) {
     if (expected_index_ >= 0) ++interruptions_;
     restart();
+  } else if (!sane_) {
+    recover();
   }
+  sane_ = true;
   expected_index_ = set.index + 1;
 
   integrator_.push(set.accel);
@@ -150,7 +162,9 @@ const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
 }
 
 void SlidingWindowEstimator::advance_errors(Time window_end) {
-  if (active_->finish(ring_) && active_->full()) {
+  const bool closed = active_->finish(ring_);
+  if (closed) sane_ = active_->sums().sane();
+  if (closed && active_->full()) {
     main_.begin_errors(active_->sums(), main_);
     others_.block_closed(active_->sums(), window_end);
     if (long_) long_->block_closed(active_->sums(), ring_.at(ring_.end() - 1).known, window_end);

@@ -50,7 +50,11 @@ class SlidingWindowEstimator {
     main_.archive(a, active_->rows(), active_->sums());
     others_.archive(a, *active_);
     archive_long(a);
-    a(boxplots_, estimate_, expected_index_, since_hop_, interruptions_);
+    a(boxplots_, estimate_);
+    a.within(expected_index_, -1, a.kMostCount);
+    a.within(since_hop_, 0, hop_rows_);
+    a.within(interruptions_, 0, a.kMostCount);
+    if (active_->next() != ring_.end()) a.refuse();
   }
 
  private:
@@ -60,7 +64,8 @@ class SlidingWindowEstimator {
     int rows = long_ ? long_->rows() : 0;
     std::vector<std::uint8_t> bytes;
     if constexpr (Archive::kReading) {
-      a(rows, bytes);
+      a(rows);
+      a.any_size(bytes);
       if (!long_) return;
       StateReader state(bytes);
       if (rows == long_->rows()) long_->archive(state, *active_);
@@ -69,10 +74,13 @@ class SlidingWindowEstimator {
       StateWriter state;
       if (long_) long_->archive(state, *active_);
       bytes = state.bytes();
-      a(rows, bytes);
+      a(rows);
+      a.any_size(bytes);
     }
   }
   void restart();
+  /// Something has got into the filters that no motion makes of them: everything begins anew.
+  void recover();
   void advance_errors(Time window_end);
   void check_tuning();
   void advance_long();
@@ -108,6 +116,7 @@ class SlidingWindowEstimator {
   WindowEstimate estimate_;
   const WindowEstimate* other_ = nullptr;
   std::int64_t expected_index_ = -1, since_hop_ = 0, interruptions_ = 0;
+  bool sane_ = true;  ///< the newest block of sums; not kept: looked at again
 };
 
 }  // namespace framewatch::estimator

@@ -27,7 +27,8 @@ class MotionRing {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(sets_, next_);
+    a(sets_);
+    a.within(next_, 0, a.kMostCount);
   }
 
  private:
@@ -74,7 +75,9 @@ class TunedRegression {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(tuning_, entering_, delayed_, sums_, next_, delayed_next_, counted_from_, counting_);
+    a(tuning_, entering_, delayed_, sums_, counting_);
+    for (std::int64_t* number : {&next_, &delayed_next_, &counted_from_})
+      a.within(*number, 0, a.kMostCount);
   }
 
  private:

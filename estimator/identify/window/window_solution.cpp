@@ -20,12 +20,13 @@ constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
 
 WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& layout,
                                const ParameterTable& table, const EstimatorOptions& options,
-                               double compensation)
+                               double compensation, double warm)
     : structure_(structure),
       layout_(layout),
       table_(table),
       options_(options),
       noise_(layout, compensation),
+      warm_share_(warm),
       solver_(layout),
       errors_(layout, compensation),
       prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
@@ -62,7 +63,8 @@ void WindowSolution::solve(const WindowParts& sums, const RegressorFilter& rows,
   const double compensation =
       trust.regularise && trust.noise_known ? std::min(noise_level_, 1.0) : 0.0;
   noise_.update(rows, sums, compensation);
-  for (std::size_t f = 0; f < warm_.size(); ++f) warm_[f] = 2 * (*sums.instants)[f] >= sums.rows;
+  for (std::size_t f = 0; f < warm_.size(); ++f)
+    warm_[f] = (*sums.instants)[f] >= warm_share_ * sums.rows;
   const double prior_scale = trust.regularise && options_.prior ? noise_level_ : 0.0;
   for (std::size_t u = 0; u < prior_.size(); ++u) prior_[u] = prior_scale * unknowns_[u].prior;
   solver_.factor(sums, prior_, noise_);
@@ -70,6 +72,7 @@ void WindowSolution::solve(const WindowParts& sums, const RegressorFilter& rows,
   overcompensated_ = compensation > 0 && residual < -kRounding * solver_.response_energy();
   residual_energy_ = std::max(residual, 0.0);
   noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
+  if (!std::isfinite(noise_scale_)) noise_scale_ = noise_level_ = 0;  // or it would stay for ever
   if (closes_block && !overcompensated_) noise_level_ = noise_scale_;
 }
 
@@ -140,8 +143,9 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     const auto i = static_cast<std::size_t>(u);
     const auto p = static_cast<std::size_t>(unknowns_[i].parameter);
     const double theta0 = (*situation.theta0)[unknowns_[i].parameter];
-    const bool warm = solved_ && errors_known_ && situation.tuned &&
-                      warm_[static_cast<std::size_t>(u / layout_.own())] != 0;
+    const int floor = u / layout_.own();
+    const bool warm = solved_ && errors_known_ && situation.tuned && this->warm(floor) &&
+                      (situation.errors_of == nullptr || situation.errors_of->warm(floor));
     e.reason[p] = place_known_[i] == 0 ? Observability::channel_lost
                   : !warm              ? Observability::warming_up
                   : published(u)       ? Observability::observable

@@ -21,9 +21,11 @@ namespace framewatch::estimator {
 /// published. docs/equations.md (18), (21), (22).
 class WindowSolution {
  public:
-  /// compensation: share of the noise, see NoiseCompensation.
+  /// compensation: share of the noise, see NoiseCompensation. warm: share of the window in which a
+  /// floor must have had rows.
   WindowSolution(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
-                 const EstimatorOptions& options, double compensation = kCompensatedShare);
+                 const EstimatorOptions& options, double compensation = kCompensatedShare,
+                 double warm = 0.5);
 
   /// After an interruption: errors and noise level are unknown again.
   void restart();
@@ -57,12 +59,16 @@ class WindowSolution {
   const StorySolver& solver() const { return solver_; }
   /// Whether the window's motion shows the unknown above the sensors' noise.
   bool shown(int unknown) const;
+  /// Whether the floor's rows fill enough of the window.
+  bool warm(int floor) const { return warm_[static_cast<std::size_t>(floor)] != 0; }
 
   /// What the decision on a parameter depends on besides the numbers.
   struct Situation {
     const Eigen::VectorXd* theta0;           ///< what x is relative to, theta order
     const std::vector<std::uint8_t>* known;  ///< places with a working sensor, DeformationSet
     bool tuned;                              ///< the filters have been found right
+    /// That of the window whose blocks standard errors come from, when it is another one.
+    const WindowSolution* errors_of = nullptr;
   };
   /// Fills in what follows from this window; not times, boxplots and last values.
   void fill(const Situation& situation, WindowEstimate& estimate);
@@ -74,7 +80,7 @@ class WindowSolution {
     errors_.archive(a, rows, sums);
     a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_,
       overcompensated_);
-    a(residual_energy_, noise_scale_, noise_level_);
+    a.finite(residual_energy_, noise_scale_, noise_level_);
   }
 
  private:
@@ -95,6 +101,7 @@ class WindowSolution {
   EstimatorOptions options_;
   std::vector<Unknown> unknowns_;  ///< internal order
   NoiseCompensation noise_;
+  double warm_share_;
   StorySolver solver_;
   BatchMeans errors_;
   std::vector<double> prior_;
