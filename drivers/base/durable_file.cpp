@@ -8,9 +8,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <future>
 #include <utility>
+
+#include "drivers/base/caught.h"
+#include "drivers/base/partial_file.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -18,15 +20,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kWrite{250}, kSync{1000};
 constexpr std::size_t kAtOnce = std::size_t{1} << 20;  // do not wait for kWrite with more
-
-/// So that a name survives a power cut as well as the bytes.
-void sync_folder_of(const std::string& path) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  ::fsync(file);
-  ::close(file);
-}
 
 /// Onto the disk, and the name of `fresh` unless that is empty. Empty, or why not.
 std::string force(int file, const std::string& fresh) {
@@ -43,7 +36,8 @@ DurableFile::~DurableFile() {
 }
 
 bool DurableFile::make(std::string& error) {
-  file_ = ::open((path_ + ".partial").c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  file_ = ::open((path_ + ".partial").c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
+                 0644);
   if (file_ < 0) {
     error = path_ + ".partial: " + std::strerror(errno);
     return false;
@@ -66,11 +60,21 @@ void DurableFile::open_when_needed(std::function<std::string()> path) {
 
 void DurableFile::start() {
   closing_ = false;
-  thread_ = std::thread([this] { work(); });
+  wanted_ = true;
+  begin_thread();
+}
+
+/// Tried again with what is appended while the system has no thread left.
+void DurableFile::begin_thread() {
+  if (thread_.joinable()) return;
+  const std::string thrown = caught([this] { thread_ = std::thread([this] { work(); }); });
+  if (thrown.empty()) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  trouble_ = "no thread to write it: " + thrown;
 }
 
 bool DurableFile::in_use(const std::string& path) {
-  const int file = ::open((path + ".partial").c_str(), O_RDONLY | O_CLOEXEC);
+  const int file = open_own_file(path + ".partial", O_RDONLY);
   if (file < 0) return false;
   const bool locked = ::flock(file, LOCK_EX | LOCK_NB) != 0;
   ::close(file);
@@ -78,6 +82,7 @@ bool DurableFile::in_use(const std::string& path) {
 }
 
 bool DurableFile::append(std::string_view bytes) {
+  if (wanted_) begin_thread();
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::size_t queued = filling_.size() + waiting_ + bytes.size();
   if (queued > queue_bytes_ || closing_) {
@@ -171,14 +176,17 @@ void DurableFile::work() {
 }
 
 void DurableFile::finish(std::chrono::milliseconds patience) {
-  if (!thread_.joinable()) return;
+  if (!std::exchange(wanted_, false)) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     closing_ = true;
     give_up_ = Clock::now() + patience;
   }
   wake_.notify_one();
-  thread_.join();
+  if (thread_.joinable())
+    thread_.join();
+  else
+    work();  // here, for want of a thread
 }
 
 bool DurableFile::close(std::string& error, std::chrono::milliseconds patience) {

@@ -40,7 +40,7 @@ class DurableFile {
   /// times a second while the disk refuses. `path` is asked for each time, in the thread, and
   /// should name a file that is not there.
   void open_when_needed(std::function<std::string()> path);
-  bool is_open() const { return thread_.joinable(); }
+  bool is_open() const { return wanted_; }
   /// Never waits for the disk. False: dropped.
   bool append(std::string_view bytes);
   Counters counters() const;
@@ -58,6 +58,7 @@ class DurableFile {
  private:
   bool make(std::string& error);
   void start();
+  void begin_thread();
   void work();
   bool write_some();
   void finish(std::chrono::milliseconds patience);
@@ -67,6 +68,7 @@ class DurableFile {
   std::string path_;
   int file_ = -1;
   std::thread thread_;
+  bool wanted_ = false;  ///< between open() and close()
   std::string writing_;  ///< of the thread: what it is at
   std::size_t written_ = 0;
 

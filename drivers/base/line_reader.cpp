@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include <fmt/core.h>
+
+#include "drivers/base/input_file.h"
+#include "drivers/base/unpack_limit.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -21,15 +23,14 @@ bool is_control(char c) {
 }  // namespace
 
 LineReader::LineReader(FileProblems& problems) : problems_(problems) {
-  std::error_code error;
-  const auto status = std::filesystem::status(problems.path(), error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    fail("not a regular file");
+  InputFile input;
+  if (!input.open(problems.path())) {
+    fail("cannot be opened: " + input.error());
     return;
   }
-  errno = 0;
-  file_ = gzopen(problems.path().c_str(), "rb");
-  if (file_ == nullptr) fail(fmt::format("cannot be opened: {}", std::strerror(errno)));
+  packed_bytes_ = input.size();
+  file_ = gzdopen(input.release(), "rb");
+  if (file_ == nullptr) fail("cannot be opened: no memory is left");
 }
 
 LineReader::~LineReader() {
@@ -52,6 +53,9 @@ bool LineReader::fill() {
   errno = 0;
   const int got = gzread(file_, buffer_.data() + kept, kReadBytes);
   buffer_.resize(kept + static_cast<std::size_t>(std::max(got, 0)));
+  unpacked_bytes_ += std::max(got, 0);
+  if (gzdirect(file_) == 0 && unpacked_bytes_ > unpack_limit(packed_bytes_))
+    return fail(over_unpack_limit(packed_bytes_));
   if (got == static_cast<int>(kReadBytes)) return true;
   ended_ = true;
   int code = Z_OK;

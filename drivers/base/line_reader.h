@@ -21,8 +21,8 @@ class LineReader {
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
-  /// False at the end, and when the file cannot be read further or is not text: that is a problem.
-  /// The line is valid until the next call.
+  /// False at the end, and when the file cannot be read further, is not text or unpacks to more
+  /// than unpack_limit(): that is a problem. The line is valid until the next call.
   [[nodiscard]] bool next(std::string_view& line);
   /// Of the line last read, from 1.
   std::int64_t number() const { return number_; }
@@ -35,6 +35,7 @@ class LineReader {
 
   FileProblems& problems_;
   gzFile_s* file_ = nullptr;
+  std::int64_t packed_bytes_ = 0, unpacked_bytes_ = 0;
   std::string buffer_;
   std::size_t begin_ = 0;
   std::int64_t number_ = 0;

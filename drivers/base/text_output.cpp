@@ -1,45 +1,55 @@
 #include "drivers/base/text_output.h"
 
+#include <fcntl.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <utility>
 
 namespace framewatch::drivers {
 
 TextOutput::~TextOutput() {
-  if (file_ == nullptr) return;
-  gzclose(file_);
-  std::remove((path_ + ".partial").c_str());
+  if (file_ != nullptr) gzclose(file_);
 }
 
 bool TextOutput::fail() {
+  if (error_.empty()) error_ = partial_.error();
   if (error_.empty()) error_ = std::strerror(errno);
   return false;
 }
 
 bool TextOutput::open(const std::string& path) {
-  path_ = path;
-  errno = 0;
+  if (!partial_.open(path)) return fail();
+  const int copy = ::fcntl(partial_.descriptor(), F_DUPFD_CLOEXEC, 0);
   // "T" writes the bytes as they are.
-  file_ = gzopen((path + ".partial").c_str(), path.ends_with(".gz") ? "wbe6" : "wbeT");
-  return file_ != nullptr || fail();
+  if (copy >= 0) file_ = gzdopen(copy, path.ends_with(".gz") ? "wb6" : "wbT");
+  if (file_ != nullptr) return true;
+  fail();
+  if (copy >= 0) ::close(copy);
+  partial_.discard();
+  return false;
 }
 
 bool TextOutput::write(std::string_view text) {
-  if (text.empty()) return true;
-  const auto size = static_cast<unsigned>(text.size());
-  return gzwrite(file_, text.data(), size) == static_cast<int>(size) || fail();
+  constexpr std::size_t kAtOnce = std::size_t{1} << 30;
+  if (file_ == nullptr) return false;
+  while (!text.empty()) {
+    const auto size = static_cast<unsigned>(std::min(text.size(), kAtOnce));
+    if (gzwrite(file_, text.data(), size) != static_cast<int>(size)) return fail();
+    text.remove_prefix(size);
+  }
+  return true;
 }
 
 bool TextOutput::close() {
-  const std::string partial = path_ + ".partial";
-  const bool flushed = gzclose(file_) == Z_OK;
-  file_ = nullptr;
-  if (error_.empty() && flushed && std::rename(partial.c_str(), path_.c_str()) == 0) return true;
+  if (file_ == nullptr) return false;
+  if (gzclose(std::exchange(file_, nullptr)) != Z_OK) fail();
+  if (error_.empty() && partial_.commit()) return true;
   fail();
-  std::remove(partial.c_str());
+  partial_.discard();
   return false;
 }
 

@@ -3,12 +3,14 @@
 #include <string>
 #include <string_view>
 
+#include "drivers/base/partial_file.h"
+
 struct gzFile_s;
 
 namespace framewatch::drivers {
 
-/// Writes a text file, gzip when its name ends in .gz, as PATH.partial renamed by close(): nothing
-/// half-written under its name.
+/// Writes a text file, gzip when its name ends in .gz, as a PartialFile that close() renames:
+/// nothing half-written under its name.
 class TextOutput {
  public:
   TextOutput() = default;
@@ -25,8 +27,8 @@ class TextOutput {
  private:
   bool fail();
 
+  PartialFile partial_;
   gzFile_s* file_ = nullptr;
-  std::string path_;
   std::string error_;
 };
 

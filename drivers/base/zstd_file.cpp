@@ -1,8 +1,10 @@
 #include "drivers/base/zstd_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zstd.h>
+#include <zstd_errors.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -10,9 +12,14 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
+
+#include "drivers/base/input_file.h"
+#include "drivers/base/partial_file.h"
+#include "drivers/base/unpack_limit.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -41,27 +48,16 @@ bool write_all(int file, const std::uint8_t* bytes, std::size_t size) {
   return true;
 }
 
-UnpackedFile failed(UnpackedFile out, const char* what) {
-  out.error = fmt::format("{}: {}", what, std::strerror(errno));
+UnpackedFile refused(UnpackedFile out, std::string why) {
+  out.error = std::move(why);
   if (out.file >= 0) ::close(out.file);
   out.file = -1;
   return out;
 }
 
-/// A descriptor that is closed.
-class OpenFile {
- public:
-  OpenFile(const std::string& path, int flags) : file_(::open(path.c_str(), flags, 0644)) {}
-  ~OpenFile() {
-    if (file_ >= 0) ::close(file_);
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  operator int() const { return file_; }
-
- private:
-  int file_;
-};
+UnpackedFile failed(UnpackedFile out, const char* what) {
+  return refused(std::move(out), fmt::format("{}: {}", what, std::strerror(errno)));
+}
 
 /// False, with errno, when something of `in` could not be read or written.
 bool pack(int in, int out, const std::atomic<bool>& stop) {
@@ -93,21 +89,20 @@ bool pack(int in, int out, const std::atomic<bool>& stop) {
       done = last ? left == 0 : input.pos == input.size;
     }
   }
-  return ::fsync(out) == 0;
+  return true;
 }
 
 }  // namespace
 
 std::string pack_zstd(const std::string& from, const std::string& to,
                       const std::atomic<bool>& stop) {
-  const std::string partial = to + ".partial";
-  const OpenFile in(from, O_RDONLY | O_CLOEXEC);
-  if (in < 0) return fmt::format("{}: {}", from, std::strerror(errno));
-  const OpenFile out(partial, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
-  if (out >= 0 && pack(in, out, stop) && std::rename(partial.c_str(), to.c_str()) == 0) return {};
-  std::string why = fmt::format("{}: {}", to, std::strerror(errno));
-  ::unlink(partial.c_str());
-  return why;
+  InputFile in;
+  if (!in.open(from)) return fmt::format("{}: {}", from, in.error());
+  PartialFile out;
+  if (!out.open(to)) return fmt::format("{}: {}", to, out.error());
+  if (!pack(in.descriptor(), out.descriptor(), stop))
+    return fmt::format("{}: {}", to, std::strerror(errno));
+  return out.commit() ? "" : fmt::format("{}: {}", to, out.error());
 }
 
 UnpackedFile unpack_zstd(int file) {
@@ -116,6 +111,10 @@ UnpackedFile unpack_zstd(int file) {
   if (out.file < 0) return failed(out, "no temporary file to unpack to");
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
                                                                      &ZSTD_freeDCtx);
+  ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, kUnpackMemoryLog2);
+  struct stat status {};
+  if (::fstat(file, &status) != 0) return failed(out, "cannot be read");
+  const std::int64_t most_bytes = unpack_limit(status.st_size);
   std::vector<std::uint8_t> packed(ZSTD_DStreamInSize()), plain(ZSTD_DStreamOutSize());
   std::int64_t read_bytes = 0;
   std::size_t wanted = 1;  // 0: a frame is whole
@@ -128,10 +127,14 @@ UnpackedFile unpack_zstd(int file) {
     while (input.pos < input.size) {
       ZSTD_outBuffer output{plain.data(), plain.size(), 0};
       wanted = ZSTD_decompressStream(context.get(), &output, &input);
+      out.bytes += static_cast<std::int64_t>(output.pos);
+      if (out.bytes > most_bytes) return refused(out, over_unpack_limit(status.st_size));
       if (!write_all(out.file, plain.data(), output.pos))
         return failed(out, "cannot be unpacked to a temporary file");
-      out.bytes += static_cast<std::int64_t>(output.pos);
       if (ZSTD_isError(wanted) == 0) continue;
+      if (ZSTD_getErrorCode(wanted) == ZSTD_error_frameParameter_windowTooLarge)
+        return refused(out, fmt::format("needs more than {} of memory to be unpacked",
+                                        size_text(std::int64_t{1} << kUnpackMemoryLog2)));
       out.damage =
           fmt::format("the zstd file is damaged near its byte {}: {}",
                       read_bytes + static_cast<std::int64_t>(input.pos), ZSTD_getErrorName(wanted));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace framewatch::drivers {
@@ -9,6 +10,8 @@ namespace {
 
 /// Of the node's period: how soon the rest of a sample must follow the frame that opens it.
 constexpr double kAttachWindow = 0.5;
+constexpr std::int64_t kLook_us = 1'000'000;
+constexpr std::int64_t kMostStamp_us = 4'000'000'000'000'000'000;  // sums do not overflow
 
 double modulus_of(const CanNodeMap& node) {
   const CanMessageMap& opens = node.messages.front();
@@ -38,6 +41,7 @@ CanIntake::CanIntake(const CanMap& map, Sink sink, Observer observer)
       for (const CanReading& reading : message.readings) axes = std::max(axes, reading.axis + 1);
   ranges_.resize(static_cast<std::size_t>(axes));
   carrier_.assign(static_cast<std::size_t>(axes), {-1, -1});
+  absurd_.assign(static_cast<std::size_t>(axes), 0);
   if (map.resample)
     resamplers_.assign(static_cast<std::size_t>(axes), Resampler(map.grid_period_us));
   bus_counters_.resize(map.buses.size());
@@ -79,6 +83,8 @@ void CanIntake::frame(int index, const CanFrame& frame) {
   CanBusCounters& counters = bus_counters_[static_cast<std::size_t>(index)];
   Bus& bus = buses_[static_cast<std::size_t>(index)];
   newest_stamp_us_ = std::max(newest_stamp_us_, frame.stamp_us);
+  if (frame.stamp_us >= next_look_us_ || frame.stamp_us < next_look_us_ - kLook_us)
+    look(frame.stamp_us);
   const bool was_off = counters.state == CanBusState::off;
   if (frame.error)
     count_error_frame(frame, counters);
@@ -137,6 +143,25 @@ void CanIntake::notice(const CanNotice& notice) const {
   if (notice_) notice_(notice);
 }
 
+/// Judges the numbers of every node.
+void CanIntake::look(std::int64_t stamp_us) {
+  using Kind = CanNotice::Kind;
+  next_look_us_ = std::clamp(stamp_us, -kMostStamp_us, kMostStamp_us) + kLook_us;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const CanNodeCounters c = node(n);
+    const bool counts = map_.nodes[n].timing != CanTiming::period;
+    const SequenceWatch::Counts seen{c.received, c.lost, c.duplicates, counts ? c.restarts : 0, 0};
+    for (const auto& news : nodes_[n].watch.look(seen, stamp_us)) {
+      if (!news) continue;
+      const Kind kind = news->trouble == SequenceTrouble::leaps        ? Kind::sequence_leap
+                        : news->trouble == SequenceTrouble::duplicates ? Kind::duplicates
+                                                                       : Kind::losses;
+      notice({kind, static_cast<int>(n), news->over,
+              static_cast<int>(std::min<std::int64_t>(news->count, 1'000'000'000)), stamp_us});
+    }
+  }
+}
+
 void CanIntake::message(int index, int at, const CanFrame& frame, double host_us) {
   Node& node = nodes_[static_cast<std::size_t>(index)];
   const CanMessageMap& m =
@@ -193,8 +218,17 @@ void CanIntake::place(Node& node, int at, const CanFrame& frame, TimedValues val
   node.timer->open_sample(reading, host_us, std::move(values));
 }
 
+/// False for what a state file may hold.
+bool CanIntake::known(const TimedValues& v) const {
+  if (v.node < 0 || static_cast<std::size_t>(v.node) >= map_.nodes.size()) return false;
+  const std::vector<CanMessageMap>& messages =
+      map_.nodes[static_cast<std::size_t>(v.node)].messages;
+  return v.message >= 0 && static_cast<std::size_t>(v.message) < messages.size() &&
+         messages[static_cast<std::size_t>(v.message)].readings.size() == v.values.size();
+}
+
 void CanIntake::deliver(const TimedValues& v, double time_us, double frame_us) {
-  if (v.node < 0) return;
+  if (!known(v)) return;
   Node& node = nodes_[static_cast<std::size_t>(v.node)];
   const CanNodeMap& map = map_.nodes[static_cast<std::size_t>(v.node)];
   SequenceCounter& sequence = node.sequence[static_cast<std::size_t>(v.message)];
@@ -226,8 +260,11 @@ void CanIntake::deliver(const TimedValues& v, double time_us, double frame_us) {
       sink_({estimator::from_microseconds(std::llround(at_us)), readings[i].axis, value});
       continue;
     }
+    const bool absurd = value < readings[i].least || value > readings[i].most;
+    absurd_[axis] += absurd;
     resamplers_[axis].add(
-        number, at_us, period_us, value, [&](std::int64_t grid_us, double resampled) {
+        number, at_us, period_us, absurd ? std::numeric_limits<double>::quiet_NaN() : value,
+        [&](std::int64_t grid_us, double resampled) {
           sink_({estimator::from_microseconds(grid_us), readings[i].axis, resampled});
         });
   }

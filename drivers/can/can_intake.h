@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "drivers/base/sequence_counter.h"
+#include "drivers/base/sequence_watch.h"
 #include "drivers/can/can_map.h"
 #include "drivers/can/can_notice.h"
 #include "drivers/can/can_status.h"
@@ -51,6 +52,10 @@ class CanIntake {
   const CanRange& range_of(std::size_t axis) const { return ranges_[axis]; }
   /// Frames lost that would have carried the axis.
   std::int64_t lost_of(std::size_t axis) const;
+  /// Values of the axis outside CanReading::least to most that no instant was resampled from.
+  std::int64_t absurd_of(std::size_t axis) const {
+    return axis < absurd_.size() ? absurd_[axis] : 0;
+  }
   std::int64_t host_steps() const { return steps_.count(); }
   /// Host's time of the newest frame, 0 before any.
   std::int64_t newest_stamp_us() const { return newest_stamp_us_; }
@@ -58,7 +63,8 @@ class CanIntake {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(steps_, nodes_, buses_, bus_counters_, resamplers_, ranges_, newest_stamp_us_);
+    a(steps_, nodes_, buses_, bus_counters_, resamplers_, ranges_, newest_stamp_us_, absurd_);
+    a.within(next_look_us_, -2 * a.kMostCount, 2 * a.kMostCount);
   }
 
  private:
@@ -68,10 +74,11 @@ class CanIntake {
     std::unique_ptr<StreamTimer> timer;     ///< null when SYNC gives the time
     double opened_us = -1e18;               ///< stamp of the frame that opened the sample
     std::vector<std::uint8_t> attached;     ///< by message, to that sample
+    SequenceWatch watch;
 
     template <typename Archive>
     void archive(Archive& a) {
-      a(counters, sequence, opened_us, attached);
+      a(counters, sequence, opened_us, attached, watch);
       if (timer) a(*timer);
     }
   };
@@ -88,9 +95,11 @@ class CanIntake {
   void make_node(const CanNodeMap& node);
   bool canopen(int bus, const CanFrame& frame);
   void notice(const CanNotice& notice) const;
+  void look(std::int64_t stamp_us);
   void message(int node, int message, const CanFrame& frame, double host_us);
   void place(Node& node, int message, const CanFrame& frame, TimedValues values, double host_us);
   /// `period_us` is between the node's frames now.
+  bool known(const TimedValues& values) const;
   void deliver(const TimedValues& values, double time_us, double period_us);
 
   const CanMap& map_;
@@ -103,8 +112,9 @@ class CanIntake {
   std::vector<CanBusCounters> bus_counters_;
   std::vector<Resampler> resamplers_;  ///< by axis; empty when the nodes share their instants
   std::vector<CanRange> ranges_;       ///< by axis
+  std::vector<std::int64_t> absurd_;   ///< by axis
   std::vector<std::pair<int, int>> carrier_;  ///< by axis: node and message; -1: not on CAN
-  std::int64_t newest_stamp_us_ = 0;
+  std::int64_t newest_stamp_us_ = 0, next_look_us_ = 0;
 };
 
 }  // namespace framewatch::drivers

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct CanReading {
   int axis = 0;
   int sample = 0;  ///< of those in one frame, from 0
   std::string name;
+  /// Physical values outside are no measurement: no instant of the grid is made of them.
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
 };
 
 /// One message of a node, at one value of its multiplexor if it has one.

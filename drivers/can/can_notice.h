@@ -12,6 +12,10 @@ struct CanNotice {
     interface_gone,  ///< of a bus: down or removed
     emergency,       ///< of a node: CANopen EMCY, `code` says which
     boot_up,         ///< of a node: CANopen; over as it begins
+    // Of a node's numbers, `code` messages within 10 s:
+    sequence_leap,  ///< it began anew, or another node sends under its ids
+    duplicates,     ///< likewise
+    losses,
   };
   Kind kind = Kind::bus_off;
   int index = 0;  ///< of the bus or the node in the map

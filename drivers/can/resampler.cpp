@@ -80,7 +80,11 @@ void Resampler::add(std::int64_t number, double time_us, double period_us, doubl
     double position = static_cast<double>(number) + (wanted_us - time_us) / period_us;
     auto center = static_cast<std::int64_t>(std::floor(position));
     if (center + kHalf > newest_) return;
-    if (center < newest_ - kKept) continue;
+    if (center < newest_ - kKept) {  // at once to the first instant that samples are kept of
+      const double behind = static_cast<double>(newest_ - kKept - center - 1) * period_us;
+      next_ += static_cast<std::int64_t>(std::max(0.0, behind / grid_us_ - 1));
+      continue;
+    }
     // The times of the samples around it are better known than the newest one's extrapolated.
     if (has(center))
       position = static_cast<double>(center) + (wanted_us - slot(center).time_us) / period_us;

@@ -23,7 +23,8 @@ struct TimedValues {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(node, message, number, values);
+    a(node, message, number);
+    a.any_size(values);
   }
 };
 

@@ -34,7 +34,7 @@ class Parser {
     for (scan_.skip_space(); !scan_.at_end() && !problems_.full(); scan_.skip_space()) statement();
     finish_message();
     check_messages();
-    for (const FloatType& type : floats_) apply(type);
+    apply_value_types();
     for (const DbcMessage& message : dbc_.messages)
       for (const DbcRule& rule : broken_rules(message)) problems_.add(rule.line, rule.message);
     if (problems_.any()) return std::nullopt;
@@ -221,19 +221,21 @@ class Parser {
     floats_.push_back(type);
   }
 
-  void apply(const FloatType& type) {
-    for (DbcMessage& m : dbc_.messages) {
-      if ((m.id | (m.extended ? kExtendedFlag : 0)) != type.id) continue;
-      for (DbcSignal& s : m.signals) {
-        if (s.name != type.signal) continue;
-        s.field.value = type.type == 1   ? CanValue::float32
-                        : type.type == 2 ? CanValue::float64
-                                         : CanValue::integer;
-        return;
-      }
+  void apply_value_types() {
+    std::map<std::pair<std::uint64_t, std::string>, DbcSignal*> signals;
+    for (DbcMessage& m : dbc_.messages)
+      for (DbcSignal& s : m.signals)
+        signals.emplace(std::pair(m.id | (m.extended ? kExtendedFlag : 0), s.name), &s);
+    for (const FloatType& type : floats_) {
+      const auto at = signals.find({type.id, type.signal});
+      if (at == signals.end())
+        problems_.add(type.line, fmt::format("SIG_VALTYPE_: message {} has no signal {}", type.id,
+                                             type.signal));
+      else
+        at->second->field.value = type.type == 1   ? CanValue::float32
+                                  : type.type == 2 ? CanValue::float64
+                                                   : CanValue::integer;
     }
-    problems_.add(type.line,
-                  fmt::format("SIG_VALTYPE_: message {} has no signal {}", type.id, type.signal));
   }
 
   void check_messages() {

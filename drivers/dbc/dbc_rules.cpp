@@ -1,6 +1,9 @@
-#include <bitset>
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <map>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -10,29 +13,61 @@
 namespace framewatch::drivers {
 namespace {
 
-using Bits = std::bitset<512>;
+/// The first signal that has each bit of a frame, of those that were entered.
+class BitOwners {
+ public:
+  static constexpr std::size_t kNobody = SIZE_MAX;
 
-Bits bits_of(const CanField& field) {
-  Bits bits;
-  for_each_bit(field, [&](int bit) { bits.set(static_cast<std::size_t>(bit)); });
-  return bits;
-}
+  void enter(const CanField& field, std::size_t signal) {
+    for_each_bit(field, [&](int bit) {
+      std::size_t& owner = owners_[static_cast<std::size_t>(bit)];
+      owner = std::min(owner, signal);
+    });
+  }
+  /// Of the bits that a field has.
+  std::size_t first_of(const CanField& field) const {
+    std::size_t first = kNobody;
+    for_each_bit(field,
+                 [&](int bit) { first = std::min(first, owners_[static_cast<std::size_t>(bit)]); });
+    return first;
+  }
 
-/// Signals that may be there at the same time must not share a bit.
+ private:
+  std::vector<std::size_t> owners_ = std::vector<std::size_t>(512, kNobody);
+};
+
+/// Signals that may be there at the same time must not share a bit. Each is told with the first
+/// before it that it shares any with.
 void check_overlaps(const DbcMessage& message, std::vector<DbcRule>& rules) {
-  std::vector<Bits> bits;
-  for (const DbcSignal& s : message.signals)
-    bits.push_back(fits(s.field, message.length) ? bits_of(s.field) : Bits{});
-  for (std::size_t b = 1; b < message.signals.size(); ++b)
-    for (std::size_t a = 0; a < b; ++a) {
-      const DbcSignal &first = message.signals[a], &second = message.signals[b];
-      const bool apart = first.multiplexed_by && second.multiplexed_by &&
-                         *first.multiplexed_by != *second.multiplexed_by;
-      if (apart || (bits[a] & bits[b]).none()) continue;
-      rules.push_back({second.line, fmt::format("signal {} overlaps {} (line {})", second.name,
-                                                first.name, first.line)});
-      break;
+  std::map<std::int64_t, std::vector<std::size_t>> multiplexed;
+  BitOwners anyones, always;
+  for (std::size_t i = 0; i < message.signals.size(); ++i) {
+    const DbcSignal& s = message.signals[i];
+    if (!fits(s.field, message.length)) continue;
+    anyones.enter(s.field, i);
+    if (s.multiplexed_by)
+      multiplexed[*s.multiplexed_by].push_back(i);
+    else
+      always.enter(s.field, i);
+  }
+  std::vector<std::size_t> shared_with(message.signals.size(), BitOwners::kNobody);
+  for (std::size_t i = 0; i < message.signals.size(); ++i)
+    if (const DbcSignal& s = message.signals[i]; fits(s.field, message.length))
+      shared_with[i] = (s.multiplexed_by ? always : anyones).first_of(s.field);
+  for (const auto& [value, signals] : multiplexed) {
+    BitOwners here;
+    for (const std::size_t i : signals) {
+      const CanField& field = message.signals[i].field;
+      shared_with[i] = std::min(shared_with[i], here.first_of(field));
+      here.enter(field, i);
     }
+  }
+  for (std::size_t i = 0; i < message.signals.size(); ++i) {
+    if (shared_with[i] >= i) continue;
+    const DbcSignal &first = message.signals[shared_with[i]], &second = message.signals[i];
+    rules.push_back({second.line, fmt::format("signal {} overlaps {} (line {})", second.name,
+                                              first.name, first.line)});
+  }
 }
 
 void check_multiplexing(const DbcMessage& message, std::vector<DbcRule>& rules) {

@@ -1,32 +1,87 @@
 #include "drivers/lcm/accel_intake.h"
 
+#include <algorithm>
+#include <bit>
 #include <iterator>
 #include <utility>
 
 namespace framewatch::drivers {
+namespace {
 
-AccelIntake::AccelIntake(std::vector<WantedAxis> wanted, Sink sink)
-    : binding_(wanted), sink_(std::move(sink)), sequence_of_axis_(wanted.size(), nullptr) {}
+constexpr std::int64_t kLook_us = 1'000'000;
+constexpr std::int64_t kMovable_us = 10'000'000;  // silence after which a table may bind elsewhere
+constexpr std::size_t kMostHeard = 4096;          // nodes, beyond those that are bound
 
-IntakeResult AccelIntake::message(const std::string& channel, const void* data, std::size_t size) {
+/// Never 0.
+std::uint64_t digest_of(const SensorNodeSample& sample) {
+  auto digest = static_cast<std::uint64_t>(to_microseconds(sample.time));
+  for (const double value : sample.accel_abs_mps2) {
+    digest = (digest ^ std::bit_cast<std::uint64_t>(value)) * 0x9E3779B97F4A7C15u;
+    digest ^= digest >> 29;
+  }
+  return digest | 1;
+}
+
+}  // namespace
+
+AccelIntake::AccelIntake(std::vector<WantedAxis> wanted, Sink sink, IntakeSettings settings)
+    : binding_(wanted),
+      sink_(std::move(sink)),
+      settings_(settings),
+      node_of_axis_(wanted.size(), nullptr),
+      contradicted_(wanted.size()) {}
+
+IntakeResult AccelIntake::message(const std::string& channel, const void* data, std::size_t size,
+                                  const LcmSender& sender, std::int64_t received_us) {
   ++counters_.messages;
   IntakeResult result = IntakeResult::foreign;
   if (carried(channel))
-    result = accel(channel, data, size);
+    result = accel(channel, data, size, sender, received_us);
   else if (const std::string stream = stream_of_table(channel); !stream.empty())
-    result = table(stream, data, size);
+    result = table(stream, data, size, received_us);
   counters_.foreign += result == IntakeResult::foreign;
   counters_.malformed += result == IntakeResult::malformed;
   counters_.duplicate += result == IntakeResult::duplicate;
+  counters_.other_sender += result == IntakeResult::other_sender;
   return result;
 }
 
-IntakeResult AccelIntake::table(const std::string& stream, const void* data, std::size_t size) {
+void AccelIntake::log_begins() {
+  for (auto& [place, node] : heard_) node.in_input = 0;
+}
+
+bool AccelIntake::is_silent(const std::string& stream, std::int32_t node,
+                            std::int64_t arrival_us) const {
+  const auto at = heard_.find({stream, node});
+  return at == heard_.end() || at->second.in_input == 0 ||
+         arrival_us - at->second.counter.newest_arrival_us() > kMovable_us;
+}
+
+IntakeResult AccelIntake::table(const std::string& stream, const void* data, std::size_t size,
+                                std::int64_t received_us) {
   const std::optional<ChannelTable> table = decode_channel_table(data, size);
   if (!table) return binding_.carries(stream) ? IntakeResult::malformed : IntakeResult::foreign;
-  binding_.apply(stream, *table);
+  const std::int64_t arrival_us = received_us != 0 ? received_us : arrival_us_;
+  const auto against = binding_.apply(
+      stream, *table,
+      [&](const std::string& of, std::int32_t node) { return is_silent(of, node, arrival_us); });
+  for (const AxisBinding::Contradiction& c : against) {
+    ++(c.elsewhere ? counters_.elsewhere : counters_.renamed);
+    look_at_table(c.wanted, arrival_us, &c, stream);
+  }
   stream_.clear();
+  forget_unbound();
   return binding_.carries(stream) ? IntakeResult::table : IntakeResult::foreign;
+}
+
+void AccelIntake::forget_unbound() {
+  if (heard_.size() <= kMostHeard + node_of_axis_.size()) return;
+  std::erase_if(heard_, [this](const auto& heard) {
+    const bool bound = binding_.axes_of(heard.first.first, heard.first.second) != nullptr;
+    for (const HeardNode*& node : node_of_axis_)
+      if (!bound && node == &heard.second) node = nullptr;
+    return !bound;
+  });
 }
 
 bool AccelIntake::carried(const std::string& channel) {
@@ -38,18 +93,18 @@ bool AccelIntake::carried(const std::string& channel) {
   return true;
 }
 
-std::int64_t AccelIntake::number_of(const SequenceCounter* counter) const {
+std::int64_t AccelIntake::number_of(const HeardNode* node) const {
   std::int64_t number = 0;
-  for (const auto& [place, sequence] : sequences_) {
-    if (&sequence.counter == counter) return number;
+  for (const auto& [place, heard] : heard_) {
+    if (&heard == node) return number;
     ++number;
   }
   return -1;
 }
 
-const SequenceCounter* AccelIntake::counter_of(std::int64_t number) const {
-  if (number < 0 || number >= std::ssize(sequences_)) return nullptr;
-  return &std::next(sequences_.begin(), number)->second.counter;
+const HeardNode* AccelIntake::node_numbered(std::int64_t number) const {
+  if (number < 0 || number >= std::ssize(heard_)) return nullptr;
+  return &std::next(heard_.begin(), number)->second;
 }
 
 /// Null when no configured axis is on the node. Nodes come in the same order every time, mostly.
@@ -63,33 +118,110 @@ const AccelIntake::Node* AccelIntake::find_node(const std::string& channel, std:
   }
   const AxisBinding::NodeAxes* axes = binding_.axes_of(channel, number);
   if (axes == nullptr) return nullptr;
-  const auto [at, is_new] = sequences_.try_emplace({channel, number});
-  if (is_new) at->second.order = sequences_.size() - 1;
-  nodes_.push_back({number, *axes, &at->second.counter, at->second.order});
+  const auto [at, is_new] = heard_.try_emplace({channel, number}, settings_.rate_hz);
+  HeardNode& heard = at->second;
+  if (is_new) {
+    heard.order = nodes_heard_++;
+    heard.axis = static_cast<std::size_t>(*std::find_if(
+        axes->begin(), axes->end(), [](int axis) { return axis != AxisBinding::kNone; }));
+  }
+  nodes_.push_back({number, *axes, &heard});
   next_node_ = 0;
   return &nodes_.back();
 }
 
-IntakeResult AccelIntake::accel(const std::string& channel, const void* data, std::size_t size) {
+IntakeResult AccelIntake::accel(const std::string& channel, const void* data, std::size_t size,
+                                const LcmSender& sender, std::int64_t received_us) {
   const std::optional<SensorNodeSample> sample = decode_accel(data, size);
   if (!sample) return IntakeResult::malformed;
   const Node* node = find_node(channel, sample->node);
   if (node == nullptr) return IntakeResult::foreign;
-  SequenceCounter& sequence = *node->sequence;
-  const std::int64_t lost = sequence.lost, backwards = sequence.backwards;
-  const bool is_new = sequence.see(sample->sequence, to_microseconds(sample->time)) !=
-                      SequenceCounter::Verdict::duplicate;
-  lost_ += sequence.lost - lost;
-  backwards_ += sequence.backwards - backwards;
-  last_sample_ = *sample;
-  last_node_ = node->order;
-  for (std::size_t i = 0; i < node->axes.size(); ++i) {
-    const int axis = node->axes[i];
-    if (axis == AxisBinding::kNone) continue;
-    sequence_of_axis_[static_cast<std::size_t>(axis)] = &sequence;
-    if (is_new) sink_({sample->time, axis, sample->accel_abs_mps2[i]});
+  arrival_us_ = received_us != 0 ? received_us : to_microseconds(sample->time);
+  if (arrival_us_ >= next_look_us_ || next_look_us_ - arrival_us_ > kLook_us) look(arrival_us_);
+  for (const int axis : node->axes)
+    if (axis != AxisBinding::kNone) node_of_axis_[static_cast<std::size_t>(axis)] = node->heard;
+  HeardNode& heard = *node->heard;
+  const IntakeResult result = judge(heard, *sample, sender);
+  if (heard.counter.gives_held()) give(*node, heard.held);
+  if (result == IntakeResult::held) heard.held = *sample;
+  if (result == IntakeResult::samples) give(*node, *sample);
+  return result;
+}
+
+void AccelIntake::give(const Node& node, const SensorNodeSample& sample) {
+  last_sample_ = sample;
+  last_node_ = node.heard->order;
+  for (std::size_t i = 0; i < node.axes.size(); ++i)
+    if (node.axes[i] != AxisBinding::kNone)
+      sink_({sample.time, node.axes[i], sample.accel_abs_mps2[i]});
+}
+
+/// Whether the message is of the sender that goes on, and new.
+IntakeResult AccelIntake::judge(HeardNode& node, const SensorNodeSample& sample,
+                                const LcmSender& sender) {
+  node.in_input = 1;
+  if (!node.sender.takes(sender, arrival_us_)) return IntakeResult::other_sender;
+  SequenceCounter& counter = node.counter;
+  const std::int64_t lost = counter.lost, backwards = counter.backwards;
+  const auto verdict =
+      counter.see({sample.sequence, to_microseconds(sample.time), arrival_us_, digest_of(sample)});
+  lost_ += counter.lost - lost;
+  backwards_ += counter.backwards - backwards;
+  if (verdict == SequenceCounter::Verdict::duplicate) return IntakeResult::duplicate;
+  if (verdict == SequenceCounter::Verdict::other) return IntakeResult::other_sender;
+  if (verdict == SequenceCounter::Verdict::held) return IntakeResult::held;
+  if (settings_.two_senders == TwoSenders::none && node.contested(arrival_us_)) {
+    ++node.withheld;
+    return IntakeResult::other_sender;
   }
-  return is_new ? IntakeResult::samples : IntakeResult::duplicate;
+  return IntakeResult::samples;
+}
+
+void AccelIntake::look(std::int64_t arrival_us) {
+  next_look_us_ = arrival_us + kLook_us;
+  for (auto& [place, node] : heard_) look_at(place.first, place.second, node);
+  for (std::size_t axis = 0; axis < contradicted_.size(); ++axis)
+    look_at_table(axis, arrival_us, nullptr, {});
+}
+
+/// against: what a table says otherwise, null when none did.
+void AccelIntake::look_at_table(std::size_t axis, std::int64_t arrival_us,
+                                const AxisBinding::Contradiction* against,
+                                const std::string& stream) {
+  const auto found = contradicted_[axis].look(against != nullptr, arrival_us);
+  if (!found) return;
+  IntakeNotice news;
+  news.of_table = true;
+  news.axis = axis;
+  news.over = *found == Trouble::News::over;
+  news.arrival_us = arrival_us;
+  news.stream = stream;
+  if (against != nullptr) news.told = against->told;
+  notice(news);
+}
+
+void AccelIntake::look_at(const std::string& stream, std::int32_t number, HeardNode& node) {
+  for (const auto& found : node.watch.look(node.counts(), arrival_us_)) {
+    if (!found) continue;
+    IntakeNotice news;
+    news.trouble = found->trouble;
+    news.axis = node.axis;
+    news.over = found->over;
+    news.arrival_us = arrival_us_;
+    news.stream = stream;
+    news.node = number;
+    news.count = found->count;
+    news.of = found->of;
+    news.bound = node.sender.bound();
+    news.other = node.sender.other();
+    news.from = node.counter.leapt_from();
+    news.to = node.counter.leapt_to();
+    notice(news);
+  }
+}
+
+void AccelIntake::notice(const IntakeNotice& notice) const {
+  if (notice_) notice_(notice);
 }
 
 }  // namespace framewatch::drivers

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include <framewatch/channel_table_t.hpp>
@@ -16,14 +17,12 @@ AccelMessages::AccelMessages(std::vector<std::string> names, std::vector<AxisAdd
                              double rate_hz)
     : names_(std::move(names)), addresses_(std::move(addresses)), rate_hz_(rate_hz) {
   assert(names_.size() == addresses_.size());
+  std::map<std::pair<std::string, std::int32_t>, std::size_t> places;
   for (std::size_t i = 0; i < addresses_.size(); ++i) {
     const AxisAddress& a = addresses_[i];
-    const auto same = [&](const Node& n) {
-      return n.lcm_channel == a.lcm_channel && n.node == a.node;
-    };
-    auto at = std::find_if(nodes_.begin(), nodes_.end(), same);
-    if (at == nodes_.end()) at = nodes_.insert(at, Node{a.lcm_channel, a.node, {}, 0});
-    at->channels.push_back(i);
+    const auto [at, fresh] = places.try_emplace({a.lcm_channel, a.node}, nodes_.size());
+    if (fresh) nodes_.push_back(Node{a.lcm_channel, a.node, {}, 0});
+    nodes_[at->second].channels.push_back(i);
   }
 }
 

@@ -6,6 +6,11 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/base/input_file.h"
+#include "drivers/base/partial_file.h"
+#include "drivers/lcm/log_scan.h"
+#include "drivers/lcm/overlap_scan.h"
+
 namespace framewatch::drivers {
 
 /// One event of an LCM event log.
@@ -46,55 +51,50 @@ bool is_event_log(const std::string& path);
 /// format has no checksum.
 class LcmLogReader {
  public:
-  static constexpr std::int32_t kMaxChannel = 63;
-  static constexpr std::int32_t kMaxPayload = 16 * 1024 * 1024;
+  static constexpr std::int32_t kMaxChannel = LogScan::kMaxChannel;
+  static constexpr std::int32_t kMaxPayload = LogScan::kMaxPayload;
 
   LcmLogReader() = default;
-  ~LcmLogReader();
   LcmLogReader(const LcmLogReader&) = delete;
   LcmLogReader& operator=(const LcmLogReader&) = delete;
 
-  /// False when the file cannot be opened or is no regular file; error() says why.
+  /// False when the file cannot be opened, is no regular file, or unpacks to more than
+  /// unpack_limit(); error() says why.
   [[nodiscard]] bool open(const std::string& path);
   /// The buffers of `event` are reused. Call until end or error; both are final.
   [[nodiscard]] LogRead next(LogEvent& event);
   const LogDamage& damage() const { return damage_; }
   const std::string& error() const { return error_; }
-  std::int64_t size() const { return size_; }          ///< bytes, when it was opened
+  std::int64_t size() const { return file_.size(); }   ///< bytes, when it was opened
   std::int64_t position() const { return position_; }  ///< bytes consumed
+  /// Bytes looked at so far, as often as they were: a few times position(), whatever the file
+  /// holds.
+  std::int64_t examined_bytes() const;
 
  private:
   bool unpack();
-
-  struct Header {
-    std::int64_t number, timestamp_us;
-    std::int64_t channel_length, payload_length;
-    std::int64_t end;  ///< offset after the event
-  };
-
-  const std::uint8_t* at(std::int64_t offset, std::int64_t bytes);
-  bool sync_at(std::int64_t offset);
-  bool read_header(std::int64_t offset, Header& header, const char** why);
-  bool well_followed(const Header& header);
-  std::int64_t find_sync(std::int64_t from, std::int64_t limit);
   std::int64_t first_certain_event(std::int64_t from, std::int64_t limit);
-  bool nothing_better_inside(const Header& header);
+  bool reached_over(const LogEventHeader& header);
   std::int64_t resynchronise(std::int64_t from);
-  LogRead skip_damage(const Header& header, bool plausible, const char* why);
+  LogRead skip_damage(const LogEventHeader& header, bool plausible, const char* why);
   bool zeros_to_end(std::int64_t from);
 
-  int file_ = -1;
-  std::int64_t size_ = 0;
+  InputFile file_;
+  std::string error_;
+  LogScan here_{file_, error_};
   std::int64_t position_ = 0;
-  std::vector<std::uint8_t> buffer_;
-  std::int64_t buffer_offset_ = 0;
-  std::int64_t buffer_bytes_ = 0;
+
+  LogScan certain_scan_{file_, error_};
   std::int64_t clear_from_ = 0;  ///< no certain event starts in [clear_from_, clear_to_)
   std::int64_t clear_to_ = 0;
   std::int64_t certain_ = -1;  ///< where the last certain event was found
+
+  LogScan overlap_scan_{file_, error_};
+  OverlapScan overlaps_;          ///< of what looks like events, from position_ to overlap_to_
+  std::int64_t overlap_to_ = -1;  ///< where to look for the next; -1: nowhere yet
+
   LogDamage damage_;
   std::string pack_damage_;  ///< of the zstd file; told at the end
-  std::string error_;
 };
 
 /// Appends one event as it stands in a log to `out`. Channel and size must be within the reader's
@@ -103,7 +103,7 @@ void append_log_event(std::string& out, std::int64_t number, std::int64_t timest
                       std::string_view channel, const void* data, std::size_t size);
 
 /// Writes LCM event logs that lcm-logplayer plays. Event numbers count from 0.
-/// The file is written as PATH.partial and renamed by close(): nothing half-written under its name.
+/// The file is a PartialFile that close() renames: nothing half-written under its name.
 class LcmLogWriter {
  public:
   LcmLogWriter() = default;
@@ -129,8 +129,8 @@ class LcmLogWriter {
   void discard();
 
   std::vector<char> buffer_;
+  PartialFile partial_;
   std::FILE* file_ = nullptr;
-  std::string path_;
   std::int64_t number_ = 0;
   std::string error_;
 };

@@ -1,8 +1,7 @@
-#include <unistd.h>
-
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "drivers/lcm/lcm_log.h"
 
@@ -46,12 +45,12 @@ LcmLogWriter::~LcmLogWriter() {
 
 bool LcmLogWriter::open(const std::string& path) {
   discard();
-  path_ = path;
   number_ = 0;
   error_.clear();
-  file_ = std::fopen((path + ".partial").c_str(), "wbe");
+  if (partial_.open(path)) file_ = partial_.stream();
   if (file_ == nullptr) {
-    error_ = std::strerror(errno);
+    error_ = partial_.error();
+    partial_.discard();
     return false;
   }
   // With a buffer of its own making glibc ignores the size.
@@ -89,25 +88,16 @@ bool LcmLogWriter::write(std::int64_t timestamp_us, const std::string& channel, 
 
 bool LcmLogWriter::close() {
   if (file_ == nullptr) return false;
-  if (error_.empty() && (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0))
-    error_ = std::strerror(errno);
-  if (error_.empty()) {
-    const bool closed = std::fclose(file_) == 0;
-    file_ = nullptr;
-    if (!closed || std::rename((path_ + ".partial").c_str(), path_.c_str()) != 0) {
-      error_ = std::strerror(errno);
-      std::remove((path_ + ".partial").c_str());
-    }
-  }
+  const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (error_.empty() && !closed) error_ = std::strerror(errno);
+  if (error_.empty() && !partial_.commit()) error_ = partial_.error();
   discard();
   return error_.empty();
 }
 
 void LcmLogWriter::discard() {
-  if (file_ == nullptr) return;
-  std::fclose(file_);
-  file_ = nullptr;
-  std::remove((path_ + ".partial").c_str());
+  if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
+  partial_.discard();
 }
 
 }  // namespace framewatch::drivers

@@ -7,24 +7,29 @@
 #include <string>
 #include <vector>
 
-#include <lcm/lcm-cpp.hpp>
+#include "drivers/lcm/lcm_provider.h"
+#include "drivers/lcm/multicast/lcm_receiver.h"
 
 namespace framewatch::drivers {
 
-/// An LCM instance on `url`, asking for a socket buffer of that size where the provider has one.
-/// Null, with the reason and the remedy in `error`, when LCM cannot start there.
-std::unique_ptr<lcm::LCM> open_lcm(const std::string& url, int receive_buffer_bytes,
-                                   std::string& error);
+/// A message that has come. Refers to memory that is its giver's.
+struct LcmMessage {
+  const std::string& channel;
+  const void* data = nullptr;
+  std::size_t size = 0;
+  std::int64_t received_us = 0;  ///< host clock
+  LcmSender sender{};
+};
 
-/// Hands the raw bytes of chosen LCM channels to one function, and knows how far behind it is.
+/// Hands the messages of chosen LCM channels to one function, and knows how far behind it is.
 class LcmSource {
  public:
-  /// `received_us`: host clock, microseconds. Must not throw: C code is underneath.
-  using Handler = std::function<void(const std::string& channel, const void* data, std::size_t size,
-                                     std::int64_t received_us)>;
+  /// Must not throw: C code is underneath.
+  using Handler = std::function<void(const LcmMessage& message)>;
 
-  /// `lcm` must outlive this. Channel names are taken literally.
-  LcmSource(lcm::LCM& lcm, const std::vector<std::string>& channels, int queue_capacity,
+  /// `lcm` must outlive this. Channel names are taken literally. queue_capacity: messages of each
+  /// channel that may wait.
+  LcmSource(LcmProvider& lcm, const std::vector<std::string>& channels, int queue_capacity,
             Handler handler);
   ~LcmSource();
   LcmSource(const LcmSource&) = delete;
@@ -33,21 +38,24 @@ class LcmSource {
   /// Waits for a message at most `timeout_ms`, then handles it and those that wait behind it, at
   /// most queue_capacity. False when LCM failed.
   [[nodiscard]] bool handle(int timeout_ms);
+  /// Readable while messages wait.
+  int descriptor() const;
 
-  /// Messages handled one after the other without a wait; the queue was full when it reaches the
-  /// capacity. LCM itself drops in silence: losses found then are the queue's.
-  std::int64_t backlog() const { return backlog_; }
   std::int64_t backlog_high_water() const { return backlog_high_water_; }
-  bool queue_was_full() const { return backlog_ >= capacity_; }
+  /// What did not come this far, of udpm://; other providers drop nothing.
+  ReceiverCounters dropped() const;
 
  private:
+  bool handle_received(int timeout_ms);
+  bool handle_dispatched(int timeout_ms);
   void on_message(const lcm::ReceiveBuffer* buffer, const std::string& channel);
 
-  lcm::LCM& lcm_;
+  LcmProvider& lcm_;
   std::int64_t capacity_;
   Handler handler_;
+  std::unique_ptr<LcmReceiver> receiver_;  ///< null: liblcm dispatches
+  ReceivedMessage message_;
   std::vector<lcm::Subscription*> subscriptions_;
-  std::int64_t backlog_ = 0;
   std::int64_t backlog_high_water_ = 0;
 };
 

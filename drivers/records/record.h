@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@ struct Record {
   std::vector<double> time_s;                   ///< strictly increasing
   std::vector<std::vector<double>> accel_mps2;  ///< [axis][instant]; NaN where missing
   double rate_hz = 0;                           ///< nominal: 1 / the even step
-  std::vector<std::string> notes;  ///< what the reader assumed or left out, for a person
+  std::vector<std::string> notes;   ///< what the reader assumed or left out, for a person
+  std::vector<std::int64_t> lines;  ///< of the file, by instant; 0: filled in. Empty: no such file
 };
 
 }  // namespace framewatch::drivers

@@ -41,7 +41,7 @@ void RecordBuilder::add(std::int64_t line, double time_s, std::span<const double
     return;
   }
   record_.time_s.push_back(time_s);
-  lines_.push_back(line);
+  record_.lines.push_back(line);
   for (std::size_t i = 0; i < accel_mps2.size(); ++i)
     record_.accel_mps2[i].push_back(accel_mps2[i]);
 }
@@ -81,10 +81,11 @@ void RecordBuilder::fill_lost_samples(double step) {
     const double steps = (time[i] - time[i - 1]) / step;
     const double whole = std::max(1.0, std::round(steps));
     if (std::abs(steps - whole) > kStepTolerance + kRateError * (whole - 1))
-      problems_.add(lines_[i], fmt::format("uneven step: {:.6g} s where the others are {:.6g} s",
-                                           time[i] - time[i - 1], step));
+      problems_.add(record_.lines[i],
+                    fmt::format("uneven step: {:.6g} s where the others are {:.6g} s",
+                                time[i] - time[i - 1], step));
     if (whole - 1 > static_cast<double>(most - missing)) {
-      problems_.add(lines_[i],
+      problems_.add(record_.lines[i],
                     fmt::format("a loss of {:.6g} s: more samples are missing than there "
                                 "are",
                                 time[i] - time[i - 1]));
@@ -97,13 +98,17 @@ void RecordBuilder::fill_lost_samples(double step) {
   if (problems_.any() || missing == 0) return;
 
   std::vector<double> filled_time;
+  std::vector<std::int64_t> filled_lines;
   for (std::size_t i = 0; i < time.size(); ++i) {
+    filled_lines.insert(filled_lines.end(), missing_before[i], 0);
+    filled_lines.push_back(record_.lines[i]);
     for (std::size_t k = missing_before[i]; k > 0; --k)
       filled_time.push_back(time[i] - static_cast<double>(k) * (time[i] - time[i - 1]) /
                                           static_cast<double>(missing_before[i] + 1));
     filled_time.push_back(time[i]);
   }
   record_.time_s = std::move(filled_time);
+  record_.lines = std::move(filled_lines);
   for (std::vector<double>& axis : record_.accel_mps2) {
     std::vector<double> filled;
     filled.reserve(rows());

@@ -40,7 +40,6 @@ class RecordBuilder {
 
   FileProblems& problems_;
   Record record_;
-  std::vector<std::int64_t> lines_;
   double expected_rate_hz_ = 0;
   std::size_t missing_allowed_ = 0;
   bool full_ = false;

@@ -14,7 +14,7 @@ TEST(SequenceCounter, CountsMissingNumbersAsLost) {
   for (const std::int64_t s : {5, 6, 9, 10, 200}) EXPECT_EQ(counter.see(s, s), Verdict::fresh);
   EXPECT_EQ(counter.received, 5);
   EXPECT_EQ(counter.lost, 2 + 189);
-  EXPECT_EQ(counter.restarts, 0);
+  EXPECT_EQ(counter.leaps, 0);
 }
 
 TEST(SequenceCounter, LateOneIsNoLongerLost) {
@@ -40,7 +40,7 @@ TEST(SequenceCounter, NodeThatRestartsIsNoLoss) {
   counter.see(1000, 1000);
   EXPECT_EQ(counter.see(0, 1001), Verdict::fresh);
   EXPECT_EQ(counter.see(1, 1002), Verdict::fresh);
-  EXPECT_EQ(counter.restarts, 1);
+  EXPECT_EQ(counter.leaps, 1);
   EXPECT_EQ(counter.lost, 0);
 }
 

@@ -56,6 +56,17 @@ TEST(Resampler, KeepsAmplitudeAndPhaseUpToTwentyHertz) {
     }
 }
 
+TEST(Resampler, ALeapOfYearsIsNotWalkedInstantByInstant) {
+  Resampler resampler(kGrid_us);
+  const double years_us = 5e17;
+  int given = 0;
+  for (int k = 0; k < 200; ++k)
+    resampler.add(k, (k < 100 ? 1e9 : years_us) + kGrid_us * k, kGrid_us, 1,
+                  [&](std::int64_t, double value) { given += value > 0.9; });
+  EXPECT_GT(given, 150);
+  EXPECT_LT(given, 250);
+}
+
 TEST(Resampler, FillsOneLostSampleAndNotTwo) {
   Resampler resampler(kGrid_us);
   const auto out = resampled(

@@ -104,9 +104,9 @@ TEST(AccelIntake, CountsLossesPerNode) {
   Fixture f({{"x1", "ACCEL", 1, 0}, {"x2", "ACCEL", 2, 0}, {"x3", "ACCEL", 3, 0}});
   for (const std::int64_t s : {1, 2, 5}) f.send_accel(s, 1);
   for (const std::int64_t s : {1, 2, 4}) f.send_accel(s, 2);
-  EXPECT_EQ(f.intake.sequence_of(0)->lost, 2);
-  EXPECT_EQ(f.intake.sequence_of(1)->lost, 1);
-  EXPECT_EQ(f.intake.sequence_of(2), nullptr);
+  EXPECT_EQ(f.intake.node_of(0)->counter.lost, 2);
+  EXPECT_EQ(f.intake.node_of(1)->counter.lost, 1);
+  EXPECT_EQ(f.intake.node_of(2), nullptr);
   EXPECT_EQ(f.intake.lost(), 3);
 }
 

@@ -24,19 +24,76 @@ TEST(AxisBinding, UsesConfiguredAddressesWithoutATable) {
   EXPECT_EQ(binding.streams(), (Names{"ACCEL", "OTHER"}));
 }
 
-TEST(AxisBinding, NamesInATableBindFirst) {
+using Contradictions = std::vector<AxisBinding::Contradiction>;
+
+/// Axes that a table contradicts.
+std::vector<std::size_t> axes_of(const Contradictions& against) {
+  std::vector<std::size_t> out;
+  for (const auto& c : against) out.push_back(c.wanted);
+  return out;
+}
+
+bool never(const std::string&, std::int32_t) {
+  return false;
+}
+
+using Axes = std::vector<std::size_t>;
+
+TEST(AxisBinding, AConfiguredAddressIsAboveEveryTable) {
   AxisBinding binding({{"a", "ACCEL", 1, 0}, {"b", "ACCEL", 2, 0}});
-  binding.apply("ACCEL", {100, {{"b", 1, 0}, {"a", 2, 0}}});
+  EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"b", 1, 0}, {"a", 2, 0}}})), (Axes{0, 1}));
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), 1);
+  EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"a", 1, 1}}})), Axes{0});
+  EXPECT_EQ(axes_of(binding.apply("OTHER", {100, {{"a", 1, 0}}})), Axes{0});
+  EXPECT_FALSE(binding.carries("OTHER"));
+}
+
+TEST(AxisBinding, ATableThatSaysWhatTheConfigurationSaysContradictsNothing) {
+  AxisBinding binding({{"a", "ACCEL", 1, 0}, {"b", "ACCEL", 2, 0}, {"c", "", -1, 0}});
+  const ChannelTable table{100, {{"a", 1, 0}, {"b", 2, 0}, {"c", 3, 0}, {"theirs", 3, 1}}};
+  EXPECT_TRUE(binding.apply("ACCEL", table, never).empty());
+  EXPECT_TRUE(binding.apply("ACCEL", table, never).empty());
+  EXPECT_EQ(axis_at(binding, "ACCEL", 3, 0), 2);
+}
+
+TEST(AxisBinding, AnotherNameAtAConfiguredAddressIsAContradiction) {
+  AxisBinding binding({{"a", "ACCEL", 1, 0}});
+  const Contradictions against = binding.apply("ACCEL", {100, {{"theirs", 1, 0}}});
+  ASSERT_EQ(axes_of(against), Axes{0});
+  EXPECT_EQ(against[0].told, (ChannelTable::Entry{"theirs", 1, 0}));
+  EXPECT_FALSE(against[0].elsewhere);
+  EXPECT_TRUE(binding.apply("ACCEL", {100, {{"node1.x", 1, 0}}}).empty());
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
+}
+
+TEST(AxisBinding, AConfiguredAddressIsNotGivenToAnotherChannel) {
+  AxisBinding binding({{"a", "ACCEL", 1, 0}, {"file only", "", -1, 0}});
+  EXPECT_EQ(binding.unbound(), Names{"file only"});
+  EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"file only", 1, 0}}})), Axes{0});
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
+  EXPECT_EQ(binding.unbound(), Names{"file only"});
+}
+
+TEST(AxisBinding, WhatATableBoundStaysWhileItsSamplesCome) {
+  AxisBinding binding({{"a", "", -1, 0}, {"b", "", -1, 0}});
+  EXPECT_TRUE(binding.apply("ACCEL", {100, {{"a", 1, 0}, {"b", 2, 0}}}, never).empty());
+  EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"a", 2, 0}, {"b", 1, 0}}}, never)),
+            (Axes{0, 1}));
+  EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"theirs", 2, 0}}}, never)), Axes{1});
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), 1);
+  EXPECT_TRUE(binding.apply("ACCEL", {100, {{"a", 2, 0}, {"b", 1, 0}}}).empty());  // all silent
   EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 1);
   EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), 0);
 }
 
-TEST(AxisBinding, AddressGivenAwayByATableIsNotUsedTwice) {
-  AxisBinding binding({{"a", "ACCEL", 1, 0}, {"file only", "", -1, 0}});
-  EXPECT_EQ(binding.unbound(), Names{"file only"});
-  binding.apply("ACCEL", {100, {{"file only", 1, 0}}});
-  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 1);
-  EXPECT_EQ(binding.unbound(), Names{"a"});
+TEST(AxisBinding, AMoveToATakenAddressChangesNothing) {
+  AxisBinding binding({{"a", "", -1, 0}, {"b", "ACCEL", 2, 0}});
+  EXPECT_TRUE(binding.apply("ACCEL", {100, {{"a", 1, 0}}}).empty());
+  EXPECT_EQ(axes_of(binding.apply("ACCEL", {100, {{"a", 2, 0}}})), Axes{1});
+  EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
+  EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), 1);
 }
 
 TEST(AxisBinding, FileOnlyAxesListenOnAccelAndBindByName) {
@@ -63,12 +120,12 @@ TEST(AxisBinding, ImpossibleAxisInATableIsIgnored) {
 
 TEST(AxisBinding, NameInTwoPlacesBindsOnce) {
   AxisBinding binding({{"a", "", -1, 0}});
-  binding.apply("ACCEL", {0, {{"a", 1, 0}, {"a", 2, 0}}});
+  EXPECT_EQ(axes_of(binding.apply("ACCEL", {0, {{"a", 1, 0}, {"a", 2, 0}}})), Axes{0});
   EXPECT_EQ(axis_at(binding, "ACCEL", 1, 0), 0);
   EXPECT_EQ(axis_at(binding, "ACCEL", 2, 0), kNone);
 }
 
-TEST(AxisBinding, NewTableOfTheSameStreamReplacesTheOld) {
+TEST(AxisBinding, ANewTableMovesWhatIsSilent) {
   AxisBinding binding({{"a", "", -1, 0}});
   binding.apply("ACCEL", {0, {{"a", 1, 0}}});
   binding.apply("ACCEL", {0, {{"a", 2, 1}}});

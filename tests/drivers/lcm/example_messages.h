@@ -8,6 +8,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
+#include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/session_status_t.hpp>
@@ -244,6 +245,17 @@ inline acknowledged_t acknowledged() {
   return m;
 }
 
+inline reception_t reception() {
+  reception_t m{};
+  m.time_us = 1;
+  m.datagrams_elsewhere = 2;
+  m.datagrams_malformed = 3;
+  m.datagrams_overflowed = 4;
+  m.messages_unfinished = 5;
+  m.messages_dropped = 6;
+  return m;
+}
+
 /// Calls visit(LCM channel, message) for each.
 template <typename Visit>
 void for_each(Visit visit) {
@@ -265,6 +277,7 @@ void for_each(Visit visit) {
   visit("FRAMEWATCH_ACKNOWLEDGE", acknowledge());
   visit("FRAMEWATCH_ACKNOWLEDGED", acknowledged());
   visit("FRAMEWATCH_WATCH", watch());
+  visit("FRAMEWATCH_RECEPTION", reception());
 }
 
 }  // namespace framewatch::drivers::examples

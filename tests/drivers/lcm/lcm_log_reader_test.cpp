@@ -97,7 +97,7 @@ TEST(LcmLogReader, SaysWhyAFileCannotBeOpened) {
   EXPECT_FALSE(reader.open("/nonexistent/log"));
   EXPECT_EQ(reader.error(), "No such file or directory");
   EXPECT_FALSE(reader.open("/tmp"));
-  EXPECT_EQ(reader.error(), "is a directory");
+  EXPECT_EQ(reader.error(), "is a directory, not a file");
 }
 
 TEST(LcmLogReader, TellsTruncationAtEveryByteOfTheLastEvent) {
@@ -244,6 +244,49 @@ TEST(LcmLogReader, ManyFalseStartsStayLinear) {
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   EXPECT_LT(took.count(), 5.0);  // measured 1 s in Debug
   EXPECT_GE(reading.intact.size(), 10u);
+}
+
+/// Every 64 bytes look like the beginning of an event that reaches to 100 bytes before the end,
+/// where one more reaches over them all: each has to be refused.
+std::string reaching_to_the_end(std::size_t bytes) {
+  std::string log;
+  const std::string event = ten_events().substr(0, kEventBytes);
+  for (std::size_t at = 0; at + 64 <= bytes; at += 64) {
+    const std::size_t end = bytes - at <= 192 ? bytes - 50 : bytes - 100;
+    log += with_length(event, 0, 24, static_cast<std::uint32_t>(end - at - 33)).substr(0, 64);
+  }
+  return log;
+}
+
+std::int64_t examined_of(const std::string& bytes) {
+  const TemporaryDirectory directory;
+  write_file(directory.path("log"), bytes);
+  LcmLogReader reader;
+  EXPECT_TRUE(reader.open(directory.path("log")));
+  LogEvent event;
+  for (LogRead read = LogRead::event; read != LogRead::end; read = reader.next(event))
+    if (read == LogRead::error) {
+      ADD_FAILURE() << reader.error();
+      break;
+    }
+  return reader.examined_bytes();
+}
+
+TEST(LcmLogReader, ExaminesTwiceTheBytesOfALogTwiceAsLongWhateverItHolds) {
+  constexpr std::size_t kMiB = 1 << 20;
+  const std::int64_t one = examined_of(reaching_to_the_end(kMiB));
+  const std::int64_t two = examined_of(reaching_to_the_end(2 * kMiB));
+  const std::int64_t four = examined_of(reaching_to_the_end(4 * kMiB));
+  EXPECT_LT(static_cast<double>(two), 2.5 * static_cast<double>(one));
+  EXPECT_LT(static_cast<double>(four), 2.5 * static_cast<double>(two));
+  EXPECT_LT(four, 20 * static_cast<std::int64_t>(4 * kMiB));
+}
+
+TEST(LcmLogReader, RefusesEveryEventThatIsReachedOver) {
+  const std::string log = reaching_to_the_end(64 * 100);
+  const Reading reading = read_bytes(log);
+  EXPECT_EQ(reading.other, 1);  // the one that reaches over the others
+  EXPECT_EQ(reading.damage.front().reason, "event's lengths reach over the start of the next one");
 }
 
 TEST(LcmLogReader, ReadsForeignLogsToTheLastByte) {

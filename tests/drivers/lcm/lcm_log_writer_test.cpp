@@ -7,6 +7,7 @@
 
 #include "drivers/lcm/lcm_log.h"
 #include "tests/drivers/lcm/ten_events.h"
+#include "tests/support/full_disk.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::drivers {
@@ -76,13 +77,25 @@ TEST(LcmLogWriter, RefusesWhatNoReaderWouldAccept) {
 
 TEST(LcmLogWriter, SaysWhenTheDiskIsFull) {
   LcmLogWriter writer;
-  if (std::system("test -w /dev/full") != 0) GTEST_SKIP() << "no /dev/full";
   const TemporaryDirectory directory;
-  std::filesystem::create_symlink("/dev/full", directory.path("log.partial"));
   ASSERT_TRUE(writer.open(directory.path("log")));
   const std::string data(1 << 19, 'x');
-  EXPECT_FALSE(writer.write(0, "ACCEL", data.data(), data.size()) && writer.close());
-  EXPECT_EQ(writer.error(), "No space left on device");
+  {
+    const test::FullDisk full(1000);
+    EXPECT_FALSE(writer.write(0, "ACCEL", data.data(), data.size()) && writer.close());
+  }
+  EXPECT_EQ(writer.error(), "File too large");
+  EXPECT_FALSE(writer.close());
+  EXPECT_TRUE(directory.names().empty());
+}
+
+TEST(LcmLogWriter, WritesThroughNoLink) {
+  const TemporaryDirectory directory;
+  std::filesystem::create_symlink(directory.path("victim"), directory.path("log.partial"));
+  LcmLogWriter writer;
+  EXPECT_FALSE(writer.open(directory.path("log")));
+  EXPECT_NE(writer.error().find("symbolic link"), std::string::npos) << writer.error();
+  EXPECT_FALSE(std::filesystem::exists(directory.path("victim")));
 }
 
 }  // namespace lcm_log_writer_test

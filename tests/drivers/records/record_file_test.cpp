@@ -254,7 +254,7 @@ TEST_F(RecordFile, RefusesWhatCannotBeRead) {
   EXPECT_NE(problems_.at(0).message.find("cannot be opened"), std::string::npos);
   problems_.clear();
   EXPECT_FALSE(read_record(directory_.path(""), {}, problems_));
-  EXPECT_EQ(problems_.at(0).message, "not a regular file");
+  EXPECT_EQ(problems_.at(0).message, "cannot be opened: is a directory, not a file");
 }
 
 TEST_F(RecordFile, RefusesCutAndDamagedGzip) {

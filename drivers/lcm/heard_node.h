@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "drivers/base/sequence_counter.h"
+#include "drivers/base/sequence_watch.h"
+#include "drivers/lcm/accel_codec.h"
+#include "drivers/lcm/bound_sender.h"
+
+namespace framewatch::drivers {
+
+/// What was heard of one sensor node on one LCM channel.
+struct HeardNode {
+  static constexpr double kMostNodes = 1e6;  ///< ever heard
+  explicit HeardNode(double rate_hz) : counter(rate_hz) {}
+
+  SequenceCounter counter;
+  BoundSender sender;
+  SequenceWatch watch;
+  SensorNodeSample held;      ///< the first after a leap of the numbers
+  std::size_t order = 0;      ///< number among the nodes heard
+  std::size_t axis = 0;       ///< the first sensor axis it carried
+  std::uint8_t in_input = 0;  ///< it was heard in the log that is read
+  std::int64_t withheld = 0;  ///< messages of the first of two senders, while none goes on
+
+  /// Messages that came under the node's number and were left out.
+  std::int64_t left_out() const {
+    return counter.duplicates + counter.others + sender.others + withheld;
+  }
+  bool contested(std::int64_t arrival_us) const {
+    return counter.contested(arrival_us) || sender.contested(arrival_us);
+  }
+  SequenceWatch::Counts counts() const {
+    return {counter.received, counter.lost, counter.duplicates, counter.leaps,
+            counter.conflicts + counter.others + sender.contests};
+  }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(held.time, held.sequence, held.node, held.accel_abs_mps2);
+    a(counter, sender, watch, axis, in_input);
+    a.within(order, 0, kMostNodes);
+    a.within(withheld, 0, a.kMostCount);
+  }
+};
+
+}  // namespace framewatch::drivers

@@ -1,0 +1,63 @@
+#include "drivers/lcm/multicast/lcm_packet.h"
+
+#include <algorithm>
+
+namespace framewatch::drivers {
+namespace {
+
+constexpr std::uint32_t kShort = 0x4c433032, kPart = 0x4c433033;
+constexpr std::size_t kShortHeader = 8, kPartHeader = 20;
+
+std::uint32_t big_endian(std::span<const std::uint8_t> bytes) {
+  std::uint32_t value = 0;
+  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
+  return value;
+}
+
+/// Takes the channel's name and its NUL off `rest`; false when there is no such name.
+bool take_channel(std::span<const std::uint8_t>& rest, std::string_view& channel) {
+  const auto end = std::find(rest.begin(), rest.end(), 0);
+  const auto length = static_cast<std::size_t>(end - rest.begin());
+  if (end == rest.end() || length == 0 || length > kLongestLcmChannel) return false;
+  channel = {reinterpret_cast<const char*>(rest.data()), length};
+  rest = rest.subspan(length + 1);
+  return true;
+}
+
+std::optional<LcmPacket> whole_message(std::span<const std::uint8_t> datagram) {
+  LcmPacket packet;
+  packet.sequence = big_endian(datagram.subspan(4, 4));
+  packet.payload = datagram.subspan(kShortHeader);
+  if (!take_channel(packet.payload, packet.channel)) return std::nullopt;
+  packet.message_bytes = static_cast<std::uint32_t>(packet.payload.size());
+  return packet;
+}
+
+std::optional<LcmPacket> part_of_message(std::span<const std::uint8_t> datagram) {
+  if (datagram.size() < kPartHeader) return std::nullopt;
+  LcmPacket packet;
+  packet.sequence = big_endian(datagram.subspan(4, 4));
+  packet.message_bytes = big_endian(datagram.subspan(8, 4));
+  packet.offset = big_endian(datagram.subspan(12, 4));
+  packet.part = static_cast<std::uint16_t>(big_endian(datagram.subspan(16, 2)));
+  packet.parts = static_cast<std::uint16_t>(big_endian(datagram.subspan(18, 2)));
+  packet.payload = datagram.subspan(kPartHeader);
+  if (packet.part >= packet.parts) return std::nullopt;
+  if (packet.part == 0 && !take_channel(packet.payload, packet.channel)) return std::nullopt;
+  if (packet.offset > packet.message_bytes ||
+      packet.payload.size() > packet.message_bytes - packet.offset)
+    return std::nullopt;
+  return packet;
+}
+
+}  // namespace
+
+std::optional<LcmPacket> parse_lcm_packet(std::span<const std::uint8_t> datagram) {
+  if (datagram.size() < kShortHeader) return std::nullopt;
+  const std::uint32_t magic = big_endian(datagram.first(4));
+  if (magic == kShort) return whole_message(datagram);
+  if (magic == kPart) return part_of_message(datagram);
+  return std::nullopt;
+}
+
+}  // namespace framewatch::drivers
