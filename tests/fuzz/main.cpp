@@ -1,0 +1,81 @@
+// fuzz TARGET [libFuzzer's arguments], fuzz TARGET --seeds FOLDER, fuzz --list. CONTRIBUTING.md
+// says more.
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tests/fuzz/targets.h"
+
+namespace framewatch::test {
+namespace {
+
+const FuzzTarget* const kTargets[] = {
+    &kPacketTarget,   &kMessagesTarget,    &kPageTarget,     &kSamplesTarget, &kLogTarget,
+    &kRecordTarget,   &kCanTarget,         &kCandumpTarget,  &kDbcTarget,     &kConfigTarget,
+    &kScenarioTarget, &kExpectationTarget, &kBaselineTarget, &kStateTarget,   &kDatabaseTarget,
+    &kSessionTarget,  &kHttpTarget,        &kCommandTarget};
+/// libFuzzer begins itself anew, to merge for one: with the arguments it saw, and this.
+constexpr const char* kTargetVariable = "FRAMEWATCH_FUZZ_TARGET";
+const FuzzTarget* chosen = nullptr;
+
+const FuzzTarget* find(const std::string& name) {
+  for (const FuzzTarget* target : kTargets)
+    if (target->name == name) return target;
+  return nullptr;
+}
+
+void write_seeds(const FuzzTarget& target, const std::string& folder) {
+  int number = 0;
+  for (const std::string& seed : target.seeds())
+    std::ofstream(folder + "/seed-" + std::to_string(number++), std::ios::binary) << seed;
+}
+
+/// Takes the target's name out of the arguments.
+void choose(int* count, char*** arguments) {
+  const char* inherited = std::getenv(kTargetVariable);
+  const std::string name = inherited ? inherited : *count > 1 ? (*arguments)[1] : "";
+  if (name == "--list") {
+    for (const FuzzTarget* target : kTargets) std::puts(target->name);
+    std::exit(0);
+  }
+  chosen = find(name);
+  if (!chosen) {
+    std::fprintf(stderr,
+                 "usage: fuzz TARGET [--seeds FOLDER | argument of libFuzzer...]\n"
+                 "       fuzz --list\n");
+    std::exit(2);
+  }
+  if (inherited) return;
+  ::setenv(kTargetVariable, chosen->name, 1);
+  (*arguments)[1] = (*arguments)[0];
+  ++*arguments;
+  --*count;
+  if (*count == 3 && (*arguments)[1] == std::string("--seeds")) {
+    write_seeds(*chosen, (*arguments)[2]);
+    std::exit(0);
+  }
+}
+
+#ifndef __clang__
+/// libFuzzer wants to see that inputs differ in what they do; without clang's instrumentation,
+/// their sizes stand for that.
+__attribute__((section("__libfuzzer_extra_counters"))) std::uint8_t size_seen[4096];
+#endif
+
+}  // namespace
+}  // namespace framewatch::test
+
+extern "C" int LLVMFuzzerInitialize(int* count, char*** arguments) {
+  framewatch::test::choose(count, arguments);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+#ifndef __clang__
+  framewatch::test::size_seen[size % std::size(framewatch::test::size_seen)] = 1;
+#endif
+  framewatch::test::chosen->run({data, size});
+  return 0;
+}

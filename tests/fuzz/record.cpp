@@ -1,0 +1,60 @@
+// Record files of every format.
+#include <cmath>
+
+#include "drivers/records/record_file.h"
+#include "tests/fuzz/targets.h"
+
+namespace framewatch::test {
+namespace {
+
+using drivers::AccelUnit;
+using drivers::RecordFormat;
+
+/// How it is to be read, then the file.
+void read_record_file(Bytes input) {
+  Pieces pieces(input);
+  const auto how = pieces.take<std::uint8_t>();
+  drivers::RecordOptions options;
+  options.format = static_cast<RecordFormat>(how % 6);
+  if (how & 64) options.unit = AccelUnit::g;
+  if (how & 128) options.step_s = 0.01;
+  const InputFile file(pieces.rest());
+  std::vector<drivers::Problem> problems;
+  const auto record = drivers::read_record(file.path(), options, problems);
+  require(record.has_value() == problems.empty(), "a record or a problem");
+  if (!record) return;
+  require(record->accel_mps2.size() == record->names.size(), "a name for every column");
+  for (std::size_t i = 1; i < record->time_s.size(); ++i)
+    require(record->time_s[i - 1] < record->time_s[i], "time that increases");
+  for (const auto& column : record->accel_mps2) {
+    require(column.size() == record->time_s.size(), "a value for every instant");
+    for (const double value : column) require(!std::isinf(value), "finite values");
+  }
+}
+
+std::vector<std::string> record_seeds() {
+  const char* const texts[] = {
+      "time_s,base-x,F1-Y1\n0.00,0.1,-0.2\n0.01,,1e-3\n0.02,0.3,0.25\n",
+      "PEER NGA STRONG MOTION DATABASE RECORD\nEl Centro, 1940, 180\n"
+      "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   6, DT=   .0100 SEC\n"
+      "  .1E-02  -.2E-02  .3E-02  .4E-02  -.5E-02\n  .6E-02\n",
+      "0.00 0.001\n0.01 -0.002\n0.02 0.003\n", "0.001 -0.002 0.003\n0.004 0.005 0.006\n0.007\n",
+      "// Start Time: Unknown\n// Update Rate: 100.0Hz\n// Filter Profile: general\n"
+      "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z\n"
+      "00001,10000,0.1,0.2,9.81\n00002,20000,0.1,0.2,9.81\n00003,30000,0.1,0.2,9.81\n"};
+  std::vector<std::string> out;
+  int format = 1;
+  for (const char* text : texts) {
+    const int declared = format == 3 ? 64 : format == 4 ? 64 + 128 : 0;
+    for (const int how : {format, declared | format, declared})
+      out.push_back(static_cast<char>(how) + std::string(text));
+    ++format;
+  }
+  return out;
+}
+
+}  // namespace
+
+const FuzzTarget kRecordTarget{"record", &read_record_file, &record_seeds};
+
+}  // namespace framewatch::test

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+namespace framewatch::test {
+
+/// A folder of this process', below TMPDIR; whoever sets TMPDIR removes it.
+const std::string& scratch_folder();
+
+void write_scratch_file(const std::string& path, const void* data, std::size_t size);
+
+}  // namespace framewatch::test
