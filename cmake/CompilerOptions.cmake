@@ -3,7 +3,8 @@ function(framewatch_options target)
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wold-style-cast -Wcast-qual
-    -Woverloaded-virtual -Wnon-virtual-dtor -Wno-restrict  # false alarms in g++ 12: PR 105651
+    -Woverloaded-virtual -Wnon-virtual-dtor
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # false alarms in g++ 12: PR 105651
     $<$<BOOL:${FRAMEWATCH_WERROR}>:-Werror>)
   if(FRAMEWATCH_SANITIZE)
     # vptr: g++ 12 miscompiles its own check where lcm-cpp.hpp calls a handler by member pointer.

@@ -6,14 +6,15 @@ jobs=${FRAMEWATCH_JOBS:-$(nproc)}
 
 say() { printf '== %s\n' "$*" >&2; }
 
-# install_packages <--yes or empty>: what a build needs, or exit 2.
+# install_packages <--yes or empty> [--with NAME]...: what a build needs, or exit 2.
 install_packages() {
-  "$root/deploy/install-deps" ${1:+"$1"} >&2 || exit 2
+  "$root/deploy/install-deps" ${1:+"$1"} "${@:2}" >&2 || exit 2
 }
 
+# warn_missing_packages [--with NAME]...
 warn_missing_packages() {
   local missing
-  missing=$("$root/deploy/install-deps" --check) ||
+  missing=$("$root/deploy/install-deps" --check "$@") ||
     say "not installing these missing packages: $(tr '\n' ' ' <<<"$missing")"
 }
 

@@ -1,34 +1,27 @@
 #include "daemon/actions/acknowledge_command.h"
 
 #include <charconv>
-#include <cstdlib>
 #include <optional>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/acknowledged_t.hpp>
 
 #include <fmt/core.h>
-#include <lcm/lcm-cpp.hpp>
 
+#include "daemon/base/printable.h"
 #include "daemon/config/config.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/events/acknowledge_messages.h"
+#include "daemon/service/command_client.h"
 #include "drivers/base/encoded.h"
-#include "drivers/lcm/lcm_source.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr int kRefused = 1, kUnreachable = 2, kTries = 10, kWait_ms = 300;
-
-std::string user_name() {
-  const char* name = std::getenv("USER");
-  return name != nullptr && *name != '\0' ? name : "somebody";
-}
+constexpr int kRefused = 1, kUnreachable = 2;
 
 /// The number of an event; 0 for "all"; nothing when it is neither.
 std::optional<std::int64_t> number_of(const std::string& event) {
@@ -40,6 +33,11 @@ std::optional<std::int64_t> number_of(const std::string& event) {
   return id;
 }
 
+int stop(int code, const std::string& why) {
+  fmt::print(stderr, "framewatch acknowledge: {}\n", printable(why));
+  return code;
+}
+
 }  // namespace
 
 int acknowledge_command(const AcknowledgeArguments& a) {
@@ -48,46 +46,20 @@ int acknowledge_command(const AcknowledgeArguments& a) {
   print_problems(problems);
   const std::optional<std::int64_t> id = number_of(a.event);
   if (!id)
-    fmt::print(stderr, "framewatch acknowledge: '{}' is neither the number of an event nor all\n",
-               a.event);
+    (void)stop(kUnreachable,
+               fmt::format("'{}' is neither the number of an event nor all", a.event));
   if (!config || !id) return kUnreachable;
-  const std::string& url = a.url.empty() ? config->lcm.url : a.url;
-  std::string error;
-  const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
-  if (!lcm) {
-    fmt::print(stderr, "framewatch acknowledge: {}\n", error);
-    return kUnreachable;
-  }
-  const acknowledge_t request =
-      acknowledge_request(*id, a.who.empty() ? user_name() : a.who, a.comment);
-  const std::vector<std::uint8_t> bytes = drivers::encoded(request);
-  std::optional<acknowledged_t> answer;
-  drivers::LcmSource source(
-      *lcm, {config->lcm.prefix + "ACKNOWLEDGED"}, 100,
-      [&](const std::string&, const void* data, std::size_t size, std::int64_t) {
-        auto found =
-            drivers::decoded<acknowledged_t>({static_cast<const std::uint8_t*>(data), size});
-        if (found && found->answered == request.request) answer = std::move(found);
-      });
-  for (int i = 0; i < kTries && !answer; ++i) {
-    lcm->publish(config->lcm.prefix + "ACKNOWLEDGE", bytes.data(),
-                 static_cast<unsigned>(bytes.size()));
-    (void)source.handle(kWait_ms);
-  }
-  if (!answer) {
-    fmt::print(stderr,
-               "framewatch acknowledge: nobody answers on {} with prefix {}: framewatch status\n",
-               url, config->lcm.prefix);
-    return kUnreachable;
-  }
-  if (!answer->refused.empty()) {
-    fmt::print(stderr, "framewatch acknowledge: {}\n", answer->refused);
-    return kRefused;
-  }
-  for (std::size_t i = 0; i < answer->id.size(); ++i)
-    if (*id == 0 || answer->id[i] == *id)
-      fmt::print("{} {} ({}) is acknowledged by {}\n", answer->kind[i], answer->place[i],
-                 answer->id[i], answer->who[i]);
+  const acknowledge_t request = acknowledge_request(*id, a.who, a.comment);
+  const CommandAnswer answer =
+      give_command(*config, "run", {"ACKNOWLEDGE", drivers::encoded(request)});
+  if (!answer.answered) return stop(kUnreachable, answer.problem);
+  if (!answer.problem.empty()) return stop(kRefused, answer.problem);
+  const auto done = drivers::decoded<acknowledged_t>(answer.bytes);
+  if (!done) return stop(kUnreachable, "the daemon's answer is not understood: another version?");
+  if (!done->refused.empty()) return stop(kRefused, done->refused);
+  for (std::size_t i = 0; i < done->id.size(); ++i)
+    fmt::print("{}\n", printable(fmt::format("{} {} ({}) is acknowledged by {}", done->kind[i],
+                                             done->place[i], done->id[i], done->who[i])));
   return 0;
 }
 

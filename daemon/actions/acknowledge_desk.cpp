@@ -2,45 +2,32 @@
 
 #include <utility>
 
-#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/event_t.hpp>
 
 #include <fmt/core.h>
 #include <lcm/lcm-cpp.hpp>
 
-#include "daemon/base/log.h"
+#include "daemon/base/printable.h"
 #include "daemon/events/acknowledge_messages.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostText = 500;  // bytes of who, and of the comment
+constexpr std::size_t kMostComment = 500;  // bytes
+constexpr int kMostAnswered = 200;         // events, so that the answer fits a packet
+constexpr const char* kNobodyKnown = "LCM";
 
 }  // namespace
 
-AcknowledgeDesk::AcknowledgeDesk(const Config& config, lcm::LCM& lcm)
-    : config_(config),
-      lcm_(lcm),
-      subscription_(
-          lcm.subscribe(config.lcm.prefix + "ACKNOWLEDGE", &AcknowledgeDesk::on_message, this)) {}
+AcknowledgeDesk::AcknowledgeDesk(const Config& config, lcm::LCM& lcm, Done done)
+    : config_(config), lcm_(lcm), done_(std::move(done)) {}
 
-AcknowledgeDesk::~AcknowledgeDesk() {
-  lcm_.unsubscribe(subscription_);
-}
-
-void AcknowledgeDesk::on_message(const lcm::ReceiveBuffer* buffer, const std::string&) {
-  auto request = drivers::decoded<acknowledge_t>(
-      {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
-  if (!request || requests_.size() == kMostRequests) return;
-  for (std::string* text : {&request->who, &request->comment})
-    if (text->size() > kMostText) text->resize(kMostText);
-  requests_.push_back(std::move(*request));
-}
-
-void AcknowledgeDesk::answer(const acknowledge_t& request, const std::vector<RaisedEvents*>& raised,
-                             const Done& done) {
-  const Acknowledgement by{request.time_us, request.who, request.comment};
+void AcknowledgeDesk::acknowledge(const acknowledge_t& request, const std::string& user,
+                                  const Raised& raised, std::int64_t now_us) {
+  if (request.request == answered_) return;
+  const Acknowledgement by{now_us, who_text(user, request.who),
+                           printable(request.comment, kMostComment)};
   bool any = false;
   for (RaisedEvents* events : raised)
     for (const event_t& e : events->all()) {
@@ -50,21 +37,51 @@ void AcknowledgeDesk::answer(const acknowledge_t& request, const std::vector<Rai
       events->acknowledge(e.id, by);
       log(LogLevel::notice, fmt::format("event {} ({} {}) is acknowledged by {}: {}", e.id, e.kind,
                                         e.place, by.who, by.comment));
-      done(e, by);
+      done_(e, by);
     }
   answered_ = request.request;
   refused_ = any               ? ""
              : request.id == 0 ? "no event is raised"
                                : fmt::format("no event {} is raised", request.id);
+  news_ = true;
 }
 
-void AcknowledgeDesk::look(const std::vector<RaisedEvents*>& raised, const Done& done,
-                           std::int64_t now_us) {
+std::optional<acknowledged_t> AcknowledgeDesk::obey(std::span<const std::uint8_t> bytes,
+                                                    const std::string& user, const Raised& raised,
+                                                    std::int64_t now_us) {
+  const auto request = drivers::decoded<acknowledge_t>(bytes);
+  if (!request) return std::nullopt;
+  acknowledge(*request, user, raised, now_us);
+  acknowledged_t out{};
+  out.time_us = now_us;
+  out.answered = answered_;
+  out.refused = refused_;
+  for (const RaisedEvents* events : raised)
+    for (const event_t& e : events->all()) {
+      const Acknowledgement* by = events->acknowledgement(e.id);
+      const bool meant = request->id == 0 || request->id == e.id;
+      if (by == nullptr || !meant || out.events == kMostAnswered) continue;
+      add_acknowledged(out, e, {by->time_us, by->who, ""});
+    }
+  return out;
+}
+
+void AcknowledgeDesk::heard(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
+  if (!config_.lcm.commands) {
+    ++not_obeyed_;
+    return warnings_(now_us, fmt::format("commands over LCM are not obeyed (lcm.commands = false): "
+                                         "{} came so far",
+                                         not_obeyed_));
+  }
+  auto request = drivers::decoded<acknowledge_t>(bytes);
+  if (request && requests_.size() < kMostRequests) requests_.push_back(std::move(*request));
+}
+
+void AcknowledgeDesk::look(const Raised& raised, std::int64_t now_us) {
   const std::vector<acknowledge_t> requests = std::exchange(requests_, {});
-  for (const acknowledge_t& request : requests)
-    if (request.request != answered_) answer(request, raised, done);
+  for (const acknowledge_t& request : requests) acknowledge(request, kNobodyKnown, raised, now_us);
   const bool due = second_.due(now_us);
-  if (requests.empty() && !due) return;
+  if (!std::exchange(news_, false) && requests.empty() && !due) return;
   acknowledged_t out{};
   out.time_us = now_us;
   out.answered = answered_;

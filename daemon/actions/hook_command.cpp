@@ -18,9 +18,10 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/descriptor.h"
+#include "daemon/base/printable.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/events/event_words.h"
+#include "drivers/base/descriptor.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -129,17 +130,17 @@ int wait_for(pid_t pid, int pipe_end, std::string& output, double timeout_s,
 std::vector<std::pair<std::string, std::string>> event_environment(const event_t& e,
                                                                    const std::string& building) {
   const auto number = [](double v) { return std::isfinite(v) ? fmt::format("{}", v) : ""; };
-  return {{"FRAMEWATCH_BUILDING", building},
+  return {{"FRAMEWATCH_BUILDING", printable(building)},
           {"FRAMEWATCH_EVENT_ID", fmt::format("{}", e.id)},
           {"FRAMEWATCH_STATE", word(kEventStates, e.state)},
           {"FRAMEWATCH_SEVERITY", word(kSeverities, e.severity)},
-          {"FRAMEWATCH_KIND", e.kind},
-          {"FRAMEWATCH_PLACE", e.place},
-          {"FRAMEWATCH_MESSAGE", e.message},
+          {"FRAMEWATCH_KIND", printable(e.kind)},
+          {"FRAMEWATCH_PLACE", printable(e.place)},
+          {"FRAMEWATCH_MESSAGE", printable(e.message)},
           {"FRAMEWATCH_VALUE", number(e.value)},
           {"FRAMEWATCH_STD_ERROR", number(e.std_error)},
-          {"FRAMEWATCH_UNIT", e.unit},
-          {"FRAMEWATCH_SEGMENT", e.segment},
+          {"FRAMEWATCH_UNIT", printable(e.unit)},
+          {"FRAMEWATCH_SEGMENT", printable(e.segment)},
           {"FRAMEWATCH_TIME", utc_text(e.time_us)},
           {"FRAMEWATCH_SINCE", utc_text(e.since_us)}};
 }
@@ -153,12 +154,12 @@ DeliveryResult run_hook(const ActionSettings& settings, const std::string& input
     return DeliveryResult{name + ": " + why, false};
   };
   // A file in memory instead of a pipe: a command that does not read its input delays nothing.
-  const Descriptor in(::memfd_create("event", MFD_CLOEXEC));
+  const drivers::Descriptor in(::memfd_create("event", MFD_CLOEXEC));
   int ends[2];
   if (in.get() < 0 || ::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0)
     return trouble(std::strerror(errno));
-  const Descriptor out(ends[0]);
-  Descriptor its_out(ends[1]);
+  const drivers::Descriptor out(ends[0]);
+  drivers::Descriptor its_out(ends[1]);
   if (::write(in.get(), input.data(), input.size()) != static_cast<ssize_t>(input.size()) ||
       ::lseek(in.get(), 0, SEEK_SET) != 0 || ::fcntl(its_out.get(), F_SETFL, 0) != 0)
     return trouble(std::strerror(errno));

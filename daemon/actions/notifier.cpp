@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
+#include "drivers/base/caught.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -99,9 +100,12 @@ void Notifier::work() {
       patience_s = patience_s_;
       counters_.waiting = 1;
     }
-    const bool delivered = deliver_one(settings, patience_s, *event);
+    bool delivered = false;
+    const std::string thrown =
+        drivers::caught([&] { delivered = deliver_one(settings, patience_s, *event); });
     const std::lock_guard<std::mutex> lock(mutex_);
     counters_.waiting = 0;
+    if (!thrown.empty()) counters_.trouble = thrown;
     if (delivered)
       ++counters_.told;
     else

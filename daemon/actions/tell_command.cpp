@@ -12,6 +12,7 @@
 #include "daemon/actions/webhook.h"
 #include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
 #include "daemon/config/config.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/events/event_json.h"
@@ -39,7 +40,8 @@ int tell_command(const TellArguments& a) {
   const auto never = [] { return false; };
   bool good = true;
   const auto report = [&](const char* receiver, const DeliveryResult& result) {
-    fmt::print("{:<8} {}\n", receiver, result.trouble.empty() ? "was told" : result.trouble);
+    fmt::print("{:<8} {}\n", receiver,
+               result.trouble.empty() ? "was told" : printable(result.trouble));
     good = good && result.trouble.empty();
   };
   if (!config->actions->command.empty())

@@ -4,10 +4,12 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/printable.h"
+
 namespace framewatch::daemon {
 
 int refuse(const std::string& command, const std::string& message) {
-  fmt::print(stderr, "framewatch {}: {}\n", command, message);
+  fmt::print(stderr, "framewatch {}: {}\n", command, printable_lines(message));
   return kBadInput;
 }
 

@@ -5,14 +5,17 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/printable.h"
+
 namespace framewatch::daemon {
 
 void log(LogLevel level, const std::string& message) {
   static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
-  if (journal)
-    fmt::print(stderr, "<{}>framewatch: {}\n", static_cast<int>(level), message);
-  else
-    fmt::print(stderr, "framewatch: {}\n", message);
+  const std::string text = printable(message);
+  const std::string line = journal ? fmt::format("<{}>framewatch: {}\n", int(level), text)
+                                   : fmt::format("framewatch: {}\n", text);
+  // Not by fmt::print, which throws when stderr takes nothing: a daemon goes on.
+  (void)std::fputs(line.c_str(), stderr);
 }
 
 void RateLimitedLog::operator()(std::int64_t now_us, const std::string& message) {

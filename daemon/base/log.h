@@ -7,7 +7,8 @@ namespace framewatch::daemon {
 
 enum class LogLevel { error = 3, warning = 4, notice = 5, info = 6, debug = 7 };
 
-/// One line on stderr; under systemd prefixed with <N>, from which journald knows its priority.
+/// One line on stderr, whatever is in the message (printable()); under systemd prefixed with <N>,
+/// from which journald knows its priority.
 void log(LogLevel level, const std::string& message);
 
 /// Lets one line per second through and says how many it held back. The caller passes the time.

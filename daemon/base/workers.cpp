@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -16,17 +18,30 @@ void Workers::run(const std::string& what, int count, const std::function<void(i
   std::atomic<int> next = 0;
   std::mutex said;
   int done = 0;
+  std::exception_ptr thrown;
   const auto take_pieces = [&] {
     for (int i = next++; i < count; i = next++) {
-      work(i);
+      try {
+        work(i);
+      } catch (...) {
+        const std::lock_guard lock(said);
+        thrown = std::current_exception();
+        next = count;
+        return;
+      }
       const std::lock_guard lock(said);
       ++done;
       if (progress_) progress_(what, done, count);
     }
   };
   std::vector<std::jthread> others;
-  for (int t = 1; t < std::min(threads_, count); ++t) others.emplace_back(take_pieces);
+  try {
+    for (int t = 1; t < std::min(threads_, count); ++t) others.emplace_back(take_pieces);
+  } catch (const std::system_error&) {  // no more threads: those there are do it
+  }
   take_pieces();
+  others.clear();
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 }  // namespace framewatch::daemon

@@ -14,7 +14,8 @@ class Workers {
 
   explicit Workers(int threads, Progress progress = {});
 
-  /// Calls work(0) .. work(count - 1), each once; returns when all are done.
+  /// Calls work(0) .. work(count - 1), each once; returns when all are done. Throws what one of
+  /// them threw, when the others have ended.
   void run(const std::string& what, int count, const std::function<void(int)>& work) const;
 
  private:

@@ -2,11 +2,19 @@
 
 #include <CLI/CLI.hpp>
 
+#include "daemon/base/last_resort.h"
 #include "daemon/command_line/command_list.h"
 
 namespace framewatch::daemon {
 
-int run_command_line(int argc, const char* const* argv) {
+namespace {
+
+/// What systemd starts again after a failure.
+bool is_service(const std::string& command) {
+  return command == "run" || command == "serve" || command == "record";
+}
+
+int parse_and_run(int argc, const char* const* argv) {
   CLI::App app{
       "framewatch: stiffness and damping of every frame and floor panel of a building,\n"
       "from its accelerometers, while it moves."};
@@ -24,10 +32,19 @@ int run_command_line(int argc, const char* const* argv) {
 
   try {
     app.parse(argc, argv);
+    const std::string command = app.get_subcommands().front()->get_name();
+    now_runs(command, is_service(command));
     return commands.run_chosen();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  prepare_last_resort();
+  return run_to_the_end([&] { return parse_and_run(argc, argv); });
 }
 
 }  // namespace framewatch::daemon

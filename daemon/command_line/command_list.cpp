@@ -1,6 +1,10 @@
 #include "daemon/command_line/command_list.h"
 
+#include <cstdint>
+
 #include <CLI/CLI.hpp>
+
+#include "drivers/base/unpack_limit.h"
 
 namespace framewatch::daemon {
 
@@ -26,6 +30,19 @@ void add_url(CLI::App* command, std::string& url) {
 
 void add_json(CLI::App* command, bool& json) {
   command->add_flag("--json", json, "print what a program would read");
+}
+
+void add_max_size(CLI::App* command) {
+  command
+      ->add_option_function<std::uint64_t>(
+          "--max-size",
+          [](const std::uint64_t& bytes) {
+            drivers::set_unpack_limit(static_cast<std::int64_t>(bytes));
+          },
+          "what a compressed input may unpack to, for example 16GiB (default: 4000 times\n"
+          "its size or 64 MiB, whichever is more, and 4 GiB at most)")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(false) & CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 60));
 }
 
 }  // namespace framewatch::daemon

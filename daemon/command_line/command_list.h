@@ -45,6 +45,7 @@ void add_config(CLI::App* command, std::string& config);            ///< CONFIG,
 void add_installed_config(CLI::App* command, std::string& config);  ///< CONFIG, with a default
 void add_url(CLI::App* command, std::string& url);                  ///< --url
 void add_json(CLI::App* command, bool& json);                       ///< --json
+void add_max_size(CLI::App* command);  ///< --max-size, of what compressed input unpacks to
 
 // live_commands.cpp: the daemon and what one does with it while it runs.
 void add_demo(CommandList& commands);

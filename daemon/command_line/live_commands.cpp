@@ -86,6 +86,14 @@ void add_serve(CommandList& commands) {
                    "folder of framewatch record (--out), whose reports the page opens")
       ->type_name("DIR")
       ->capture_default_str();
+  command->add_option("--viewers", arguments.viewers, "pages open at once, at most")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  command
+      ->add_option("--viewers-per-address", arguments.viewers_per_address,
+                   "of them from one address, at most; behind a proxy all come from one")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
   command->add_option("--page", arguments.files, "folder to read the page from, for work on it");
   command->add_flag("--quiet", arguments.quiet, "only the address and what goes wrong");
   commands.set_action(command, [&arguments] { return serve(arguments); });
@@ -114,13 +122,14 @@ void add_acknowledge(CommandList& commands) {
       "is\n"
       "not odd any more, and [actions] tell nobody of it until it is cleared.\n"
       "Exit status: 0 acknowledged, 1 no such event is raised, 2 no answer, or bad usage or\n"
-      "configuration.\n"
+      "configuration. It takes the right to tell the daemon: its user, or the group of its "
+      "socket.\n"
       "Example: framewatch acknowledge 3 --comment 'a loose sensor, fixed tomorrow'");
   command->add_option("EVENT", arguments.event, "number of the event, or all")->required();
   add_installed_config(command, arguments.config);
   command->add_option("--comment", arguments.comment, "what is known of it");
-  command->add_option("--who", arguments.who, "who knows (default: the user's name)");
-  add_url(command, arguments.url);
+  command->add_option("--who", arguments.who,
+                      "a remark on who knows; the user's name is there in any case");
   commands.set_action(command, [&arguments] { return acknowledge_command(arguments); });
 }
 

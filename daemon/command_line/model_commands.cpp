@@ -81,6 +81,7 @@ void add_diagnose(CommandList& commands) {
   command->add_option("--threads", arguments.threads, "at most so many; the result is the same")
       ->check(CLI::Range(1, 256));
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
+  add_max_size(command);
   commands.set_action(command, [&arguments] { return diagnose_command(arguments); });
 }
 

@@ -34,6 +34,7 @@ void add_simulate(CommandList& commands) {
       ->check(CLI::Range(1e-3, 1e6));
   command->add_option("--truth", arguments.truth, "JSON file to write what is hidden to");
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
+  add_max_size(command);
   commands.set_action(command, [&arguments, lcm, can] {
     arguments.lcm = lcm->count() > 0;
     arguments.can = can->count() > 0;
@@ -113,6 +114,7 @@ void add_report(CommandList& commands) {
   command->add_option("--session", arguments.session,
                       "session.json of framewatch record: check of the channels, trigger");
   command->add_flag("--quiet", arguments.quiet, "do not print the page's path");
+  add_max_size(command);
   commands.set_action(command, [&arguments] { return report(arguments); });
 }
 
@@ -147,6 +149,7 @@ void add_convert(CommandList& commands) {
   command->add_flag("--denoise", arguments.denoise,
                     "the paper's removal of noise on every channel of a record, for comparison");
   command->add_option("--start-us", arguments.start_us, "sensor time of a record's time zero");
+  add_max_size(command);
   commands.set_action(command, [&arguments] {
     arguments.out = arguments.inputs.back();
     arguments.inputs.pop_back();
@@ -187,6 +190,7 @@ void add_history(CommandList& commands) {
   command->add_option("--station", arguments.station, "SEED station code")->capture_default_str();
   command->add_flag("--events", arguments.events, "every event instead of summaries");
   command->add_flag("--json", arguments.json, "the overview as a program would read it");
+  add_max_size(command);
   commands.set_action(command, [&arguments] { return history(arguments); });
 }
 

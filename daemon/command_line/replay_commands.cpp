@@ -57,6 +57,7 @@ void add_replay(CommandList& commands) {
                     "replay what is intact of a damaged log instead of refusing it");
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
   command->add_flag("--json", arguments.json, "the summary, and what is not as expected, as JSON");
+  add_max_size(command);
   commands.set_action(command, [&arguments, lcm] {
     arguments.lcm = lcm->count() > 0;
     return replay(arguments);
@@ -75,6 +76,7 @@ void add_diff(CommandList& commands) {
   command->add_option("B", arguments.b, "likewise")->required();
   add_json(command, arguments.json);
   command->add_flag("--quiet", arguments.quiet, "only the exit status");
+  add_max_size(command);
   commands.set_action(command, [&arguments] { return diff(arguments); });
 }
 
@@ -93,6 +95,7 @@ void add_repair(CommandList& commands) {
                       "log to write (default: LOG with .repaired before its ending)");
   command->add_flag("--check", arguments.check, "write nothing, only say what is damaged");
   add_json(command, arguments.json);
+  add_max_size(command);
   commands.set_action(command, [&arguments] { return repair(arguments); });
 }
 
@@ -117,6 +120,7 @@ void add_refine(CommandList& commands) {
       ->check(CLI::PositiveNumber);
   command->add_flag("!--no-prior", arguments.prior, "without the prior about the design");
   add_json(command, arguments.json);
+  add_max_size(command);
   commands.set_action(command, [&arguments] { return refine(arguments); });
 }
 

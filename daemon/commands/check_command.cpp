@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/printable.h"
 #include "daemon/commands/check_report.h"
 #include "daemon/commands/effects_markdown.h"
 #include "daemon/config/config_problems.h"
@@ -25,7 +26,7 @@ int check_command(const CheckArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}", to_json(arguments.config, report, problems));
   } else if (report) {
-    fmt::print("{}", to_text(*report));
+    fmt::print("{}", printable_lines(to_text(*report)));
   } else {
     print_problems(problems);
     fmt::print(stderr, "{}: {} problem{}\n", arguments.config, problems.size(),

@@ -14,6 +14,7 @@
 #include "daemon/simulation/simulation_output.h"
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/lcm_log.h"
+#include "drivers/records/plausibility.h"
 #include "drivers/records/record_csv_writer.h"
 #include "drivers/records/record_file.h"
 #include "drivers/records/record_merge.h"
@@ -27,6 +28,7 @@ using drivers::Problem;
 using drivers::Record;
 using Problems = std::vector<Problem>;
 
+constexpr double kRateTolerance = 0.02;
 constexpr std::int64_t kMaxStartUs = 4'000'000'000'000'000;
 
 bool is_csv(const std::string& path) {
@@ -59,7 +61,32 @@ void check_arguments(const ConvertArguments& a, Problems& problems) {
     problems.push_back({"--start-us", fmt::format("must lie within +-{}", kMaxStartUs)});
 }
 
-std::vector<Record> read_records(const ConvertArguments& a, Problems& problems) {
+/// Of the channel with that name, or of any accelerometer.
+drivers::PlausibleRange range_of(const std::optional<Config>& config, const std::string& name) {
+  drivers::PlausibleRange range;
+  if (!config) return range;
+  for (const estimator::SensorAxis& axis : config->pipeline.axes) {
+    if (axis.name != name) continue;
+    range.scale = axis.scale;
+    if (axis.range > 0) range.range_mps2 = axis.range;
+  }
+  return range;
+}
+
+/// Says what is implausible, and what the configuration contradicts.
+void look_at(const Record& record, const std::string& path, const std::optional<Config>& config,
+             Problems& problems) {
+  for (const std::string& doubt : drivers::implausible(
+           record, path, [&](const std::string& name) { return range_of(config, name); }, problems))
+    log(LogLevel::warning, doubt);
+  const double configured_hz = config ? config->pipeline.options.rate_hz : record.rate_hz;
+  if (std::abs(record.rate_hz / configured_hz - 1) > kRateTolerance)
+    log(LogLevel::warning, fmt::format("{}: sampled at {:.4g} Hz, but {} says rate_hz = {:g}", path,
+                                       record.rate_hz, config->path, configured_hz));
+}
+
+std::vector<Record> read_records(const ConvertArguments& a, const std::optional<Config>& config,
+                                 Problems& problems) {
   drivers::RecordOptions options;
   options.format = *drivers::record_format(a.format);
   if (!a.unit.empty()) options.unit = drivers::accel_unit(a.unit);
@@ -67,6 +94,7 @@ std::vector<Record> read_records(const ConvertArguments& a, Problems& problems) 
   std::vector<Record> records;
   for (const std::string& in : a.inputs) {
     auto record = drivers::read_record(in, options, problems);
+    if (record) look_at(*record, in, config, problems);
     if (record) records.push_back(std::move(*record));
   }
   return records;
@@ -77,8 +105,9 @@ bool is_device(const Record& record) {
   return record.names == std::vector<std::string>{"x", "y", "z"};
 }
 
-std::optional<Record> read_merged(const ConvertArguments& a, bool& devices, Problems& problems) {
-  std::vector<Record> records = read_records(a, problems);
+std::optional<Record> read_merged(const ConvertArguments& a, const std::optional<Config>& config,
+                                  bool& devices, Problems& problems) {
+  std::vector<Record> records = read_records(a, config, problems);
   if (!problems.empty()) return std::nullopt;
   devices = std::all_of(records.begin(), records.end(), is_device);
   if (devices)
@@ -103,14 +132,11 @@ std::vector<AxisAddress> numbered(const Record& record, bool devices, const std:
 }
 
 /// Keeps the columns the configuration knows, and says where they travel.
-std::vector<AxisAddress> configured(const std::string& path, Record& record, Problems& problems) {
-  std::vector<ConfigProblem> config_problems;
-  const auto config = load_config(path, config_problems);
-  for (const ConfigProblem& p : config_problems) problems.push_back({p.where, p.message});
-  if (!config) return {};
-  const std::vector<AxisAddress> known = addresses(config->sources);
-  const auto& axes = config->pipeline.axes;
-  Record kept{{}, std::move(record.time_s), {}, record.rate_hz, std::move(record.notes)};
+std::vector<AxisAddress> configured(const Config& config, Record& record, Problems& problems) {
+  const std::string& path = config.path;
+  const std::vector<AxisAddress> known = addresses(config.sources);
+  const auto& axes = config.pipeline.axes;
+  Record kept{{}, std::move(record.time_s), {}, record.rate_hz, std::move(record.notes), {}};
   std::vector<AxisAddress> result;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto at = std::find(record.names.begin(), record.names.end(), axes[i].name);
@@ -219,6 +245,10 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
   }
   if (a.boxplot) problems.push_back({"--boxplot", "is for estimates; this log has none"});
   auto record = drivers::read_accel_log(in, accel, problems);
+  Problems impossible;  // a log cannot be mended by hand: it is converted, and told
+  if (record) look_at(*record, in, {}, impossible);
+  for (const Problem& p : impossible)
+    log(LogLevel::warning, fmt::format("{}: {}", p.where, p.message));
   if (record && a.denoise) denoise(*record, problems);
   if (!record || !problems.empty()) return;
   report(*record);
@@ -228,11 +258,17 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
 void convert_records(const ConvertArguments& a, Problems& problems) {
   if (a.boxplot) problems.push_back({"--boxplot", "is for event logs of estimates"});
   if (!problems.empty()) return;
+  std::optional<Config> config;
+  if (!a.config.empty()) {
+    std::vector<ConfigProblem> found;
+    config = load_config(a.config, found);
+    for (const ConfigProblem& p : found) problems.push_back({p.where, p.message});
+  }
   bool devices = false;
-  auto record = read_merged(a, devices, problems);
+  auto record = read_merged(a, config, devices, problems);
   if (!record) return;
   auto where = numbered(*record, devices, a.channel);
-  if (!a.config.empty()) where = configured(a.config, *record, problems);
+  if (config) where = configured(*config, *record, problems);
   if (a.denoise && problems.empty()) denoise(*record, problems);
   if (!problems.empty()) return;
   report(*record);

@@ -17,6 +17,7 @@
 #include "daemon/demo/demo_scenario.h"
 #include "daemon/demo/demo_view.h"
 #include "daemon/estimation/estimation.h"
+#include "drivers/base/partial_file.h"
 #include "drivers/lcm/lcm_source.h"
 #include "estimator/numeric/kernels.h"
 
@@ -30,11 +31,6 @@ constexpr std::size_t kDisk_bytes = 1 << 20;
 constexpr double kSlowDisk_s = 1;
 constexpr std::int64_t kLittleDisk_bytes = 1'000'000'000;
 
-struct Delivery {
-  bool came = false;
-  void on_message(const lcm::ReceiveBuffer*, const std::string&) { came = true; }
-};
-
 const char* instruction_set() {
   if (estimator::kernels::in_use == estimator::kernels::x86_64_v4()) return "AVX-512";
   if (estimator::kernels::in_use == estimator::kernels::x86_64_v3()) return "AVX2";
@@ -43,15 +39,14 @@ const char* instruction_set() {
 
 /// Empty, or why not.
 std::string write_and_sync(const std::string& path) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  if (file < 0) return std::strerror(errno);
+  drivers::PartialFile file;
+  if (!file.open(path)) return file.error();
   const std::string bytes(kDisk_bytes, 'x');
   std::string problem;
-  if (::write(file, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size()) ||
-      ::fsync(file) != 0)
+  if (::write(file.descriptor(), bytes.data(), bytes.size()) !=
+          static_cast<ssize_t>(bytes.size()) ||
+      ::fsync(file.descriptor()) != 0)
     problem = errno != 0 ? std::strerror(errno) : "not everything was taken";
-  ::close(file);
-  ::unlink(path.c_str());
   return problem;
 }
 
@@ -59,16 +54,14 @@ std::string write_and_sync(const std::string& path) {
 
 MachineCheck check_multicast(const LcmSettings& settings) {
   MachineCheck check{false, "multicast", settings.url};
-  const auto lcm = drivers::open_lcm(settings.url, settings.receive_buffer_bytes, check.remedy);
+  const auto lcm = drivers::open_lcm(settings.url, settings.reception, check.remedy);
   if (!lcm) return check;
-  Delivery delivery;
   const std::string channel = settings.prefix + "SELFTEST";
-  lcm->subscribe(channel, &Delivery::on_message, &delivery);
+  drivers::LcmSource source(*lcm, {channel}, 10,
+                            [&](const drivers::LcmMessage&) { check.good = true; });
   lcm->publish(channel, "selftest", 8);
   const std::int64_t began_us = steady_clock_us();
-  while (!delivery.came && lcm->handleTimeout(kDelivery_ms) > 0) {
-  }
-  check.good = delivery.came;
+  if (!source.handle(kDelivery_ms)) check.good = false;
   if (check.good)
     check.found += fmt::format(", delivered in {:.1f} ms",
                                1e-3 * static_cast<double>(steady_clock_us() - began_us));
@@ -78,7 +71,7 @@ MachineCheck check_multicast(const LcmSettings& settings) {
 }
 
 MachineCheck check_buffer(const LcmSettings& settings) {
-  const int wanted = settings.receive_buffer_bytes;
+  const int wanted = settings.reception.receive_buffer_bytes;
   int got = 0;
   socklen_t size = sizeof got;
   const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);

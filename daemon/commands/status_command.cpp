@@ -5,14 +5,17 @@
 #include <ctime>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/median.h"
+#include "daemon/base/printable.h"
 #include "daemon/config/config.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/config/sections.h"
@@ -49,7 +52,7 @@ std::int64_t total(const std::vector<std::int64_t>& values) {
 }
 
 void line(const char* what, const std::string& text) {
-  fmt::print("  {:<11} {}\n", what, text);
+  fmt::print("  {:<11} {}\n", what, printable(text));
 }
 
 void print_process(const service_t& s, std::int64_t now_us) {
@@ -88,8 +91,11 @@ void print_samples(const Heard& h) {
     if (per_s) samples += fmt::format(", {:.0f} a second", *per_s);
   }
   const std::int64_t lost = total(h.status->lost);
-  line("samples", samples + fmt::format("; {} lost of {} since the state began", lost,
-                                        total(h.status->received) + lost));
+  samples +=
+      fmt::format("; {} lost of {} since the state began", lost, total(h.status->received) + lost);
+  if (const std::int64_t rejected = total(h.status->rejected); rejected > 0)
+    samples += fmt::format(", {} rejected", rejected);
+  line("samples", samples);
 }
 
 void print_estimates(const Heard& h) {
@@ -153,6 +159,20 @@ void print_actions(const Heard& h) {
   line("actions", text);
 }
 
+/// What LCM's receiver did not take, if there was anything.
+void print_reception(const Heard& h) {
+  if (!h.reception) return;
+  const reception_t& r = *h.reception;
+  std::vector<std::string> dropped;
+  for (const auto& [count, what] : {std::pair{r.datagrams_elsewhere, "datagrams from elsewhere"},
+                                    std::pair{r.datagrams_malformed, "that are no LCM"},
+                                    std::pair{r.datagrams_overflowed, "by a full receive buffer"},
+                                    std::pair{r.messages_unfinished, "unfinished messages"},
+                                    std::pair{r.messages_dropped, "messages by a full queue"}})
+    if (count > 0) dropped.push_back(fmt::format("{} {}", count, what));
+  if (!dropped.empty()) line("dropped", fmt::format("{}", fmt::join(dropped, ", ")));
+}
+
 void print_known(const Heard& h, std::int64_t now_us) {
   const service_t& s = *h.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i) {
@@ -179,12 +199,13 @@ void print_can(const Heard& h) {
 void print_text(const Heard& h, const Config& config, const std::vector<std::string>& odd,
                 const std::optional<UnitState>& unit, std::int64_t now_us) {
   const std::string& name = config.pipeline.structure.name;
-  fmt::print("{}: {} (framewatch {})\n", name.empty() ? h.service->config : name,
-             odd.empty() ? "well" : "not well", h.service->version);
+  fmt::print("{}: {} (framewatch {})\n", printable(name.empty() ? h.service->config : name),
+             odd.empty() ? "well" : "not well", printable(h.service->version));
   print_process(*h.service, now_us);
   if (unit) line("systemd", unit_text(*unit));
   print_config(*h.service, config.path);
   print_samples(h);
+  print_reception(h);
   print_estimates(h);
   print_watch(h);
   print_can(h);
@@ -217,7 +238,14 @@ void print_json(const Heard& h, const Config& config, const std::vector<std::str
     out["windows"] = h.status->windows;
     out["latency_s"] = h.status->latency_s;
     out["lost"] = total(h.status->lost);
+    out["rejected"] = total(h.status->rejected);
   }
+  if (h.reception)
+    out["dropped"] = {{"elsewhere", h.reception->datagrams_elsewhere},
+                      {"malformed", h.reception->datagrams_malformed},
+                      {"overflowed", h.reception->datagrams_overflowed},
+                      {"unfinished", h.reception->messages_unfinished},
+                      {"queue_full", h.reception->messages_dropped}};
   if (h.watch) {
     const watch_t& w = *h.watch;
     out["watch"] = {{"baseline", w.baseline},
@@ -253,7 +281,7 @@ void print_json(const Heard& h, const Config& config, const std::vector<std::str
                              {"message", s.event_message[i]},
                              {"acknowledged", known}});
   }
-  fmt::print("{}\n", out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  fmt::print("{}\n", out.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 
 /// Where the daemon is heard, from a file that is wrong: as far as it says so.
@@ -279,15 +307,15 @@ int status_command(const StatusArguments& a) {
   const auto unit = a.config == kInstalledConfig ? unit_state("framewatch.service") : std::nullopt;
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
   std::string error;
-  const auto lcm = drivers::open_lcm(url, config->lcm.receive_buffer_bytes, error);
+  const auto lcm = drivers::open_lcm(url, config->lcm.reception, error);
   if (!lcm) {
     fmt::print(stderr, "framewatch status: {}\n", error);
     return kUnreachable;
   }
   Heard heard(*config);
-  drivers::LcmSource source(*lcm, heard.channels(), config->lcm.queue_capacity,
-                            [&](const std::string& channel, const void* data, std::size_t size,
-                                std::int64_t) { heard.message(channel, data, size); });
+  drivers::LcmSource source(
+      *lcm, heard.channels(), config->lcm.queue_capacity,
+      [&](const drivers::LcmMessage& m) { heard.message(m.channel, m.data, m.size); });
   for (const std::int64_t end_us = steady_clock_us() + kListen_us;
        !heard.enough() && steady_clock_us() < end_us;)
     if (!source.handle(kPoll_ms)) break;

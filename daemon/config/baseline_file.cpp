@@ -1,7 +1,6 @@
 #include "daemon/config/baseline_file.h"
 
 #include <cmath>
-#include <filesystem>
 
 #include <fmt/core.h>
 
@@ -9,6 +8,7 @@
 #include "daemon/documents/toml_document.h"
 #include "daemon/keys/section.h"
 #include "daemon/keys/suggest.h"
+#include "drivers/base/input_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -85,7 +85,7 @@ std::optional<estimator::Baseline> load_baseline(const std::string& path,
 
 void load_watch_baseline(Config& config, std::vector<ConfigProblem>& problems) {
   if (!config.watch || config.watch->baseline_path.empty()) return;
-  if (!std::filesystem::exists(config.watch->baseline_path)) return;
+  if (drivers::is_absent(config.watch->baseline_path)) return;
   config.watch->baseline = load_baseline(
       config.watch->baseline_path, estimator::ParameterTable(config.pipeline.structure), problems);
 }

@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "estimator/motion/sample_bound.h"
+
 namespace framewatch::daemon {
 
 using drivers::CanMessageMap;
@@ -106,8 +108,11 @@ void CanConfigReader::add_reading(std::size_t channel, CanNodeReading& node, con
             fmt::format("dbc_signal: {}.{} is the source of channel '{}' already", m.name, r.name,
                         config_.pipeline.axes[static_cast<std::size_t>(r.axis)].name));
   CanMessageMap& map = message_map(node, m, multiplexor, found.signal->multiplexed_by);
+  const estimator::SensorAxis& axis = config_.pipeline.axes[channel];
+  const estimator::SampleBound bound = estimator::sample_bound(axis);
+  const auto [least, most] = std::minmax({bound.least / axis.scale, bound.most / axis.scale});
   map.readings.push_back(
-      {found.signal->field, static_cast<int>(channel), sample, found.signal->name});
+      {found.signal->field, static_cast<int>(channel), sample, found.signal->name, least, most});
 }
 
 CanMessageMap& CanConfigReader::message_map(CanNodeReading& node, const DbcMessage& m,

@@ -14,6 +14,7 @@ namespace {
 
 void place_all_files(Config& config) {
   const std::string beside = std::filesystem::path(config.path).parent_path().string();
+  place_files("commands", beside, config.commands);
   if (config.watch) place_files("watch", beside, *config.watch);
   if (config.gap) place_files("gap", beside, *config.gap);
   if (config.history) place_files("history", beside, *config.history);

@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/printable.h"
+
 namespace framewatch::daemon {
 
 std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextProblem> problems) {
@@ -21,7 +23,8 @@ std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextPr
 }
 
 void print_problems(const std::vector<ConfigProblem>& problems) {
-  for (const ConfigProblem& p : problems) fmt::print(stderr, "{}: {}\n", p.where, p.message);
+  for (const ConfigProblem& p : problems)
+    fmt::print(stderr, "{}: {}\n", printable(p.where), printable_lines(p.message));
 }
 
 }  // namespace framewatch::daemon

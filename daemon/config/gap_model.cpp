@@ -1,7 +1,5 @@
 #include "daemon/config/gap_model.h"
 
-#include <filesystem>
-
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
@@ -9,6 +7,7 @@
 #include "daemon/config/read_config.h"
 #include "daemon/config/toml_file.h"
 #include "daemon/documents/toml_document.h"
+#include "drivers/base/input_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -56,7 +55,7 @@ std::optional<estimator::GapModel> load_gap_model_file(const Config& config,
 
 void load_gap_model(Config& config, std::vector<ConfigProblem>& problems) {
   if (!config.gap || config.gap->model_path.empty()) return;
-  if (!std::filesystem::exists(config.gap->model_path)) return;
+  if (drivers::is_absent(config.gap->model_path)) return;
   config.gap->model = load_gap_model_file(config, config.gap->model_path, problems);
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "daemon/config/can_reader.h"
+#include "daemon/config/config_size.h"
 #include "daemon/config/effects.h"
 #include "daemon/config/sections.h"
 #include "daemon/keys/section_table.h"
@@ -44,6 +45,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   read_channels(document, structure, config, problems);
   config.pipeline.options = read_estimator(document, problems);
   config.lcm = read_lcm(document, problems);
+  config.commands = read_commands(document, problems);
   read_can(document, config, problems);
   config.watch = read_watch(document, problems);
   if (config.watch) config.pipeline.options.long_window_s = config.watch->options.quiet_window_s;
@@ -53,6 +55,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   if (problems.size() == before)
     for (const std::string& rule : estimator::problems(config.pipeline))
       problems.push_back({{}, rule});
+  if (problems.size() == before) check_size(document, config, problems);
   const bool sound = problems.size() == before;
   const std::vector<const TomlValue*> effects = tables_of(document, "effect", problems);
   if (sound)

@@ -1,7 +1,7 @@
 #pragma once
 
 // The sections of a configuration, each read by a source of its own: structure.cpp, design.cpp,
-// channels.cpp, estimator.cpp, lcm.cpp, watch.cpp, gap.cpp, history.cpp, actions.cpp.
+// channels.cpp, estimator.cpp, lcm.cpp, commands.cpp, watch.cpp, gap.cpp, history.cpp, actions.cpp.
 
 #include <optional>
 #include <string>
@@ -36,6 +36,7 @@ void read_channels(const TomlValue& document, const StructureReading& structure,
 estimator::EstimatorOptions read_estimator(const TomlValue& document,
                                            std::vector<TextProblem>& problems);
 LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& problems);
+CommandSettings read_commands(const TomlValue& document, std::vector<TextProblem>& problems);
 std::optional<WatchSettings> read_watch(const TomlValue& document,
                                         std::vector<TextProblem>& problems);
 std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems);

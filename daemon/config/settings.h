@@ -6,6 +6,7 @@
 
 #include "daemon/keys/action_options.h"
 #include "daemon/keys/channel_options.h"
+#include "daemon/keys/command_options.h"
 #include "daemon/keys/gap_options.h"
 #include "daemon/keys/history_options.h"
 #include "daemon/keys/lcm_options.h"
@@ -23,6 +24,7 @@ struct Config {
   estimator::PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
   LcmSettings lcm;
+  CommandSettings commands;
   drivers::CanMap can;                     ///< axes as in pipeline.axes
   std::optional<WatchSettings> watch;      ///< none: nothing is watched
   std::optional<GapSettings> gap;          ///< none: nothing is simulated beside the measurement

@@ -53,21 +53,22 @@ Eigen::VectorXd dropped(const Scenario& s) {
 /// The four parties of the demo, each with its own LCM where the provider allows it.
 class DemoBus {
  public:
-  bool open(const DemoNetwork& network, int receive_buffer_bytes, std::string& error) {
-    for (std::unique_ptr<lcm::LCM>& lcm : all_) {
-      lcm = drivers::open_lcm(network.url, receive_buffer_bytes, error);
+  bool open(const DemoNetwork& network, const drivers::LcmReception& reception,
+            std::string& error) {
+    for (std::unique_ptr<drivers::LcmProvider>& lcm : all_) {
+      lcm = drivers::open_lcm(network.url, reception, error);
       if (!lcm) return false;
       if (network.in_process) break;
     }
     return true;
   }
-  lcm::LCM& building() { return *all_[0]; }
-  lcm::LCM& estimator() { return all_[1] ? *all_[1] : building(); }
-  lcm::LCM& view() { return all_[2] ? *all_[2] : building(); }
-  lcm::LCM& page() { return all_[3] ? *all_[3] : building(); }
+  drivers::LcmProvider& building() { return *all_[0]; }
+  drivers::LcmProvider& estimator() { return all_[1] ? *all_[1] : building(); }
+  drivers::LcmProvider& view() { return all_[2] ? *all_[2] : building(); }
+  drivers::LcmProvider& page() { return all_[3] ? *all_[3] : building(); }
 
  private:
-  std::unique_ptr<lcm::LCM> all_[4];
+  std::unique_ptr<drivers::LcmProvider> all_[4];
 };
 
 void introduce(const Scenario& s, const DemoNetwork& network, double seconds,
@@ -90,11 +91,11 @@ void introduce(const Scenario& s, const DemoNetwork& network, double seconds,
 struct DemoLoop {
   const Scenario& scenario;
   double seconds;
-  DemoBus& bus;
   SimulationOutput& sensors;
   drivers::LcmSource& source;
   drivers::CanSource& can;
   drivers::LcmSource& page_source;
+  drivers::LcmSource& view_source;
   LiveView& live;
   WebServer& server;
   DemoView& view;
@@ -103,11 +104,6 @@ struct DemoLoop {
   bool shake();
   /// Waits for the last messages, which may still be on their way on a busy machine.
   void receive_rest(const Estimation& estimation);
-  /// Every message to the table of truth that comes within `timeout_ms` of the one before.
-  void show_messages(int timeout_ms) {
-    while (bus.view().handleTimeout(timeout_ms) > 0) {
-    }
-  }
 };
 
 bool DemoLoop::shake() {
@@ -126,7 +122,7 @@ bool DemoLoop::shake() {
       return false;
     }
     can.handle(steady_clock_us());
-    show_messages(0);
+    (void)view_source.handle(0);
     if (!page_source.handle(0)) fmt::print(stderr, "framewatch demo: the page gets no messages\n");
     if (simulation.time_s() >= next_flush_s) {
       next_flush_s += kFlush_s;
@@ -147,7 +143,7 @@ void DemoLoop::receive_rest(const Estimation& estimation) {
     seen = estimation.intake().counters().messages;
     if (!source.handle(300)) break;
     can.handle(steady_clock_us());
-    show_messages(0);
+    (void)view_source.handle(0);
   }
 }
 
@@ -166,17 +162,21 @@ int demo(const DemoArguments& a) {
   const LcmSettings& settings = scenario.config.lcm;
   DemoBus bus;
   std::string error;
-  if (!bus.open(network, settings.receive_buffer_bytes, error)) {
+  if (!bus.open(network, settings.reception, error)) {
     fmt::print(stderr, "framewatch demo: {}\n", error);
     return 2;
   }
   DemoLogs logs(a.report);
   WebSettings web;
   web.token = random_token();
-  LiveView live(scenario.config, [&](std::int64_t, const std::string& channel,
-                                     const std::vector<std::uint8_t>& bytes) {
-    bus.page().publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
-  });
+  LiveView live(
+      scenario.config,
+      [&](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+        bus.page().publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+      },
+      [](const std::string&, const CommandPacket&) -> CommandAnswer {
+        return {true, "the demo has no daemon to tell", {}};
+      });
   WebServer server(web, live);
   // The page draws samples of LCM messages.
   const bool served = a.can.empty() && socket >= 0 && server.start(socket, no_page);
@@ -204,23 +204,26 @@ int demo(const DemoArguments& a) {
   for (const drivers::AxisAddress& at : addresses(scenario.config.sources))
     if (std::find(inputs.begin(), inputs.end(), at.lcm_channel) == inputs.end())
       inputs.push_back(at.lcm_channel);
-  drivers::LcmSource source(bus.estimator(), inputs, settings.queue_capacity,
-                            [&](const std::string& channel, const void* data, std::size_t size,
-                                std::int64_t received_us) {
-                              logs.raw(received_us, channel, data, size);
-                              estimation.message(channel, data, size);
-                            });
+  drivers::LcmSource source(
+      bus.estimator(), inputs, settings.queue_capacity, [&](const drivers::LcmMessage& m) {
+        logs.raw(m.received_us, m.channel, m.data, m.size);
+        estimation.message(m.channel, m.data, m.size, m.sender, m.received_us);
+      });
   drivers::LcmSource page_source(bus.page(), live.channels(), settings.queue_capacity,
-                                 [&](const std::string& channel, const void* data, std::size_t size,
-                                     std::int64_t) { live.message(channel, data, size); });
+                                 [&](const drivers::LcmMessage& m) {
+                                   live.message(m.channel, m.data, m.size, m.sender, m.received_us);
+                                 });
   DemoView view(truth_of(scenario, scenario.truth), ::isatty(STDOUT_FILENO) == 1, a.quiet);
-  view.subscribe(bus.view(), settings.prefix);
+  drivers::LcmSource view_source(bus.view(), DemoView::channels(settings.prefix),
+                                 settings.queue_capacity,
+                                 [&](const drivers::LcmMessage& m) { view.message(m); });
 
-  DemoLoop loop{scenario, a.seconds, bus, *sensors, source, can, page_source, live, server, view};
+  DemoLoop loop{scenario,    a.seconds,   *sensors, source, can,
+                page_source, view_source, live,     server, view};
   if (!loop.shake()) return 2;
   loop.receive_rest(estimation);
   estimation.finish();
-  loop.show_messages(200);
+  (void)view_source.handle(200);
   logs.write_report();
   return view.finish();
 }

@@ -13,9 +13,9 @@
 #include <fstream>
 
 #include <fmt/core.h>
-#include <lcm/lcm-cpp.hpp>
 
-#include "daemon/base/descriptor.h"
+#include "drivers/base/descriptor.h"
+#include "drivers/lcm/lcm_source.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -29,8 +29,8 @@ void set_address(sockaddr& out, const char* address) {
   std::memcpy(&out, &in, sizeof in);
 }
 
-Descriptor datagram_socket() {
-  return Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+drivers::Descriptor datagram_socket() {
+  return drivers::Descriptor(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
 }
 
 bool bring_loopback_up(int fd) {
@@ -60,14 +60,10 @@ void keep_user(uid_t user, gid_t group) {
 
 /// Asked before LCM is, which prints a page of advice when there is none.
 bool has_multicast_route() {
-  const Descriptor socket = datagram_socket();
+  const drivers::Descriptor socket = datagram_socket();
   sockaddr group{};
   set_address(group, kGroup);
   return ::connect(socket.get(), &group, sizeof group) == 0;
-}
-
-void count_message(const lcm::ReceiveBuffer*, const std::string&, int* received) {
-  ++*received;
 }
 
 }  // namespace
@@ -81,22 +77,22 @@ bool enter_private_network(std::string& error) {
     error = std::strerror(errno);
     return false;
   }
-  const Descriptor socket = datagram_socket();
+  const drivers::Descriptor socket = datagram_socket();
   if (bring_loopback_up(socket.get()) && add_multicast_route(socket.get())) return true;
   error = std::strerror(errno);
   return false;
 }
 
 bool lcm_round_trip(const std::string& url) {
-  lcm::LCM lcm(url);
-  if (!lcm.good()) return false;
+  std::string error;
+  const auto lcm = drivers::open_lcm(url, {}, error);
+  if (!lcm) return false;
   const std::string channel = fmt::format("FRAMEWATCH_PROBE_{}", ::getpid());
   int received = 0;
-  lcm.subscribeFunction(channel, &count_message, &received);
+  drivers::LcmSource source(*lcm, {channel}, 10, [&](const auto&) { ++received; });
   const char byte = 0;
   for (int attempt = 0; attempt < 5 && received == 0; ++attempt) {
-    if (lcm.publish(channel, &byte, 1) != 0) return false;
-    lcm.handleTimeout(200);
+    if (lcm->publish(channel, &byte, 1) != 0 || !source.handle(200)) return false;
   }
   return received > 0;
 }

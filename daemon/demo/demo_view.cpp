@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kRedraw_s = 0.25;
 constexpr double kLine_s = 5;
+constexpr const char *kParameters = "PARAMETERS", *kEstimate = "ESTIMATE";
 
 std::size_t terminal_columns() {
   winsize size{};
@@ -26,8 +27,8 @@ std::size_t terminal_columns() {
   return size.ws_col;
 }
 
-std::span<const std::uint8_t> payload(const lcm::ReceiveBuffer* buffer) {
-  return {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
+std::span<const std::uint8_t> payload(const drivers::LcmMessage& message) {
+  return {static_cast<const std::uint8_t*>(message.data), message.size};
 }
 
 std::string describe(const GroupError& error, double limit_ratio) {
@@ -45,9 +46,13 @@ bool holds(const GroupError& error, double limit_ratio) {
 DemoView::DemoView(std::map<std::string, double> truth, bool terminal, bool quiet)
     : truth_by_name_(std::move(truth)), terminal_(terminal), quiet_(quiet) {}
 
-void DemoView::subscribe(lcm::LCM& lcm, const std::string& prefix) {
-  lcm.subscribe(prefix + "PARAMETERS", &DemoView::on_parameters, this)->setQueueCapacity(100);
-  lcm.subscribe(prefix + "ESTIMATE", &DemoView::on_estimate, this)->setQueueCapacity(10000);
+std::vector<std::string> DemoView::channels(const std::string& prefix) {
+  return {prefix + kParameters, prefix + kEstimate};
+}
+
+void DemoView::message(const drivers::LcmMessage& message) {
+  if (message.channel.ends_with(kParameters)) parameters(message);
+  if (message.channel.ends_with(kEstimate)) estimate(message);
 }
 
 void DemoView::set_truth(std::map<std::string, double> truth) {
@@ -58,8 +63,8 @@ void DemoView::set_truth(std::map<std::string, double> truth) {
     truth_[i] = truth_by_name_.at(table_->name[i]);
 }
 
-void DemoView::on_parameters(const lcm::ReceiveBuffer* buffer, const std::string&) {
-  auto table = drivers::decoded<parameter_table_t>(payload(buffer));
+void DemoView::parameters(const drivers::LcmMessage& message) {
+  auto table = drivers::decoded<parameter_table_t>(payload(message));
   if (!table) return;
   truth_.clear();
   for (const std::string& name : table->name) {
@@ -70,8 +75,8 @@ void DemoView::on_parameters(const lcm::ReceiveBuffer* buffer, const std::string
   table_ = std::move(table);
 }
 
-void DemoView::on_estimate(const lcm::ReceiveBuffer* buffer, const std::string&) {
-  auto decoded = drivers::decoded<window_estimate_t>(payload(buffer));
+void DemoView::estimate(const drivers::LcmMessage& message) {
+  auto decoded = drivers::decoded<window_estimate_t>(payload(message));
   if (!decoded) return;
   window_estimate_t& estimate = *decoded;
   if (next_sequence_ >= 0) lost_ += std::max<std::int64_t>(estimate.sequence - next_sequence_, 0);

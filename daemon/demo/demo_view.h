@@ -8,9 +8,9 @@
 
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
-#include <lcm/lcm-cpp.hpp>
 
 #include "daemon/estimates/estimate_table.h"
+#include "drivers/lcm/lcm_source.h"
 
 namespace framewatch::daemon {
 
@@ -26,15 +26,17 @@ class DemoView {
 
   /// Sets the truth that the estimates are compared with from now on.
   void set_truth(std::map<std::string, double> truth);
-  void subscribe(lcm::LCM& lcm, const std::string& prefix);
+  /// The LCM channels that message() takes.
+  static std::vector<std::string> channels(const std::string& prefix);
+  void message(const drivers::LcmMessage& message);
   /// `elapsed_s` of `total_s` have passed; draws when it is time to.
   void update(double elapsed_s, double total_s);
   /// Prints the table and whether the newest window's stiffnesses are within the limits. Exit code.
   int finish();
 
  private:
-  void on_parameters(const lcm::ReceiveBuffer* buffer, const std::string& channel);
-  void on_estimate(const lcm::ReceiveBuffer* buffer, const std::string& channel);
+  void parameters(const drivers::LcmMessage& message);
+  void estimate(const drivers::LcmMessage& message);
   std::string state() const;
   /// Over what was drawn before.
   void draw(const std::string& last_line);

@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
 #include "daemon/base/workers.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/diagnosis/diagnose_json.h"
@@ -46,7 +47,7 @@ void keep_freed_memory() {
 
 /// Whether there are any.
 bool print_all(const std::vector<std::string>& problems) {
-  for (const std::string& p : problems) fmt::print(stderr, "{}\n", p);
+  for (const std::string& p : problems) fmt::print(stderr, "{}\n", printable_lines(p));
   return !problems.empty();
 }
 

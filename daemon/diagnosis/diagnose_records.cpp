@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -12,6 +10,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/estimation/segment_collector.h"
+#include "drivers/base/input_file.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/records/record_file.h"
@@ -43,11 +42,6 @@ bool begins_in_motion(const Config& config, const DiagnoseRecord& record) {
     all += (column - mean).square().mean();
   }
   return first > kMoving * kMoving * all;
-}
-
-std::string digest(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return sha256({std::istreambuf_iterator<char>(in), {}});
 }
 
 /// Reads a record file: the configuration's channels, then the force of a component test.
@@ -99,14 +93,15 @@ bool from_record(const Config& config, const estimator::ComponentTest& component
 bool from_log(const Config& config, DiagnoseRecord& out, std::vector<std::string>& problems) {
   SegmentCollector collector(config.pipeline, 0, kEverything_s);
   drivers::AccelIntake intake(
-      wanted_axes(config), [&](const estimator::AccelSample& sample) { collector.push(sample); });
+      wanted_axes(config), [&](const estimator::AccelSample& sample) { collector.push(sample); },
+      intake_settings(config));
   drivers::LcmLogReader reader;
   drivers::LogEvent event;
   auto read = reader.open(out.path) ? reader.next(event) : drivers::LogRead::error;
   for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
        read = reader.next(event))
     if (read == drivers::LogRead::event)
-      intake.message(event.channel, event.data.data(), event.data.size());
+      intake.message(event.channel, event.data.data(), event.data.size(), {}, event.timestamp_us);
   if (read == drivers::LogRead::error) {
     problems.push_back(fmt::format("{}: {}", out.path, reader.error()));
     return false;
@@ -159,8 +154,8 @@ std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& 
   DiagnoseRecord out;
   out.path = path;
   const std::size_t before = problems.size();
-  if (!std::ifstream(path)) {
-    problems.push_back(path + ": cannot be opened");
+  if (const std::string why = drivers::why_no_file(path); !why.empty()) {
+    problems.push_back(path + ": cannot be opened: " + why);
     return std::nullopt;
   }
   const bool read = drivers::is_event_log(path) ? from_log(config, out, problems)
@@ -170,7 +165,7 @@ std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& 
     problems.push_back(fmt::format("{}: {} instants are too short, at least {} are needed", path,
                                    out.samples.accel.rows(), kLeastInstants));
   interpolate(config, component, out, problems);
-  out.sha256 = digest(path);
+  out.sha256 = sha256_of_file(path);
   if (problems.size() > before) return std::nullopt;
   if (!component.any() && begins_in_motion(config, out))
     out.samples.lead = lead_of(out.samples.accel.rows(), out.samples.rate_hz);

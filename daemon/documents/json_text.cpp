@@ -1,8 +1,11 @@
 #include "daemon/documents/json_text.h"
 
 #include <cmath>
+#include <string_view>
 
 #include <fmt/core.h>
+
+#include "daemon/base/utf8.h"
 
 namespace framewatch::daemon {
 
@@ -12,13 +15,18 @@ std::string json_number(double value) {
 
 std::string json_text(const std::string& text) {
   std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\')
-      out += {'\\', c};
-    else if (static_cast<unsigned char>(c) < 0x20)
-      out += fmt::format("\\u{:04x}", static_cast<int>(c));
+  for (std::string_view rest = text; !rest.empty();) {
+    const CodePoint c = first_character(rest);
+    const std::size_t bytes = c.bytes == 0 ? 1 : c.bytes;
+    if (c.bytes == 0)
+      out += "\\ufffd";
+    else if (c.value == '"' || c.value == '\\')
+      out += {'\\', rest.front()};
+    else if (c.value < 0x20 || (c.value >= 0x7f && c.value < 0xa0))
+      out += fmt::format("\\u{:04x}", c.value);
     else
-      out += c;
+      out += rest.substr(0, bytes);
+    rest.remove_prefix(bytes);
   }
   return out + '"';
 }

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 
@@ -45,19 +44,24 @@ bool MatFile::texts(const char* name, std::vector<std::string> texts) {
   return Mat_VarWrite(file_, cells.get(), MAT_COMPRESSION_NONE) == 0;
 }
 
-std::string write_mat_file(const std::string& path, const std::function<bool(MatFile&)>& fill) {
-  const std::string partial = path + ".partial";
+std::string write_mat_file(drivers::PartialFile& out, const std::function<bool(MatFile&)>& fill) {
   errno = 0;
-  // A header of our own: matio's has the date in it.
+  // A header of our own: matio's has the date in it. And the file that is open, not its name.
   const auto header = fmt::format("MATLAB 5.0 MAT-file, framewatch {}", FRAMEWATCH_VERSION);
-  mat_t* const opened = Mat_CreateVer(partial.c_str(), header.c_str(), MAT_FT_MAT5);
+  const auto name = fmt::format("/proc/self/fd/{}", out.descriptor());
+  mat_t* const opened = Mat_CreateVer(name.c_str(), header.c_str(), MAT_FT_MAT5);
   MatFile file(opened);
   const bool good = opened != nullptr && fill(file);
   const bool closed = opened != nullptr && Mat_Close(opened) == 0;
-  if (good && closed && std::rename(partial.c_str(), path.c_str()) == 0) return "";
+  if (good && closed) return out.commit() ? "" : out.error();
   const std::string why = errno != 0 ? std::strerror(errno) : "cannot be written as a MATLAB file";
-  std::remove(partial.c_str());
+  out.discard();
   return why;
+}
+
+std::string write_mat_file(const std::string& path, const std::function<bool(MatFile&)>& fill) {
+  drivers::PartialFile out;
+  return out.open(path) ? write_mat_file(out, fill) : out.error();
 }
 
 }  // namespace framewatch::daemon

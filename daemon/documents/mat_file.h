@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/base/partial_file.h"
+
 struct _mat_t;
 
 namespace framewatch::daemon {
@@ -25,9 +27,10 @@ class MatFile {
   _mat_t* file_;
 };
 
-/// Creates a file from what `fill` writes: as PATH.partial, renamed when it is complete. The same
+/// Creates a file from what `fill` writes: a PartialFile, renamed when it is complete. The same
 /// content gives the same bytes. Returns an empty string, or the reason of a failure; then no file
 /// is left.
+std::string write_mat_file(drivers::PartialFile& out, const std::function<bool(MatFile&)>& fill);
 std::string write_mat_file(const std::string& path, const std::function<bool(MatFile&)>& fill);
 
 }  // namespace framewatch::daemon

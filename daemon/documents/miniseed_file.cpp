@@ -1,7 +1,6 @@
 #include "daemon/documents/miniseed_file.h"
 
 #include <libmseed.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -63,9 +62,8 @@ MiniseedFile::~MiniseedFile() {
 }
 
 bool MiniseedFile::open(const std::string& path) {
-  path_ = path;
-  file_ = std::fopen((path + ".partial").c_str(), "wbe");
-  if (file_ == nullptr) error_ = std::strerror(errno);
+  if (partial_.open(path)) file_ = partial_.stream();
+  if (file_ == nullptr) error_ = partial_.error();
   return file_ != nullptr;
 }
 
@@ -122,23 +120,16 @@ bool MiniseedFile::write_run(std::size_t channel) {
 bool MiniseedFile::close() {
   if (file_ == nullptr) return false;
   for (std::size_t c = 0; c < channels_.size() && error_.empty(); ++c) (void)write_run(c);
-  if (error_.empty() && (std::fflush(file_) != 0 || ::fsync(::fileno(file_)) != 0))
-    error_ = std::strerror(errno);
-  if (error_.empty()) {
-    const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-    if (!closed || std::rename((path_ + ".partial").c_str(), path_.c_str()) != 0) {
-      error_ = std::strerror(errno);
-      std::remove((path_ + ".partial").c_str());
-    }
-  }
+  const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (error_.empty() && !closed) error_ = std::strerror(errno);
+  if (error_.empty() && !partial_.commit()) error_ = partial_.error();
   discard();
   return error_.empty();
 }
 
 void MiniseedFile::discard() {
-  if (file_ == nullptr) return;
-  std::fclose(std::exchange(file_, nullptr));
-  std::remove((path_ + ".partial").c_str());
+  if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
+  partial_.discard();
 }
 
 }  // namespace framewatch::daemon

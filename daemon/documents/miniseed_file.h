@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/base/partial_file.h"
+
 namespace framewatch::daemon {
 
 /// The name of a channel in SEED: codes of 2, 5, 2 and 3 characters.
@@ -18,8 +20,8 @@ SeedChannel seed_channel(const std::string& network, const std::string& station,
                          double rate_hz);
 
 /// Writes integers as miniSEED 2: Steim-2, records of 512 bytes. A new record begins where the time
-/// of a sample is half a sample or more away from what the rate says. The file is PATH.partial
-/// until close().
+/// of a sample is half a sample or more away from what the rate says. The file is a PartialFile
+/// that close() renames.
 class MiniseedFile {
  public:
   MiniseedFile(std::vector<SeedChannel> channels, double rate_hz);
@@ -46,8 +48,9 @@ class MiniseedFile {
   std::vector<SeedChannel> channels_;
   double rate_hz_;
   std::vector<Run> runs_;
+  drivers::PartialFile partial_;
   std::FILE* file_ = nullptr;
-  std::string path_, error_;
+  std::string error_;
 };
 
 }  // namespace framewatch::daemon

@@ -7,10 +7,17 @@
 #include <limits>
 #include <utility>
 
+#include "drivers/base/input_file.h"
+
 namespace framewatch::daemon {
 namespace {
 
 constexpr int kPatience_ms = 5000;  // while another process writes
+
+bool means_corrupt(int result) {
+  const int primary = result & 0xff;
+  return primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB;
+}
 
 }  // namespace
 
@@ -42,9 +49,13 @@ SqliteStatement& SqliteStatement::bind(int at, std::span<const double> values) {
 }
 
 int SqliteStatement::step() {
-  if (*failed_) return SQLITE_ERROR;
+  if (failure_->any) return SQLITE_ERROR;
   const int result = statement_ ? sqlite3_step(statement_.get()) : SQLITE_ERROR;
-  if (result != SQLITE_ROW && result != SQLITE_DONE) *failed_ = true;
+  if (result != SQLITE_ROW && result != SQLITE_DONE) {
+    failure_->any = true;
+    if (statement_) failure_->text = sqlite3_errmsg(sqlite3_db_handle(statement_.get()));
+  }
+  if (means_corrupt(result)) failure_->corrupt = true;
   return result;
 }
 
@@ -96,15 +107,24 @@ void SqliteFile::close_file(sqlite3* file) {
 
 bool SqliteFile::fail() {
   error_ = file_ ? sqlite3_errmsg(file_.get()) : "no memory";
+  if (file_ && means_corrupt(sqlite3_errcode(file_.get()))) failure_.corrupt = true;
   return false;
 }
 
+/// SQLite would wait for somebody to write into a FIFO.
+bool SqliteFile::is_file(const std::string& path) {
+  error_ = drivers::is_absent(path) ? "" : drivers::why_no_file(path);
+  return error_.empty();
+}
+
 bool SqliteFile::open(const std::string& path) {
+  if (!is_file(path)) return false;
   sqlite3* file = nullptr;
   const int opened =
       sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
   file_.reset(file);
-  failed_ = false;
+  failure_ = {};
+  error_.clear();
   if (opened != SQLITE_OK) {
     fail();
     file_.reset();
@@ -120,10 +140,12 @@ bool SqliteFile::open(const std::string& path) {
 }
 
 bool SqliteFile::open_to_read(const std::string& path) {
+  if (!is_file(path)) return false;
   sqlite3* file = nullptr;
   const int opened = sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READONLY, nullptr);
   file_.reset(file);
-  failed_ = false;
+  failure_ = {};
+  error_.clear();
   if (opened != SQLITE_OK) return fail();
   sqlite3_busy_timeout(file, kPatience_ms);
   return true;
@@ -140,16 +162,16 @@ SqliteStatement SqliteFile::prepare(std::string_view sql) {
   if (sqlite3_prepare_v2(file_.get(), sql.data(), static_cast<int>(sql.size()), &statement,
                          nullptr) != SQLITE_OK)
     fail();
-  return {statement, &failed_};
+  return {statement, &failure_};
 }
 
 bool SqliteFile::transaction(const std::function<bool()>& work) {
-  failed_ = false;
+  failure_.any = false;
   if (!execute("BEGIN IMMEDIATE")) return false;
-  if (work() && !failed_ && execute("COMMIT")) return true;
+  if (work() && !failure_.any && execute("COMMIT")) return true;
   fail();
   const std::string why = std::move(error_);
-  failed_ = false;
+  failure_.any = false;
   (void)execute("ROLLBACK");
   error_ = why;
   return false;

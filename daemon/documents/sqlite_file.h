@@ -13,13 +13,20 @@ struct sqlite3_stmt;
 
 namespace framewatch::daemon {
 
+/// What went wrong in a database since its last transaction began, or since open().
+struct SqliteFailure {
+  bool any = false;
+  bool corrupt = false;  ///< the file is no database, or not a sound one
+  std::string text;      ///< of the statement that failed first
+};
+
 /// One prepared statement. Placeholders count from 1, columns from 0. NaN goes in and comes out as
 /// NULL.
 class SqliteStatement {
  public:
-  /// `failed` belongs to the file: all of its statements share it.
-  SqliteStatement(sqlite3_stmt* statement, bool* failed)
-      : statement_(statement, &finalize), failed_(failed) {}
+  /// `failure` belongs to the file: all of its statements share it.
+  SqliteStatement(sqlite3_stmt* statement, SqliteFailure* failure)
+      : statement_(statement, &finalize), failure_(failure) {}
 
   SqliteStatement& bind(int at, std::int64_t value);
   SqliteStatement& bind(int at, double value);
@@ -43,7 +50,7 @@ class SqliteStatement {
   static void finalize(sqlite3_stmt* statement);
   int step();
   std::unique_ptr<sqlite3_stmt, void (*)(sqlite3_stmt*)> statement_;
-  bool* failed_;
+  SqliteFailure* failure_;
 };
 
 /// A SQLite database, used by one thread. Nothing throws: a call that fails returns false, and
@@ -64,15 +71,18 @@ class SqliteFile {
   /// Runs `work` as one transaction: all of it or nothing is stored.
   [[nodiscard]] bool transaction(const std::function<bool()>& work);
   /// Whether a statement failed since the last transaction began, or since open().
-  bool failed() const { return failed_; }
-  const std::string& error() const { return error_; }
+  bool failed() const { return failure_.any; }
+  /// Whether the file is damaged: found by a call that failed, since open().
+  bool corrupt() const { return failure_.corrupt; }
+  const std::string& error() const { return error_.empty() ? failure_.text : error_; }
 
  private:
   static void close_file(sqlite3* file);
+  bool is_file(const std::string& path);
   bool fail();
 
   std::unique_ptr<sqlite3, void (*)(sqlite3*)> file_;
-  bool failed_ = false;
+  SqliteFailure failure_;
   std::string error_;
 };
 

@@ -93,7 +93,7 @@ std::string mark(const SvgSeries& s, const Area& a, std::size_t i) {
                     line("l", x - 2.5, low, x + 2.5, low), line("l", x - 2.5, high, x + 2.5, high));
   }
   if (s.mark == SvgMark::bars) {
-    const double zero = std::clamp(a.py(0), 0.0, a.height);
+    const double zero = std::clamp(a.py(0), 0.0, std::max(0.0, a.height));
     return out + fmt::format(
                      "<rect class=\"f{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"7\" "
                      "height=\"{:.1f}\"/>",

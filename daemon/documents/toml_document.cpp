@@ -69,6 +69,56 @@ bool remove_duplicate(std::string& text, TextPlace& place) {
 }
 
 constexpr int kMaxDuplicates = 100;
+constexpr int kMaxKeyParts = 8;  // times the 256 inline tables that the parser takes
+
+/// Length of the string of TOML that begins at `at`, of its first line when it has several.
+std::size_t string_length(std::string_view text, std::size_t at) {
+  const char quote = text[at];
+  const bool escapes = quote == '"';
+  const std::string_view three(quote == '"' ? "\"\"\"" : "'''");
+  if (text.substr(at, 3) == three) {
+    std::size_t end = at + 3;
+    while (end < text.size() && text.substr(end, 3) != three)
+      end += escapes && text[end] == '\\' ? 2 : 1;
+    end += 3;
+    for (int more = 0; more < 2 && end < text.size() && text[end] == quote; ++more) ++end;
+    return std::min(end, text.size()) - at;
+  }
+  std::size_t end = at + 1;
+  while (end < text.size() && text[end] != quote && text[end] != '\n')
+    end += escapes && text[end] == '\\' ? 2 : 1;
+  return std::min(end + 1, text.size()) - at;
+}
+
+/// Where a key has more parts (a.b.c) than kMaxKeyParts: reading nests as deep, on the stack.
+std::optional<TextPlace> too_deep_key(std::string_view text) {
+  TextPlace place{1, 1};
+  int dots = 0;
+  std::size_t line_begin = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    std::size_t length = 1;
+    if (c == '"' || c == '\'') {
+      length = string_length(text, at);
+    } else if (c == '#') {
+      length = std::min(text.find('\n', at), text.size()) - at;
+    } else if (c == '.') {
+      ++dots;
+    } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == '{') {
+      dots = 0;
+    }
+    if (dots >= kMaxKeyParts) {
+      place.column = static_cast<int>(at - line_begin) + 1;
+      return place;
+    }
+    for (const std::size_t end = at + length; at < end; ++at) {
+      if (text[at] != '\n') continue;
+      ++place.line;
+      line_begin = at + 1;
+    }
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -90,6 +140,10 @@ std::vector<const TomlValue*> tables_of(const TomlValue& table, std::string_view
 }
 
 std::optional<TomlValue> parse_toml(std::string text, std::vector<TextProblem>& problems) {
+  if (const auto place = too_deep_key(text)) {
+    problems.push_back({*place, fmt::format("a key has at most {} parts", kMaxKeyParts)});
+    return std::nullopt;
+  }
   for (int removed = 0; removed < kMaxDuplicates; ++removed) {
     try {
       return converted(toml::parse(text));

@@ -5,12 +5,11 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include <fmt/core.h>
-#include <lcm/lcm-cpp.hpp>
 
 #include "daemon/estimates/estimates_csv.h"
 #include "daemon/estimates/estimates_mat.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/lcm/lcm_source.h"
+#include "drivers/lcm/lcm_provider.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
@@ -68,7 +67,7 @@ class TableOutput : public EstimateOutput {
 
 class LcmOutput : public EstimateOutput {
  public:
-  explicit LcmOutput(std::unique_ptr<lcm::LCM> lcm) : lcm_(std::move(lcm)) {}
+  explicit LcmOutput(std::unique_ptr<drivers::LcmProvider> lcm) : lcm_(std::move(lcm)) {}
   bool put(std::int64_t, const std::string& channel,
            const std::vector<std::uint8_t>& bytes) override {
     return lcm_->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size())) == 0;
@@ -77,7 +76,7 @@ class LcmOutput : public EstimateOutput {
   std::string error() const override { return "LCM refuses to publish"; }
 
  private:
-  std::unique_ptr<lcm::LCM> lcm_;
+  std::unique_ptr<drivers::LcmProvider> lcm_;
 };
 
 template <typename Output>
@@ -110,8 +109,7 @@ std::unique_ptr<EstimateOutput> estimate_output(const Config& config, const Esti
 
 std::unique_ptr<EstimateOutput> lcm_estimate_output(const Config& config, const std::string& url,
                                                     std::string& error) {
-  auto lcm =
-      drivers::open_lcm(url.empty() ? config.lcm.url : url, config.lcm.receive_buffer_bytes, error);
+  auto lcm = drivers::open_lcm(url.empty() ? config.lcm.url : url, config.lcm.reception, error);
   if (!lcm) return nullptr;
   return std::make_unique<LcmOutput>(std::move(lcm));
 }

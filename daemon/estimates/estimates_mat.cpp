@@ -1,8 +1,5 @@
 #include "daemon/estimates/estimates_mat.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <limits>
 
 #include "daemon/documents/mat_file.h"
@@ -17,7 +14,6 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool EstimatesMatWriter::open(const std::string& path, const std::vector<std::string>& names,
                               const std::vector<std::string>& units, bool boxplot) {
-  path_ = path;
   names_ = names;
   units_ = units;
   boxplot_ = boxplot;
@@ -26,14 +22,9 @@ bool EstimatesMatWriter::open(const std::string& path, const std::vector<std::st
     for (const char* name : {"q1", "median", "q3", "whisker_low", "whisker_high", "outliers"})
       columns_.push_back({name, {}});
   // So that a folder that is not there is told before the work.
-  std::FILE* probe = std::fopen((path + ".partial").c_str(), "wbe");
-  if (probe == nullptr) {
-    error_ = std::strerror(errno);
-    return false;
-  }
-  std::fclose(probe);
-  std::remove((path + ".partial").c_str());
-  return true;
+  if (out_.open(path)) return true;
+  error_ = out_.error();
+  return false;
 }
 
 bool EstimatesMatWriter::write(const window_estimate_t& e) {
@@ -65,7 +56,7 @@ bool EstimatesMatWriter::write(const window_estimate_t& e) {
 }
 
 bool EstimatesMatWriter::close() {
-  error_ = write_mat_file(path_, [&](MatFile& file) {
+  error_ = write_mat_file(out_, [&](MatFile& file) {
     bool good = file.texts("parameter", names_) && file.texts("unit", units_) &&
                 file.matrix("window_end_s", end_s_, 1) && file.matrix("status", status_, 1);
     for (const Column& column : columns_)

@@ -5,6 +5,8 @@
 
 #include <framewatch/window_estimate_t.hpp>
 
+#include "drivers/base/partial_file.h"
+
 namespace framewatch::daemon {
 
 /// Collects estimates and writes them as a MATLAB file, version 5 (docs/formats.md): `parameter`
@@ -26,7 +28,8 @@ class EstimatesMatWriter {
     std::vector<double> values;  ///< window-major
   };
 
-  std::string path_, error_;
+  drivers::PartialFile out_;
+  std::string error_;
   std::vector<std::string> names_, units_;
   bool boxplot_ = false;
   std::vector<double> end_s_, status_;

@@ -13,7 +13,7 @@ namespace {
 using Kind = drivers::CanNotice::Kind;
 
 constexpr std::int64_t kFirstId = std::int64_t{1} << 40;
-constexpr std::size_t kKinds = 4;
+constexpr std::size_t kKinds = 7;
 
 const char* name_of(Kind kind) {
   switch (kind) {
@@ -25,6 +25,12 @@ const char* name_of(Kind kind) {
       return "emergency";
     case Kind::boot_up:
       return "boot_up";
+    case Kind::sequence_leap:
+      return "sequence_leap";
+    case Kind::duplicates:
+      return "duplicates";
+    case Kind::losses:
+      return "losses";
   }
   return "";
 }
@@ -40,6 +46,15 @@ std::string message_of(Kind kind, const std::string& place, bool over, int code)
                   : fmt::format("{}: CANopen emergency {:04X}h", place, code);
     case Kind::boot_up:
       return place + ": has booted";
+    case Kind::sequence_leap:
+      return place + (over ? ": its numbers go on without leaps"
+                           : ": its numbers leapt: it began anew, or another node has its ids");
+    case Kind::duplicates:
+      return over ? place + ": its messages come once again"
+                  : fmt::format("{}: {} messages came twice within 10 s", place, code);
+    case Kind::losses:
+      return over ? place + ": its messages come again"
+                  : fmt::format("{}: {} messages were lost within 10 s", place, code);
   }
   return place;
 }
@@ -68,7 +83,10 @@ std::optional<event_t> CanEvents::of(const drivers::CanNotice& n) {
   begun.code = n.code;
   m.since_us = begun.since_us;
   m.id = kFirstId + static_cast<std::int64_t>(at);
-  m.severity = momentary ? severity::information : n.over ? severity::warning : severity::alarm;
+  const bool of_numbers = n.kind >= Kind::sequence_leap;
+  m.severity = momentary || (of_numbers && n.over) ? severity::information
+               : of_numbers || n.over              ? severity::warning
+                                                   : severity::alarm;
   m.kind = name_of(n.kind);
   m.place = place;
   m.value = n.code;

@@ -10,8 +10,9 @@
 
 namespace framewatch::daemon {
 
-/// Turns CAN notices into events: bus_off and interface_gone of buses, emergency and boot_up of
-/// nodes. The id depends on kind and place alone and is larger than the ids of alarms.
+/// Turns CAN notices into events: bus_off and interface_gone of buses, emergency, boot_up,
+/// sequence_leap, duplicates and losses of nodes. The id depends on kind and place alone and is
+/// larger than the ids of alarms.
 class CanEvents {
  public:
   /// `map` must outlive this.

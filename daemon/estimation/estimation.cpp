@@ -1,11 +1,18 @@
 #include "daemon/estimation/estimation.h"
 
+#include <cmath>
 #include <utility>
 
 #include "daemon/estimation/estimation_events.h"
+#include "daemon/estimation/intake_events.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
+namespace {
+
+constexpr double kMost_degc = 200;  // either way: no thermometer on a building says more
+
+}  // namespace
 
 Estimation::Estimation(const Config& config, MessageSink sink, Observer observer)
     : config_(config),
@@ -19,9 +26,13 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
             watch(estimate);
           },
           [this](const estimator::SampleSet& instant) { look_for_gap(instant); }),
-      intake_(wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); }),
+      intake_(
+          wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
+          intake_settings(config)),
       can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
-      can_events_(config.can) {
+      can_events_(config.can),
+      absurd_events_(config.pipeline.axes) {
+  intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   begin_watch();
   begin_gap();
@@ -71,16 +82,21 @@ void Estimation::watch(const estimator::WindowEstimate& estimate) {
 }
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
-                                          std::size_t size) {
+                                          std::size_t size, const drivers::LcmSender& sender,
+                                          std::int64_t received_us) {
   if (config_.watch && channel == config_.watch->temperature_channel)
     return temperature(data, size);
-  return intake_.message(channel, data, size);
+  return intake_.message(channel, data, size, sender, received_us);
 }
 
 drivers::IntakeResult Estimation::temperature(const void* data, std::size_t size) {
   const auto message =
       drivers::decoded<temperature_t>({static_cast<const std::uint8_t*>(data), size});
   if (!message) return drivers::IntakeResult::malformed;
+  if (!(std::abs(message->temperature_degc) <= kMost_degc)) {
+    ++absurd_temperatures_;
+    return drivers::IntakeResult::malformed;
+  }
   if (watch_)
     watch_->temperature(estimator::from_microseconds(message->time_us), message->temperature_degc);
   if (taps_.temperature) taps_.temperature(*message);
@@ -89,6 +105,11 @@ drivers::IntakeResult Estimation::temperature(const void* data, std::size_t size
 
 void Estimation::notice(const drivers::CanNotice& notice) {
   if (const auto event = can_events_.of(notice)) announce(*event);
+}
+
+void Estimation::intake_notice(const drivers::IntakeNotice& notice) {
+  const std::int64_t now_us = seconds_.newest_us() != 0 ? seconds_.newest_us() : notice.arrival_us;
+  if (const auto event = intake_event(notice, config_, raised_, now_us)) announce(*event);
 }
 
 void Estimation::announce(const event_t& event) {
@@ -113,17 +134,25 @@ void Estimation::finish() {
   publish_state();
 }
 
+template <typename Archive>
+void Estimation::archive(Archive& a) {
+  a(seconds_);
+  for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMostCount);
+  a(intake_, can_, can_events_, absurd_events_, raised_);
+  if (watch_) a(*watch_);
+  if (!gap_) return;
+  a(*gap_);
+  a.any_size(noise_density_);
+  if (!noise_density_.empty() && noise_density_.size() != config_.pipeline.axes.size()) a.refuse();
+}
+
 void Estimation::save(estimator::StateWriter& state) {
-  state(seconds_, windows_, intake_, can_, can_events_, raised_);
-  if (watch_) state(*watch_);
-  if (gap_) state(*gap_, noise_density_);
+  archive(state);
   pipeline_.save(state);
 }
 
 bool Estimation::load(estimator::StateReader& state) {
-  state(seconds_, windows_, intake_, can_, can_events_, raised_);
-  if (watch_) state(*watch_);
-  if (gap_) state(*gap_, noise_density_);
+  archive(state);
   return state.good() && pipeline_.load(state);
 }
 
@@ -140,8 +169,10 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   copy(before.intake_, intake_);
   copy(before.can_, can_);
   copy(before.can_events_, can_events_);
+  copy(before.absurd_events_, absurd_events_);
   copy(before.raised_, raised_);
   windows_ = before.windows_;
+  absurd_temperatures_ = before.absurd_temperatures_;
   live_ = before.live_;
   if (keep_window) {
     estimator::StateWriter writer;
@@ -168,26 +199,39 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   }
 }
 
+std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
+  std::vector<estimator::AxisCounters> out = pipeline_.counters().axes;
+  for (std::size_t a = 0; a < out.size(); ++a) {
+    out[a].rejected += can_.absurd_of(a);
+    out[a].absurd += can_.absurd_of(a);
+  }
+  return out;
+}
+
 void Estimation::publish_state() {
+  const std::vector<estimator::AxisCounters> axes = axis_counters();
+  for (const event_t& event : absurd_events_.look(axes, seconds_.newest_us())) announce(event);
   const estimator::PipelineCounters pipeline = pipeline_.counters();
   const drivers::IntakeCounters& intake = intake_.counters();
   StatusCounts counts;
   counts.windows = pipeline.windows;
   counts.sample_sets = pipeline.sample_sets;
   counts.gaps = pipeline.interruptions;
-  counts.rejected_messages = intake.foreign + intake.malformed + intake.duplicate;
+  counts.rejected_messages = intake.foreign + intake.malformed + intake.duplicate +
+                             intake.other_sender + absurd_temperatures_;
   for (std::size_t n = 0; n < can_.map().nodes.size(); ++n) {
     const drivers::CanNodeCounters node = can_.node(n);
     counts.rejected_messages +=
         node.wrong_length + node.wrong_kind + node.unplaced + node.duplicates + node.late;
   }
   noise_density_ = pipeline_.noise_density();
-  for (std::size_t i = 0; i < pipeline.axes.size(); ++i) {
-    const estimator::AxisCounters& axis = pipeline.axes[i];
-    const drivers::SequenceCounter* node = intake_.sequence_of(i);
-    counts.axes.push_back({axis.received, node == nullptr ? can_.lost_of(i) : node->lost, axis.late,
-                           axis.repaired, axis.rejected + (node == nullptr ? 0 : node->duplicates),
-                           axis.stuck, axis.clipped});
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const estimator::AxisCounters& axis = axes[i];
+    const drivers::HeardNode* node = intake_.node_of(i);
+    counts.axes.push_back({axis.received, node == nullptr ? can_.lost_of(i) : node->counter.lost,
+                           axis.late, axis.repaired,
+                           axis.rejected + (node == nullptr ? 0 : node->left_out()), axis.stuck,
+                           axis.clipped});
     if (!noise_density_.empty()) counts.axes.back().noise_density = noise_density_[i];
   }
   publisher_.parameters(seconds_.newest_us(), pipeline_);

@@ -11,6 +11,7 @@
 #include <framewatch/temperature_t.hpp>
 
 #include "daemon/config/config.h"
+#include "daemon/estimation/absurd_events.h"
 #include "daemon/estimation/can_events.h"
 #include "daemon/estimation/publisher.h"
 #include "daemon/estimation/sensor_seconds.h"
@@ -31,8 +32,12 @@ class Estimation {
   /// `config` must outlive this. `observer`, if any, sees every estimate before it is published.
   Estimation(const Config& config, MessageSink sink, Observer observer = {});
 
-  /// One LCM message, whatever it is.
-  drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size);
+  /// One LCM message, whatever it is. received_us: see AccelIntake::message().
+  drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size,
+                                const drivers::LcmSender& sender = {},
+                                std::int64_t received_us = 0);
+  /// The messages of another log follow.
+  void log_begins() { intake_.log_begins(); }
   /// One CAN frame of the bus with this index in the configuration.
   void frame(int bus, const drivers::CanFrame& frame) { can_.frame(bus, frame); }
   /// A state of a CAN bus that no frame reports.
@@ -56,6 +61,8 @@ class Estimation {
   const drivers::AccelIntake& intake() const { return intake_; }
   const drivers::CanIntake& can() const { return can_; }
   const estimator::Pipeline& pipeline() const { return pipeline_; }
+  /// What happened to the samples of every axis, before and in the pipeline.
+  std::vector<estimator::AxisCounters> axis_counters() const;
   std::int64_t windows() const { return windows_; }  ///< published
   /// Events that are raised and not cleared.
   const RaisedEvents& raised() const { return raised_; }
@@ -76,6 +83,9 @@ class Estimation {
   [[nodiscard]] bool load(estimator::StateReader& state);
 
  private:
+  /// But the pipeline's.
+  template <typename Archive>
+  void archive(Archive& a);
   void publish_state();
   drivers::IntakeResult temperature(const void* data, std::size_t size);
   void main_window(const estimator::WindowEstimate& estimate);
@@ -83,6 +93,7 @@ class Estimation {
   void look_for_gap(const estimator::SampleSet& instant);
   void begin_watch();
   void begin_gap();
+  void intake_notice(const drivers::IntakeNotice& notice);
   void announce(const event_t& event);
   /// Clears the raised events of a kind that is not looked for any more.
   void withdraw(const std::string& kind);
@@ -99,9 +110,11 @@ class Estimation {
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   CanEvents can_events_;
+  AbsurdEvents absurd_events_;
   SensorSeconds seconds_;
   LiveState live_;
   std::int64_t windows_ = 0;
+  std::int64_t absurd_temperatures_ = 0;
 };
 
 }  // namespace framewatch::daemon

@@ -35,9 +35,9 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
 
 event_t gap_event(const estimator::GapNews& news, const Config& config) {
   const bool raised = news.state != estimator::AlarmState::cleared;
+  const auto worst = static_cast<std::size_t>(news.worst_axis);  // of a state file, perhaps
   const std::string name =
-      news.worst_axis >= 0 ? config.pipeline.axes[static_cast<std::size_t>(news.worst_axis)].name
-                           : "";
+      worst < config.pipeline.axes.size() ? config.pipeline.axes[worst].name : "";
   event_t m{};
   m.time_us = to_microseconds(news.found);
   m.since_us = to_microseconds(news.since);

@@ -11,6 +11,7 @@
 #include "daemon/base/log.h"
 #include "daemon/config/gap_model.h"
 #include "daemon/simulation/simulation_output.h"
+#include "drivers/base/caught.h"
 #include "drivers/lcm/lcm_log.h"
 
 namespace framewatch::daemon {
@@ -43,6 +44,25 @@ std::string write_log(drivers::AccelMessages messages, std::size_t axes, const s
     good = put(to_microseconds(time), messages.samples(to_microseconds(time), values));
   }
   return good && log.close() ? "" : log.error();
+}
+
+void log_lost(const std::string& name, const std::string& why) {
+  log(LogLevel::error, fmt::format("{}: samples of a gap are not stored: {}", name, why));
+}
+
+void store_segment(drivers::AccelMessages messages, std::size_t axes, const std::string& store,
+                   const std::string& name, std::vector<estimator::AccelSample>& samples) {
+  std::stable_sort(samples.begin(), samples.end(),
+                   [](const estimator::AccelSample& a, const estimator::AccelSample& b) {
+                     return a.time < b.time;
+                   });
+  std::error_code failure;
+  std::filesystem::create_directories(store, failure);
+  const std::string path = (std::filesystem::path(store) / name).string();
+  const std::string problem =
+      failure ? failure.message() : write_log(std::move(messages), axes, path, samples);
+  if (!problem.empty()) return log_lost(path, problem);
+  log(LogLevel::notice, fmt::format("samples of the gap are in {}", path));
 }
 
 }  // namespace
@@ -84,27 +104,18 @@ void GapSegments::write() {
     const estimator::AccelSample& s = ring_[(next_ + ring_.size() - held_ + i) % ring_.size()];
     if (to_microseconds(s.time) >= from_us) samples.push_back(s);
   }
-  const std::int64_t id = std::exchange(waiting_, 0);
-  writing_ = std::async(
-      std::launch::async,
-      [messages = accel_messages(config_, config_.pipeline.options.rate_hz),
-       axes = config_.pipeline.axes.size(), store = config_.gap->store,
-       name = segment_name(config_, id), samples = std::move(samples)]() mutable {
-        std::stable_sort(samples.begin(), samples.end(),
-                         [](const estimator::AccelSample& a, const estimator::AccelSample& b) {
-                           return a.time < b.time;
-                         });
-        std::error_code failure;
-        std::filesystem::create_directories(store, failure);
-        const std::string path = (std::filesystem::path(store) / name).string();
-        const std::string problem =
-            failure ? failure.message() : write_log(std::move(messages), axes, path, samples);
-        if (problem.empty())
-          log(LogLevel::notice, fmt::format("samples of the gap are in {}", path));
-        else
-          log(LogLevel::error,
-              fmt::format("{}: samples of a gap are not stored: {}", path, problem));
-      });
+  const std::string name = segment_name(config_, std::exchange(waiting_, 0));
+  const std::string thrown = drivers::caught([&] {
+    writing_ = std::async(
+        std::launch::async, [messages = accel_messages(config_, config_.pipeline.options.rate_hz),
+                             axes = config_.pipeline.axes.size(), store = config_.gap->store, name,
+                             samples = std::move(samples)]() mutable {
+          const std::string why = drivers::caught(
+              [&] { store_segment(std::move(messages), axes, store, name, samples); });
+          if (!why.empty()) log_lost(name, why);
+        });
+  });
+  if (!thrown.empty()) log_lost(name, thrown);
 }
 
 void GapSegments::finish_writing() {

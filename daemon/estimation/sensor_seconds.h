@@ -16,7 +16,10 @@ class SensorSeconds {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(started_, newest_us_, next_us_, strays_);
+    a(started_);
+    for (std::int64_t* us : {&newest_us_, &next_us_})
+      a.within(*us, -2 * a.kMostCount, 2 * a.kMostCount + kSecond_us);
+    a.within(strays_, 0, kStraysToFollow);
   }
 
  private:

@@ -1,24 +1,24 @@
 #include "daemon/estimation/state_file.h"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <optional>
 
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
+#include "drivers/base/input_file.h"
+#include "drivers/base/partial_file.h"
 
 namespace framewatch::daemon {
 namespace {
 
 const std::string kMagic = "framewatch state\n";
-constexpr std::int32_t kFormat = 9;  ///< goes up whenever archive() of any class changes
+constexpr std::int32_t kFormat = 10;  ///< goes up whenever archive() of any class changes
 constexpr std::size_t kDigestBytes = 64;
+constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;
 
 std::string digest_of(const std::vector<std::uint8_t>& bytes, std::size_t size) {
   return sha256({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)});
@@ -65,32 +65,26 @@ std::vector<std::uint8_t> state_bytes(const Config& config, Estimation& estimati
 std::string write_state(const std::string& path, std::vector<std::uint8_t> bytes) {
   const std::string digest = digest_of(bytes, bytes.size());
   bytes.insert(bytes.end(), digest.begin(), digest.end());
-  const std::string partial = path + ".partial";
-  const int file = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) return std::strerror(errno);
+  drivers::PartialFile file;
+  if (!file.open(path)) return file.error();
   std::size_t at = 0;
   ssize_t written = 0;
   while (at < bytes.size() && written >= 0) {
-    written = ::write(file, bytes.data() + at, bytes.size() - at);
+    written = ::write(file.descriptor(), bytes.data() + at, bytes.size() - at);
     if (written < 0 && errno == EINTR) written = 0;
     if (written > 0) at += static_cast<std::size_t>(written);
   }
-  std::string problem;
-  if (at < bytes.size() || ::fsync(file) != 0) problem = std::strerror(errno);
-  if (::close(file) != 0 && problem.empty()) problem = std::strerror(errno);
-  if (problem.empty() && std::rename(partial.c_str(), path.c_str()) != 0)
-    problem = std::strerror(errno);
-  if (!problem.empty()) ::unlink(partial.c_str());
-  return problem;
+  if (at < bytes.size()) return std::strerror(errno);
+  return file.commit() ? "" : file.error();
 }
 
 LoadedState load_state(const std::string& path, const Config& config, Estimation& estimation,
                        bool& touched) {
   touched = false;
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return {std::strerror(errno), 0};
-  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), {}};
+  std::string unread;
+  const std::optional<std::string> text = drivers::read_whole_file(path, kMostBytes, unread);
+  if (!text) return {unread, 0};
+  const std::vector<std::uint8_t> bytes{text->begin(), text->end()};
   estimator::StateReader reader(bytes);
   Head head;
   head.magic.clear();
@@ -105,7 +99,7 @@ LoadedState load_state(const std::string& path, const Config& config, Estimation
   if (const std::string problem = problem_of(head, config); !problem.empty()) return {problem, 0};
   touched = true;
   if (!estimation.load(state) || !state.whole())
-    return {"does not fit this program: its parts have other sizes", 0};
+    return {"does not fit this program: its parts have other sizes or impossible numbers", 0};
   return {"", head.events_before};
 }
 

@@ -12,4 +12,8 @@ std::vector<drivers::WantedAxis> wanted_axes(const Config& config) {
   return wanted;
 }
 
+drivers::IntakeSettings intake_settings(const Config& config) {
+  return {config.pipeline.options.rate_hz, config.lcm.two_senders};
+}
+
 }  // namespace framewatch::daemon

@@ -9,5 +9,7 @@ namespace framewatch::daemon {
 
 /// The configured axes as the drivers know them.
 std::vector<drivers::WantedAxis> wanted_axes(const Config& config);
+/// How their messages are taken in.
+drivers::IntakeSettings intake_settings(const Config& config);
 
 }  // namespace framewatch::daemon

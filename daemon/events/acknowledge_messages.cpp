@@ -1,9 +1,17 @@
 #include "daemon/events/acknowledge_messages.h"
 
+#include <fmt/core.h>
+
 #include "daemon/base/clocks.h"
+#include "daemon/base/printable.h"
 #include "daemon/base/random_id.h"
 
 namespace framewatch::daemon {
+namespace {
+
+constexpr std::size_t kMostSaid = 100;  // bytes
+
+}  // namespace
 
 acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
                                   const std::string& comment) {
@@ -14,6 +22,11 @@ acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
   out.who = who;
   out.comment = comment;
   return out;
+}
+
+std::string who_text(const std::string& user, const std::string& says) {
+  if (says.empty()) return user;
+  return fmt::format("{} (says: {})", user, printable(says, kMostSaid));
 }
 
 void add_acknowledged(acknowledged_t& message, const event_t& event, const Acknowledgement& by) {

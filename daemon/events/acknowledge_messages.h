@@ -15,6 +15,10 @@ namespace framewatch::daemon {
 acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
                                   const std::string& comment);
 
+/// Who gave a command, for people: the user, and what the command says of its giver where it does:
+/// "alice", "alice (says: Bob)". One line.
+std::string who_text(const std::string& user, const std::string& says);
+
 /// Appends one acknowledged event to the message.
 void add_acknowledged(acknowledged_t& message, const event_t& event, const Acknowledgement& by);
 

@@ -34,6 +34,8 @@ class History {
   /// To be called several times a second with the time of a steady clock.
   void tick(std::int64_t now_us);
   history_status_t status() const;
+  /// Corrupt databases that were set aside.
+  SetAside set_aside() const { return summaries_.counters().set_aside; }
 
  private:
   const Config& config_;

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/history/history_files.h"
 #include "daemon/history/history_overview.h"
@@ -24,7 +25,7 @@ void print_events(const HistoryRequest& r, SummaryQuery& summaries) {
     lines.emplace(e.time_us, event_line(e));
   for (const StoredAcknowledgement& a : summaries.acknowledgements(r.from_us, r.to_us))
     lines.emplace(a.time_us, acknowledgement_line(a));
-  for (const auto& [time_us, text] : lines) fmt::print("{}\n", text);
+  for (const auto& [time_us, text] : lines) fmt::print("{}\n", printable(text));
 }
 
 void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries,
@@ -32,6 +33,7 @@ void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQ
   std::vector<NamedSummaries> found;
   for (const SummaryParameter& p : r.parameters)
     found.push_back({p, summaries.rows(p.id, r.period_s, r.from_us, r.to_us)});
+  if (!summaries.problem().empty()) return;  // what was read is not all
   if (!a.out.empty()) {
     if (const std::string why = write_summaries(a.out, r.period_s, found); !why.empty())
       problems.push_back(why);
@@ -44,15 +46,15 @@ void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQ
     for (const SummaryRow& row : s.rows) {
       const auto value = [](double v) { return std::isfinite(v) ? fmt::format("{:.5g}", v) : "-"; };
       fmt::print("{:<21} {:<12} {:>11} {:>11} {:>11} {:>11} {:>9.1f}%  {}\n",
-                 utc_text(row.start_us), s.parameter.name, value(row.q1), value(row.median),
-                 value(row.q3), value(row.std_error),
+                 utc_text(row.start_us), printable(s.parameter.name), value(row.q1),
+                 value(row.median), value(row.q3), value(row.std_error),
                  100.0 * static_cast<double>(row.observable) / static_cast<double>(row.windows),
-                 s.parameter.unit);
+                 printable(s.parameter.unit));
     }
 }
 
 int fail(const std::vector<std::string>& problems) {
-  for (const std::string& message : problems) fmt::print(stderr, "{}\n", message);
+  for (const std::string& message : problems) fmt::print(stderr, "{}\n", printable_lines(message));
   return kBadInput;
 }
 
@@ -67,7 +69,7 @@ int history(const HistoryArguments& a) {
                     a.period_s != 0 || !a.from.empty() || !a.to.empty() || !a.last.empty();
   if (!asks)
     fmt::print("{}", a.json ? history_json(request->directory, summaries)
-                            : history_overview(request->directory, summaries));
+                            : printable_lines(history_overview(request->directory, summaries)));
   if (a.events) print_events(*request, summaries);
   if (!a.raw.empty()) export_raw_history(a, *request, problems);
   const bool wants_summaries = !a.out.empty() || (asks && !a.events && a.raw.empty());

@@ -13,6 +13,7 @@
 #include "daemon/history/history_files.h"
 #include "daemon/history/history_retention.h"
 #include "daemon/history/raw_log_care.h"
+#include "drivers/base/caught.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -66,18 +67,28 @@ HistoryKeeper::Room HistoryKeeper::room() const {
 }
 
 void HistoryKeeper::work() {
-  repair_raw_logs(raw_folder(settings_.directory));
-  remove_unfinished_compressions(raw_folder(settings_.directory));
-  remove_unfinished_compressions(event_folder(settings_.directory));
+  guarded([this] {
+    repair_raw_logs(raw_folder(settings_.directory));
+    remove_unfinished_compressions(raw_folder(settings_.directory));
+    remove_unfinished_compressions(event_folder(settings_.directory));
+  });
   // Not by nice: the sandbox of a service does not allow it.
   const sched_param idle{};
   ::pthread_setschedparam(::pthread_self(), SCHED_IDLE, &idle);
   while (!stop_) {
-    close_retired();
-    look();
+    guarded([this] {
+      close_retired();
+      look();
+    });
     std::unique_lock<std::mutex> lock(mutex_);
     wake_.wait_for(lock, kBetweenLooks, [this] { return stop_.load() || !retired_.empty(); });
   }
+}
+
+/// What is thrown, for want of memory, is said; the next look begins anew.
+void HistoryKeeper::guarded(const std::function<void()>& work) {
+  if (const std::string thrown = drivers::caught(work); !thrown.empty())
+    log(LogLevel::error, "history: " + thrown);
 }
 
 void HistoryKeeper::close_retired() {

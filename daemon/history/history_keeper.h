@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -39,6 +40,7 @@ class HistoryKeeper {
   void work();
   void close_retired();
   void look();
+  void guarded(const std::function<void()>& work);
 
   HistorySettings settings_;
   std::atomic<bool> stop_ = false;

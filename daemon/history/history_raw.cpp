@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/printable.h"
 #include "daemon/history/raw_export.h"
 #include "daemon/history/raw_history_reader.h"
 #include "daemon/simulation/simulation_output.h"
@@ -103,8 +104,8 @@ class RawJob {
     }
     fmt::print("{}: {} samples of {} channels\n", a_.raw, samples, names.size());
     if (beyond > 0) fmt::print("{} of them are beyond what was stored\n", beyond);
-    for (const std::string& note : notes) fmt::print("{}\n", note);
-    for (const std::string& note : out.notes()) fmt::print("{}\n", note);
+    for (const std::string& note : notes) fmt::print("{}\n", printable_lines(note));
+    for (const std::string& note : out.notes()) fmt::print("{}\n", printable_lines(note));
   }
 
   const HistoryArguments& a_;

@@ -26,7 +26,7 @@ std::vector<event_t> HistoryReport::look(std::int64_t now_us) {
   const history_status_t status = history_->status();
   lcm_.publish(config_.lcm.prefix + "HISTORY", &status);
   const std::string channel = config_.lcm.prefix + "EVENT";
-  std::vector<event_t> news = monitor_.look(now_us, status);
+  std::vector<event_t> news = monitor_.look(now_us, status, history_->set_aside());
   for (const event_t& event : news) {
     log(event.state != event_state::cleared ? LogLevel::error : LogLevel::notice,
         "history: " + event.message);

@@ -53,6 +53,8 @@ class RequestReader {
       problem(fmt::format("{}: {}", summary_file(r_.directory), why));
     else
       read_request();
+    if (const std::string why = summaries_.problem(); problems_.empty() && !why.empty())
+      problem(fmt::format("{}: {}", summary_file(r_.directory), why));
     return std::move(r_);
   }
 

@@ -13,6 +13,7 @@
 #include "daemon/documents/sqlite_file.h"
 #include "daemon/history/history_files.h"
 #include "daemon/history/raw_log_care.h"
+#include "drivers/base/input_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -23,7 +24,7 @@ constexpr double kGigabyte = 1e9;
 std::optional<std::vector<TimeSpan>> spans_of_events(const HistorySettings& settings) {
   const std::string path = summary_file(settings.directory);
   std::vector<TimeSpan> out;
-  if (std::error_code none; !std::filesystem::exists(path, none)) return out;
+  if (drivers::is_absent(path)) return out;
   SqliteFile file;
   if (!file.open_to_read(path)) return std::nullopt;
   SqliteStatement events = file.prepare(

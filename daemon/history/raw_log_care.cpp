@@ -15,6 +15,7 @@
 #include "daemon/base/log.h"
 #include "daemon/history/history_files.h"
 #include "drivers/base/durable_file.h"
+#include "drivers/base/partial_file.h"
 #include "drivers/base/zstd_file.h"
 #include "drivers/lcm/count_block.h"
 #include "drivers/lcm/lcm_log.h"
@@ -38,7 +39,7 @@ std::int64_t end_of_events(const std::string& path) {
 }
 
 bool cut(const std::string& path, std::int64_t bytes) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  const int file = drivers::open_own_file(path, O_WRONLY);
   if (file < 0) return false;
   const bool done = ::ftruncate(file, bytes) == 0 && ::fsync(file) == 0;
   ::close(file);

@@ -14,6 +14,9 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
+#include "daemon/history/history_files.h"
+#include "daemon/history/summary_query.h"
+#include "drivers/base/caught.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
@@ -70,7 +73,8 @@ SummaryHistory::Counters SummaryHistory::counters() const {
 }
 
 void SummaryHistory::work() {
-  commit();  // what was taken already is known before the first window comes
+  // What was taken already is known before the first window comes.
+  guarded(0, [this] { commit(); });
   for (bool last = false; !last;) {
     std::vector<Message> messages;
     {
@@ -80,12 +84,25 @@ void SummaryHistory::work() {
       messages.swap(queue_);
       queued_ = 0;
     }
-    for (const Message& message : messages) take(message);
-    const bool due = Clock::now() >= next_commit_;
-    // Sensors that fall silent in the middle of a period leave nothing uncommitted.
-    if (last || (due && waiting_.empty())) end_period();
-    if (last || due) commit();
+    guarded(messages.size(), [&] {
+      for (const Message& message : messages) take(message);
+      const bool due = Clock::now() >= next_commit_;
+      // Sensors that fall silent in the middle of a period leave nothing uncommitted.
+      if (last || (due && waiting_.empty())) end_period();
+      if (last || due) commit();
+    });
   }
+}
+
+/// What is thrown, for want of memory, costs the messages of that round, not the program.
+void SummaryHistory::guarded(std::size_t messages, const std::function<void()>& round) {
+  const std::string thrown = drivers::caught(round);
+  if (thrown.empty()) return;
+  store_.close();
+  next_commit_ = Clock::now() + kAgain;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  counters_.dropped += static_cast<std::int64_t>(messages);
+  counters_.trouble = thrown;
 }
 
 void SummaryHistory::take(const Message& message) {
@@ -136,22 +153,47 @@ void SummaryHistory::end_period() {
   next_commit_ = std::min(next_commit_, Clock::now());
 }
 
+std::string SummaryHistory::store_waiting() {
+  if (!store_.is_open()) {
+    if (std::string problem = store_.open(); !problem.empty()) return problem;
+    for (const auto& [start_us, last_us] : store_.open_periods())
+      collector_.taken(start_us, last_us);
+  }
+  if (store_.corrupt()) return "the database is corrupt";
+  return waiting_.empty() ? "" : store_.add(waiting_);
+}
+
+/// False when the corrupt database stays where it is.
+bool SummaryHistory::begin_anew(const std::string& reason) {
+  const std::string database = summary_file(config_.history->directory);
+  store_.close();
+  std::vector<event_t> readable;
+  if (SummaryQuery old; old.open(config_.history->directory).empty())
+    readable = old.events(INT64_MIN / 4, INT64_MAX / 4, kMostEvents);
+  SetAside aside = counters().set_aside;
+  set_aside_database(database, host_clock_us(), reason, aside);
+  if (aside.problem.empty()) {
+    log(LogLevel::error, fmt::format("history: {} is corrupt ({}): it is now {}, a new one is "
+                                     "begun with {} of its events",
+                                     database, reason, aside.path, readable.size()));
+    waiting_.events.insert(waiting_.events.begin(), readable.begin(), readable.end());
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  counters_.set_aside = aside;
+  return aside.problem.empty();
+}
+
 void SummaryHistory::commit() {
   const auto period = std::chrono::seconds(config_.history->summary_s.front());
   next_commit_ = Clock::now() + period + kAgain;  // when no period ends before
-  std::string problem;
-  if (!store_.is_open()) {
-    problem = store_.open();
-    for (const auto& [start_us, last_us] :
-         problem.empty() ? store_.open_periods() : decltype(store_.open_periods())())
-      collector_.taken(start_us, last_us);
-  }
+  std::string problem = store_waiting();
+  if (store_.corrupt())
+    problem = begin_anew(problem) ? store_waiting() : counters().set_aside.problem;
   if (waiting_.empty() && problem.empty()) {
     const std::lock_guard<std::mutex> lock(mutex_);
     counters_.trouble.clear();
     return;
   }
-  if (problem.empty()) problem = store_.add(waiting_);
   std::int64_t until_us = INT64_MIN;
   if (problem.empty()) {
     for (const PeriodData& data : waiting_.periods) until_us = std::max(until_us, data.last_us);

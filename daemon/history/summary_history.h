@@ -2,20 +2,24 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "daemon/config/config.h"
+#include "daemon/documents/damaged_database.h"
 #include "daemon/history/summary_store.h"
 
 namespace framewatch::daemon {
 
 /// Summaries, channels and events of a running estimation into the database, from a thread of its
 /// own. message() never waits. While the database does not take them, periods wait, bounded, and
-/// are tried again every second.
+/// are tried again every second. A corrupt database is set aside and a new one begun, with the
+/// events that could still be read.
 class SummaryHistory {
  public:
   static constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
@@ -26,6 +30,7 @@ class SummaryHistory {
     std::int64_t commits = 0, until_us = 0;
     std::int64_t dropped = 0;  ///< windows and events
     std::string trouble;
+    SetAside set_aside;
   };
 
   /// `config`, with its history, must outlive this.
@@ -49,9 +54,12 @@ class SummaryHistory {
   };
 
   void work();
+  void guarded(std::size_t messages, const std::function<void()>& round);
   void take(const Message& message);
   void end_period();
   void commit();
+  std::string store_waiting();
+  bool begin_anew(const std::string& reason);
   void bound();
 
   const Config& config_;

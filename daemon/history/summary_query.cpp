@@ -1,24 +1,37 @@
 #include "daemon/history/summary_query.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
+
+#include <fmt/core.h>
 
 #include "daemon/history/history_files.h"
 #include "daemon/history/history_schema.h"
+#include "drivers/base/input_file.h"
 
 namespace framewatch::daemon {
 
 std::string SummaryQuery::open(const std::string& directory) {
   const std::string path = summary_file(directory);
-  if (std::error_code none; !std::filesystem::exists(path, none)) {
+  if (drivers::is_absent(path)) {
     if (raw_logs(raw_folder(directory)).empty() && raw_logs(event_folder(directory)).empty())
       return "there is none";
     if (!file_.open(":memory:")) return file_.error();  // raw logs alone
     return upgrade(file_, history_schema());
   }
-  if (!file_.open_to_read(path)) return file_.error();
-  return version_problem(file_, history_schema());
+  if (!file_.open_to_read(path)) return told(file_.error());
+  return told(version_problem(file_, history_schema()));
+}
+
+std::string SummaryQuery::problem() const {
+  return file_.failed() ? told(file_.error()) : "";
+}
+
+std::string SummaryQuery::told(const std::string& why) const {
+  if (!file_.corrupt()) return why;
+  return fmt::format(
+      "the database is corrupt{}; `framewatch run` sets it aside and begins a new one",
+      why.empty() ? "" : fmt::format(" ({})", why));
 }
 
 std::string SummaryQuery::structure() {

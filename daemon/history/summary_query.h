@@ -60,9 +60,11 @@ class SummaryQuery {
   std::vector<StoredAcknowledgement> acknowledgements(std::int64_t from_us, std::int64_t to_us);
 
   /// Empty unless something could not be read.
-  std::string problem() const { return file_.failed() ? file_.error() : ""; }
+  std::string problem() const;
 
  private:
+  std::string told(const std::string& why) const;
+
   SqliteFile file_;
 };
 

@@ -40,6 +40,8 @@ class SummaryStore {
   std::string open();
   bool is_open() const { return file_.is_open(); }
   void close() { file_.close(); }
+  /// Whether the file that was opened last is damaged.
+  bool corrupt() const { return file_.corrupt(); }
 
   /// Start and newest window's end of the shortest periods that can still grow.
   std::vector<std::pair<std::int64_t, std::int64_t>> open_periods();

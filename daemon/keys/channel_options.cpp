@@ -121,8 +121,9 @@ const Option kOptions[] = {
      .default_value = "0.0",
      .min = 0,
      .max = 1e6,
-     .meaning = "Full scale of scale times raw: samples at it are clipped and taken out. 0 when "
-                "not known: then a flat peak shows it.",
+     .meaning = "Full scale of scale times raw: samples at it are clipped and taken out, beyond "
+                "1.25 of it rejected. 0 when not known: then a flat peak shows the end of the "
+                "range, and what is more than 200 m/s^2 from offset_mps2 is rejected.",
      .reload = restart,
      .target = into<&estimator::SensorAxis::range>},
     {.section = "channel",

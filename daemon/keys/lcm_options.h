@@ -2,6 +2,9 @@
 
 #include <string>
 
+#include "drivers/lcm/intake_settings.h"
+#include "drivers/lcm/lcm_reception.h"
+
 namespace framewatch::daemon {
 
 /// [lcm]: the bus the samples come from and the estimates go to.
@@ -9,8 +12,10 @@ struct LcmSettings {
   std::string url = "udpm://239.255.76.67:7667?ttl=0";
   std::string prefix = "FRAMEWATCH_";  ///< of the channels the daemon publishes on
   int queue_capacity = 10000;          ///< messages waiting for the estimator
-  int receive_buffer_bytes = 4194304;
+  drivers::LcmReception reception;
+  bool commands = false;  ///< commands are taken from LCM too
   int boxplot_every = 1;  ///< publish boxplot statistics with every n-th window
+  drivers::TwoSenders two_senders = drivers::TwoSenders::first;  ///< that send under one node
 };
 
 }  // namespace framewatch::daemon

@@ -46,6 +46,7 @@ std::span<const Option> structure_options();
 std::span<const Option> channel_options();
 std::span<const Option> estimator_options();
 std::span<const Option> lcm_options();
+std::span<const Option> command_options();
 std::span<const Option> can_options();
 std::span<const Option> watch_options();  ///< and the baseline file's
 std::span<const Option> gap_options();

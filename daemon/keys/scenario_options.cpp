@@ -205,7 +205,7 @@ const Option kScenarioOptions[] = {
      .unit = "s",
      .default_value = "30.0",
      .min = 0,
-     .max = 1e6,
+     .max = 1e5,
      .above_min = true,
      .meaning = "Kanai-Tajimi: ends after this time."},
 

@@ -239,6 +239,7 @@ void ConfigSection::store(const void* owner, void* settings) {
         found.boolean = boolean(o.key);
         break;
       case OptionType::texts:
+        if (!given(o.key)) continue;  // the field has its default
         found.texts = texts(o.key);
         break;
       case OptionType::grid:

@@ -18,4 +18,8 @@ std::vector<std::string> heard_channels(const Config& config) {
   return channels;
 }
 
+std::string acknowledge_channel(const Config& config) {
+  return config.lcm.prefix + "ACKNOWLEDGE";
+}
+
 }  // namespace framewatch::daemon

@@ -43,7 +43,7 @@ Housekeeping::Housekeeping(const Config& config, const std::string& text,
 void Housekeeping::look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager) {
   const std::int64_t now_us = host_clock_us();
   Estimation& estimation = live.estimation();
-  intake_warnings_.look(estimation, live.state(), now_us);
+  intake_warnings_.look(live, now_us);
   for (const std::string& news : can_warnings_.look(estimation.can(), live.can(), now_us))
     log(LogLevel::warning, news);
   if (const auto buses = can_monitor_.look(estimation.can(), live.can(), now_us))
@@ -53,6 +53,8 @@ void Housekeeping::look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& man
   gap_.look(estimation, now_us);
   if (const auto report = report_.look(live, state_, reloader_.count(), now_us)) {
     lcm.publish(config_.lcm.prefix + "SERVICE", &*report);
+    const reception_t reception = reception_report(live, now_us);
+    lcm.publish(config_.lcm.prefix + "RECEPTION", &reception);
     manager.status(status_line(live, config_, now_us));
   }
   const std::int64_t steady_us = steady_clock_us();

@@ -2,24 +2,30 @@
 
 #include <poll.h>
 
-#include <algorithm>
 #include <utility>
-
-#include <lcm/lcm-cpp.hpp>
 
 #include "daemon/base/clocks.h"
 #include "daemon/live/heard_channels.h"
 
 namespace framewatch::daemon {
+namespace {
 
-LiveEstimation::LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::CanLogWriter* can_log)
+std::vector<std::string> with(std::vector<std::string> channels, const std::string& another) {
+  channels.push_back(another);
+  return channels;
+}
+
+}  // namespace
+
+LiveEstimation::LiveEstimation(const Config& config, drivers::LcmProvider& lcm,
+                               drivers::CanLogWriter* can_log)
     : config_(std::make_unique<const Config>(config)),
       can_map_(config.can),
       lcm_(lcm),
       can_log_(can_log),
-      source_(lcm, heard_channels(config), config.lcm.queue_capacity,
-              [this](const std::string& channel, const void* data, std::size_t size,
-                     std::int64_t received_us) { on_message(channel, data, size, received_us); }),
+      request_channel_(acknowledge_channel(config)),
+      source_(lcm, with(heard_channels(config), request_channel_), config.lcm.queue_capacity,
+              [this](const drivers::LcmMessage& message) { on_message(message); }),
       can_(can_map_, can_log != nullptr,
            [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {
   times_.newest_us.resize(config.pipeline.axes.size());
@@ -74,8 +80,8 @@ void LiveEstimation::step_done(std::int64_t began_us, std::int64_t windows_befor
 }
 
 bool LiveEstimation::poll(int timeout_ms) {
-  if (config_->can.empty()) return source_.handle(timeout_ms);
-  std::vector<pollfd> waiting{{lcm_.getFileno(), POLLIN, 0}};
+  if (config_->can.empty()) return handle_messages(timeout_ms);
+  std::vector<pollfd> waiting{{source_.descriptor(), POLLIN, 0}};
   can_.descriptors(waiting);
   ::poll(waiting.data(), waiting.size(), timeout_ms);
   can_.handle(steady_clock_us());
@@ -84,7 +90,15 @@ bool LiveEstimation::poll(int timeout_ms) {
     estimation_->notice(
         {drivers::CanNotice::Kind::interface_gone, static_cast<int>(b), !gone, 0, host_clock_us()});
   }
-  return source_.handle(0) && !can_log_failed_;
+  return handle_messages(0) && !can_log_failed_;
+}
+
+bool LiveEstimation::handle_messages(int timeout_ms) {
+  const bool good = source_.handle(timeout_ms);
+  const std::int64_t dropped = source_.dropped().queue_full;
+  state_.queue_dropped += dropped - std::exchange(lcm_dropped_, dropped);
+  state_.queue_high_water = static_cast<std::int32_t>(source_.backlog_high_water());
+  return good;
 }
 
 void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
@@ -98,15 +112,15 @@ void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
   estimation_->set_live(state_);
 }
 
-void LiveEstimation::on_message(const std::string& channel, const void* data, std::size_t size,
-                                std::int64_t received_us) {
-  const std::int64_t lost = estimation_->intake().lost();
+void LiveEstimation::on_message(const drivers::LcmMessage& message) {
+  if (message.channel == request_channel_) {
+    if (on_request_) on_request_({static_cast<const std::uint8_t*>(message.data), message.size});
+    return;
+  }
   const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
-  estimation_->message(channel, data, size);
-  if (source_.queue_was_full())
-    state_.queue_dropped += std::max<std::int64_t>(0, estimation_->intake().lost() - lost);
-  state_.queue_high_water = static_cast<std::int32_t>(source_.backlog_high_water());
-  step_done(began_us, windows, received_us);
+  estimation_->message(message.channel, message.data, message.size, message.sender,
+                       message.received_us);
+  step_done(began_us, windows, message.received_us);
   estimation_->set_live(state_);
 }
 

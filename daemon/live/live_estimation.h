@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,10 +19,6 @@
 #include "drivers/can/can_source.h"
 #include "drivers/lcm/lcm_source.h"
 
-namespace lcm {
-class LCM;
-}
-
 namespace framewatch::daemon {
 
 /// Live estimation: samples from one LCM instance and from CAN buses, estimates to LCM. Works
@@ -29,7 +27,8 @@ class LiveEstimation {
  public:
   /// `lcm` must outlive this; with memq:// every sender and receiver must use it. `can_log`, if
   /// any, gets every frame of the buses.
-  LiveEstimation(const Config& config, lcm::LCM& lcm, drivers::CanLogWriter* can_log = nullptr);
+  LiveEstimation(const Config& config, drivers::LcmProvider& lcm,
+                 drivers::CanLogWriter* can_log = nullptr);
 
   /// Opens the configured buses. One line for each problem.
   std::vector<std::string> open_buses() { return can_.open(); }
@@ -42,6 +41,10 @@ class LiveEstimation {
   void record_to(History* history) { history_ = history; }
   /// From now on called with every event after it was published.
   void on_event(std::function<void(const event_t&)> handler) { on_event_ = std::move(handler); }
+  /// From now on called with every request to acknowledge an event that is heard.
+  void on_request(std::function<void(std::span<const std::uint8_t>)> handler) {
+    on_request_ = std::move(handler);
+  }
   const Estimation& estimation() const { return *estimation_; }
   Estimation& estimation() { return *estimation_; }
   /// The configuration it runs with; until the next reconfigure().
@@ -50,11 +53,13 @@ class LiveEstimation {
   void reconfigure(Config next, Reach reach);
   const LiveState& state() const { return state_; }
   const LiveTimes& times() const { return times_; }
+  /// What LCM's receiver did not take.
+  drivers::ReceiverCounters dropped() const { return source_.dropped(); }
   drivers::CanSource& can() { return can_; }
 
  private:
-  void on_message(const std::string& channel, const void* data, std::size_t size,
-                  std::int64_t received_us);
+  bool handle_messages(int timeout_ms);
+  void on_message(const drivers::LcmMessage& message);
   void on_frame(int bus, const drivers::CanFrame& frame);
   void on_sample(const estimator::AccelSample& sample);
   void begin_estimation();
@@ -62,15 +67,17 @@ class LiveEstimation {
 
   std::unique_ptr<const Config> config_;
   const drivers::CanMap can_map_;  ///< of the first configuration: the buses stay open
-  lcm::LCM& lcm_;
+  drivers::LcmProvider& lcm_;
   drivers::CanLogWriter* can_log_;
   bool can_log_failed_ = false;
-  std::int64_t can_dropped_ = 0;
+  std::int64_t can_dropped_ = 0, lcm_dropped_ = 0;
   LiveState state_;
   LiveTimes times_;
   std::optional<GapSegments> segments_;  ///< none: none are stored
   History* history_ = nullptr;
   std::function<void(const event_t&)> on_event_;
+  const std::string request_channel_;
+  std::function<void(std::span<const std::uint8_t>)> on_request_;
   std::unique_ptr<Estimation> estimation_;
   drivers::LcmSource source_;
   drivers::CanSource can_;

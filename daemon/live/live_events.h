@@ -5,11 +5,13 @@
 #include "daemon/config/config.h"
 #include "daemon/history/history_report.h"
 #include "daemon/live/live_estimation.h"
+#include "daemon/service/command_socket.h"
 
 namespace framewatch::daemon {
 
 /// What `framewatch run` does with events: those of the estimation and of the history go to the
-/// command and the webhook of [actions], and can be acknowledged. Keeps the history.
+/// command and the webhook of [actions], and can be acknowledged over its socket. Keeps the
+/// history.
 class LiveEvents {
  public:
   /// All must outlive this. Attaches itself to `live`.
@@ -23,11 +25,16 @@ class LiveEvents {
   void reconfigure(const Config& config) { actions_.reconfigure(config); }
 
  private:
+  AcknowledgeDesk::Raised raised() { return {&live_.estimation().raised(), &history_.raised()}; }
+  void acknowledged(const event_t& event, const Acknowledgement& by);
+  CommandPacket obey(const CommandPacket& command, const std::string& user);
+
   const Config& config_;
   LiveEstimation& live_;
   HistoryReport history_;
   ActionReport actions_;
   AcknowledgeDesk desk_;
+  CommandSocket commands_;
 };
 
 }  // namespace framewatch::daemon

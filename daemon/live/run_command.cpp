@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <lcm/lcm-cpp.hpp>
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
@@ -24,6 +23,7 @@
 #include "daemon/service/open_lcm.h"
 #include "daemon/service/service_manager.h"
 #include "daemon/service/start_count.h"
+#include "drivers/base/input_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -32,10 +32,10 @@ constexpr int kPoll_ms = 100;
 
 /// Resumes from the state file, if there is one. One that does not fit is renamed, and the log says
 /// why. Whether the run was resumed.
-bool resume(const std::string& path, const Config& config, lcm::LCM& lcm,
+bool resume(const std::string& path, const Config& config, drivers::LcmProvider& lcm,
             drivers::CanLogWriter* can_log, std::optional<LiveEstimation>& live) {
   std::error_code none;
-  if (!std::filesystem::exists(path, none)) return false;
+  if (drivers::is_absent(path)) return false;
   bool touched = false;
   const LoadedState state = load_state(path, config, live->estimation(), touched);
   if (state.problem.empty()) {
@@ -46,7 +46,9 @@ bool resume(const std::string& path, const Config& config, lcm::LCM& lcm,
   const std::string aside = path + ".refused";
   std::filesystem::rename(path, aside, none);
   log(LogLevel::warning,
-      fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
+      none ? fmt::format("{}: {}; starts anew, and cannot be put aside as {}: {}", path,
+                         state.problem, aside, none.message())
+           : fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
   if (touched) live.emplace(config, lcm, can_log);
   return false;
 }
@@ -69,6 +71,9 @@ int run(const RunArguments& a) {
       text ? parse_config(a.config, *text, problems) : std::nullopt;
   print_problems(problems);
   if (!config) return kBadInput;
+  if (!a.state.empty() && !drivers::is_absent(a.state))  // a device would be renamed and replaced
+    if (const std::string why = drivers::why_no_file(a.state); !why.empty())
+      return refuse("run", fmt::format("{}: {}", a.state, why));
 
   catch_stop_signals();
   catch_reload_signal();

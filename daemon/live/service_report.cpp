@@ -6,6 +6,18 @@
 
 namespace framewatch::daemon {
 
+reception_t reception_report(const LiveEstimation& live, std::int64_t now_us) {
+  const drivers::ReceiverCounters counters = live.dropped();
+  reception_t m{};
+  m.time_us = now_us;
+  m.datagrams_elsewhere = counters.from_elsewhere;
+  m.datagrams_malformed = counters.malformed;
+  m.datagrams_overflowed = counters.overflowed;
+  m.messages_unfinished = counters.unfinished;
+  m.messages_dropped = counters.queue_full;
+  return m;
+}
+
 ServiceReport::ServiceReport(const StartCount& starts, bool resumed)
     : starts_(starts), resumed_(resumed), started_us_(host_clock_us()) {}
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 
 #include "daemon/base/once_a_second.h"
@@ -18,6 +19,9 @@ struct ReloadCount {
   std::int64_t done = 0, refused = 0;
   std::string problem;  ///< why the newest one was refused; empty: accepted
 };
+
+/// What LCM's receiver has not taken so far. now_us: host clock.
+reception_t reception_report(const LiveEstimation& live, std::int64_t now_us);
 
 /// Reports once a second of the host's clock how the process of `framewatch run` is, whether
 /// samples come or not: a missing report means that the process is not running.

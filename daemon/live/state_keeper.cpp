@@ -9,8 +9,19 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/estimation/state_file.h"
+#include "drivers/base/caught.h"
 
 namespace framewatch::daemon {
+namespace {
+
+std::string written_or_why(const std::string& path, std::vector<std::uint8_t> bytes) {
+  std::string problem;
+  const std::string thrown =
+      drivers::caught([&] { problem = write_state(path, std::move(bytes)); });
+  return thrown.empty() ? problem : thrown;
+}
+
+}  // namespace
 
 StateKeeper::StateKeeper(std::string path, int every_s)
     : path_(std::move(path)), every_us_(1'000'000LL * every_s) {}
@@ -24,15 +35,21 @@ void StateKeeper::look(const Config& config, Estimation& estimation, std::int64_
   if (next_us_ == 0) next_us_ = now_us + every_us_;
   if (now_us < next_us_ || !written()) return;
   next_us_ = now_us + every_us_;
-  writing_ = std::async(std::launch::async,
-                        [path = path_, bytes = state_bytes(config, estimation, 0)]() mutable {
-                          return write_state(path, std::move(bytes));
-                        });
+  const std::string thrown = drivers::caught([&] {
+    writing_ = std::async(std::launch::async,
+                          [path = path_, bytes = state_bytes(config, estimation, 0)]() mutable {
+                            return written_or_why(path, std::move(bytes));
+                          });
+  });
+  if (!thrown.empty()) report("no thread to write it: " + thrown);
 }
 
 void StateKeeper::keep(const Config& config, Estimation& estimation) {
   if (writing_.valid()) report(writing_.get());
-  report(write_state(path_, state_bytes(config, estimation, 0)));
+  std::string problem;
+  const std::string thrown =
+      drivers::caught([&] { problem = write_state(path_, state_bytes(config, estimation, 0)); });
+  report(thrown.empty() ? problem : thrown);
 }
 
 bool StateKeeper::written() {

@@ -4,6 +4,8 @@
 
 #include <prometheus/text_serializer.h>
 
+#include "daemon/base/printable.h"
+
 namespace framewatch::daemon {
 
 MetricFamilies& MetricFamilies::family(const char* name, const char* help,
@@ -22,7 +24,7 @@ MetricFamilies& MetricFamilies::counter(const char* name, const char* help) {
 
 MetricFamilies& MetricFamilies::value(double value, const Labels& labels) {
   prometheus::ClientMetric metric;
-  for (const auto& [name, of] : labels) metric.label.push_back({name, of});
+  for (const auto& [name, of] : labels) metric.label.push_back({name, printable(of)});
   metric.gauge.value = metric.counter.value = value;
   families_.back().metric.push_back(std::move(metric));
   return *this;

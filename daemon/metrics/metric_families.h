@@ -15,10 +15,13 @@
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
+#include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
+
+#include "daemon/metrics/page_use.h"
 
 namespace framewatch::daemon {
 
@@ -66,6 +69,8 @@ void add_gap(MetricFamilies& out, const gap_t& gap);
 void add_can(MetricFamilies& out, const can_status_t& can);
 void add_history(MetricFamilies& out, const history_status_t& history);
 void add_actions(MetricFamilies& out, const action_status_t& actions);
+void add_reception(MetricFamilies& out, const reception_t& reception);
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
+void add_page_use(MetricFamilies& out, const PageUse& use);
 
 }  // namespace framewatch::daemon

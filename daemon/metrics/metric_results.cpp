@@ -156,12 +156,24 @@ void add_actions(MetricFamilies& out, const action_status_t& s) {
       .each("way", s.name, trouble);
 }
 
+void add_reception(MetricFamilies& out, const reception_t& r) {
+  out.counter("messages_unused_total", "LCM datagrams and messages that were dropped, by reason.");
+  for (const auto& [reason, count] : {std::pair{"elsewhere", r.datagrams_elsewhere},
+                                      std::pair{"malformed", r.datagrams_malformed},
+                                      std::pair{"overflowed", r.datagrams_overflowed},
+                                      std::pair{"unfinished", r.messages_unfinished},
+                                      std::pair{"queue_full", r.messages_dropped}})
+    out.value(static_cast<double>(count), {{"reason", reason}});
+}
+
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
   std::map<std::pair<std::string, std::string>, int> counts;
   // Always there, so that an alert sees it rise from nothing.
   for (const char* severity : kSeverities) {
     counts[{"stiffness_change", severity}] = 0;
     counts[{"gap", severity}] = 0;
+    counts[{"two_senders", severity}] = 0;
+    counts[{"channel_table", severity}] = 0;
   }
   for (const event_t& e : raised)
     if (e.severity >= 0 && e.severity < static_cast<int>(kSeverities.size()))
@@ -169,6 +181,20 @@ void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
   out.gauge("events_raised", "Events raised and not cleared.");
   for (const auto& [of, count] : counts)
     out.value(count, {{"kind", of.first}, {"severity", of.second}});
+}
+
+void add_page_use(MetricFamilies& out, const PageUse& use) {
+  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
+  out.gauge("serve_viewers", "Open pages of framewatch serve.").value(use.viewers);
+  out.gauge("serve_connections", "Connections that are not viewers, by what they wait for.")
+      .value(use.waiting, {{"state", "request"}})
+      .value(use.answering, {{"state", "answer"}});
+  out.counter("serve_connections_ended_total", "Connections ended by framewatch serve, by reason.")
+      .value(number(use.late_requests), {{"reason", "late_request"}})
+      .value(number(use.late_answers), {{"reason", "late_answer"}})
+      .value(number(use.crowded_out), {{"reason", "crowded"}});
+  out.counter("serve_viewers_refused_total", "Viewers for whom there was no place.")
+      .value(number(use.viewers_refused));
 }
 
 }  // namespace framewatch::daemon

@@ -6,6 +6,7 @@
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
+#include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/watch_t.hpp>
@@ -35,7 +36,7 @@ void Metrics::message(const std::string& channel, const void* data, std::size_t 
     return;
   }
   for (const char* wanted : {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "WATCH", "CAN",
-                             "HISTORY", "ACTIONS"}) {
+                             "HISTORY", "ACTIONS", "RECEPTION"}) {
     if (name != wanted) continue;
     const std::lock_guard<std::mutex> lock(mutex_);
     Newest& newest = newest_[name];
@@ -44,7 +45,7 @@ void Metrics::message(const std::string& channel, const void* data, std::size_t 
   }
 }
 
-std::string Metrics::text(std::int64_t now_us, int viewers) const {
+std::string Metrics::text(std::int64_t now_us, const PageUse& use) const {
   std::map<std::string, std::vector<std::uint8_t>> fresh;
   RaisedEvents raised;
   {
@@ -65,6 +66,7 @@ std::string Metrics::text(std::int64_t now_us, int viewers) const {
   const auto can = drivers::decoded<can_status_t>(fresh["CAN"]);
   const auto history = drivers::decoded<history_status_t>(fresh["HISTORY"]);
   const auto actions = drivers::decoded<action_status_t>(fresh["ACTIONS"]);
+  const auto reception = drivers::decoded<reception_t>(fresh["RECEPTION"]);
   MetricFamilies out;
   out.gauge("up", "1: framewatch run has been heard of in the last 5 s.").value(service ? 1 : 0);
   if (service) {
@@ -85,9 +87,10 @@ std::string Metrics::text(std::int64_t now_us, int viewers) const {
   if (can) add_can(out, *can);
   if (history) add_history(out, *history);
   if (actions) add_actions(out, *actions);
+  if (reception) add_reception(out, *reception);
   add_events(out, raised.all());
   const ProcessUsage usage = process_usage();
-  out.gauge("serve_viewers", "Open pages of framewatch serve.").value(viewers);
+  add_page_use(out, use);
   out.gauge("serve_resident_memory_bytes", "Memory of framewatch serve.")
       .value(static_cast<double>(usage.resident_bytes));
   out.counter("serve_cpu_seconds_total", "Processor time of framewatch serve.").value(usage.cpu_s);

@@ -8,6 +8,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/events/raised_events.h"
+#include "daemon/metrics/page_use.h"
 
 namespace framewatch::daemon {
 
@@ -28,8 +29,8 @@ class Metrics {
   }
   void message(const std::string& channel, const void* data, std::size_t size, std::int64_t now_us);
 
-  /// Text format 0.0.4. viewers: of the page.
-  std::string text(std::int64_t now_us, int viewers) const;
+  /// Text format 0.0.4. use: of the page.
+  std::string text(std::int64_t now_us, const PageUse& use) const;
 
  private:
   struct Newest {

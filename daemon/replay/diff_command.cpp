@@ -13,8 +13,10 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
 #include "daemon/documents/json_text.h"
 #include "daemon/estimates/estimate_diff.h"
+#include "drivers/base/input_file.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "drivers/lcm/message_types.h"
@@ -175,13 +177,16 @@ class Comparison {
 
 /// Offset of the first byte that is not the same; -1: the files are identical.
 std::int64_t first_different_byte(const std::string& a, const std::string& b) {
-  std::FILE* files[2] = {std::fopen(a.c_str(), "rbe"), std::fopen(b.c_str(), "rbe")};
+  drivers::InputFile files[2];
   std::vector<std::uint8_t> bytes[2];
   std::int64_t offset = 0, found = -1;
-  while (files[0] != nullptr && files[1] != nullptr && found < 0) {
+  bool readable = files[0].open(a) && files[1].open(b);
+  while (readable && found < 0) {
     for (int i = 0; i < 2; ++i) {
       bytes[i].resize(1 << 20);
-      bytes[i].resize(std::fread(bytes[i].data(), 1, bytes[i].size(), files[i]));
+      const std::int64_t got = files[i].read(bytes[i].data(), std::ssize(bytes[i]), offset);
+      readable = readable && got >= 0;
+      bytes[i].resize(static_cast<std::size_t>(std::max<std::int64_t>(got, 0)));
     }
     const auto [at, other] =
         std::mismatch(bytes[0].begin(), bytes[0].end(), bytes[1].begin(), bytes[1].end());
@@ -189,8 +194,6 @@ std::int64_t first_different_byte(const std::string& a, const std::string& b) {
     if (bytes[0].empty()) break;
     offset += std::ssize(bytes[0]);
   }
-  for (std::FILE* file : files)
-    if (file != nullptr) std::fclose(file);
   return found;
 }
 
@@ -222,8 +225,8 @@ void print_text(const Result& r, std::int64_t byte) {
       if (first == nullptr || span.first.end_us < first->first.end_us) first = &span;
       if (worst == nullptr || span.worst.ratio() > worst->worst.ratio()) worst = &span;
     }
-    fmt::print("{}: {}\n  first: {}\n  worst: {}\n", subject, list, text_of(first->first),
-               text_of(worst->worst));
+    fmt::print("{}: {}\n  first: {}\n  worst: {}\n", printable(subject), printable(list),
+               printable(text_of(first->first)), printable(text_of(worst->worst)));
   }
 }
 
@@ -265,7 +268,8 @@ int diff(const DiffArguments& arguments) {
   for (const EstimateReader* reader : {&a, &b})
     if (problems.empty() && reader->estimates() == 0)
       problems.push_back(reader->path() + ": holds no window_estimate_t");
-  for (const std::string& problem : problems) fmt::print(stderr, "framewatch diff: {}\n", problem);
+  for (const std::string& problem : problems)
+    fmt::print(stderr, "framewatch diff: {}\n", printable_lines(problem));
   if (!problems.empty()) return kBadInput;
   const std::int64_t byte = first_different_byte(arguments.a, arguments.b);
   if (arguments.json)

@@ -23,7 +23,10 @@ void LogSurvey::intact(const drivers::LogEvent& event) {
   if (open_) {
     LostStretch& stretch = lost_.back();
     stretch.after_us = event.timestamp_us;
-    if (events_ > 0) stretch.events = between(last_number_, event.number);
+    if (stretch.places > 1)
+      stretch.events = -1;
+    else if (events_ > 0)
+      stretch.events = between(last_number_, event.number);
     open_ = false;
   }
   ++events_;
@@ -45,16 +48,29 @@ void LogSurvey::count_samples(const drivers::LogEvent& event) {
 }
 
 void LogSurvey::damaged(const drivers::LogDamage& damage, bool truncated) {
-  LostStretch stretch{damage, truncated, {}, {}, -1, {}};
+  open_ = true;
+  if (lost_.size() == kMostStretches) {
+    LostStretch& last = lost_.back();
+    last.damage.bytes += damage.bytes;
+    ++last.places;
+    return;
+  }
+  LostStretch stretch;
+  stretch.damage = damage;
+  stretch.truncated = truncated;
   if (events_ > 0) stretch.before_us = last_us_;
   lost_.push_back(std::move(stretch));
-  open_ = true;
 }
 
 std::int64_t LogSurvey::damaged_bytes() const {
   return std::accumulate(
       lost_.begin(), lost_.end(), std::int64_t{0},
       [](std::int64_t sum, const LostStretch& s) { return sum + s.damage.bytes; });
+}
+
+std::int64_t LogSurvey::damaged_places() const {
+  return std::accumulate(lost_.begin(), lost_.end(), std::int64_t{0},
+                         [](std::int64_t sum, const LostStretch& s) { return sum + s.places; });
 }
 
 }  // namespace framewatch::daemon

@@ -14,6 +14,7 @@ namespace framewatch::daemon {
 /// A damaged part of a log, between the intact events before and after it.
 struct LostStretch {
   drivers::LogDamage damage;
+  std::int64_t places = 1;  ///< more: of several, of which only the first is told
   bool truncated = false;
   std::optional<std::int64_t> before_us, after_us;  ///< event times
   /// By the events' numbers; negative: the numbers say nothing (a logger that was started anew).
@@ -25,11 +26,14 @@ struct LostStretch {
 /// Counts, event by event, what a log contains and what is lost in it.
 class LogSurvey {
  public:
+  static constexpr std::size_t kMostStretches = 10'000;  ///< the last holds all that come after
+
   void intact(const drivers::LogEvent& event);
   void damaged(const drivers::LogDamage& damage, bool truncated);
 
   std::int64_t events() const { return events_; }
   std::int64_t damaged_bytes() const;
+  std::int64_t damaged_places() const;
   const std::vector<LostStretch>& lost() const { return lost_; }
 
  private:

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/documents/json_values.h"
 #include "daemon/estimation/estimation.h"
@@ -100,8 +101,9 @@ int refine(const RefineArguments& a) {
   ReplaySurvey survey(*config, false);
   for (const std::string& path : a.inputs) survey.add(path);
   survey.finish();
-  for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", note);
-  for (const std::string& problem : survey.problems()) fmt::print(stderr, "{}\n", problem);
+  for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", printable_lines(note));
+  for (const std::string& problem : survey.problems())
+    fmt::print(stderr, "{}\n", printable_lines(problem));
   if (!survey.problems().empty()) return kBadInput;
 
   const estimator::ParameterTable table(pipeline_config.structure);
@@ -121,11 +123,11 @@ int refine(const RefineArguments& a) {
         1e6 * (to_s + pipeline_config.options.lateness_s))
       pipeline.push(sample);
   };
-  drivers::AccelIntake intake(wanted_axes(*config), sink);
+  drivers::AccelIntake intake(wanted_axes(*config), sink, intake_settings(*config));
   for (const ReplayInput& input : survey.inputs()) {
     const std::string problem = push_stored_samples(*config, input, intake, sink);
     if (problem.empty()) continue;
-    fmt::print(stderr, "{}\n", problem);
+    fmt::print(stderr, "{}\n", printable_lines(problem));
     return kBadInput;
   }
   pipeline.finish();

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/documents/json_text.h"
 #include "daemon/replay/log_survey.h"
@@ -30,6 +31,7 @@ std::string text_of(const LostStretch& s) {
   std::string out =
       fmt::format("byte {}: {}, {} bytes: {}", s.damage.offset,
                   s.truncated ? "truncated" : "damaged", s.damage.bytes, s.damage.reason);
+  if (s.places > 1) out += fmt::format("; {} places in all", s.places);
   const std::string before = time_text(s.before_us), after = time_text(s.after_us);
   if (!before.empty() && !after.empty())
     out += fmt::format("; between {} and {}", before, after);
@@ -53,9 +55,9 @@ std::string json_of(const LostStretch& s) {
     samples += fmt::format("{}{{\"channel\": {}, \"node\": {}, \"samples\": {}}}",
                            samples.empty() ? "" : ", ", json_text(node.first), node.second, count);
   return fmt::format(
-      "{{\"byte\": {}, \"bytes\": {}, \"kind\": \"{}\", \"reason\": {}, \"after_us\": {}, "
-      "\"before_us\": {}, \"events\": {}, \"lost\": [{}]}}",
-      s.damage.offset, s.damage.bytes, s.truncated ? "truncated" : "damaged",
+      "{{\"byte\": {}, \"bytes\": {}, \"places\": {}, \"kind\": \"{}\", \"reason\": {}, "
+      "\"after_us\": {}, \"before_us\": {}, \"events\": {}, \"lost\": [{}]}}",
+      s.damage.offset, s.damage.bytes, s.places, s.truncated ? "truncated" : "damaged",
       json_text(s.damage.reason), time_json(s.before_us), time_json(s.after_us),
       s.events < 0 ? "null" : std::to_string(s.events), samples);
 }
@@ -75,9 +77,9 @@ void report(const RepairArguments& a, const LogSurvey& survey, const std::string
     fmt::print("]}}\n");
     return;
   }
-  for (const LostStretch& s : survey.lost()) fmt::print("{}: {}\n", a.log, text_of(s));
+  for (const LostStretch& s : survey.lost()) fmt::print("{}: {}\n", a.log, printable(text_of(s)));
   fmt::print("{}: {} intact events, {} damaged bytes in {} places{}\n", a.log, survey.events(),
-             survey.damaged_bytes(), survey.lost().size(),
+             survey.damaged_bytes(), survey.damaged_places(),
              survey.lost().empty() ? ": nothing to repair"
              : out.empty()         ? ""
                                    : "; the intact events are in " + out);

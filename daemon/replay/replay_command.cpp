@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/config/baseline_file.h"
 #include "daemon/config/config_problems.h"
@@ -57,8 +58,9 @@ std::vector<std::string> argument_problems(const ReplayArguments& a) {
 
 /// Says all that is wrong. False when replay must not go on.
 bool judge(const ReplaySurvey& survey) {
-  for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", note);
-  for (const std::string& problem : survey.problems()) fmt::print(stderr, "{}\n", problem);
+  for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", printable_lines(note));
+  for (const std::string& problem : survey.problems())
+    fmt::print(stderr, "{}\n", printable_lines(problem));
   if (survey.salvageable())
     fmt::print(stderr, "framewatch replay: --salvage uses what is intact\n");
   return survey.problems().empty();
@@ -214,9 +216,9 @@ class ReplayRun {
     std::string problem;
     if (!a_.junit.empty())
       problem = drivers::write_text_file(a_.junit, junit_xml(checks, a_.expect));
-    if (!a_.write_expect.empty())
+    if (problem.empty() && !a_.write_expect.empty())
       problem = drivers::write_text_file(a_.write_expect, written_expectations(outcome, command()));
-    if (!a_.write_baseline.empty()) problem = write_baseline();
+    if (problem.empty() && !a_.write_baseline.empty()) problem = write_baseline();
     if (!problem.empty()) return refuse("replay", problem);
 
     const std::chrono::duration<double> work = Clock::now() - start_;
@@ -230,7 +232,7 @@ class ReplayRun {
                             differences_json(checks));
       fmt::print("{}}}\n", json);
     } else if (!a_.quiet) {
-      fmt::print("{}{}", summary.text(), alarms_);
+      fmt::print("{}", printable_lines(summary.text() + alarms_));
       if (holds && expectations_) fmt::print("\nas expected: {} of {}\n", checks.size(), a_.expect);
     }
     if (holds) return 0;
@@ -253,7 +255,7 @@ class ReplayRun {
     for (const Check& c : checks) {
       if (c.holds) continue;
       ++differences;
-      fmt::print(stderr, "{}\n", c.text());
+      fmt::print(stderr, "{}\n", printable_lines(c.text()));
     }
     fmt::print(stderr, "framewatch replay: {} of {} expectations of {} do not hold\n", differences,
                checks.size(), a_.expect);

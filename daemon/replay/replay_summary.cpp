@@ -38,8 +38,9 @@ ReplayCounts replay_counts(const Estimation& estimation) {
     malformed += node.wrong_length + node.wrong_kind;
   }
   for (const drivers::CanBusCounters& bus : can.buses()) foreign += bus.foreign;
-  std::int64_t late = 0, repaired = 0, rejected = intake.duplicate, stuck = 0, clipped = 0;
-  for (const estimator::AxisCounters& axis : pipeline.axes) {
+  std::int64_t late = 0, repaired = 0, rejected = intake.duplicate + intake.other_sender;
+  std::int64_t stuck = 0, clipped = 0;
+  for (const estimator::AxisCounters& axis : estimation.axis_counters()) {
     late += axis.late;
     repaired += axis.repaired;
     rejected += axis.rejected;

@@ -7,17 +7,14 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/median.h"
+#include "drivers/base/input_file.h"
 #include "drivers/can/can_log.h"
-#include "drivers/lcm/count_block.h"
 #include "drivers/lcm/message_types.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kRateTolerance = 0.02;
 constexpr std::size_t kStampsPerNode = 4096;
-constexpr std::size_t kRateLag = 100;  ///< samples; times may be rounded to whole milliseconds
 constexpr int kDamageLines = 20;
 
 bool looks_like_record(const std::string& path) {
@@ -25,16 +22,6 @@ bool looks_like_record(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename();
   return name.find(".csv") != std::string::npos || name.ends_with(".txt") ||
          name.ends_with(".AT2") || name.ends_with(".at2");
-}
-
-std::string list(const std::map<std::string, std::int64_t>& channels) {
-  std::string text;
-  int shown = 0;
-  for (const auto& [name, count] : channels) {
-    if (++shown > 10) return text + ", ...";
-    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, count);
-  }
-  return text;
 }
 
 }  // namespace
@@ -45,7 +32,8 @@ ReplaySurvey::ReplaySurvey(const Config& config, bool salvage, ReplaySpan span)
       span_(span),
       spanned_(!span.whole()),
       place_(span.from_s > 0 ? Place::before : Place::inside),
-      intake_(wanted_axes(config), [](const estimator::AccelSample&) {}) {}
+      intake_(
+          wanted_axes(config), [](const estimator::AccelSample&) {}, intake_settings(config)) {}
 
 void ReplaySurvey::fault(std::string message) {
   if (!salvage_) ++faults_;
@@ -53,6 +41,10 @@ void ReplaySurvey::fault(std::string message) {
 }
 
 void ReplaySurvey::add(const std::string& path) {
+  if (const std::string why = drivers::why_no_file(path); !why.empty()) {
+    problems_.push_back(fmt::format("{}: {}", path, why));
+    return;
+  }
   std::error_code failure;
   const auto size = std::filesystem::file_size(path, failure);
   if (failure) {
@@ -152,6 +144,8 @@ void ReplaySurvey::add_log(const std::string& path) {
   stamps_.clear();
   int damages = 0;
   const std::int64_t malformed = intake().counters().malformed;
+  const std::int64_t backwards = intake().backwards();
+  estimation_ != nullptr ? estimation_->log_begins() : intake_.log_begins();
   const std::int64_t damaged_before = damaged_bytes_;
   drivers::LogEvent event;
   for (auto read = reader.next(event); read != drivers::LogRead::end; read = reader.next(event)) {
@@ -174,6 +168,7 @@ void ReplaySurvey::add_log(const std::string& path) {
   if (damages > kDamageLines)
     fault(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
                       damaged_bytes_ - damaged_before));
+  if (intake().backwards() == backwards) seen.backwards_offset = -1;  // it was another sender's
   judge_log(path, seen, intake().counters().malformed - malformed);
   inputs_.push_back({path, false, {}, {}});
 }
@@ -235,16 +230,21 @@ void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
     return;
   }
   const std::int64_t backwards = intake().backwards();
-  const auto result =
-      estimation_ != nullptr
-          ? estimation_->message(event.channel, event.data.data(), event.data.size())
-          : intake_.message(event.channel, event.data.data(), event.data.size());
+  const drivers::IntakeCounters before = intake().counters();
+  const auto give = [&](auto& to) {
+    return to.message(event.channel, event.data.data(), event.data.size(), {}, event.timestamp_us);
+  };
+  const auto result = estimation_ != nullptr ? give(*estimation_) : give(intake_);
   if (result == drivers::IntakeResult::malformed && seen.first_malformed_offset < 0) {
     seen.first_malformed_offset = event.offset;
     const char* type = drivers::type_of_lcm_channel(event.channel);
     seen.malformed =
         event.channel + ": " + drivers::why_not(type == nullptr ? "accel_t" : type, event.data);
   }
+  const drivers::IntakeCounters& now = intake().counters();
+  if (now.elsewhere > before.elsewhere && seen.elsewhere_offset < 0)
+    seen.elsewhere_offset = event.offset;
+  if (now.renamed > before.renamed && seen.renamed_offset < 0) seen.renamed_offset = event.offset;
   if (result != drivers::IntakeResult::samples) return;
   const drivers::SensorNodeSample& sample = intake().last_sample();
   const std::int64_t time_us = to_microseconds(sample.time);
@@ -259,55 +259,6 @@ void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
   NodeStamps& node = stamps_[intake().last_node()];
   if (node.stamps.empty()) node.place = {event.channel, sample.node};
   if (node.stamps.size() < kStampsPerNode) node.stamps.push_back({sample.sequence, time_us});
-}
-
-void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed) {
-  if (seen.samples == 0 && seen.channels.contains(drivers::kCountsChannel)) {
-    problems_.push_back(path +
-                        ": is a raw log of a history; `framewatch history CONFIG --raw OUT.lcmlog` "
-                        "makes one to replay");
-    return;
-  }
-  const std::string malformed_text = fmt::format(
-      "{}: byte {}: {} messages on our channels are no accel_t or channel_table_t, the first: {}",
-      path, seen.first_malformed_offset, malformed, seen.malformed);
-  if (malformed > 0 && seen.samples > 0) fault(malformed_text);
-  if (malformed > 0 && seen.samples == 0) problems_.push_back(malformed_text);
-  if (seen.infinite_offset >= 0)
-    fault(fmt::format("{}: byte {}: infinite acceleration", path, seen.infinite_offset));
-  if (seen.events == 0)
-    problems_.push_back(fmt::format("{}: holds no intact LCM event", path));
-  else if (seen.samples == 0 && malformed == 0 && !seen.left_out)
-    problems_.push_back(fmt::format("{}: no message for the channels of {}; it has {}", path,
-                                    config_.path, list(seen.channels)));
-  const bool in_order = seen.samples == 0 || extend(path, log_first_us_, log_last_us_);
-  if (in_order && seen.backwards_offset >= 0)
-    problems_.push_back(fmt::format(
-        "{}: byte {}: time runs backwards: a node's sample is not newer than the one before", path,
-        seen.backwards_offset));
-  std::sort(stamps_.begin(), stamps_.end(),
-            [](const NodeStamps& a, const NodeStamps& b) { return a.place < b.place; });
-  for (const auto& [node, stamps] : stamps_) {
-    if (stamps.empty()) continue;
-    const std::size_t lag = std::min(kRateLag, stamps.size() - 1);
-    std::vector<double> steps;
-    for (std::size_t i = lag; lag > 0 && i < stamps.size(); ++i) {
-      const auto sequence_step = stamps[i].sequence - stamps[i - lag].sequence;
-      const auto time_step_us = stamps[i].time_us - stamps[i - lag].time_us;
-      if (sequence_step > 0 && time_step_us > 0)
-        steps.push_back(static_cast<double>(time_step_us) / static_cast<double>(sequence_step));
-    }
-    if (steps.empty()) continue;
-    check_rate(fmt::format("{}: {} node {}", path, node.first, node.second),
-               1e6 / median(std::move(steps)));
-  }
-}
-
-void ReplaySurvey::check_rate(const std::string& place, double rate_hz) {
-  const double configured = config_.pipeline.options.rate_hz;
-  if (std::abs(rate_hz / configured - 1) > kRateTolerance)
-    problems_.push_back(fmt::format("{}: sampled at {:.4g} Hz, but {} says rate_hz = {:g}", place,
-                                    rate_hz, config_.path, configured));
 }
 
 // Where one log is cut and the next one begins the nodes need not have come equally far.

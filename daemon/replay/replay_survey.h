@@ -73,7 +73,7 @@ class ReplaySurvey {
     std::map<std::string, std::int64_t> channels;                  ///< events by channel
     std::pair<const std::string, std::int64_t>* newest = nullptr;  ///< of the last event
     std::int64_t events = 0, samples = 0, first_malformed_offset = -1, backwards_offset = -1;
-    std::int64_t infinite_offset = -1;
+    std::int64_t infinite_offset = -1, elsewhere_offset = -1, renamed_offset = -1;
     bool left_out = false;  ///< something lies outside the span
     std::string malformed;  ///< why the first such message is
   };

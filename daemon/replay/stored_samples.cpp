@@ -22,13 +22,14 @@ void push_record(const ReplayInput& input, const drivers::AccelIntake::Sink& sin
 }
 
 std::string push_log(const std::string& path, drivers::AccelIntake& intake) {
+  intake.log_begins();
   drivers::LcmLogReader reader;
   drivers::LogEvent event;
   auto read = reader.open(path) ? reader.next(event) : drivers::LogRead::error;
   for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
        read = reader.next(event))
     if (read == drivers::LogRead::event)
-      intake.message(event.channel, event.data.data(), event.data.size());
+      intake.message(event.channel, event.data.data(), event.data.size(), {}, event.timestamp_us);
   return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
 }
 

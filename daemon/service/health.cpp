@@ -81,6 +81,10 @@ void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string
     if (lost > kLoss_ratio * (lost + received))
       out.push_back(fmt::format("{}: loses {:.1f} % of its samples", heard.status->name[i],
                                 100 * lost / (lost + received)));
+    if (const std::int64_t rejected = heard.status->rejected[i] - heard.first_status->rejected[i];
+        rejected > 0)
+      out.push_back(
+          fmt::format("{}: {} of its samples were rejected", heard.status->name[i], rejected));
   }
   if (heard.status->queue_dropped > heard.first_status->queue_dropped)
     out.push_back("messages are lost to a full queue: this machine does not keep up");
@@ -104,6 +108,12 @@ void of_watch(const watch_t& w, const Config& config, std::vector<std::string>& 
 void of_history(const history_status_t& s, std::vector<std::string>& out) {
   if (!s.raw_trouble.empty()) out.push_back("raw samples are not stored: " + s.raw_trouble);
   if (!s.summary_trouble.empty()) out.push_back("summaries are not stored: " + s.summary_trouble);
+}
+
+void of_reception(const Heard& heard, std::vector<std::string>& out) {
+  if (!heard.first_reception) return;
+  if (heard.reception->datagrams_overflowed > heard.first_reception->datagrams_overflowed)
+    out.push_back("the kernel drops LCM datagrams: too many come at once for the receive buffer");
 }
 
 void of_actions(const action_status_t& s, std::vector<std::string>& out) {
@@ -131,7 +141,7 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
 std::vector<std::string> Heard::channels() const {
   std::vector<std::string> out;
   for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "WATCH", "CAN", "HISTORY",
-                           "ACTIONS", "ACKNOWLEDGED"})
+                           "ACTIONS", "ACKNOWLEDGED", "RECEPTION"})
     out.push_back(prefix_ + name);
   return out;
 }
@@ -161,6 +171,11 @@ void Heard::message(const std::string& channel, const void* data, std::size_t si
     if (auto found = drivers::decoded<history_status_t>(bytes)) history = std::move(found);
   } else if (name == "ACKNOWLEDGED") {
     if (auto found = drivers::decoded<acknowledged_t>(bytes)) acknowledged = std::move(found);
+  } else if (name == "RECEPTION") {
+    if (auto found = drivers::decoded<reception_t>(bytes)) {
+      if (reception && !first_reception) first_reception = reception;
+      reception = std::move(found);
+    }
   } else if (name == "ACTIONS") {
     if (auto found = drivers::decoded<action_status_t>(bytes)) actions = std::move(found);
   }
@@ -205,6 +220,7 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   if (heard.watch) of_watch(*heard.watch, config, out);
   if (heard.history) of_history(*heard.history, out);
   if (heard.actions) of_actions(*heard.actions, out);
+  of_reception(heard, out);
   of_process(s, config, now_us, out);
   return out;
 }

@@ -10,6 +10,7 @@
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
+#include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/watch_t.hpp>
@@ -38,6 +39,7 @@ class Heard {
   std::optional<can_status_t> can;
   std::optional<history_status_t> history;
   std::optional<action_status_t> actions;
+  std::optional<reception_t> first_reception, reception;
   std::optional<acknowledged_t> acknowledged;
 
  private:

@@ -2,12 +2,13 @@
 
 #include <unistd.h>
 
-#include <lcm/lcm-cpp.hpp>
+#include <sstream>
+#include <string>
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/base/stop_signal.h"
-#include "drivers/lcm/lcm_source.h"
+#include "drivers/lcm/lcm_provider.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -16,15 +17,19 @@ constexpr unsigned kRetry_us = 500'000;
 
 }  // namespace
 
-std::unique_ptr<lcm::LCM> open_lcm_with_retry(const Config& config, const std::string& url,
-                                              ServiceManager& manager, std::string& error) {
+std::unique_ptr<drivers::LcmProvider> open_lcm_with_retry(const Config& config,
+                                                          const std::string& url,
+                                                          ServiceManager& manager,
+                                                          std::string& error) {
   const std::string& where = url.empty() ? config.lcm.url : url;
   for (bool said = false;; said = true) {
-    auto lcm = drivers::open_lcm(where, config.lcm.receive_buffer_bytes, error);
+    auto lcm = drivers::open_lcm(where, config.lcm.reception, error);
     const bool may_come = manager.listens() && where.starts_with("udpm://");
     if (lcm || !may_come || stop_requested()) return lcm;
     if (!said) {
-      log(LogLevel::warning, error + "\nwaits for it");
+      std::istringstream lines(error);
+      for (std::string line; std::getline(lines, line);) log(LogLevel::warning, line);
+      log(LogLevel::warning, "waits for it");
       manager.ready();
     }
     manager.status("waits for LCM on " + where);

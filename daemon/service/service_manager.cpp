@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/printable.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -28,7 +29,7 @@ void ServiceManager::ready() {
 void ServiceManager::status(const std::string& line) {
   if (!listens_ || line == sent_) return;
   sent_ = line;
-  ::sd_notify(0, ("STATUS=" + line).c_str());
+  ::sd_notify(0, ("STATUS=" + printable(line)).c_str());
 }
 
 void ServiceManager::alive(std::int64_t now_us) {

@@ -1,13 +1,17 @@
 #include "daemon/service/start_count.h"
 
-#include <fstream>
+#include <cstdint>
+#include <sstream>
 
 #include <fmt/core.h>
 
+#include "drivers/base/input_file.h"
 #include "drivers/base/text_output.h"
 
 namespace framewatch::daemon {
 namespace {
+
+constexpr std::int64_t kMostBytes = 4096;
 
 std::string file_of(const std::string& state_path) {
   return state_path + ".starts";
@@ -24,7 +28,9 @@ std::string store(const std::string& state_path, const StartCount& count, bool r
 StartCount count_start(const std::string& state_path, std::string& problem) {
   StartCount count;
   std::int64_t running = 0;
-  std::ifstream file(file_of(state_path));
+  std::string unread;
+  std::istringstream file(
+      drivers::read_whole_file(file_of(state_path), kMostBytes, unread).value_or(""));
   std::string key;
   for (std::int64_t value = 0; file >> key >> value;) {
     if (key == "starts") count.starts = value;

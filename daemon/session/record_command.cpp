@@ -5,32 +5,35 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <deque>
 #include <filesystem>
 #include <optional>
 
-#include <framewatch/session_command_t.hpp>
 #include <framewatch/session_status_t.hpp>
 
 #include <fmt/core.h>
 
 #include "daemon/base/child_process.h"
 #include "daemon/base/clocks.h"
-#include "daemon/base/descriptor.h"
 #include "daemon/base/exit_code.h"
 #include "daemon/base/log.h"
 #include "daemon/base/stop_signal.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/session/recorder.h"
 #include "daemon/session/session_command.h"
+#include "daemon/session/session_desk.h"
 #include "daemon/session/session_finish.h"
+#include "drivers/base/descriptor.h"
 #include "drivers/base/encoded.h"
+#include "drivers/base/input_file.h"
+#include "drivers/base/partial_file.h"
 #include "drivers/can/can_source.h"
 #include "drivers/lcm/lcm_source.h"
-#include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -45,21 +48,22 @@ drivers::CanMap listening(drivers::CanMap map) {
   return map;
 }
 
-/// One recorder per folder: two would both obey a command.
+/// One recorder per folder: no two write into it.
 class FolderLock {
  public:
   /// Empty, or why not.
   std::string lock(const std::string& folder) {
     std::error_code error;
     fs::create_directories(folder, error);
-    file_.reset(::open((folder + "/.recorder").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
-    if (file_.get() < 0) return fmt::format("{}: sessions cannot be stored there", folder);
+    file_.reset(drivers::open_own_file(folder + "/.recorder", O_RDWR | O_CREAT));
+    if (file_.get() < 0)
+      return fmt::format("{}: sessions cannot be stored there: {}", folder, std::strerror(errno));
     if (::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) return "";
     return fmt::format("{}: another framewatch record works there; tell it with --send", folder);
   }
 
  private:
-  Descriptor file_;
+  drivers::Descriptor file_;
 };
 
 void print_channels(const std::vector<ChannelResult>& results) {
@@ -77,14 +81,14 @@ void print_channels(const std::vector<ChannelResult>& results) {
 
 class RecordCommand {
  public:
-  RecordCommand(const RecordArguments& a, const Config& config, lcm::LCM& lcm)
+  RecordCommand(const RecordArguments& a, const Config& config, drivers::LcmProvider& lcm)
       : a_(a),
         config_(config),
         lcm_(lcm),
         recorder_(config, a.out, [this](const std::string& folder) { ended(folder); }),
+        desk_(config, recorder_),
         source_(lcm, channels(), config.lcm.queue_capacity,
-                [this](const std::string& channel, const void* data, std::size_t size,
-                       std::int64_t received_us) { message(channel, data, size, received_us); }),
+                [this](const drivers::LcmMessage& m) { message(m); }),
         can_map_(listening(config.can)),
         can_(can_map_, true,
              [this](int bus, const drivers::CanFrame& frame) { recorder_.frame(bus, frame); }) {}
@@ -94,6 +98,7 @@ class RecordCommand {
     step_ = a_.standby ? Step::standby : a_.check ? Step::check : Step::begin;
     while (step_ != Step::done) {
       poll();
+      desk_.look();
       const std::int64_t now_us = host_clock_us();
       recorder_.tick(now_us);
       advance(now_us);
@@ -109,17 +114,13 @@ class RecordCommand {
 
   std::vector<std::string> channels() const {
     std::vector<std::string> out = recorder_.channels();
-    out.push_back(config_.lcm.prefix + "SESSION_COMMAND");
+    out.push_back(desk_.channel());
     return out;
   }
 
-  void message(const std::string& channel, const void* data, std::size_t size,
-               std::int64_t received_us) {
-    if (channel != config_.lcm.prefix + "SESSION_COMMAND")
-      return recorder_.message(channel, data, size, received_us);
-    const auto command =
-        drivers::decoded<session_command_t>({static_cast<const std::uint8_t*>(data), size});
-    if (command) recorder_.obey(*command, host_clock_us());
+  void message(const drivers::LcmMessage& m) {
+    if (m.channel == desk_.channel()) return desk_.heard(m.data, m.size, host_clock_us());
+    recorder_.message(m.channel, m.data, m.size, m.received_us, m.sender);
   }
 
   void poll() {
@@ -127,7 +128,7 @@ class RecordCommand {
       if (!source_.handle(kPoll_ms) && !stop_requested()) ::usleep(1000 * kPoll_ms);
       return;
     }
-    std::vector<pollfd> waiting{{lcm_.getFileno(), POLLIN, 0}};
+    std::vector<pollfd> waiting{{source_.descriptor(), POLLIN, 0}};
     can_.descriptors(waiting);
     ::poll(waiting.data(), waiting.size(), kPoll_ms);
     can_.handle(steady_clock_us());
@@ -233,7 +234,7 @@ class RecordCommand {
     const fs::path folder(finishing_);
     std::string unread;
     const auto session = read_session_file(finishing_ + "/" + kSessionJson, unread);
-    const bool page = fs::exists(folder / kReportPage);
+    const bool page = drivers::why_no_file((folder / kReportPage).string()).empty();
     const std::string report =
         session && !session->report.empty() ? session->report : std::string();
     if (!a_.quiet && !report.empty()) fmt::print("{}\n", report);
@@ -283,8 +284,9 @@ class RecordCommand {
 
   const RecordArguments& a_;
   const Config& config_;
-  lcm::LCM& lcm_;
+  drivers::LcmProvider& lcm_;
   Recorder recorder_;
+  SessionDesk desk_;
   drivers::LcmSource source_;
   drivers::CanMap can_map_;
   drivers::CanSource can_;
@@ -319,12 +321,16 @@ int record(const RecordArguments& a) {
     (void)refuse("record", "--standby waits for commands: leave --send and --tap-test out");
     good = false;
   }
+  if (!a.send.empty() && !a.url.empty()) {
+    (void)refuse("record", "--send goes over the recorder's socket, not over LCM: leave --url out");
+    good = false;
+  }
   if (!good) return kBadInput;
+  if (!a.send.empty()) return send_session_command(*config, a.send, a.request);
   std::string error;
-  const auto lcm = drivers::open_lcm(a.url.empty() ? config->lcm.url : a.url,
-                                     config->lcm.receive_buffer_bytes, error);
+  const auto lcm =
+      drivers::open_lcm(a.url.empty() ? config->lcm.url : a.url, config->lcm.reception, error);
   if (!lcm) return refuse("record", error);
-  if (!a.send.empty()) return send_session_command(*lcm, config->lcm.prefix, a.send, a.request);
   FolderLock lock;
   error = lock.lock(a.out);
   if (!error.empty()) return refuse("record", error);

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/log.h"
+#include "daemon/base/printable.h"
 #include "daemon/estimation/estimate_channels.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/live/heard_channels.h"
@@ -21,6 +22,7 @@ constexpr std::size_t kMostBeforeBytes = std::size_t{64} << 20;
 constexpr std::int64_t kAfter_us = 500'000;       // estimates of the last samples are on their way
 constexpr std::int64_t kSilence_us = 10'000'000;  // over its length, of a session without samples
 constexpr std::int64_t kTroubleEvery_us = 10'000'000;
+constexpr std::size_t kMostVerb = 40;  // bytes of one that is not known
 constexpr double kSlack_s = 0.1;
 constexpr double kTapOverRest = 8, kLeastTap_mps2 = 0.05;
 
@@ -45,10 +47,12 @@ Recorder::Recorder(const Config& config, std::string sessions, Ended ended)
     : config_(config),
       sessions_(std::move(sessions)),
       ended_(std::move(ended)),
-      acquisition_(config.pipeline.axes, config.pipeline.options,
-                   [this](const estimator::SampleSet& set) { keep(set); }),
-      intake_(wanted_axes(config),
-              [this](const estimator::AccelSample& s) { acquisition_.push(s); }),
+      acquisition_(
+          config.pipeline.axes, config.pipeline.options,
+          [this](const estimator::SampleSet& set) { keep(set); }, true),
+      intake_(
+          wanted_axes(config), [this](const estimator::AccelSample& s) { acquisition_.push(s); },
+          intake_settings(config)),
       can_(config.can, [this](const estimator::AccelSample& s) { acquisition_.push(s); }),
       rest_(config.pipeline.axes.size(), config.pipeline.options.rate_hz),
       check_(acquisition_.axes(), config.pipeline.options.rate_hz),
@@ -66,13 +70,13 @@ std::vector<std::string> Recorder::channels() const {
 }
 
 void Recorder::message(const std::string& channel, const void* data, std::size_t size,
-                       std::int64_t received_us) {
+                       std::int64_t received_us, const drivers::LcmSender& sender) {
   now_us_ = received_us;
   const bool estimate = channel.starts_with(config_.lcm.prefix);
   store({estimate ? MessageKind::estimate : MessageKind::raw, received_us, channel,
          std::string(static_cast<const char*>(data), size)});
   if (!estimate)
-    (void)intake_.message(channel, data, size);
+    (void)intake_.message(channel, data, size, sender, received_us);
   else if (channel == config_.lcm.prefix + "ESTIMATE" && log_)
     ++session_.estimates;
 }
@@ -145,11 +149,13 @@ void Recorder::look_for_trigger(const std::vector<double>& distance) {
   }
 }
 
-std::string Recorder::begin(const SessionRequest& request, std::int64_t now_us) {
+std::string Recorder::begin(const SessionRequest& request, std::int64_t now_us,
+                            const std::string& user) {
   if (state_ == RecorderState::recording) return "a session is being recorded: stop it first";
   for (const std::string& problem : problems(request)) return problem;
   session_ = {};
   session_.request = request;
+  session_.asked_by = user;
   if (request.trigger_mps2 <= 0) return open(now_us, "");
   state_ = RecorderState::armed;
   news_.clear();
@@ -179,7 +185,7 @@ std::string Recorder::stop(const std::string& why, std::int64_t now_us) {
   return "";
 }
 
-void Recorder::obey(const session_command_t& c, std::int64_t now_us) {
+void Recorder::obey(const session_command_t& c, const std::string& user, std::int64_t now_us) {
   if (c.id == answered_) return;
   answered_ = c.id;
   const SessionRequest request{c.test,     c.operator_name, c.notes,
@@ -193,9 +199,10 @@ void Recorder::obey(const session_command_t& c, std::int64_t now_us) {
   else if (c.verb == "start" && c.trigger_mps2 > 0)
     refused_ = "starting at once needs no trigger level";
   else if (c.verb == "arm" || c.verb == "start")
-    refused_ = begin(request, now_us);
+    refused_ = begin(request, now_us, user);
   else
-    refused_ = "no such command: " + c.verb;
+    refused_ = "no such command: " + printable(c.verb, kMostVerb);
+  if (refused_.empty()) log(LogLevel::notice, fmt::format("{}, says {}", c.verb, user));
 }
 
 void Recorder::finished(const std::string& report, const std::string& news) {

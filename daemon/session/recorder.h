@@ -39,19 +39,20 @@ class Recorder {
   /// LCM channels that are stored.
   std::vector<std::string> channels() const;
   void message(const std::string& channel, const void* data, std::size_t size,
-               std::int64_t received_us);
+               std::int64_t received_us, const drivers::LcmSender& sender = {});
   void frame(int bus, const drivers::CanFrame& frame);
   /// Must be called at least ten times a second.
   void tick(std::int64_t now_us);
 
   // Each returns an empty string, or the reason why it was refused.
-  /// Arms when the request has a trigger, else starts at once.
-  std::string begin(const SessionRequest& request, std::int64_t now_us);
+  /// Arms when the request has a trigger, else starts at once. user: who asked for it, if anybody.
+  std::string begin(const SessionRequest& request, std::int64_t now_us,
+                    const std::string& user = {});
   std::string tap();
   /// Ends the session half a second later, or the tap test, or disarms.
   std::string stop(const std::string& why, std::int64_t now_us);
-  /// Executes a command, once for each id; status() has the answer.
-  void obey(const session_command_t& command, std::int64_t now_us);
+  /// Executes a command of this user, once for each id; status() has the answer.
+  void obey(const session_command_t& command, const std::string& user, std::int64_t now_us);
 
   RecorderState state() const { return state_; }
   /// Whether the channels have been checked.

@@ -6,6 +6,7 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
+#include "daemon/base/printable.h"
 #include "drivers/base/text_output.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -54,7 +55,7 @@ int report(const ReportArguments& a) {
   r.notes = a.notes;
   bool good = true;
   const auto complain = [&](const std::string& problem) {
-    fmt::print(stderr, "{}\n", problem);
+    fmt::print(stderr, "{}\n", printable_lines(problem));
     good = false;
   };
   if (!a.config.empty()) {

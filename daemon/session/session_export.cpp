@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "daemon/documents/mat_file.h"
 #include "daemon/estimates/estimate_output.h"
 #include "daemon/session/session_log.h"
+#include "drivers/base/input_file.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/channel_table.h"
@@ -56,9 +56,9 @@ void export_raw(const std::string& folder, bool csv, bool mat, std::vector<std::
                 std::vector<std::string>& problems) {
   if (!csv && !mat) return;
   const std::string log = folder + "/" + kRawLog;
-  if (std::filesystem::exists(folder + "/" + kCanLog))
+  if (!drivers::is_absent(folder + "/" + kCanLog))
     problems.push_back("CAN frames are not converted: raw.can.log is a candump log");
-  if (!std::filesystem::exists(log)) return;
+  if (drivers::is_absent(log)) return;
   std::vector<drivers::Problem> found;
   const auto contents = drivers::log_contents(log, found);
   for (std::size_t i = 0; contents && i < contents->accel.size(); ++i) {
@@ -104,7 +104,7 @@ void export_estimates(const Config& config, const std::string& folder, const std
 
 void export_stages(const std::string& folder, const std::vector<Stage>& stages,
                    std::vector<std::string>& files, std::vector<std::string>& problems) {
-  if (!std::filesystem::exists(folder + "/" + kRawLog)) {
+  if (drivers::is_absent(folder + "/" + kRawLog)) {
     problems.push_back("CAN frames are not split: session.json has the stages' times");
     return;
   }

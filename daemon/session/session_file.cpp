@@ -81,6 +81,7 @@ SessionFile session_of(const Json& j) {
   j.at("test").get_to(s.request.test);
   j.at("operator").get_to(s.request.operator_name);
   j.at("notes").get_to(s.request.notes);
+  s.asked_by = j.value("asked_by", "");
   j.at("length_s").get_to(s.request.length_s);
   j.at("trigger_mps2").get_to(s.request.trigger_mps2);
   j.at("pre_trigger_s").get_to(s.request.pre_trigger_s);
@@ -118,6 +119,7 @@ std::string session_json(const SessionFile& s) {
                   {"test", s.request.test},
                   {"operator", s.request.operator_name},
                   {"notes", s.request.notes},
+                  {"asked_by", s.asked_by},
                   {"length_s", s.request.length_s},
                   {"trigger_mps2", s.request.trigger_mps2},
                   {"pre_trigger_s", s.request.pre_trigger_s},
@@ -143,17 +145,20 @@ std::string session_json(const SessionFile& s) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::optional<SessionFile> read_session_file(const std::string& path, std::string& error) {
-  const auto text = read_text_file(path, error);
-  if (!text) return std::nullopt;
+std::optional<SessionFile> parse_session(const std::string& text, std::string& error) {
   try {
-    const Json json = Json::parse(*text);
+    const Json json = Json::parse(text);
     if (json.at("schema") == kSchema) return session_of(json);
     error = "is no " + std::string(kSchema);
   } catch (const Json::exception& e) {
     error = e.what();
   }
   return std::nullopt;
+}
+
+std::optional<SessionFile> read_session_file(const std::string& path, std::string& error) {
+  const auto text = read_text_file(path, error);
+  return text ? parse_session(*text, error) : std::nullopt;
 }
 
 std::string session_folder_name(std::int64_t began_us, const std::string& test) {

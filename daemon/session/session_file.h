@@ -22,6 +22,7 @@ struct SessionRequest {
 struct SessionFile {
   std::string state;  ///< recording, recorded, finished
   SessionRequest request;
+  std::string asked_by;  ///< user who gave the command; empty: none was given
   std::string config_path, config_sha256, version;
   std::int64_t began_us = 0;                ///< host clock
   std::int64_t trigger_us = 0, end_us = 0;  ///< sensor time of start or trigger, and of the end
@@ -37,6 +38,8 @@ struct SessionFile {
 };
 
 std::string session_json(const SessionFile& session);
+/// The session of such a text; empty, with the reason, when it is none.
+std::optional<SessionFile> parse_session(const std::string& text, std::string& error);
 /// Empty, with the reason, when the file cannot be read or is no session.
 std::optional<SessionFile> read_session_file(const std::string& path, std::string& error);
 

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
 #include "daemon/config/config.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/estimates/session_estimates.h"
@@ -17,6 +18,7 @@
 #include "daemon/session/session_export.h"
 #include "daemon/session/session_file.h"
 #include "daemon/session/session_log.h"
+#include "drivers/base/input_file.h"
 #include "drivers/base/text_output.h"
 
 namespace framewatch::daemon {
@@ -36,12 +38,12 @@ class Finishing {
     for (const char* name : {kRawLog, kCanLog, kEstimatesLog}) {
       const std::string path = a_.folder + "/" + name;
       std::error_code error;
-      if (fs::exists(path) || !fs::exists(path + ".partial")) continue;
+      if (!drivers::is_absent(path) || drivers::is_absent(path + ".partial")) continue;
       bool whole = true;
       if (name != kCanLog) {
         const std::string repaired = path + ".repaired";
         whole = repair({path + ".partial", repaired}) == 0;
-        if (whole && fs::exists(repaired)) {
+        if (whole && !drivers::is_absent(repaired)) {
           fs::rename(repaired, path, error);
           if (!error) fs::remove(path + ".partial", error);
         } else if (whole) {
@@ -61,7 +63,7 @@ class Finishing {
 
   void find_stages_of_it() {
     for (const char* name : {kRawLog, kCanLog})
-      if (fs::exists(a_.folder + "/" + name)) raw_.push_back(a_.folder + "/" + name);
+      if (!drivers::is_absent(a_.folder + "/" + name)) raw_.push_back(a_.folder + "/" + name);
     std::vector<std::string> found;
     motion_ = raw_.empty() ? std::nullopt : read_session_motion(config_, raw_, found);
     for (std::string& p : found) problem(std::move(p));
@@ -132,7 +134,7 @@ class Finishing {
  private:
   /// For the person, but nothing has failed.
   void note(std::string text) {
-    fmt::print(stderr, "framewatch record: {}\n", text);
+    fmt::print(stderr, "framewatch record: {}\n", printable_lines(text));
     session_.finishing.push_back(std::move(text));
   }
   void read_estimates(const char* log) {
@@ -174,7 +176,7 @@ int finish_session(const FinishArguments& a) {
   print_problems(problems);
   std::string error;
   auto session = read_session_file(a.folder + "/" + kSessionJson, error);
-  if (!session) fmt::print(stderr, "{}/{}: {}\n", a.folder, kSessionJson, error);
+  if (!session) fmt::print(stderr, "{}/{}: {}\n", a.folder, kSessionJson, printable_lines(error));
   if (!config || !session) return kBadInput;
   for (const char* name : {kRawLog, kCanLog, kEstimatesLog})
     if (drivers::DurableFile::in_use(a.folder + "/" + name)) {

@@ -113,7 +113,8 @@ std::optional<SessionMotion> read_session_motion(const Config& config,
   if (!problems.empty()) return std::nullopt;
   Collector collector(config.pipeline);
   drivers::AccelIntake intake(
-      wanted_axes(config), [&](const estimator::AccelSample& sample) { collector.push(sample); });
+      wanted_axes(config), [&](const estimator::AccelSample& sample) { collector.push(sample); },
+      intake_settings(config));
   for (const ReplayInput& input : survey.inputs()) {
     const std::string problem =
         push_stored_samples(config, input, intake,

@@ -28,7 +28,8 @@ std::string summary(const SessionReport& r) {
   if (r.session) {
     row("began by",
         r.session->triggered_by.empty()
-            ? "hand"
+            ? r.session->asked_by.empty() ? "hand"
+                                          : "a command of " + html_text(r.session->asked_by)
             : fmt::format("{}, {:g} m/s^2 from rest, {:g} s stored from before",
                           html_text(r.session->triggered_by), r.session->request.trigger_mps2,
                           r.session->request.pre_trigger_s));

@@ -16,11 +16,13 @@
 #include "daemon/simulation/scenario_motion.h"
 #include "daemon/simulation/scenario_sensors.h"
 #include "daemon/simulation/scenario_truth.h"
+#include "daemon/simulation/simulation_size.h"
 #include "estimator/simulate/building_model.h"
 
 namespace framewatch::daemon {
 namespace {
 
+constexpr double kMostChanged = 1e7;  // every change has a value of every parameter
 constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change", "effect"};
 
 /// The file in three parts: top keys, sections of the scenario, the rest (the building).
@@ -67,6 +69,8 @@ class ScenarioReader {
     ConfigSection motion("motion", "motion", section(parts_, "motion"), {1, 1}, problems_);
     s.motion = read_motion(motion, relative(""), s.seed);
     s.duration_s = top.given("duration_s") ? top.number("duration_s") : s.motion.duration_s();
+    if (const std::string problem = building ? size_problem(s) : ""; !problem.empty())
+      problems_.push_back({place_of_size(problem), problem});
     ConfigSection truth("truth", "truth", section(parts_, "truth"), {1, 1}, problems_);
     if (building) {
       const estimator::PipelineConfig& p = s.config.pipeline;
@@ -86,6 +90,12 @@ class ScenarioReader {
   }
 
  private:
+  TextPlace place_of_size(const std::string& problem) const {
+    const TomlEntry* entry =
+        parts_.top.find(problem.starts_with("duration") ? "duration_s" : "config");
+    return entry != nullptr ? entry->place : TextPlace{};
+  }
+
   std::string relative(const std::string& file) const {
     return (std::filesystem::path(path_).parent_path() / file).string();
   }
@@ -148,6 +158,14 @@ class ScenarioReader {
     }
     std::stable_sort(changes.begin(), changes.end(),
                      [](const Change& a, const Change& b) { return a.at_s < b.at_s; });
+    if (static_cast<double>(changes.size()) * static_cast<double>(s.truth.size()) > kMostChanged) {
+      problems_.push_back({{},
+                           fmt::format("change: {} changes of a building of {} parameters: at "
+                                       "most {:.0f} are simulated",
+                                       changes.size(), s.truth.size(),
+                                       kMostChanged / static_cast<double>(s.truth.size()))});
+      return;
+    }
     Eigen::VectorXd theta = s.truth;
     for (const Change& change : changes) {
       theta[change.parameter] *= change.factor;

@@ -13,9 +13,10 @@
 #include "daemon/simulation/scenario.h"
 #include "daemon/simulation/simulation.h"
 #include "daemon/simulation/simulation_output.h"
+#include "daemon/simulation/simulation_size.h"
 #include "daemon/simulation/simulation_truth.h"
 #include "drivers/base/text_output.h"
-#include "drivers/lcm/lcm_source.h"
+#include "drivers/lcm/lcm_provider.h"
 
 namespace framewatch::daemon {
 int simulate(const SimulateArguments& a) {
@@ -26,18 +27,23 @@ int simulate(const SimulateArguments& a) {
   print_problems(problems);
   if (!scenario) return kBadInput;
   if (a.seconds > 0) scenario->duration_s = a.seconds;
+  if (const std::string problem = size_problem(*scenario); !problem.empty())
+    return refuse("simulate", fmt::format("{}: {}", a.scenario, problem));
 
-  std::unique_ptr<lcm::LCM> lcm;
+  std::unique_ptr<drivers::LcmProvider> lcm;
   std::vector<std::unique_ptr<SimulationOutput>> outputs;
   std::string error;
   if (!a.out.empty()) {
     outputs.push_back(file_output(*scenario, a.out, error));
     if (!outputs.back()) return refuse("simulate", fmt::format("{}: {}", a.out, error));
   }
+  drivers::TextOutput truth;
+  if (!a.truth.empty() && !truth.open(a.truth))
+    return refuse("simulate", fmt::format("{}: {}", a.truth, truth.error()));
   Simulation simulation(*scenario);
   if (a.lcm) {
     const std::string& url = a.lcm_url.empty() ? scenario->config.lcm.url : a.lcm_url;
-    lcm = drivers::open_lcm(url, scenario->config.lcm.receive_buffer_bytes, error);
+    lcm = drivers::open_lcm(url, scenario->config.lcm.reception, error);
     if (!lcm) return refuse("simulate", error);
     outputs.push_back(live_output(*scenario, *lcm, a.speed));
   }
@@ -62,10 +68,8 @@ int simulate(const SimulateArguments& a) {
   }
   for (const auto& output : outputs)
     if (!output->close()) return refuse("simulate", output->error());
-  drivers::TextOutput truth;
-  if (!a.truth.empty() &&
-      !(truth.open(a.truth) && truth.write(truth_json(*scenario)) && truth.close()))
-    return refuse("simulate", truth.error());
+  if (!a.truth.empty() && !(truth.write(truth_json(*scenario)) && truth.close()))
+    return refuse("simulate", fmt::format("{}: {}", a.truth, truth.error()));
   if (!a.quiet)
     fmt::print(stderr, "{}: {} channels, {} instants at {:g} Hz{}{}\n",
                scenario->config.pipeline.structure.name, scenario->config.pipeline.axes.size(),

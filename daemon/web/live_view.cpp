@@ -24,8 +24,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kRing = 256;         // 10 s of events
-constexpr std::size_t kMostCommands = 16;  // that wait
+constexpr std::size_t kRing = 256;  // 10 s of events
 constexpr int kFlushesPerBoxplot = 5;
 constexpr int kFlushesPerSecond = 20;
 
@@ -42,16 +41,21 @@ std::vector<std::string> parameter_names(const Config& config) {
 
 }  // namespace
 
-LiveView::LiveView(const Config& config, MessageSink publish)
+LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give give)
     : config_(config),
       publish_(std::move(publish)),
       estimate_channels_(estimate_channels(config)),
       motion_(config.pipeline.options.rate_hz),
       acquisition_(config.pipeline.axes, config.pipeline.options,
                    [this](const estimator::SampleSet& set) { motion_.push(set); }),
-      intake_(wanted_axes(config),
-              [this](const estimator::AccelSample& sample) { acquisition_.push(sample); }),
-      ring_(kRing) {
+      intake_(
+          wanted_axes(config),
+          [this](const estimator::AccelSample& sample) { acquisition_.push(sample); },
+          intake_settings(config)),
+      ring_(kRing),
+      commands_(std::move(give), [this](const PageCommand& command, const std::string& problem) {
+        push("refused", refused_json(command.id, problem));
+      }) {
   estimate_channels_.resize(1 + config.pipeline.options.other_windows_s.size());
 }
 
@@ -81,10 +85,11 @@ void LiveView::keep(const std::string& name, std::string json) {
   kept_[name] = std::move(json);
 }
 
-void LiveView::message(const std::string& channel, const void* data, std::size_t size) {
+void LiveView::message(const std::string& channel, const void* data, std::size_t size,
+                       const drivers::LcmSender& sender, std::int64_t received_us) {
   const std::string& prefix = config_.lcm.prefix;
   if (!channel.starts_with(prefix)) {
-    (void)intake_.message(channel, data, size);
+    (void)intake_.message(channel, data, size, sender, received_us);
     return;
   }
   const std::string name = channel.substr(prefix.size());
@@ -161,7 +166,6 @@ std::string LiveView::baseline() const {
 }
 
 void LiveView::flush() {
-  send_requests();
   if (const std::string rows = motion_.take(); !rows.empty()) push("motion", rows);
   if (++flushes_ % kFlushesPerSecond == 0) {
     const std::string json = baseline();
@@ -174,20 +178,6 @@ void LiveView::flush() {
   if (std::exchange(new_estimate_, false)) push("estimate", estimate_json(*newest_));
   if (flushes_ % kFlushesPerBoxplot == 0 && newest_->boxplots > 0)
     push("boxes", boxes_json(*newest_));
-}
-
-void LiveView::send_requests() {
-  std::vector<session_command_t> commands;
-  std::vector<acknowledge_t> requests;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    commands.swap(commands_);
-    requests.swap(requests_);
-  }
-  for (const acknowledge_t& request : requests)
-    publish_(0, config_.lcm.prefix + "ACKNOWLEDGE", drivers::encoded(request));
-  for (const session_command_t& command : commands)
-    publish_(0, config_.lcm.prefix + "SESSION_COMMAND", drivers::encoded(command));
 }
 
 std::string LiveView::building_json() const {
@@ -208,18 +198,19 @@ std::size_t LiveView::read(EventRing::Cursor& cursor, char* buffer, std::size_t 
   return ring_.read(cursor, buffer, size);
 }
 
-bool LiveView::acknowledge(std::int64_t id) {
+std::optional<std::int64_t> LiveView::acknowledge(std::int64_t id, const std::string& viewer) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const event_t* event = alarms_.find(id);
-  if (event == nullptr) return false;
+  if (event == nullptr) return std::nullopt;
   const bool found_here = !config_.watch && event->kind == "stiffness_change";
-  if (alarms_.kept_elsewhere() && !found_here) {
-    if (requests_.size() == kMostCommands) return false;
-    requests_.push_back(acknowledge_request(id, "the page", ""));
-  } else {
+  if (!alarms_.kept_elsewhere() || found_here) {
     push_alarms({alarms_.acknowledge(id)});
+    return 0;
   }
-  return true;
+  const acknowledge_t request = acknowledge_request(id, viewer, "");
+  if (!commands_.add({"run", {"ACKNOWLEDGE", drivers::encoded(request)}, request.request}))
+    return std::nullopt;
+  return request.request;
 }
 
 void LiveView::renew_baseline() {
@@ -228,10 +219,7 @@ void LiveView::renew_baseline() {
 }
 
 bool LiveView::tell_recorder(const session_command_t& command) {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (commands_.size() == kMostCommands) return false;
-  commands_.push_back(command);
-  return true;
+  return commands_.add({"record", {"SESSION_COMMAND", drivers::encoded(command)}, command.id});
 }
 
 }  // namespace framewatch::daemon

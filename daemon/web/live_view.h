@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <framewatch/acknowledge_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
@@ -17,6 +16,7 @@
 #include "daemon/web/event_ring.h"
 #include "daemon/web/motion_rows.h"
 #include "daemon/web/page_alarms.h"
+#include "daemon/web/page_commands.h"
 #include "daemon/web/page_watch.h"
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/motion/acquisition.h"
@@ -28,12 +28,14 @@ namespace framewatch::daemon {
 /// viewers call may be called from any thread.
 class LiveView {
  public:
-  /// `config` must outlive this. publish: where requests and events of the page go (LCM).
-  LiveView(const Config& config, MessageSink publish);
+  /// `config` must outlive this. publish: where events of the page go (LCM). give: how commands of
+  /// its viewers get to their daemons, called in a thread of its own.
+  LiveView(const Config& config, MessageSink publish, PageCommands::Give give);
 
   /// The LCM channels the page is fed by.
   std::vector<std::string> channels() const;
-  void message(const std::string& channel, const void* data, std::size_t size);
+  void message(const std::string& channel, const void* data, std::size_t size,
+               const drivers::LcmSender& sender = {}, std::int64_t received_us = 0);
   /// Sends what has come since the last call; to be called 20 times a second.
   void flush();
 
@@ -41,11 +43,13 @@ class LiveView {
   std::string building_json() const;
   EventRing::Cursor join();
   std::size_t read(EventRing::Cursor& cursor, char* buffer, std::size_t size);
-  /// False when there is no such event, or too many requests wait.
-  bool acknowledge(std::int64_t id);
+  /// Id of the request that goes to `framewatch run`, whose refusal would come as an event
+  /// "refused"; 0 when the event is the page's own. Empty when there is no such event, or too many
+  /// requests wait. viewer: who it is, as far as the page knows.
+  std::optional<std::int64_t> acknowledge(std::int64_t id, const std::string& viewer);
   /// The next seconds become the baseline that stiffnesses are compared with.
   void renew_baseline();
-  /// Goes to `framewatch record` with the next flush(). False when too many commands wait.
+  /// Goes to `framewatch record`. False when too many commands wait.
   bool tell_recorder(const session_command_t& command);
 
  private:
@@ -54,7 +58,6 @@ class LiveView {
   void look_for_changes(int window, const window_estimate_t& estimate);
   void alarms_message(const std::string& name, const void* data, std::size_t size);
   void keep(const std::string& name, std::string json);
-  void send_requests();
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);
   std::string baseline() const;
@@ -75,9 +78,9 @@ class LiveView {
   EventRing ring_;
   PageAlarms alarms_;
   std::map<std::string, std::string> kept_;  ///< newest JSON by event name, for viewers that join
-  std::vector<session_command_t> commands_;
-  std::vector<acknowledge_t> requests_;
   bool renew_ = false;
+
+  PageCommands commands_;  ///< at the end: its thread pushes events
 };
 
 }  // namespace framewatch::daemon

@@ -108,6 +108,10 @@ std::string session_status_json(const session_status_t& s) {
                     {"channels", channels}});
 }
 
+std::string refused_json(std::int64_t id, const std::string& problem) {
+  return json_line({{"answered", std::to_string(id)}, {"refused", problem}});
+}
+
 std::string alarm_json(const event_t& e, bool acknowledged, const Acknowledgement& by) {
   return json_line({{"id", e.id},
                     {"time_us", e.time_us},

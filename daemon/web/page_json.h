@@ -26,6 +26,8 @@ std::string status_json(const status_t& status, const std::string& config_sha256
 std::string gap_json(const gap_t& gap);
 std::string can_json(const can_status_t& status);
 std::string session_status_json(const session_status_t& status);
+/// Why a command of the page was not obeyed. id: of the request.
+std::string refused_json(std::int64_t id, const std::string& problem);
 /// acknowledged: whether the event is; by whom and with which comment, where that is known.
 std::string alarm_json(const event_t& event, bool acknowledged, const Acknowledgement& by);
 /// The building, its axes and parameters. rate_hz: of the rows of motion.

@@ -36,14 +36,12 @@ std::optional<std::string> read_token(const std::string& path, std::string& erro
   return text;
 }
 
-}  // namespace
-
-int serve(const ServeArguments& a) {
-  std::vector<ConfigProblem> problems_found;
-  const std::optional<Config> config = load_config(a.config, problems_found);
-  bool good = config.has_value();
-  print_problems(problems_found);
-  WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions, {}};
+/// Empty when they are wrong, which is printed.
+std::optional<WebSettings> web_settings(const ServeArguments& a) {
+  bool good = true;
+  WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions, {}, {}};
+  settings.connections.viewers = a.viewers;
+  settings.connections.viewers_per_address = a.viewers_per_address;
   std::string error;
   if (!a.token_file.empty()) {
     const auto token = read_token(a.token_file, error);
@@ -57,12 +55,24 @@ int serve(const ServeArguments& a) {
     fmt::print(stderr, "framewatch serve: {}\n", problem);
     good = false;
   }
-  if (!good) return kBadInput;
+  if (!good) return std::nullopt;
   // At home nobody need choose one, and acknowledging still takes it.
   if (settings.token.empty()) settings.token = random_token();
+  return settings;
+}
+
+}  // namespace
+
+int serve(const ServeArguments& a) {
+  std::vector<ConfigProblem> problems_found;
+  const std::optional<Config> config = load_config(a.config, problems_found);
+  print_problems(problems_found);
+  std::optional<WebSettings> settings = web_settings(a);
+  if (!config || !settings) return kBadInput;
 
   catch_stop_signals();
   ServiceManager manager;
+  std::string error;
   const std::string& url = a.url.empty() ? config->lcm.url : a.url;
   const auto lcm = open_lcm_with_retry(*config, a.url, manager, error);
   if (!lcm && stop_requested()) return 0;
@@ -70,29 +80,34 @@ int serve(const ServeArguments& a) {
     fmt::print(stderr, "framewatch serve: {}\n", error);
     return kBadInput;
   }
-  LiveView view(*config, [&](std::int64_t, const std::string& channel,
-                             const std::vector<std::uint8_t>& bytes) {
-    lcm->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
-  });
+  LiveView view(
+      *config,
+      [&](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+        lcm->publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+      },
+      [&](const std::string& service, const CommandPacket& command) {
+        return give_command(*config, service, command);
+      });
   Metrics metrics(*config);
-  settings.metrics = [&metrics](int viewers) { return metrics.text(steady_clock_us(), viewers); };
+  settings->metrics = [&metrics](const PageUse& use) {
+    return metrics.text(steady_clock_us(), use);
+  };
   std::vector<std::string> channels = view.channels();
   for (const std::string& channel : metrics.channels()) channels.push_back(channel);
-  drivers::LcmSource source(
-      *lcm, channels, config->lcm.queue_capacity,
-      [&](const std::string& channel, const void* data, std::size_t size, std::int64_t) {
-        view.message(channel, data, size);
-        metrics.message(channel, data, size, steady_clock_us());
-      });
-  WebServer server(settings, view);
-  const int socket = listen_on(settings.address, settings.port, error);
+  drivers::LcmSource source(*lcm, channels, config->lcm.queue_capacity,
+                            [&](const drivers::LcmMessage& m) {
+                              view.message(m.channel, m.data, m.size, m.sender, m.received_us);
+                              metrics.message(m.channel, m.data, m.size, steady_clock_us());
+                            });
+  WebServer server(*settings, view);
+  const int socket = listen_on(settings->address, settings->port, error);
   if (socket < 0 || !server.start(socket, error)) {
     fmt::print(stderr, "framewatch serve: {}\n", error);
     return kBadInput;
   }
   // A token of one's own does not go into logs.
-  fmt::print("{}\n", page_address(settings, server.port(),
-                                  a.token_file.empty() ? settings.token : std::string()));
+  fmt::print("{}\n", page_address(*settings, server.port(),
+                                  a.token_file.empty() ? settings->token : std::string()));
   std::fflush(stdout);
   if (!a.quiet) log(LogLevel::info, fmt::format("{} on {}", config->pipeline.structure.name, url));
 

@@ -14,6 +14,8 @@ struct ServeArguments {
   std::vector<std::string> hosts;
   std::string files;                  ///< folder with the page, for work on it
   std::string sessions = "sessions";  ///< folder of `framewatch record`
+  int viewers = 500;                  ///< at once
+  int viewers_per_address = 250;
   bool quiet = false;
 };
 

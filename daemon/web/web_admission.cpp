@@ -47,6 +47,7 @@ std::vector<std::string> problems(const WebSettings& s) {
 }
 
 Admission admit(const WebSettings& s, const WebRequest& r) {
+  if (!r.path.starts_with('/') || r.hosts > 1) return Admission::malformed;
   const std::string host = host_name(r.host);
   const bool own = host == "127.0.0.1" || host == "localhost" || host == "::1";
   const bool named =
@@ -56,6 +57,8 @@ Admission admit(const WebSettings& s, const WebRequest& r) {
   const bool verb = r.method == "POST" &&
                     (r.path == "/acknowledge" || r.path == "/baseline" || r.path == "/session");
   if (!reads && !verb) return Admission::wrong_method;
+  const bool empty = r.content_length.empty() || r.content_length == "0";
+  if (!empty || !r.transfer_encoding.empty()) return Admission::has_body;
   if (verb && !r.origin.empty() && r.origin != "http://" + r.host &&
       r.origin != "https://" + r.host)
     return Admission::wrong_origin;

@@ -1,6 +1,7 @@
 #include "daemon/web/web_server.h"
 
 #include <microhttpd.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -13,55 +14,35 @@
 
 #include <fmt/core.h>
 
-#include "daemon/base/file_digest.h"
 #include "daemon/session/session_command.h"
+#include "daemon/web/connection_guard.h"
 #include "daemon/web/live_view.h"
+#include "daemon/web/served_file.h"
 #include "daemon/web/web_admission.h"
+#include "daemon/web/web_answer.h"
 #include "daemon/web/web_files.h"
 #include "daemon/web/web_sessions.h"
+#include "daemon/web/web_socket.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr const char* kPolicy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' "
-    "data:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// For a report, which has its own styles and no script.
-constexpr const char* kReportPolicy =
-    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action "
-    "'none'; frame-ancestors 'none'; sandbox";
 constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
+constexpr const char* kJson = "application/json";
 constexpr const char* kSessionPath = "/session/";
-constexpr unsigned kIdle_s = 30;
 constexpr std::size_t kBlock = 32768;
+constexpr int kOtherDescriptors = 64;  // LCM, the history's files, logs
 
-std::string header(MHD_Connection* c, const char* name, MHD_ValueKind kind = MHD_HEADER_KIND) {
-  const char* value = MHD_lookup_connection_value(c, kind, name);
-  return value ? value : "";
-}
-
-MHD_Result answer(MHD_Connection* c, unsigned code, MHD_Response* response,
-                  const char* policy = kPolicy) {
-  for (const auto& [name, value] :
-       {std::pair{"Content-Security-Policy", policy},
-        std::pair{"X-Content-Type-Options", "nosniff"}, std::pair{"Referrer-Policy", "no-referrer"},
-        std::pair{"Cache-Control", "no-store"},
-        std::pair{"Cross-Origin-Resource-Policy", "same-origin"}})
-    MHD_add_response_header(response, name, value);
-  const MHD_Result result = MHD_queue_response(c, code, response);
-  MHD_destroy_response(response);
-  return result;
-}
-
-MHD_Response* body(const std::string& text, const char* type) {
-  MHD_Response* response = MHD_create_response_from_buffer(
-      text.size(), const_cast<char*>(text.data()), MHD_RESPMEM_MUST_COPY);
-  MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, type);
-  return response;
-}
-
-MHD_Result plain(MHD_Connection* c, unsigned code, const std::string& text) {
-  return answer(c, code, body(text + "\n", "text/plain; charset=utf-8"));
+/// The address that a request came from; behind a proxy the proxy's.
+std::string viewer_of(MHD_Connection* c) {
+  const MHD_ConnectionInfo* info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
+  if (info == nullptr || info->client_addr == nullptr) return "an unknown address";
+  char name[NI_MAXHOST];
+  const socklen_t size =
+      info->client_addr->sa_family == AF_INET6 ? sizeof(sockaddr_in6) : sizeof(sockaddr_in);
+  if (::getnameinfo(info->client_addr, size, name, sizeof name, nullptr, 0, NI_NUMERICHOST) != 0)
+    return "an unknown address";
+  return name;
 }
 
 int port_of(int socket) {
@@ -84,7 +65,8 @@ const char* type_of(const std::string& path) {
 
 class WebServer::Implementation {
  public:
-  Implementation(const WebSettings& settings, LiveView& view) : settings_(settings), view_(view) {}
+  Implementation(const WebSettings& settings, LiveView& view)
+      : settings_(settings), view_(view), guard_(settings.connections) {}
 
   ~Implementation() {
     stopping_ = true;
@@ -93,12 +75,17 @@ class WebServer::Implementation {
   }
 
   bool start(int socket, std::string& error) {
-    daemon_ = MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0, nullptr,
-                               nullptr, &Implementation::handle, this, MHD_OPTION_LISTEN_SOCKET,
-                               socket, MHD_OPTION_CONNECTION_LIMIT, kMostConnections,
-                               MHD_OPTION_CONNECTION_TIMEOUT, kIdle_s, MHD_OPTION_END);
+    const int most = settings_.connections.connections();
+    if (allow_descriptors(most + kOtherDescriptors, error)) {
+      daemon_ = MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0,
+                                 nullptr, nullptr, &Implementation::handle, this,
+                                 MHD_OPTION_LISTEN_SOCKET, socket, MHD_OPTION_CONNECTION_LIMIT,
+                                 static_cast<unsigned>(most), MHD_OPTION_CONNECTION_TIMEOUT,
+                                 settings_.connections.idle_s, MHD_OPTION_NOTIFY_CONNECTION,
+                                 &Implementation::notify, this, MHD_OPTION_END);
+      if (!daemon_) error = "libmicrohttpd cannot start";
+    }
     if (!daemon_) {
-      error = "libmicrohttpd cannot start";
       ::close(socket);
       return false;
     }
@@ -107,9 +94,10 @@ class WebServer::Implementation {
   }
 
   int port() const { return MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_BIND_PORT)->port; }
-  int viewers() const { return viewers_; }
+  int viewers() const { return guard_.use().viewers; }
 
   void wake() {
+    guard_.sweep();
     const std::lock_guard<std::mutex> lock(mutex_);
     for (MHD_Connection* waiting : waiting_) MHD_resume_connection(waiting);
     waiting_.clear();
@@ -123,19 +111,29 @@ class WebServer::Implementation {
     EventRing::Cursor cursor;
   };
 
-  static MHD_Result handle(void* self, MHD_Connection* c, const char* url, const char* method,
-                           const char*, const char*, std::size_t* upload, void** state) {
-    // Headers first; what a body holds is never looked at.
-    static int seen;
-    if (*state == nullptr) {
-      *state = &seen;
-      return MHD_YES;
-    }
-    if (*upload > 0) {
-      *upload = 0;
-      return MHD_NO;
-    }
-    return static_cast<Implementation*>(self)->respond(c, method, url);
+  static void notify(void* self, MHD_Connection* c, void**, MHD_ConnectionNotificationCode what) {
+    ConnectionGuard& guard = static_cast<Implementation*>(self)->guard_;
+    if (what == MHD_CONNECTION_NOTIFY_STARTED)
+      guard.opened(socket_of(c));
+    else
+      guard.closed(socket_of(c));
+  }
+
+  /// Called when the head of a request is whole; what a body holds is never waited for.
+  static MHD_Result handle(void* of, MHD_Connection* c, const char* url, const char* method,
+                           const char*, const char*, std::size_t*, void**) {
+    auto& self = *static_cast<Implementation*>(of);
+    self.guard_.asked(socket_of(c));
+    return self.respond(c, method, url);
+  }
+
+  MHD_Result text(MHD_Connection* c, const std::string& content, const char* type,
+                  const char* policy = kPagePolicy) {
+    return answer(guard_, c, MHD_HTTP_OK, content, type, policy);
+  }
+
+  MHD_Result plain(MHD_Connection* c, unsigned code, const std::string& content) {
+    return answer(guard_, c, code, content + "\n", kPlainText);
   }
 
   MHD_Result respond(MHD_Connection* c, const std::string& method, const std::string& path) {
@@ -145,8 +143,15 @@ class WebServer::Implementation {
                              header(c, "Origin"),
                              header(c, "framewatch", MHD_COOKIE_KIND),
                              header(c, "Authorization"),
-                             header(c, "token", MHD_GET_ARGUMENT_KIND)};
+                             header(c, "token", MHD_GET_ARGUMENT_KIND),
+                             header(c, "Content-Length"),
+                             header(c, "Transfer-Encoding"),
+                             count_of_header(c, "Host")};
     switch (admit(settings_, request)) {
+      case Admission::malformed:
+        return plain(c, MHD_HTTP_BAD_REQUEST, "no path, or several hosts");
+      case Admission::has_body:
+        return plain(c, MHD_HTTP_CONTENT_TOO_LARGE, "a request has no body here");
       case Admission::wrong_host:
         return plain(c, 421, "this name is not served here");
       case Admission::wrong_method:
@@ -161,20 +166,18 @@ class WebServer::Implementation {
     if (method == "POST") return act(c, path);
     if (path == "/" && !request.token.empty()) return exchange(c, request.token);
     if (path == "/events") return stream(c);
-    if (path == "/building.json")
-      return answer(c, MHD_HTTP_OK, body(view_.building_json(), "application/json"));
+    if (path == "/building.json") return text(c, view_.building_json(), kJson);
     if (path == "/sessions.json")
-      return answer(c, MHD_HTTP_OK,
-                    body(settings_.sessions.empty() ? "null" : sessions_json(settings_.sessions),
-                         "application/json"));
+      return text(c, settings_.sessions.empty() ? "null" : sessions_json(settings_.sessions),
+                  kJson);
     if (path.starts_with(kSessionPath)) {
       const auto found =
           session_document(settings_.sessions, path.substr(std::string(kSessionPath).size()));
       if (!found) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
-      return answer(c, MHD_HTTP_OK, body(found->content, found->type.c_str()), kReportPolicy);
+      return text(c, found->content, found->type.c_str(), kReportPolicy);
     }
     if (path == "/metrics" && settings_.metrics)
-      return answer(c, MHD_HTTP_OK, body(settings_.metrics(viewers_), kMetricsType));
+      return text(c, settings_.metrics(guard_.use()), kMetricsType);
     if (path == "/healthz") return plain(c, MHD_HTTP_OK, "ok");
     return file(c, path == "/" ? "/index.html" : path);
   }
@@ -189,9 +192,11 @@ class WebServer::Implementation {
     std::int64_t id = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
     const bool number = error == std::errc() && end == text.data() + text.size();
-    if (!number || !view_.acknowledge(id)) return plain(c, MHD_HTTP_NOT_FOUND, "no such event");
+    const auto asked = number ? view_.acknowledge(id, "the page at " + viewer_of(c)) : std::nullopt;
+    if (!asked) return plain(c, MHD_HTTP_NOT_FOUND, "no such event");
     wake();
-    return plain(c, MHD_HTTP_OK, "acknowledged");
+    return *asked == 0 ? plain(c, MHD_HTTP_OK, "acknowledged")
+                       : plain(c, MHD_HTTP_ACCEPTED, std::to_string(*asked));
   }
 
   /// Answers with the id of the command; the recorder's answer with that id comes as an event.
@@ -217,36 +222,35 @@ class WebServer::Implementation {
 
   /// Replaces the token in the address by a cookie that scripts cannot read.
   MHD_Result exchange(MHD_Connection* c, const std::string& token) {
-    MHD_Response* response = body("", "text/plain");
+    MHD_Response* response = MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
+    if (!response) return MHD_NO;
     MHD_add_response_header(response, "Location", "/");
     // A server without a token needs no cookie.
     if (!settings_.token.empty() && token == settings_.token)
       MHD_add_response_header(
           response, "Set-Cookie",
           ("framewatch=" + settings_.token + "; HttpOnly; SameSite=Strict; Path=/").c_str());
-    return answer(c, MHD_HTTP_SEE_OTHER, response);
+    return send_answer(c, MHD_HTTP_SEE_OTHER, response);
   }
 
   MHD_Result file(MHD_Connection* c, const std::string& path) {
     const auto found = page_files().find(path);
     if (found == page_files().end()) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
-    if (settings_.files.empty())
-      return answer(c, MHD_HTTP_OK, body(found->second.content, found->second.type.c_str()));
-    std::string error;
-    const auto text = read_text_file(settings_.files + path, error);
-    return text ? answer(c, MHD_HTTP_OK, body(*text, type_of(path)))
-                : plain(c, MHD_HTTP_NOT_FOUND, path + ": " + error);
+    if (settings_.files.empty()) return text(c, found->second.content, found->second.type.c_str());
+    const auto content = read_served_file(settings_.files, {path.substr(1)});
+    return content ? text(c, *content, type_of(path)) : plain(c, MHD_HTTP_NOT_FOUND, "not here");
   }
 
   MHD_Result stream(MHD_Connection* c) {
+    if (!guard_.watches(socket_of(c)))
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many viewers");
     auto viewer = std::make_unique<Viewer>(Viewer{this, c, view_.join()});
     MHD_Response* response = MHD_create_response_from_callback(
         MHD_SIZE_UNKNOWN, kBlock, &Implementation::read, viewer.get(), &Implementation::leave);
     if (!response) return MHD_NO;
     (void)viewer.release();  // leave() has it now
-    ++viewers_;
     MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
-    return answer(c, MHD_HTTP_OK, response);
+    return send_answer(c, MHD_HTTP_OK, response);
   }
 
   static ssize_t read(void* of, std::uint64_t, char* buffer, std::size_t size) {
@@ -266,17 +270,16 @@ class WebServer::Implementation {
     const std::unique_ptr<Viewer> viewer(static_cast<Viewer*>(of));
     const std::lock_guard<std::mutex> lock(viewer->server->mutex_);
     viewer->server->waiting_.erase(viewer->connection);
-    --viewer->server->viewers_;
   }
 
   const WebSettings settings_;
   LiveView& view_;
+  ConnectionGuard guard_;
   MHD_Daemon* daemon_ = nullptr;
   int port_ = 0;
   std::mutex mutex_;
   std::set<MHD_Connection*> waiting_;  ///< suspended, because they have read everything
   std::atomic<bool> stopping_ = false;
-  std::atomic<int> viewers_ = 0;
 };
 
 WebServer::WebServer(const WebSettings& settings, LiveView& view)

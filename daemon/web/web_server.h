@@ -10,11 +10,10 @@ namespace framewatch::daemon {
 class LiveView;
 
 /// Serves the page, the building and the stream of events (docs/dashboard.md) on a thread of its
-/// own. A viewer that does not read costs one socket and one event of memory.
+/// own, to as many at once as WebSettings::connections says. A viewer that does not read costs one
+/// socket and one event of memory until it is ended.
 class WebServer {
  public:
-  static constexpr unsigned kMostConnections = 1000;
-
   /// `view` must outlive this.
   WebServer(const WebSettings& settings, LiveView& view);
   ~WebServer();
@@ -25,7 +24,8 @@ class WebServer {
   [[nodiscard]] bool start(int socket, std::string& error);
   int port() const;
   int viewers() const;
-  /// New events have come: waiting viewers continue.
+  /// New events have come: waiting viewers continue, and what is overdue is ended. To be called at
+  /// least once a second.
   void wake();
 
  private:

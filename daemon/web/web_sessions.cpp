@@ -9,10 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/base/file_digest.h"
 #include "daemon/documents/json_values.h"
 #include "daemon/session/session_file.h"
 #include "daemon/session/session_log.h"
+#include "daemon/web/served_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -40,8 +40,8 @@ std::string sessions_json(const std::string& folder) {
   for (const std::string& name : names) {
     if (out.size() == kMostShown) break;
     std::string why;
-    const fs::path at = fs::path(folder) / name;
-    const auto s = read_session_file((at / kSessionJson).string(), why);
+    const auto text = read_served_file(folder, {name, kSessionJson});
+    const auto s = text ? parse_session(*text, why) : std::nullopt;
     if (!s) continue;
     const std::int64_t length_us = s->end_us > 0 ? s->end_us - s->trigger_us : 0;
     std::vector<std::string> said = s->problems;
@@ -53,7 +53,7 @@ std::string sessions_json(const std::string& folder) {
                    {"began_us", s->began_us},
                    {"seconds", 1e-6 * static_cast<double>(length_us)},
                    {"problems", said},
-                   {"report", fs::exists(at / kReportPage, error)}});
+                   {"report", is_served_file(folder, {name, kReportPage})}});
   }
   return json_line(out);
 }
@@ -64,8 +64,7 @@ std::optional<WebFile> session_document(const std::string& folder, const std::st
   const std::string file = slash == std::string::npos ? "" : path.substr(slash + 1);
   if (folder.empty() || !is_session_name(name)) return std::nullopt;
   if (file != kReportPage && file != kSessionJson) return std::nullopt;
-  std::string error;
-  auto text = read_text_file((fs::path(folder) / name / file).string(), error);
+  auto text = read_served_file(folder, {name, file});
   if (!text) return std::nullopt;
   return WebFile{file == kReportPage ? "text/html; charset=utf-8" : "application/json",
                  std::move(*text)};

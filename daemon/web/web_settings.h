@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "daemon/metrics/page_use.h"
+#include "daemon/web/web_connections.h"
+
 namespace framewatch::daemon {
 
 /// Address, access and contents of the page.
@@ -15,8 +18,9 @@ struct WebSettings {
   std::vector<std::string> hosts;  ///< further names that requests may come under
   std::string files;               ///< folder to read the page from instead of the built-in one
   std::string sessions;            ///< folder of `framewatch record`; empty: none is shown
-  /// Text of /metrics, given the number of viewers; empty: /metrics does not exist.
-  std::function<std::string(int viewers)> metrics;
+  /// Text of /metrics; empty: /metrics does not exist.
+  std::function<std::string(const PageUse&)> metrics;
+  ConnectionLimits connections;
 
   bool local() const { return address == "127.0.0.1" || address == "::1"; }
 };

@@ -40,7 +40,7 @@ daemon::Config live_config(int stories, int bays) {
 [[noreturn]] void be_the_building(const Eigen::MatrixXd& accel) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::string error;
-  const auto lcm = drivers::open_lcm(kUrl, 0, error);
+  const auto lcm = drivers::open_lcm(kUrl, {}, error);
   if (!lcm) ::_exit(2);
   auto due = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
   for (Eigen::Index t = 0; t < accel.rows(); ++t) {
@@ -62,7 +62,7 @@ int run(int stories, int bays, int seconds) {
   const daemon::Config config = live_config(stories, bays);
   const Eigen::MatrixXd accel = shaken(config.pipeline, seconds * kRate_hz);
   std::string error;
-  const auto lcm = drivers::open_lcm(kUrl, config.lcm.receive_buffer_bytes, error);
+  const auto lcm = drivers::open_lcm(kUrl, config.lcm.reception, error);
   if (!lcm) {
     std::fprintf(stderr, "latency_bench: %s\n", error.c_str());
     return 2;

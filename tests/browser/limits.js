@@ -1,13 +1,13 @@
 'use strict';
 // What the page must bear with the paper's building of 3x3 bays at 100 Hz: every row, 50 frames/s, 200
-// viewers, and an estimator that does not notice any of them.
+// viewers, 2000 connections that dawdle, and an estimator that does not notice any of them.
 const {chromium} = require('playwright-core');
 const {spawn, spawnSync} = require('child_process');
-const fs = require('fs'), http = require('http'), os = require('os'), path = require('path');
+const fs = require('fs'), http = require('http'), net = require('net'), os = require('os'), path = require('path');
 
 const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
-const kViewers = 200, kMostCpu = 0.10, kLeastFrames = 20, kQuietFrames = 50, kPlayed_s = 12;
+const kViewers = 200, kSlow = 2000, kMostCpu = 0.10, kLeastFrames = 20, kQuietFrames = 50, kPlayed_s = 12;
 const kPageBytes = 150000;
 
 const children = [], failures = [];
@@ -22,6 +22,7 @@ async function stop(child) { child.kill('SIGINT'); await child.ended; }
 const pause = ms => new Promise(done => setTimeout(done, ms));
 const config = path.join(configs, 'paper_table2.toml'), scenario = path.join(configs, 'scenario_paper_table2.toml');
 const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-limits-'));
+process.env.XDG_RUNTIME_DIR = work; // where commands go
 const url = `udpm://239.255.76.67:${8800 + process.pid % 1000}?ttl=0`;
 
 function cpuSeconds(pid) {
@@ -41,14 +42,32 @@ class Viewer {
   close() { this.request.destroy(); }
 }
 
-// Plays the same samples to an estimator with so many viewers beside it; its estimates as a log.
-async function played(raw, count) {
-  const sessions = path.join(work, `viewers-${count}`);
+// Sends half a request, then a byte now and then; comes back when it is ended.
+class Dawdler {
+  constructor(address) {
+    const {hostname, port} = new URL(address);
+    const begin = () => {
+      if (this.over) return;
+      this.socket = net.connect(port, hostname, () => this.socket.write('GET / HTTP/1.1\r\nX: '));
+      this.socket.on('error', () => {});
+      this.socket.on('close', () => setTimeout(begin, 1000));
+    };
+    begin();
+    this.timer = setInterval(() => { if (!this.socket.destroyed) this.socket.write('b'); }, 2000);
+  }
+  close() { this.over = true; clearInterval(this.timer); this.socket.destroy(); }
+}
+
+// Plays the same samples to an estimator with so many viewers and dawdlers beside it; its estimates as a log.
+async function played(raw, count, slow = 0) {
+  const sessions = path.join(work, `viewers-${count}-${slow}`);
   const recorder = start(program, 'record', config, '--url', url, '--no-check', '--no-report', '--quiet', '--out', sessions);
   const estimator = start(program, 'run', config, '--url', url, '--quiet');
   const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--quiet');
   const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
   const viewers = Array.from({length: count}, () => new Viewer(address));
+  await pause(500);
+  const dawdlers = Array.from({length: slow}, () => new Dawdler(address));
   await pause(1500);
   const player = start('lcm-logplayer', '--lcm-url', url, raw);
   await pause(2000);
@@ -59,7 +78,7 @@ async function played(raw, count) {
   await player.ended;
   await pause(1500);
   const dropped = viewers.reduce((a, v) => a + v.dropped, 0);
-  for (const v of viewers) v.close();
+  for (const v of [...viewers, ...dawdlers]) v.close();
   for (const child of [recorder, estimator, serve]) await stop(child);
   const session = path.join(sessions, fs.readdirSync(sessions).find(name => name[0] === '2'));
   const told = JSON.parse(fs.readFileSync(path.join(session, 'session.json')));
@@ -77,6 +96,11 @@ async function main() {
   expect(alone.lost === watched.lost && alone.lost < 10, 'no sample was lost on the way');
   const size = fs.statSync(alone.log).size;
   expect(spawnSync(program, ['diff', alone.log, watched.log], {stdio: 'inherit'}).status === 0 && size > 1e5, `the estimates are the same bytes with 0 and ${kViewers} viewers (${size} bytes of log)`);
+
+  const dawdled = await played(raw, kViewers, kSlow);
+  console.log(`${kSlow} slow connections beside them: ${(100 * dawdled.share).toFixed(1)} % of a core, ${(dawdled.rate / 1e3).toFixed(1)} kB/s each, ${dawdled.dropped} told of lost events`);
+  expect(dawdled.rate > watched.rate / 2, 'slow connections end no viewer');
+  expect(alone.lost === dawdled.lost && spawnSync(program, ['diff', alone.log, dawdled.log], {stdio: 'inherit'}).status === 0, `the estimates are the same bytes with ${kSlow} slow connections`);
 
   start(program, 'run', config, '--url', url, '--quiet');
   const serve = start(program, 'serve', config, '--url', url, '--port', '0', '--quiet');

@@ -26,7 +26,7 @@ const pause = ms => new Promise(done => setTimeout(done, ms));
 async function record(page) {
   await page.waitForFunction(() => framewatch.session && framewatch.session.channels.length === 10);
   await page.fill('#s-test', 'browser <test>');
-  await page.fill('#s-operator', 'nobody');
+  await page.fill('#s-operator', '<img src=x onerror="window.owned = 1">');
   await page.fill('#s-length_s', String(kRecorded_s));
   await page.click('[data-verb=start]');
   await page.waitForFunction(() => framewatch.session.state === 3, null, {timeout: 3000});
@@ -37,6 +37,7 @@ async function record(page) {
   expect(true, 'a second start is refused while it records');
   await page.waitForSelector('#sessions a', {timeout: 1000 * (kRecorded_s + kReported_s)});
   const session = await page.evaluate(() => framewatch.session);
+  expect(await page.evaluate(() => window.owned === undefined) && (await page.textContent('#sessions')).includes('onerror'), 'what an operator writes is text');
   expect(session.state === 0 && session.messages >= 1000 * kRecorded_s && session.estimates >= 90 * kRecorded_s && session.lost === 0 && session.dropped === 0,
     `a session of ${kRecorded_s} s: ${session.messages} messages, ${session.estimates} estimates, none lost`);
   const [report] = await Promise.all([page.context().waitForEvent('page'), page.click('#sessions a')]);
@@ -46,6 +47,12 @@ async function record(page) {
   await report.screenshot({path: 'report.png'});
   await report.close();
   await page.locator('#session-card').screenshot({path: 'session-done.png'});
+  const socket = path.join(process.env.XDG_RUNTIME_DIR, 'framewatch', 'FRAMEWATCH_record');
+  fs.renameSync(socket, socket + '.away');
+  await page.click('[data-verb=tap]');
+  const refused = await page.waitForFunction(() => /^Refused: no framewatch record takes commands here/.test(document.getElementById('tip').textContent), null, {timeout: 10000}).catch(() => null);
+  expect(refused !== null && await page.evaluate(() => framewatch.session.state) === 0, 'a command that reaches no recorder is said to be refused');
+  fs.renameSync(socket + '.away', socket);
   const status = async (at, method) => (await fetch(new URL(at, page.url()), {method})).status;
   expect(await status('session?verb=stop', 'GET') === 404 && await status('session?verb=stop', 'POST') === 403, 'session verbs need POST and the token');
   expect(await status('session/%2e%2e/%2e%2e/report.html', 'GET') === 404 && await status('session/x/raw.lcmlog', 'GET') === 404, 'nothing but reports is served from the folder');
@@ -53,6 +60,7 @@ async function record(page) {
 
 async function main() {
   const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-browser-'));
+  process.env.XDG_RUNTIME_DIR = work; // where commands go
   const url = `udpm://239.255.76.67:${7800 + process.pid % 1000}?ttl=0`;
   const config = path.join(configs, 'table_two_story.toml'), scenario = path.join(work, 'scenario.toml');
   fs.writeFileSync(scenario, fs.readFileSync(path.join(configs, 'scenario_table_two_story.toml'), 'utf8')

@@ -231,19 +231,32 @@ function acknowledgeButton(id) {
 }
 async function post(path) {
   const answer = await fetch(path, {method: 'POST'}).catch(() => null);
-  if (!answer || !answer.ok) showTip(answer ? await answer.text() : 'the server does not answer', innerWidth / 2, 60);
-  setTimeout(hideTip, 4000);
+  const text = answer ? (await answer.text()).trim() : 'the server does not answer';
+  if (!answer || !answer.ok) warn(text);
+  else if (answer.status === 202) given(text);
 }
+function warn(text) { showTip(text, innerWidth / 2, 60); setTimeout(hideTip, 8000); }
+// Commands of this page by their ids, and why some were not obeyed: that may come before the id does.
+const ours = new Set(), refusals = new Map();
+function given(id) { ours.add(id); showRefusal(id); }
+function onRefused(r) {
+  if (refusals.size > 100) refusals.clear();
+  refusals.set(r.answered, r.refused);
+  showRefusal(r.answered);
+}
+function showRefusal(id) { if (ours.has(id) && refusals.has(id)) warn('Refused: ' + refusals.get(id)); }
 function listen() {
   const source = new EventSource('events');
   const on = (name, f) => source.addEventListener(name, e => { lastAlive = performance.now(); f(JSON.parse(e.data)); });
   on('motion', onMotion); on('estimate', onEstimate); on('status', onStatus); on('alarm', onAlarm);
-  on('session', onSession); on('gap', onGap); on('can', onCan);
+  on('session', onSession); on('gap', onGap); on('can', onCan); on('refused', onRefused);
   on('boxes', b => { boxes = window.framewatch.boxes = b; });
   on('baseline', b => { baseline = b.value; });
   on('dropped', d => { window.framewatch.dropped = d.events; });
   on('alive', () => {});
   source.onopen = () => { lastAlive = performance.now(); };
+  // A refusal (too many viewers) ends an EventSource for good.
+  source.onerror = () => { if (source.readyState === EventSource.CLOSED) setTimeout(listen, 5000); };
 }
 function say(text, kind) { const s = $('state'); if (s.textContent !== text) s.textContent = text; s.className = 'pill ' + kind; }
 function draw() {

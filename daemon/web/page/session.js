@@ -17,7 +17,7 @@ async function askRecorder(verb) {
   const answer = await fetch('session?' + query, {method: 'POST'}).catch(() => null);
   const text = answer ? (await answer.text()).trim() : 'the server does not answer';
   asked = answer && answer.ok ? text : null;
-  if (!asked) sessionNews(text);
+  if (asked) given(asked); else sessionNews(text);
 }
 function sessionNews(text) { if ($('session-news').textContent !== text) $('session-news').textContent = text; }
 function sessionButtons() {
@@ -75,7 +75,7 @@ async function loadSessions() {
     const last = row.insertCell();
     if (!s.report) continue;
     const link = document.createElement('a');
-    link.href = `session/${s.session}/report.html`; link.textContent = 'report'; link.target = '_blank'; link.rel = 'noopener';
+    link.href = `session/${encodeURIComponent(s.session)}/report.html`; link.textContent = 'report'; link.target = '_blank'; link.rel = 'noopener';
     last.append(link);
   }
 }

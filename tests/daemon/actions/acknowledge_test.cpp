@@ -1,7 +1,13 @@
+#include <unistd.h>
+
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/acknowledged_t.hpp>
@@ -13,6 +19,7 @@
 #include "daemon/actions/acknowledge_command.h"
 #include "daemon/actions/acknowledge_desk.h"
 #include "daemon/base/clocks.h"
+#include "daemon/base/user_name.h"
 #include "daemon/events/acknowledge_messages.h"
 #include "daemon/events/event_words.h"
 #include "daemon/events/raised_events.h"
@@ -74,35 +81,28 @@ TEST(RaisedEvents, WhatIsKnownIsInTheState) {
 
 class Desk : public testing::Test {
  protected:
-  Desk() : desk_(config_, lcm_) {
-    lcm_.subscribe("FRAMEWATCH_ACKNOWLEDGED", &Desk::on_answer, this);
-  }
+  Desk() { lcm_.subscribe("FRAMEWATCH_ACKNOWLEDGED", &Desk::on_answer, this); }
   void on_answer(const lcm::ReceiveBuffer* buffer, const std::string&) {
     auto found = drivers::decoded<acknowledged_t>(
         {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size});
     ASSERT_TRUE(found);
     answers_.push_back(std::move(*found));
   }
-  void send(const acknowledge_t& request) {
-    lcm_.publish("FRAMEWATCH_ACKNOWLEDGE", &request);
-    handle();
-  }
-  void handle() {
-    while (lcm_.handleTimeout(50) > 0) {
-    }
+  std::optional<acknowledged_t> ask(const acknowledge_t& request, std::int64_t now_us = 5) {
+    return desk_.obey(drivers::encoded(request), "alice", {&here_, &there_}, now_us);
   }
   void look(std::int64_t now_us) {
-    desk_.look(
-        {&here_, &there_}, [this](const event_t& e, auto&) { done_.push_back(e.id); }, now_us);
-    handle();
+    desk_.look({&here_, &there_}, now_us);
+    while (lcm_.handleTimeout(50) > 0) {
+    }
   }
 
   Config config_;
   lcm::LCM lcm_{"memq://"};
-  AcknowledgeDesk desk_;
   RaisedEvents here_, there_;
   std::vector<acknowledged_t> answers_;
   std::vector<std::int64_t> done_;
+  AcknowledgeDesk desk_{config_, lcm_, [this](const event_t& e, auto&) { done_.push_back(e.id); }};
 };
 
 TEST_F(Desk, AnswersOnceAndSaysEverySecondWhatIsKnown) {
@@ -111,9 +111,15 @@ TEST_F(Desk, AnswersOnceAndSaysEverySecondWhatIsKnown) {
   look(0);
   ASSERT_EQ(answers_.size(), 1u);
   EXPECT_EQ(answers_[0].events, 0);
-  const acknowledge_t request = acknowledge_request(2, "me", "loose");
-  send(request);
-  send(request);
+  const acknowledge_t request = acknowledge_request(2, "", "loose");
+  for (int again = 0; again < 2; ++again) {
+    const auto answer = ask(request);
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->answered, request.request);
+    EXPECT_EQ(answer->refused, "");
+    EXPECT_EQ(answer->id, std::vector<std::int64_t>{2});
+    EXPECT_EQ(answer->who, std::vector<std::string>{"alice"});
+  }
   look(10);
   ASSERT_EQ(answers_.size(), 2u);
   EXPECT_EQ(done_, std::vector<std::int64_t>{2});
@@ -128,28 +134,71 @@ TEST_F(Desk, AnswersOnceAndSaysEverySecondWhatIsKnown) {
 }
 
 TEST_F(Desk, RefusesWhatIsNotRaisedAndTakesEverything) {
-  send(acknowledge_request(9, "me", ""));
-  look(0);
-  EXPECT_EQ(answers_.back().refused, "no event 9 is raised");
-  send(acknowledge_request(0, "me", ""));
-  look(1);
-  EXPECT_EQ(answers_.back().refused, "no event is raised");
+  EXPECT_EQ(ask(acknowledge_request(9, "", ""))->refused, "no event 9 is raised");
+  EXPECT_EQ(ask(acknowledge_request(0, "", ""))->refused, "no event is raised");
   here_.note(event(1));
   here_.acknowledge(1, {1, "somebody else", ""});
   here_.note(event(3));
   there_.note(event(2));
-  send(acknowledge_request(0, "me", ""));
-  look(2);
+  EXPECT_EQ(ask(acknowledge_request(0, "", ""))->events, 3);
   EXPECT_EQ(done_, (std::vector<std::int64_t>{3, 2}));
   EXPECT_EQ(here_.acknowledgement(1)->who, "somebody else");
 }
 
 TEST_F(Desk, BytesThatAreNoRequestChangeNothing) {
-  const std::string junk = "junk";
-  lcm_.publish("FRAMEWATCH_ACKNOWLEDGE", junk.data(), 4);
-  handle();
+  const std::vector<std::uint8_t> junk = {'j', 'u', 'n', 'k'};
+  EXPECT_FALSE(desk_.obey(junk, "alice", {&here_}, 5));
+  config_.lcm.commands = true;
+  desk_.heard(junk, 5);
+  desk_.heard({}, 5);
   look(0);
   EXPECT_EQ(answers_.size(), 1u);
+}
+
+TEST_F(Desk, TheClockAndTheNameAreNotTheRequests) {
+  here_.note(event(1));
+  acknowledge_t request = acknowledge_request(1, "Bob", "a\n<3>framewatch: forged\x1b[2J");
+  request.time_us = 77;
+  testing::internal::CaptureStderr();
+  ask(request, 5);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(here_.acknowledgement(1)->time_us, 5);
+  EXPECT_EQ(here_.acknowledgement(1)->who, "alice (says: Bob)");
+  EXPECT_EQ(here_.acknowledgement(1)->comment, "a\\n<3>framewatch: forged\\x1b[2J");
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_EQ(said.find('\x1b'), std::string::npos);
+  request = acknowledge_request(1, std::string(5000, '\xff'), std::string(5000, 'c'));
+  ask(request);
+  EXPECT_LT(here_.acknowledgement(1)->who.size(), 200u);
+  EXPECT_LE(here_.acknowledgement(1)->comment.size(), 500u);
+}
+
+TEST_F(Desk, TheAnswerFitsAPacketHoweverMuchIsRaised) {
+  for (int i = 1; i <= static_cast<int>(RaisedEvents::kMost); ++i) here_.note(event(i));
+  const auto answer = ask(acknowledge_request(0, std::string(500, 'w'), std::string(500, 'c')));
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(done_.size(), RaisedEvents::kMost);
+  EXPECT_LT(drivers::encoded(*answer).size(), 60'000u);
+}
+
+TEST_F(Desk, WhatComesOverLcmIsObeyedWhereTheConfigurationSaysSo) {
+  here_.note(event(1));
+  const std::vector<std::uint8_t> request = drivers::encoded(acknowledge_request(1, "Bob", ""));
+  testing::internal::CaptureStderr();
+  for (int i = 0; i < 1000; ++i) desk_.heard(request, 5);
+  const std::string said = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(desk_.not_obeyed(), 1000);
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
+  EXPECT_NE(said.find("lcm.commands = false"), std::string::npos) << said;
+  look(10);
+  EXPECT_EQ(here_.acknowledgement(1), nullptr);
+  config_.lcm.commands = true;
+  for (int i = 0; i < 1000; ++i) desk_.heard(request, 15);
+  look(20);
+  ASSERT_NE(here_.acknowledgement(1), nullptr);
+  EXPECT_EQ(here_.acknowledgement(1)->who, "LCM (says: Bob)");
+  EXPECT_EQ(done_, std::vector<std::int64_t>{1});
+  EXPECT_EQ(desk_.not_obeyed(), 1000);
 }
 
 // --- the daemon, its command, its history
@@ -165,16 +214,22 @@ class Tower : public testing::Test {
                      "$FRAMEWATCH_KIND $FRAMEWATCH_EVENT_ID\" >>" +
                          directory_.path("told") + "\n");
     std::filesystem::permissions(directory_.path("hook"), std::filesystem::perms::owner_all);
-    test::write_file(config(), test::read_file(config()) + "\n[history]\ndirectory = \"h\"\n" +
-                                   "[actions]\ncommand = [\"" + directory_.path("hook") + "\"]\n");
+    add("[history]\ndirectory = \"h\"\n[commands]\ndirectory = \"../commands\"\n[actions]\ncommand "
+        "= "
+        "[\"" +
+        directory_.path("hook") + "\"]\n");
     std::string error;
-    lcm_ = drivers::open_lcm(LcmSettings().url, 1 << 20, error);
+    lcm_ = drivers::open_lcm(LcmSettings().url, {}, error);
     ASSERT_TRUE(lcm_) << error;
-    source_.emplace(
-        *lcm_, std::vector<std::string>{"FRAMEWATCH_ACKNOWLEDGED"}, 100,
-        [this](const std::string&, const void* data, std::size_t size, std::int64_t) {
-          known_ = drivers::decoded<acknowledged_t>({static_cast<const std::uint8_t*>(data), size});
-        });
+    source_.emplace(*lcm_, std::vector<std::string>{"FRAMEWATCH_ACKNOWLEDGED"}, 100,
+                    [this](const drivers::LcmMessage& m) {
+                      known_ = drivers::decoded<acknowledged_t>(
+                          {static_cast<const std::uint8_t*>(m.data), m.size});
+                    });
+  }
+  /// Appends to the configuration.
+  void add(const std::string& text) const {
+    test::write_file(config(), test::read_file(config()) + "\n" + text);
   }
   std::string config() const { return directory_.path("can/tower.toml"); }
   std::string told() const { return test::read_file(directory_.path("told")); }
@@ -190,6 +245,16 @@ class Tower : public testing::Test {
     arguments.comment = "no bus here";
     return acknowledge_command(arguments);
   }
+  /// A raised event of the daemon.
+  std::int64_t raised() const {
+    EXPECT_TRUE(test::comes_true([&] { return told().ends_with('\n'); }, kSoon));
+    return told().starts_with("raised interface_gone ") ? std::stoll(told().substr(22)) : 0;
+  }
+  /// Sends a request as anybody may who reaches the bus.
+  void forge(std::int64_t id) {
+    const acknowledge_t request = acknowledge_request(id, "anybody", "x");
+    lcm_->publish("FRAMEWATCH_ACKNOWLEDGE", &request);
+  }
   template <typename Condition>
   bool heard(Condition condition) {
     return test::comes_true(
@@ -201,7 +266,7 @@ class Tower : public testing::Test {
   }
 
   test::TemporaryDirectory directory_;
-  std::unique_ptr<lcm::LCM> lcm_;
+  std::unique_ptr<drivers::LcmProvider> lcm_;
   std::optional<drivers::LcmSource> source_;
   std::optional<acknowledged_t> known_;
 };
@@ -210,9 +275,8 @@ TEST_F(Tower, AnAcknowledgedEventIsKnownOverARestartAndInTheHistory) {
   std::int64_t id = 0;
   {
     test::Child daemon = run();
-    ASSERT_TRUE(test::comes_true([&] { return !told().empty(); }, kSoon));
-    ASSERT_TRUE(told().starts_with("raised interface_gone "));
-    id = std::stoll(told().substr(22));
+    id = raised();
+    ASSERT_NE(id, 0);
     EXPECT_EQ(acknowledge(id + 1), 1);
     EXPECT_EQ(acknowledge(id), 0);
     EXPECT_EQ(daemon.stop(SIGTERM), 0);
@@ -234,9 +298,35 @@ TEST_F(Tower, AnAcknowledgedEventIsKnownOverARestartAndInTheHistory) {
   ASSERT_EQ(stored.size(), 1u);
   EXPECT_EQ(stored[0].id, id);
   EXPECT_EQ(stored[0].kind, "interface_gone");
-  EXPECT_EQ(stored[0].who, "me");
+  EXPECT_EQ(stored[0].who, user_name(::geteuid()) + " (says: me)");
   EXPECT_EQ(acknowledge(id), 2);  // nobody is there
-  EXPECT_EQ(acknowledge_command({"3x", config(), "", "", ""}), 2);
+  EXPECT_EQ(acknowledge_command({"3x", config(), "", ""}), 2);
+}
+
+TEST_F(Tower, ADatagramAcknowledgesNothing) {
+  test::Child daemon = run();
+  const std::int64_t id = raised();
+  ASSERT_NE(id, 0);
+  ASSERT_TRUE(heard([&](const acknowledged_t&) { return true; }));
+  for (int i = 0; i < 20; ++i) forge(id);
+  const std::int64_t then_us = host_clock_us();
+  // It has been through its loop many times.
+  ASSERT_TRUE(heard([&](const acknowledged_t& a) { return a.time_us > then_us + 2 * kSecond_us; }));
+  EXPECT_EQ(known_->events, 0);
+  EXPECT_EQ(acknowledge(id), 0);
+  EXPECT_EQ(daemon.stop(SIGTERM), 0);
+}
+
+TEST_F(Tower, WithLcmCommandsADatagramDoes) {
+  add("[lcm]\ncommands = true\n");
+  test::Child daemon = run();
+  const std::int64_t id = raised();
+  ASSERT_NE(id, 0);
+  EXPECT_TRUE(heard([&](const acknowledged_t& a) {
+    forge(id);
+    return a.events == 1 && a.who[0] == "LCM (says: anybody)";
+  }));
+  EXPECT_EQ(daemon.stop(SIGTERM), 0);
 }
 
 }  // namespace acknowledge_test

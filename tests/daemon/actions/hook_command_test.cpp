@@ -1,5 +1,6 @@
 #include "daemon/actions/hook_command.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -45,6 +46,20 @@ class Hook : public testing::Test {
 
   test::TemporaryDirectory directory_;
 };
+
+TEST_F(Hook, ItsEnvironmentHasOneLineForEachVariable) {
+  event_t e = event(7);
+  e.place = "F1\nLD_PRELOAD=x";
+  e.message = "\x1b[2Jnode \xff\n$(touch made)";
+  for (const auto& [name, value] : event_environment(e, "a\nbuilding"))
+    for (const char c : value) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << name;
+  const auto environment = event_environment(e, "a building");
+  const auto found = std::find_if(environment.begin(), environment.end(), [](const auto& variable) {
+    return variable.first == "FRAMEWATCH_MESSAGE";
+  });
+  EXPECT_EQ(found->second, "\\x1b[2Jnode \\xff\\n$(touch made)");
+  EXPECT_EQ(nlohmann::json::parse(event_json(e, "b"))["place"], "F1\nLD_PRELOAD=x");
+}
 
 TEST_F(Hook, GetsTheEventOnItsInputAndInItsEnvironment) {
   ::setenv("WATCHDOG_USEC", "1", 1);

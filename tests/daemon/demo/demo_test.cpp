@@ -53,13 +53,13 @@ struct Outcome {
 
 /// What the view says after these messages, which it gets over LCM like any others.
 Outcome outcome(const parameter_table_t* table, const window_estimate_t& estimate) {
-  lcm::LCM lcm("memq://");
+  drivers::LcmProvider lcm("memq://");
   DemoView view(kTruth, false, false);
-  view.subscribe(lcm, "T_");
+  drivers::LcmSource source(lcm, DemoView::channels("T_"), 100,
+                            [&](const drivers::LcmMessage& m) { view.message(m); });
   if (table) lcm.publish("T_PARAMETERS", table);
   lcm.publish("T_ESTIMATE", &estimate);
-  while (lcm.handleTimeout(0) > 0) {
-  }
+  EXPECT_TRUE(source.handle(0));
   testing::internal::CaptureStdout();
   const int exit_code = view.finish();
   return {exit_code, testing::internal::GetCapturedStdout()};
@@ -94,14 +94,14 @@ TEST(DemoView, FailsWithoutAValueOrWithoutMessages) {
 }
 
 TEST(DemoView, SurvivesBytesThatAreNoMessage) {
-  lcm::LCM lcm("memq://");
+  drivers::LcmProvider lcm("memq://");
   DemoView view(kTruth, false, true);
-  view.subscribe(lcm, "T_");
+  drivers::LcmSource source(lcm, DemoView::channels("T_"), 100,
+                            [&](const drivers::LcmMessage& m) { view.message(m); });
   const std::string junk(200, '\xff');
   for (const char* channel : {"T_PARAMETERS", "T_ESTIMATE"})
     lcm.publish(channel, junk.data(), static_cast<unsigned>(junk.size()));
-  while (lcm.handleTimeout(0) > 0) {
-  }
+  EXPECT_TRUE(source.handle(0));
   EXPECT_EQ(view.finish(), 1);
 }
 

@@ -123,7 +123,7 @@ double late_gap(const std::vector<framewatch::gap_t>& gaps) {
 
 TEST_F(GapLoop, IsClosedLive) {
   const Config building = config();
-  lcm::LCM lcm("memq://");
+  drivers::LcmProvider lcm("memq://");
   Heard heard;
   lcm.subscribe("FRAMEWATCH_GAP", &Heard::on_gap, &heard)->setQueueCapacity(10000);
   lcm.subscribe("FRAMEWATCH_EVENT", &Heard::on_event, &heard)->setQueueCapacity(10000);

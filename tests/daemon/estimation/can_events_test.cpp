@@ -114,10 +114,45 @@ TEST(CanEvents, AnInterfaceThatGoesIsToldOnceAndWhenItIsBack) {
       CanEvents(config.can).of({drivers::CanNotice::Kind::interface_gone, 0, false, 0, 7})->id);
 }
 
+TEST(CanEvents, GoodTrafficGivesNone) {
+  for (const char* name : {"raw_int16", "xsens_mti600", "bosch_mm510", "fd_block", "tower"}) {
+    const Config config = test::can_example(name);
+    Heard heard(config);
+    for (const drivers::BusFrame& f : test::can_traffic(config, 3000))
+      heard.estimation.frame(f.bus, f.frame);
+    EXPECT_TRUE(heard.events.empty()) << name << ": " << heard.events[0].message;
+  }
+}
+
+TEST(CanEvents, ASecondNodeWithTheSameIdsIsToldOnceAndWhenItIsGone) {
+  for (const char* name : {"raw_int16", "tower"}) {
+    const Config config = test::can_example(name);
+    Heard heard(config);
+    const std::uint32_t id = config.can.nodes[1].messages[0].id;
+    const auto rate = static_cast<int>(config.pipeline.options.rate_hz);
+    const std::int64_t begin_us = test::kTrafficStart_us + 5'000'000, end_us = begin_us + 8'000'000;
+    for (const drivers::BusFrame& f : test::can_traffic(config, 60 * rate)) {
+      heard.estimation.frame(f.bus, f.frame);
+      if (f.frame.id != id || f.frame.stamp_us < begin_us || f.frame.stamp_us > end_us) continue;
+      CanFrame twin = f.frame;
+      twin.stamp_us += 50;
+      twin.data[0] ^= 0x10;
+      heard.estimation.frame(f.bus, twin);
+    }
+    ASSERT_EQ(heard.events.size(), 2u) << name;
+    EXPECT_EQ(heard.events[0].kind, "duplicates") << name;
+    EXPECT_EQ(heard.events[0].place, config.can.nodes[1].name);
+    EXPECT_EQ(heard.events[0].severity, 1);
+    EXPECT_GE(heard.events[0].value, 5);
+    EXPECT_EQ(heard.events[1].state, 0);
+    EXPECT_EQ(heard.events[1].id, heard.events[0].id);
+  }
+}
+
 TEST(CanEvents, ALiveInterfaceThatIsNotThereIsToldOnce) {
   Config config = test::can_example("tower");
   config.can.buses[0].interface = "nocan9";
-  lcm::LCM lcm("memq://");
+  drivers::LcmProvider lcm("memq://");
   std::vector<event_t> events;
   const auto hear =
       +[](const lcm::ReceiveBuffer* buffer, const std::string&, std::vector<event_t>* heard) {

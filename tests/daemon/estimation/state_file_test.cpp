@@ -143,7 +143,7 @@ TEST_F(StateFile, DamagedCutOffAndForeignOnesAreRefusedWithTheReason) {
 /// Plays the events [from, to) of a log through a daemon in this process.
 std::int64_t live(const Config& config, const std::string& log, int from, int to,
                   const std::string& state_in, const std::string& state_out) {
-  lcm::LCM lcm("memq://");
+  drivers::LcmProvider lcm("memq://");
   LiveEstimation estimation(config, lcm);
   bool touched = false;
   if (!state_in.empty()) {

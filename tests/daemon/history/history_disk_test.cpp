@@ -55,7 +55,7 @@ TEST(HistoryDisk, AFullDiskIsAnAlarmAndNothingIsLostWhenThereIsRoomInTime) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   if (!may_mount()) GTEST_SKIP() << "a small file system cannot be mounted here";
   std::string error;
-  const auto lcm = drivers::open_lcm("udpm://239.255.76.67:7667?ttl=0", 1 << 22, error);
+  const auto lcm = drivers::open_lcm("udpm://239.255.76.67:7667?ttl=0", {}, error);
   if (!lcm) GTEST_SKIP() << error;
   Bus bus;
   lcm->subscribe("FRAMEWATCH_HISTORY", &Bus::on_status, &bus);

@@ -59,7 +59,7 @@ class Live {
   std::size_t main_windows() const { return collected_.main_windows; }
 
  private:
-  lcm::LCM lcm_;
+  drivers::LcmProvider lcm_;
   Collected collected_;
   LiveEstimation live_;
 };

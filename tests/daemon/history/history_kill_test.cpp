@@ -84,7 +84,7 @@ TEST(KillStorm, LosesASecondOfRawSamplesAtMostAndNothingCommitted) {
   const test::TemporaryDirectory directory;
   const std::string config = config_with_history(directory), history = directory.path("h");
   std::string error;
-  const auto lcm = drivers::open_lcm("udpm://239.255.76.67:7667?ttl=0", 1 << 22, error);
+  const auto lcm = drivers::open_lcm("udpm://239.255.76.67:7667?ttl=0", {}, error);
   if (!lcm) GTEST_SKIP() << error;
   Bus bus;
   lcm->subscribe("ACCEL", &Bus::on_sample, &bus)->setQueueCapacity(100'000);

@@ -85,7 +85,8 @@ TEST(ConfigOptions, DefaultsAreThoseOfTheProgram) {
   EXPECT_EQ(c.lcm.url, l.url);
   EXPECT_EQ(c.lcm.prefix, l.prefix);
   EXPECT_EQ(c.lcm.queue_capacity, l.queue_capacity);
-  EXPECT_EQ(c.lcm.receive_buffer_bytes, l.receive_buffer_bytes);
+  EXPECT_EQ(c.lcm.reception.receive_buffer_bytes, l.reception.receive_buffer_bytes);
+  EXPECT_EQ(c.lcm.reception.interfaces, l.reception.interfaces);
   EXPECT_EQ(c.lcm.boxplot_every, l.boxplot_every);
 }
 

@@ -8,6 +8,7 @@
 #include "daemon/keys/action_options.h"
 #include "daemon/keys/can_options.h"
 #include "daemon/keys/channel_options.h"
+#include "daemon/keys/command_options.h"
 #include "daemon/keys/gap_options.h"
 #include "daemon/keys/history_options.h"
 #include "daemon/keys/lcm_options.h"
@@ -90,6 +91,7 @@ TEST(KeyTargets, EveryKeyReachesItsFieldAndNoOther) {
   round_trip<AxisSource>("channel.source.can", keys);
   round_trip<estimator::EstimatorOptions>("estimator", keys);
   round_trip<LcmSettings>("lcm", keys);
+  round_trip<CommandSettings>("commands", keys);
   round_trip<drivers::CanBusMap>("can", keys);
   round_trip<drivers::CanNodeMap>("can_node", keys);
   round_trip<CanNodeSettings>("can_node", keys);

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <framewatch/event_t.hpp>
 #include <framewatch/status_t.hpp>
 
 #include "daemon/live/run_command.h"
 #include "daemon/replay/replay_command.h"
+#include "drivers/lcm/accel_messages.h"
 #include "drivers/lcm/lcm_log.h"
 #include "tests/support/child.h"
 #include "tests/support/recorded_table_test.h"
@@ -39,7 +41,7 @@ struct Collected {
 
 /// Plays a log through live LCM in this process.
 Collected run_live(const Config& config, const std::string& log) {
-  lcm::LCM lcm("memq://");
+  drivers::LcmProvider lcm("memq://");
   Collected collected;
   for (const char* channel : {"FRAMEWATCH_ESTIMATE.*", "FRAMEWATCH_STATUS"})
     lcm.subscribe(channel, &Collected::on_message, &collected)->setQueueCapacity(100000);
@@ -83,7 +85,7 @@ TEST(LiveEstimation, GivesTheBytesThatReplayGives) {
 
 TEST(LiveEstimation, NeverStopsOnBadInputAndCountsIt) {
   const Config config = table();
-  lcm::LCM lcm("memq://");
+  drivers::LcmProvider lcm("memq://");
   LiveEstimation live(config, lcm);
   for (int i = 0; i < 100; ++i) {
     lcm.publish("ACCEL", "garbage", 7);
@@ -95,6 +97,27 @@ TEST(LiveEstimation, NeverStopsOnBadInputAndCountsIt) {
   EXPECT_EQ(live.estimation().intake().counters().malformed, 200);
   EXPECT_GT(live.state().queue_high_water, 0);
   live.finish();
+}
+
+TEST(LiveEstimation, TheConfigurationIsAboveAStrayChannelTable) {
+  const Config config = table();
+  drivers::LcmProvider lcm("memq://");
+  LiveEstimation live(config, lcm);
+  std::vector<event_t> events;
+  live.on_event([&](const event_t& event) { events.push_back(event); });
+  const auto send = [&](const drivers::Message& message) {
+    lcm.publish(message.channel, message.bytes.data(), static_cast<unsigned>(message.bytes.size()));
+    EXPECT_TRUE(live.poll(100));
+  };
+  const drivers::AccelMessages swapped({"F1-Y1", "F1-Y2"}, {{"ACCEL", 3, 0}, {"ACCEL", 2, 0}}, 100);
+  for (int i = 0; i < 1000; ++i) send(swapped.tables(i).front());
+  ASSERT_EQ(events.size(), 2u);
+  for (const event_t& event : events) EXPECT_EQ(event.kind, "channel_table");
+  EXPECT_EQ(live.estimation().raised().all().size(), 2u);
+  const drivers::AxisBinding::NodeAxes* axes =
+      live.estimation().intake().binding().axes_of("ACCEL", 2);
+  ASSERT_NE(axes, nullptr);
+  EXPECT_EQ(config.pipeline.axes[static_cast<std::size_t>((*axes)[0])].name, "F1-Y1");
 }
 
 TEST(SensorSeconds, TicksOnceASecondAndIgnoresAStrayClock) {
@@ -120,7 +143,7 @@ TEST(SensorSeconds, FollowsWhenEverybodysClockJumps) {
 TEST(Run, EstimatesOverMulticastAndStopsCleanly) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::string error;
-  const auto lcm = drivers::open_lcm(table().lcm.url, 1 << 22, error);
+  const auto lcm = drivers::open_lcm(table().lcm.url, {}, error);
   if (!lcm) GTEST_SKIP() << error;
   Collected collected;
   for (const char* channel : {"FRAMEWATCH_ESTIMATE.*", "FRAMEWATCH_STATUS"})

@@ -119,7 +119,7 @@ class ReloadedRun {
     const std::string text = read_file(test::table_config());
     std::vector<ConfigProblem> problems;
     const Config config = *parse_config("b.toml", text, problems);
-    lcm::LCM lcm("memq://");
+    drivers::LcmProvider lcm("memq://");
     lcm.subscribe("FRAMEWATCH_ESTIMATE", &ReloadedRun::keep, this)->setQueueCapacity(100000);
     LiveEstimation live(config, lcm);
     drivers::LcmLogReader reader;

@@ -68,13 +68,19 @@ void expect_line(const std::string& text, const std::string& line) {
 TEST(Metrics, AreUpOnlyWhileTheDaemonIsHeardOf) {
   const Config config{};
   Metrics metrics(config);
-  expect_line(metrics.text(0, 0), "framewatch_up 0");
+  expect_line(metrics.text(0, {}), "framewatch_up 0");
   give(metrics, "FRAMEWATCH_SERVICE", service(), 10 * kSecond_us);
-  const std::string up = metrics.text(10 * kSecond_us + Metrics::kFresh_us, 2);
+  PageUse use;
+  use.viewers = 2;
+  use.waiting = 3;
+  use.crowded_out = 5;
+  const std::string up = metrics.text(10 * kSecond_us + Metrics::kFresh_us, use);
   expect_line(up, "framewatch_up 1");
   expect_line(up, "framewatch_serve_viewers 2");
+  expect_line(up, "framewatch_serve_connections{state=\"request\"} 3");
+  expect_line(up, "framewatch_serve_connections_ended_total{reason=\"crowded\"} 5");
   expect_line(up, "framewatch_starts_total 4");
-  const std::string down = metrics.text(10 * kSecond_us + Metrics::kFresh_us + 1, 0);
+  const std::string down = metrics.text(10 * kSecond_us + Metrics::kFresh_us + 1, {});
   expect_line(down, "framewatch_up 0");
   EXPECT_EQ(down.find("framewatch_starts_total"), std::string::npos);
 }
@@ -83,7 +89,7 @@ TEST(Metrics, HistogramsAddUpLabelsAreEscapedAndWhatNeverCameIsLeftOut) {
   const Config config{};
   Metrics metrics(config);
   give(metrics, "FRAMEWATCH_SERVICE", service(), 0);
-  const std::string text = metrics.text(0, 0);
+  const std::string text = metrics.text(0, {});
   expect_line(text, "framewatch_step_duration_seconds_bucket{le=\"0.001\"} 7");
   expect_line(text, "framewatch_step_duration_seconds_bucket{le=\"0.01\"} 9");
   expect_line(text, "framewatch_step_duration_seconds_bucket{le=\"+Inf\"} 10");
@@ -92,6 +98,19 @@ TEST(Metrics, HistogramsAddUpLabelsAreEscapedAndWhatNeverCameIsLeftOut) {
   EXPECT_EQ(text.find("last_sample_timestamp_seconds{channel=\"F1\"}"), std::string::npos);
   expect_line(text, R"(framewatch_events_raised{kind="stiffness_change",severity="alarm"} 1)");
   expect_line(text, R"(framewatch_events_raised{kind="gap",severity="warning"} 0)");
+  expect_line(text, R"(framewatch_events_raised{kind="two_senders",severity="alarm"} 0)");
+}
+
+TEST(Metrics, ForeignBytesInALabelAreText) {
+  const Config config{};
+  Metrics metrics(config);
+  service_t m = service();
+  m.name = {"a\nframewatch_up 1\x1b\xff", "F1"};
+  give(metrics, "FRAMEWATCH_SERVICE", m, kSecond_us);
+  const std::string text = metrics.text(2 * kSecond_us, {});
+  EXPECT_NE(text.find("a\\\\nframewatch_up 1\\\\x1b\\\\xff"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\x1b'), std::string::npos);
+  EXPECT_EQ(text.find('\xff'), std::string::npos);
 }
 
 TEST(Metrics, AValueThatTheWindowDoesNotShowIsLeftOutAndSaidToBe) {
@@ -115,7 +134,7 @@ TEST(Metrics, AValueThatTheWindowDoesNotShowIsLeftOutAndSaidToBe) {
   estimate.prior_share = estimate.noise_share = {0, 0, 0};
   give(metrics, "FRAMEWATCH_PARAMETERS", table, 0);
   give(metrics, "FRAMEWATCH_ESTIMATE", estimate, 0);
-  const std::string text = metrics.text(0, 0);
+  const std::string text = metrics.text(0, {});
   const std::string frame = R"({parameter="kx_1_y1",story="1"} )";
   const std::string panel = R"({parameter="Gk_1_x1y1",story="1"} )";
   expect_line(text, "framewatch_frame_stiffness_newtons_per_meter" + frame + "900");
@@ -125,7 +144,7 @@ TEST(Metrics, AValueThatTheWindowDoesNotShowIsLeftOutAndSaidToBe) {
   expect_line(text, "framewatch_window_valid 1");
   // A quiet estimator's last window is not told for ever.
   give(metrics, "FRAMEWATCH_SERVICE", service(), 9 * kSecond_us);
-  EXPECT_EQ(metrics.text(9 * kSecond_us, 0).find("framewatch_window_valid"), std::string::npos);
+  EXPECT_EQ(metrics.text(9 * kSecond_us, {}).find("framewatch_window_valid"), std::string::npos);
 }
 
 TEST(Metrics, SayWhatChangesAreJudgedAgainst) {
@@ -154,7 +173,7 @@ TEST(Metrics, SayWhatChangesAreJudgedAgainst) {
   watch.per_log_amplitude = watch.per_log_amplitude_std_error = {estimator::kNaN, estimator::kNaN};
   give(metrics, "FRAMEWATCH_PARAMETERS", table, 0);
   give(metrics, "FRAMEWATCH_WATCH", watch, 0);
-  const std::string text = metrics.text(0, 0);
+  const std::string text = metrics.text(0, {});
   const std::string frame = R"({parameter="kx_1_y1",story="1"} )";
   expect_line(text, "framewatch_baseline" + frame + "900");
   expect_line(text, "framewatch_baseline_standard_error_ratio" + frame + "0.01");
@@ -172,7 +191,7 @@ TEST(Metrics, SayWhatTheDiskDoesNotTake) {
   history.summary_trouble = "disk I/O error";
   history.disk_free_bytes = -1;
   give(metrics, "FRAMEWATCH_HISTORY", history, 0);
-  const std::string text = metrics.text(0, 0);
+  const std::string text = metrics.text(0, {});
   expect_line(text, R"(framewatch_history_dropped_total{kind="summary"} 4)");
   expect_line(text, R"(framewatch_history_trouble{kind="summary"} 1)");
   expect_line(text, R"(framewatch_history_trouble{kind="raw"} 0)");
@@ -191,7 +210,7 @@ TEST(Metrics, SayWhetherPeopleAreTold) {
   actions.waiting = {1};
   actions.trouble = {"the server answers 500"};
   give(metrics, "FRAMEWATCH_ACTIONS", actions, 0);
-  const std::string text = metrics.text(0, 0);
+  const std::string text = metrics.text(0, {});
   expect_line(text, R"(framewatch_action_events_total{way="webhook",result="told"} 5)");
   expect_line(text, R"(framewatch_action_events_total{way="webhook",result="lost"} 2)");
   expect_line(text, R"(framewatch_action_waiting_events{way="webhook"} 1)");
@@ -205,7 +224,7 @@ TEST(Metrics, ForeignAndDamagedMessagesChangeNothing) {
   metrics.message("FRAMEWATCH_STATUS", "", 0, 0);
   metrics.message("FRAMEWATCH_EVENT", "garbage", 7, 0);
   metrics.message("ACCEL", "garbage", 7, 0);
-  expect_line(metrics.text(0, 0), "framewatch_up 0");
+  expect_line(metrics.text(0, {}), "framewatch_up 0");
 }
 
 TEST(RaisedEvents, FollowWhatIsRaisedChangedAndCleared) {

@@ -47,6 +47,7 @@ Heard well(const Config& config) {
   status.name = s.name;
   status.received = {100, 100};
   status.lost = {3, 3};
+  status.rejected = {0, 0};
   status.time_us = 9 * kSecond_us;
   Heard heard(config);
   heard.first_service = s;
@@ -95,6 +96,9 @@ TEST(Health, SaysWhatIsOdd) {
   h = well(config);
   h.status->lost[0] = 4;
   EXPECT_EQ(odd(h, config), "base: loses 1.0 % of its samples");
+  h = well(config);
+  h.status->rejected[1] = 2;
+  EXPECT_EQ(odd(h, config), "F1: 2 of its samples were rejected");
   h = well(config);
   h.service->deadline_missed = 30;
   EXPECT_EQ(odd(h, config), "30 % of the estimates come late");
@@ -164,7 +168,7 @@ TEST(Health, SpansAreReadable) {
 TEST(StatusCommand, TellsWellFromNotWellFromNotThere) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::string error;
-  if (!drivers::open_lcm(LcmSettings{}.url, 1 << 20, error)) GTEST_SKIP() << error;
+  if (!drivers::open_lcm(LcmSettings{}.url, {}, error)) GTEST_SKIP() << error;
   testing::internal::CaptureStderr();
   EXPECT_EQ(status_command({test::table_config(), "", false}), 2);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("nothing is heard"), std::string::npos);
@@ -196,7 +200,7 @@ TEST(StatusCommand, TellsWellFromNotWellFromNotThere) {
 TEST(StatusCommand, SaysWhatTheDaemonUsesWhenItsFileIsAnotherOneOrWrong) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
   std::string error;
-  if (!drivers::open_lcm(LcmSettings{}.url, 1 << 20, error)) GTEST_SKIP() << error;
+  if (!drivers::open_lcm(LcmSettings{}.url, {}, error)) GTEST_SKIP() << error;
   const test::TemporaryDirectory directory;
   const std::string path = directory.path("table.toml");
   const std::string text = test::read_file(test::table_config());
@@ -252,14 +256,14 @@ TEST(Selftest, SaysWhatToDoAboutTheRest) {
   EXPECT_FALSE(nowhere.good);
   EXPECT_NE(nowhere.remedy.find("No such file or directory"), std::string::npos);
   LcmSettings greedy;
-  greedy.receive_buffer_bytes = 1 << 30;
+  greedy.reception.receive_buffer_bytes = 1 << 30;
   const MachineCheck buffer = check_buffer(greedy);
   EXPECT_FALSE(buffer.good);
   EXPECT_NE(buffer.remedy.find("net.core.rmem_max=1073741824"), std::string::npos);
   LcmSettings none;
   none.url = "udpm://10.0.0.1:7667";
   EXPECT_FALSE(check_multicast(none).good);
-  EXPECT_NE(check_multicast(none).remedy.find("no multicast address"), std::string::npos);
+  EXPECT_NE(check_multicast(none).remedy.find("expected a multicast address"), std::string::npos);
 }
 
 }  // namespace health_test

@@ -1,5 +1,7 @@
 #include "daemon/session/record_command.h"
 
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -7,8 +9,13 @@
 #include <map>
 #include <thread>
 
-#include <gtest/gtest.h>
+#include <framewatch/session_command_t.hpp>
 
+#include <gtest/gtest.h>
+#include <lcm/lcm-cpp.hpp>
+
+#include "daemon/base/user_name.h"
+#include "daemon/session/session_file.h"
 #include "daemon/session/session_finish.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/lcm_source.h"
@@ -58,7 +65,7 @@ struct LiveSession {
 
 bool no_multicast(std::string& error) {
   if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) error = reason;
-  return !error.empty() || !drivers::open_lcm(test::table_configuration().lcm.url, 1 << 20, error);
+  return !error.empty() || !drivers::open_lcm(test::table_configuration().lcm.url, {}, error);
 }
 
 /// Samples of one node that are missing between the first and the last.
@@ -116,12 +123,20 @@ TEST(Record, ARecorderThatIsKilledLeavesAllButTheLastSecond) {
 TEST(Record, AnswersToCommandsFromAnotherTerminal) {
   std::string why;
   if (no_multicast(why)) GTEST_SKIP() << why;
+  const test::TemporaryDirectory runtime;
+  ::setenv("XDG_RUNTIME_DIR", runtime.path("").c_str(), 1);
   const auto send = [](const char* verb) {
     return test::Child({FRAMEWATCH_PROGRAM, "record", test::table_config(), "--send", verb}).wait();
   };
   EXPECT_EQ(send("start"), 1);  // nobody there
   const LiveSession live({"--standby", "--no-report"}, [&](test::Child&, test::Child& recorder) {
     EXPECT_EQ(send("stop"), 1);
+    session_command_t forged{};
+    forged.id = 77;
+    forged.verb = "start";
+    lcm::LCM(test::table_configuration().lcm.url)
+        .publish("FRAMEWATCH_SESSION_COMMAND", &forged);  // lcm.commands = false
+    std::this_thread::sleep_for(std::chrono::seconds(1));
     EXPECT_EQ(send("start"), 0);
     std::this_thread::sleep_for(std::chrono::seconds(1));
     EXPECT_EQ(send("start"), 1);
@@ -131,6 +146,10 @@ TEST(Record, AnswersToCommandsFromAnotherTerminal) {
   });
   EXPECT_EQ(live.exit_code, 0);
   EXPECT_GT(test::times_of(live.folder + "/raw.lcmlog").size(), 1000u);
+  const auto session = read_session_file(live.folder + "/" + kSessionJson, why);
+  ASSERT_TRUE(session) << why;
+  EXPECT_EQ(session->asked_by, user_name(::geteuid()));
+  ::unsetenv("XDG_RUNTIME_DIR");
 }
 
 TEST(Record, RefusesWhatCannotBe) {
@@ -143,6 +162,9 @@ TEST(Record, RefusesWhatCannotBe) {
   a.request.length_s = 0;
   a.url = "bogus://";
   EXPECT_EQ(record(a), 2);
+  a.send = "start";  // does not go over LCM
+  EXPECT_EQ(record(a), 2);
+  a.send.clear();
   a.finish = "/nonexistent";
   EXPECT_EQ(record(a), 2);
 }

@@ -101,7 +101,7 @@ TEST(Recorder, CommandsAreObeyedOnceAndRefusedWithAReason) {
     c.id = id;
     c.verb = verb;
     c.trigger_mps2 = level;
-    b.recorder.obey(c, 4'000'000);
+    b.recorder.obey(c, "alice", 4'000'000);
     return b.recorder.status(4'000'000).refused;
   };
   EXPECT_NE(tell(1, "stop", 0), "");
@@ -119,7 +119,9 @@ TEST(Recorder, CommandsAreObeyedOnceAndRefusedWithAReason) {
   EXPECT_EQ(tell(9, "stop", 0), "");  // sent again, not done again
   b.play(4, 5, at_rest);
   EXPECT_EQ(b.recorder.state(), RecorderState::waiting);
-  EXPECT_EQ(b.ended.size(), 1u);
+  ASSERT_EQ(b.ended.size(), 1u);
+  std::string why;
+  EXPECT_EQ(read_session_file(b.ended[0] + "/" + kSessionJson, why)->asked_by, "alice") << why;
   c.notes.assign(5000, 'x');
   EXPECT_NE(tell(10, "start", 0), "");
   EXPECT_EQ(b.recorder.status(0).answered, 10);

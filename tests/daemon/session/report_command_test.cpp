@@ -178,6 +178,34 @@ TEST(ReportCommand, SameInputSameBytesNothingFetched) {
     EXPECT_EQ(a.find(unwanted), std::string::npos) << unwanted;
 }
 
+TEST(SessionReport, NoTextFromOutsideIsMarkup) {
+  const std::string bad = "</title></td><script>alert(1)</script>\"><img onerror=x>";
+  SessionReport r = session().evaluated();
+  r.title = r.test = r.operator_name = r.notes = bad;
+  r.estimates.table.structure = r.estimates.table.version = r.estimates.table.config_sha256 = bad;
+  for (std::string& name : r.estimates.table.name) name = bad;
+  for (std::string& unit : r.estimates.table.unit) unit = bad;
+  if (r.estimates.status)
+    for (std::string& name : r.estimates.status->name) name = bad;
+  r.estimates.notes = {bad};
+  event_t event{};
+  event.kind = event.place = event.message = event.unit = event.segment = bad;
+  r.estimates.events = {event};
+  r.session.emplace();
+  r.session->asked_by = r.session->state = r.session->ended_by = bad;
+  r.session->run.resize(1);
+  r.session->run[0].name = r.session->run[0].problem = bad;
+  r.session->check = r.session->run;
+  r.files = {{"estimates", bad, "00"}};
+  for (const bool triggered : {false, true}) {
+    if (triggered) r.session->triggered_by = bad;
+    const std::string html = session_report_html(r);
+    EXPECT_EQ(html.find("<script"), std::string::npos);
+    EXPECT_EQ(html.find("<img"), std::string::npos);
+    EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
+  }
+}
+
 TEST(ReportCommand, EstimatesAloneAreEnough) {
   ReportArguments a = session().arguments("alone.html");
   a.config.clear();

@@ -197,12 +197,38 @@ TEST(Scenario, RefusesWhatCannotBe) {
   EXPECT_TRUE(read("", "[wind]\nspeed = 1\n").says("s.toml:", "wind"));
   EXPECT_TRUE(read("", "[change]\nat_s = 1\n").says("s.toml:", "[[change]]"));
   EXPECT_TRUE(read("", "[motion]\nfile = \"no-such.csv\"\n").says("", "no-such.csv"));
+  // A motion of 1e8 samples, of which two seconds are wanted, took minutes.
+  EXPECT_TRUE(read("", "[motion]\nlength_s = 1e6\n").says("s.toml:", "length_s"));
   EXPECT_TRUE(read("config = \"other.toml\"\n", "").says("s.toml:", "only one of both"));
   EXPECT_TRUE(read("rate_hz = [\n", "").says("s.toml:", ""));
   std::vector<ConfigProblem> problems;
   EXPECT_FALSE(load_scenario("/no/such/file.toml", problems));
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].where, "/no/such/file.toml");
+}
+
+TEST(Scenario, WhatIsTooLongOrTooLargeIsRefusedBeforeMemoryIsTaken) {
+  EXPECT_TRUE(read("duration_s = 1e6\nrate_hz = 100000\n", "").says("s.toml:1", "1e+11 instants"));
+  EXPECT_TRUE(read("", "[motion]\nlength_s = 1e6\n").says("s.toml", "motion.length_s"));
+  const test::TemporaryDirectory directory;
+  test::write_file(directory.path("m.csv"), "time_s,a\n0,0\n1e-5,1\n2e-5,0\n");
+  const Reading rest =
+      read("", "[motion]\nfile = \"" + directory.path("m.csv") + "\"\nstart_s = 100000\n");
+  EXPECT_TRUE(rest.says("s.toml", "s of rest are 1e+10 samples")) << rest.all();
+
+  std::string tower = kBuilding.substr(0, kBuilding.find("[structure.design]"));
+  tower.replace(tower.find("stories = 1"), 11, "stories = 500");
+  tower.replace(tower.find("story_height_m = [1.0]"), 22, "story_height_m = 3.0");
+  tower += kBuilding.substr(kBuilding.find("[[channel]]\nname = \"F0-X\""));
+  for (int story = 1; story <= 500; ++story)
+    for (const char* frame : {"y1", "y2", "x1", "x2"})
+      tower += "[[channel]]\nname = \"F" + std::to_string(story) + frame +
+               "\"\nstory = " + std::to_string(story) + "\nframe = \"" + frame + "\"\n";
+  Reading high;
+  high.scenario = read_scenario(tower, "s.toml", high.problems);
+  EXPECT_FALSE(high.scenario);
+  EXPECT_TRUE(high.says("s.toml", "500 stories of 4 frames have 2000 degrees of freedom"))
+      << high.all();
 }
 
 TEST(Scenario, TheBuildingMayStandInAFileOfItsOwn) {

@@ -1,6 +1,9 @@
 #include "daemon/web/live_view.h"
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -12,6 +15,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
+#include <framewatch/session_command_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "drivers/lcm/message_check.h"
@@ -67,8 +71,8 @@ TEST_F(Served, ValuesOnTheStreamAreThoseOfTheMessages) {
   EXPECT_EQ(json["value"][0].get<double>(), 12345.678901234567);
   EXPECT_NE(text.find("\"id\":42"), std::string::npos);
 
-  EXPECT_FALSE(view_.acknowledge(41));
-  EXPECT_TRUE(view_.acknowledge(42));
+  EXPECT_FALSE(view_.acknowledge(41, "the page"));
+  EXPECT_EQ(view_.acknowledge(42, "the page"), 0);
   const std::string stream = ask(server_.port(), request("GET /events"), "\"acknowledged\":true");
   EXPECT_NE(stream.find("text/event-stream"), std::string::npos);
   EXPECT_NE(stream.find("\"acknowledged\":true"), std::string::npos) << stream;
@@ -86,12 +90,15 @@ TEST_F(Served, WhatRunKeepsIsAcknowledgedThere) {
   send("FRAMEWATCH_SERVICE", service);
   acknowledged_t known{};
   send("FRAMEWATCH_ACKNOWLEDGED", known);
-  EXPECT_TRUE(view_.acknowledge(7));
   EventRing::Cursor cursor = view_.join();
-  view_.flush();
-  const auto request = drivers::decoded<acknowledge_t>(published_["FRAMEWATCH_ACKNOWLEDGE"]);
+  const auto asked = view_.acknowledge(7, "the page at ::1");
+  ASSERT_TRUE(asked);
+  const auto request = drivers::decoded<acknowledge_t>(given("run ACKNOWLEDGE"));
   ASSERT_TRUE(request);
+  EXPECT_EQ(request->request, *asked);
   EXPECT_EQ(request->id, 7);
+  EXPECT_EQ(request->who, "the page at ::1");
+  EXPECT_TRUE(published_.empty());  // nothing over LCM
   std::string text(100'000, '\0');
   text.resize(view_.read(cursor, text.data(), text.size()));
   EXPECT_NE(text.find("they differ"), std::string::npos);
@@ -112,6 +119,46 @@ TEST_F(Served, WhatRunKeepsIsAcknowledgedThere) {
   text.assign(100'000, '\0');
   text.resize(view_.read(cursor, text.data(), text.size()));
   EXPECT_NE(text.find("\"acknowledged\":false"), std::string::npos);
+}
+
+TEST_F(Served, ACommandThatNoDaemonTakesIsSaidToTheViewers) {
+  problem_ = "no permission\nfor </script>";
+  EventRing::Cursor cursor = view_.join();
+  session_command_t command{};
+  command.id = 1234;
+  ASSERT_TRUE(view_.tell_recorder(command));
+  std::string text;
+  EXPECT_TRUE(test::comes_true(
+      [&] {
+        std::string more(100'000, '\0');
+        more.resize(view_.read(cursor, more.data(), more.size()));
+        text += more;
+        return text.find("event: refused") != std::string::npos;
+      },
+      std::chrono::seconds(30)));
+  EXPECT_NE(text.find("event: refused\ndata: {\"answered\":\"1234\",\"refused\":\"no "
+                      "permission\\nfor </script>\"}\n"),
+            std::string::npos)
+      << text;
+}
+
+TEST(PageCommands, MoreThanCanWaitAreRefused) {
+  std::promise<void> go;
+  const std::future<void> gone = go.get_future();
+  std::atomic<int> given = 0;
+  PageCommands commands(
+      [&](const std::string&, const CommandPacket&) {
+        gone.wait();
+        ++given;
+        return CommandAnswer{true, "", {}};
+      },
+      [](const PageCommand&, const std::string&) {});
+  int taken = 0;
+  for (int i = 0; i < 100; ++i) taken += commands.add({"run", {"X", {}}, i}) ? 1 : 0;
+  EXPECT_GE(taken, static_cast<int>(PageCommands::kMost));
+  EXPECT_LE(taken, static_cast<int>(PageCommands::kMost) + 1);
+  go.set_value();
+  EXPECT_TRUE(test::comes_true([&] { return given == taken; }, std::chrono::seconds(30)));
 }
 
 TEST_F(Served, BytesThatAreNoMessageChangeNothing) {

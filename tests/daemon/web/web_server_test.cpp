@@ -1,3 +1,6 @@
+#include <framewatch/acknowledge_t.hpp>
+#include <framewatch/acknowledged_t.hpp>
+#include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/session_status_t.hpp>
@@ -45,13 +48,11 @@ TEST_F(Served, SessionVerbsGoToTheRecorderAndItsAnswersToThePage) {
     EXPECT_NE(ask(server_.port(), request(std::string("POST /session?verb=start") + bad, cookie))
                   .find("400"),
               std::string::npos);
-  view_.flush();
-  EXPECT_TRUE(published_.empty());
+  EXPECT_TRUE(given_.empty());
   const std::string answer = ask(server_.port(), request(query, cookie));
   EXPECT_NE(answer.find("202"), std::string::npos) << answer;
-  view_.flush();
-  const auto command =
-      drivers::decoded<session_command_t>(published_["FRAMEWATCH_SESSION_COMMAND"]);
+  const auto command = drivers::decoded<session_command_t>(given("record SESSION_COMMAND"));
+  EXPECT_TRUE(published_.empty());  // nothing over LCM
   ASSERT_TRUE(command);
   EXPECT_EQ(command->verb, "arm");
   EXPECT_EQ(command->test, "El Centro");
@@ -85,6 +86,30 @@ TEST_F(Served, SessionVerbsGoToTheRecorderAndItsAnswersToThePage) {
   EXPECT_NE(events.find("\"refused\":\"not \\\"now\\\"\""), std::string::npos) << events;
   EXPECT_NE(events.find("\"noise\":null"), std::string::npos);
   EXPECT_NE(events.find("\"overall\":0.25,\"noise_floor\":null"), std::string::npos);
+}
+
+TEST_F(Served, AnAcknowledgementSaysWhereItsViewerIs) {
+  event_t alarm{};
+  alarm.id = 42;
+  alarm.state = 1;
+  alarm.kind = "gap";
+  send("FRAMEWATCH_EVENT", alarm);
+  send("FRAMEWATCH_ACKNOWLEDGED", acknowledged_t{});  // framewatch run keeps them
+  const std::string answer =
+      ask(server_.port(),
+          request("POST /acknowledge?id=42", "Cookie: framewatch=0123456789abcdef\r\n"));
+  const auto given_to_run = drivers::decoded<acknowledge_t>(given("run ACKNOWLEDGE"));
+  ASSERT_TRUE(given_to_run);
+  EXPECT_EQ(given_to_run->who, "the page at 127.0.0.1");
+  EXPECT_NE(answer.find("202"), std::string::npos) << answer;
+  EXPECT_NE(answer.find(std::to_string(given_to_run->request)), std::string::npos) << answer;
+}
+
+TEST(Page, PutsNoTextIntoTheDocumentAsMarkup) {
+  for (const auto& [path, file] : page_files())
+    for (const char* way : {"innerHTML", "outerHTML", "insertAdjacentHTML", "document.write",
+                            "eval(", "new Function", "srcdoc"})
+      EXPECT_EQ(file.content.find(way), std::string::npos) << path << ": " << way;
 }
 
 TEST_F(Served, PageBuildingAndRefusals) {

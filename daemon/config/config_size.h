@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/config/settings.h"
+#include "daemon/documents/toml_document.h"
+
+namespace framewatch::daemon {
+
+/// Most memory that a configuration may ask for, bytes: 300 stories of 3x3 bays take 1.1 GiB.
+inline constexpr double kMostConfigBytes = 1.25 * 1024 * 1024 * 1024;
+
+/// Most degrees of freedom of a building that is simulated: of its dense matrices 640 of them take
+/// seconds.
+inline constexpr int kMostSimulatedFreedoms = 640;
+
+/// Why a building is too large to be simulated; empty when it is not.
+std::string simulated_size_problem(const estimator::Structure& structure);
+
+/// What is too large about a configuration that has no other problem, reckoned before anything of
+/// that size is made: the memory that its estimation would take, with the key that takes the most,
+/// and a building that [gap] would simulate.
+void check_size(const TomlValue& document, const Config& config,
+                std::vector<TextProblem>& problems);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace framewatch::daemon {
+
+inline constexpr std::size_t kMostServedBytes = 16 << 20;
+
+/// The file folder/names[0]/names[1]/..., if it is a regular one of at most kMostServedBytes and no
+/// link leads to it from the folder on. Never waits for the other end of a pipe or device.
+std::optional<std::string> read_served_file(const std::string& folder,
+                                            const std::vector<std::string>& names);
+
+/// Whether read_served_file() would read it.
+bool is_served_file(const std::string& folder, const std::vector<std::string>& names);
+
+}  // namespace framewatch::daemon
