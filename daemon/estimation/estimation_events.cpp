@@ -6,15 +6,25 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/utc_time.h"
 #include "daemon/config/gap_model.h"
 #include "daemon/events/event_words.h"
 
 namespace framewatch::daemon {
+namespace {
+
+/// A sensor clock that counts from 1970 is read as a date, another one in seconds.
+std::string time_text(std::int64_t time_us) {
+  constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
+  return time_us < kYear2000_us ? fmt::format("{:.2f} s", 1e-6 * static_cast<double>(time_us))
+                                : sensor_time_text(time_us);
+}
+
+}  // namespace
 
 event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
   const std::string& name = table[alarm.parameter].name;
   const double change = 100 * alarm.change.ratio, error = 100 * alarm.change.std_error;
-  const double since_s = 1e-6 * static_cast<double>(to_microseconds(alarm.change.since));
   event_t m{};
   m.time_us = to_microseconds(alarm.found);
   m.since_us = to_microseconds(alarm.change.since);
@@ -28,8 +38,9 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
   m.unit = "%";
   m.message = alarm.state == estimator::AlarmState::cleared
                   ? fmt::format("{} is at its baseline again", name)
-                  : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {:.2f} s", name,
-                                std::abs(change), error, change < 0 ? "below" : "above", since_s);
+                  : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {}", name,
+                                std::abs(change), error, change < 0 ? "below" : "above",
+                                time_text(m.since_us));
   return m;
 }
 

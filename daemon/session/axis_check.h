@@ -24,6 +24,9 @@ struct ChannelResult {
   std::string problem;  ///< one sentence; empty: none
 };
 
+/// A table of them for people, a line each.
+std::string channels_text(const std::vector<ChannelResult>& results);
+
 /// Computes statistics of all channels, before a test and of it, and finds their problems.
 class ChannelCheck {
  public:
