@@ -31,8 +31,7 @@ int help(const CLI::App& app, const HelpArguments& a) {
     return refuse("help", why);
   const auto entry = std::find_if(commands.begin(), commands.end(),
                                   [&](const CommandEntry& c) { return c.name == a.command; });
-  fmt::print(
-      "{}", a.man ? command_man_page(*entry) : app.get_subcommand(a.command)->help(app.get_name()));
+  print(a.man ? command_man_page(*entry) : app.get_subcommand(a.command)->help(app.get_name()));
   return 0;
 }
 
