@@ -25,7 +25,7 @@ class Usage : public testing::Test {
     for (bool inside = false; std::getline(lines, line);) {
       if (line.ends_with(':') && line.find(' ') == std::string::npos) inside = line == heading;
       if (!inside || !line.starts_with("  ") || line[2] == ' ') continue;
-      std::string word = line.substr(2, line.find_first_of(" ,=", 2) - 2);
+      std::string word = line.substr(2, line.find_first_of(" ,={", 2) - 2);
       if (word == "-h") word = "--help";
       out.push_back(word);
     }
