@@ -1,12 +1,21 @@
 #include "daemon/estimation/channel_events.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include <framewatch/accel_t.hpp>
+
+#include "daemon/estimation/estimation.h"
 #include "daemon/events/event_words.h"
+#include "drivers/base/encoded.h"
+#include "drivers/lcm/lcm_log.h"
+#include "drivers/lcm/message_check.h"
 #include "tests/support/config_fixture.h"
+#include "tests/support/recorded_table_test.h"
+#include "tests/support/temporary.h"
 
 namespace framewatch::daemon {
 namespace channel_events_test {
@@ -88,6 +97,46 @@ TEST_F(ChannelEventsTest, AMomentIsNothing) {
   EXPECT_TRUE(seconds(5, State::good).empty());
   EXPECT_TRUE(seconds(ChannelEvents::kStuck_s - 1, State::stuck).empty());
   EXPECT_TRUE(seconds(5, State::good).empty());
+}
+
+/// A shaken table whose node 3 falls silent and whose node 4 sticks at half of the record.
+TEST(ChannelEventsOfARecord, ADeadAndAStuckSensorAreNamedAndNoOther) {
+  constexpr double kSeconds = 30, kDies_s = 12;
+  constexpr int kSilent = 3, kStuck = 4;
+  const test::TemporaryDirectory directory;
+  test::record_table_test(directory.path("rec.lcmlog"), kSeconds);
+  std::vector<ConfigProblem> problems;
+  const auto config = load_config(test::table_config(), problems);
+  ASSERT_TRUE(config);
+  std::vector<event_t> events;
+  Estimation estimation(*config, [&](std::int64_t, const std::string& channel,
+                                     const std::vector<std::uint8_t>& bytes) {
+    if (channel.ends_with("EVENT")) events.push_back(*drivers::decoded<event_t>(bytes));
+  });
+  drivers::LcmLogReader reader;
+  ASSERT_TRUE(reader.open(directory.path("rec.lcmlog")));
+  std::int64_t first_us = 0;
+  std::vector<std::uint8_t> bytes;
+  for (drivers::LogEvent e; reader.next(e) == drivers::LogRead::event;) {
+    auto m = drivers::decoded<accel_t>(e.data);
+    if (m && first_us == 0) first_us = m->time_us;
+    const bool dead = m && 1e-6 * static_cast<double>(m->time_us - first_us) > kDies_s;
+    if (dead && m->node == kSilent) continue;
+    if (dead && m->node == kStuck) {
+      for (double& value : m->accel_abs_mps2)
+        if (std::isfinite(value)) value = 0.25;
+      drivers::encode_into(bytes, *m);
+      e.data.assign(bytes.begin(), bytes.end());
+    }
+    estimation.message(e.channel, e.data.data(), e.data.size());
+  }
+  estimation.finish();
+  ASSERT_EQ(events.size(), 2u);
+  for (const event_t& e : events) {
+    EXPECT_EQ(e.kind, e.place == "F1-Y2" ? "channel_silent" : "channel_stuck");
+    EXPECT_EQ(e.place, e.kind == "channel_stuck" ? "F1-X1" : "F1-Y2");
+    EXPECT_NEAR(1e-6 * static_cast<double>(e.since_us - first_us), kDies_s, 2) << e.kind;
+  }
 }
 
 }  // namespace channel_events_test
