@@ -159,7 +159,7 @@ class Building {
     if (!dead) return;
     g.lineWidth = 2; g.strokeStyle = style.card; g.stroke();
     g.font = '600 12px system-ui'; g.textAlign = 'left';
-    g.lineWidth = 4; g.lineJoin = 'round'; g.strokeText(name, x + 11, y + 4); g.fillText(name, x + 11, y + 4); g.lineJoin = 'miter';
+    g.lineWidth = 4; g.lineJoin = 'round'; g.fillStyle = style.ink; g.strokeText(name, x + 11, y + 4); g.fillText(name, x + 11, y + 4); g.lineJoin = 'miter';
     this.dots.push(name);
   }
   // Peak drift ratios of the newest shake, beside their stories.
