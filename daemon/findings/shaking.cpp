@@ -67,13 +67,12 @@ double Shaking::Filter::integrated(double x, double x1, double x2, double out[2]
   return y * over_w2;
 }
 
-/// Whether the axis has values at this instant.
-bool Shaking::advance(std::size_t a, double accel, double base) {
+void Shaking::advance(std::size_t a, double accel, double base) {
   accel_[a] = displacement_[a] = kNaN;
   Axis& axis = axes_[a];
   if (!std::isfinite(accel) || !std::isfinite(base)) {
     axis = {};
-    return false;
+    return;
   }
   const double relative = accel - base;
   if (axis.settled == 0) {
@@ -86,11 +85,10 @@ bool Shaking::advance(std::size_t a, double accel, double base) {
   const double displacement = filter_.integrated(moved, before[0], before[1], axis.displacement);
   if (axis.settled < settle_) {
     ++axis.settled;
-    return false;
+    return;
   }
   accel_[a] = high;
   displacement_[a] = displacement;
-  return true;
 }
 
 void Shaking::push(const estimator::SampleSet& instant) {
@@ -108,7 +106,7 @@ void Shaking::push(const estimator::SampleSet& instant) {
     }
   for (std::size_t a = 0; a < config_.axes.size(); ++a) {
     const int d = config_.axes[a].direction == estimator::Direction::x ? 0 : 1;
-    (void)advance(a, instant.accel[a], bases[d] > 0 ? base[d] / bases[d] : kNaN);
+    advance(a, instant.accel[a], bases[d] > 0 ? base[d] / bases[d] : kNaN);
   }
   const bool moving = moves();
   if (newest_ && !newest_->over && static_cast<double>(time_us - newest_->to_us) > 1e6 * kCalm_s) {

@@ -61,7 +61,7 @@ class Shaking {
     double integrated(double x, double x1, double x2, double out[2]) const;
   };
   void reset();
-  bool advance(std::size_t axis, double accel, double base);
+  void advance(std::size_t axis, double accel, double base);
   void note(std::int64_t time_us);
   bool moves() const;
 
