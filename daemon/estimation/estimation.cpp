@@ -31,7 +31,8 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
           intake_settings(config)),
       can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
       can_events_(config.can),
-      absurd_events_(config.pipeline.axes) {
+      absurd_events_(config.pipeline.axes),
+      channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s) {
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   begin_watch();
@@ -125,6 +126,7 @@ void Estimation::withdraw(const std::string& kind) {
 void Estimation::sample(const estimator::AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
   if (taps_.sample) taps_.sample(sample);
+  channel_events_.sample(sample);
   pipeline_.push(sample);
 }
 
@@ -138,7 +140,7 @@ template <typename Archive>
 void Estimation::archive(Archive& a) {
   a(seconds_);
   for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMostCount);
-  a(intake_, can_, can_events_, absurd_events_, raised_);
+  a(intake_, can_, can_events_, absurd_events_, channel_events_, raised_);
   if (watch_) a(*watch_);
   if (!gap_) return;
   a(*gap_);
@@ -170,6 +172,7 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   copy(before.can_, can_);
   copy(before.can_events_, can_events_);
   copy(before.absurd_events_, absurd_events_);
+  copy(before.channel_events_, channel_events_);
   copy(before.raised_, raised_);
   windows_ = before.windows_;
   absurd_temperatures_ = before.absurd_temperatures_;
@@ -211,6 +214,7 @@ std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
 void Estimation::publish_state() {
   const std::vector<estimator::AxisCounters> axes = axis_counters();
   for (const event_t& event : absurd_events_.look(axes, seconds_.newest_us())) announce(event);
+  for (const event_t& event : channel_events_.look(axes, seconds_.newest_us())) announce(event);
   const estimator::PipelineCounters pipeline = pipeline_.counters();
   const drivers::IntakeCounters& intake = intake_.counters();
   StatusCounts counts;

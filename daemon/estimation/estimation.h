@@ -13,6 +13,7 @@
 #include "daemon/config/config.h"
 #include "daemon/estimation/absurd_events.h"
 #include "daemon/estimation/can_events.h"
+#include "daemon/estimation/channel_events.h"
 #include "daemon/estimation/publisher.h"
 #include "daemon/estimation/sensor_seconds.h"
 #include "daemon/estimation/wanted_axes.h"
@@ -111,6 +112,7 @@ class Estimation {
   drivers::CanIntake can_;
   CanEvents can_events_;
   AbsurdEvents absurd_events_;
+  ChannelEvents channel_events_;
   SensorSeconds seconds_;
   LiveState live_;
   std::int64_t windows_ = 0;

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/utc_time.h"
 #include "daemon/config/gap_model.h"
 #include "daemon/events/event_words.h"
 
@@ -14,7 +15,6 @@ namespace framewatch::daemon {
 event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
   const std::string& name = table[alarm.parameter].name;
   const double change = 100 * alarm.change.ratio, error = 100 * alarm.change.std_error;
-  const double since_s = 1e-6 * static_cast<double>(to_microseconds(alarm.change.since));
   event_t m{};
   m.time_us = to_microseconds(alarm.found);
   m.since_us = to_microseconds(alarm.change.since);
@@ -28,8 +28,9 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
   m.unit = "%";
   m.message = alarm.state == estimator::AlarmState::cleared
                   ? fmt::format("{} is at its baseline again", name)
-                  : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {:.2f} s", name,
-                                std::abs(change), error, change < 0 ? "below" : "above", since_s);
+                  : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {}", name,
+                                std::abs(change), error, change < 0 ? "below" : "above",
+                                sensor_time_text(m.since_us));
   return m;
 }
 
