@@ -4,7 +4,7 @@
 #include "daemon/commands/convert_command.h"
 #include "daemon/history/history_command.h"
 #include "daemon/session/record_command.h"
-#include "daemon/session/report_command.h"
+#include "daemon/report/report_command.h"
 #include "daemon/simulation/simulate_command.h"
 
 namespace framewatch::daemon {

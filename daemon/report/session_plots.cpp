@@ -5,7 +5,7 @@
 
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"
 

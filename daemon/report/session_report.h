@@ -7,10 +7,10 @@
 
 #include "daemon/config/config.h"
 #include "daemon/estimates/session_estimates.h"
-#include "daemon/session/frame_loops.h"
-#include "daemon/session/session_file.h"
-#include "daemon/session/session_motion.h"
-#include "daemon/session/transfer_function.h"
+#include "daemon/report/frame_loops.h"
+#include "daemon/report/session_file.h"
+#include "daemon/report/session_motion.h"
+#include "daemon/report/transfer_function.h"
 
 namespace framewatch::daemon {
 

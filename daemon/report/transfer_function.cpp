@@ -1,4 +1,4 @@
-#include "daemon/session/transfer_function.h"
+#include "daemon/report/transfer_function.h"
 
 #include <algorithm>
 #include <cmath>

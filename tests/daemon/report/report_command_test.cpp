@@ -1,4 +1,4 @@
-#include "daemon/session/report_command.h"
+#include "daemon/report/report_command.h"
 
 #include <unistd.h>
 
@@ -13,7 +13,7 @@
 
 #include "daemon/base/utc_time.h"
 #include "daemon/replay/replay_command.h"
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 #include "daemon/simulation/simulate_command.h"
 #include "estimator/identify/estimate/boxplot.h"
 #include "estimator/structure/matrices.h"

@@ -7,7 +7,7 @@
 #include "daemon/documents/html_page.h"
 #include "daemon/estimates/estimate_table.h"
 #include "daemon/events/event_words.h"
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -1,4 +1,4 @@
-#include "daemon/session/frame_loops.h"
+#include "daemon/report/frame_loops.h"
 
 #include <algorithm>
 #include <cmath>

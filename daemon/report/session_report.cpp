@@ -1,4 +1,4 @@
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "daemon/session/session_motion.h"
+#include "daemon/report/session_motion.h"
 
 namespace framewatch::daemon {
 
