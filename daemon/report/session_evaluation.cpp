@@ -9,6 +9,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kLoop_s = 10;
+constexpr std::int64_t kTimeError_us = 500'000;  ///< of the moment of a change
 
 const Stage* longest(const std::vector<Stage>& stages, StageKind kind) {
   const Stage* best = nullptr;
@@ -17,24 +18,43 @@ const Stage* longest(const std::vector<Stage>& stages, StageKind kind) {
   return best;
 }
 
-/// Forced vibration ends, and free vibration begins, where the shaking stops: the windows next to
-/// that moment have seen the same specimen.
-void compare(SessionReport& r) {
+/// A stretch of the session as a stage, its boxes next to where the shaking stops: forced vibration
+/// ends and free vibration begins there, and both have seen the same specimen.
+void add_stage(SessionReport& r, StageKind kind, const std::string& name, bool after,
+               std::int64_t from_us, std::int64_t to_us) {
   const auto most = static_cast<std::size_t>(std::max(1, r.estimates.table.boxplot_windows));
-  for (const StageKind kind : {StageKind::forced, StageKind::free}) {
-    const Stage* stage = longest(r.stages, kind);
-    if (!stage) continue;
-    const WindowRange whole = windows_within(r.estimates, stage->from_us, stage->to_us);
-    if (whole.size() == 0) continue;
-    const std::size_t count = std::min(most, whole.size());
-    r.compared.push_back({kind, stage_word(kind), whole,
-                          kind == StageKind::free ? WindowRange{whole.from, whole.from + count}
-                                                  : WindowRange{whole.to - count, whole.to}});
+  const WindowRange whole = windows_within(r.estimates, from_us, to_us);
+  if (whole.size() == 0) return;
+  const std::size_t count = std::min(most, whole.size());
+  r.compared.push_back({kind, name, from_us, to_us, after, whole,
+                        kind == StageKind::free ? WindowRange{whole.from, whole.from + count}
+                                                : WindowRange{whole.to - count, whole.to}});
+}
+
+/// The same, cut where the building changed.
+void add_cut(SessionReport& r, StageKind kind, const std::string& name, std::int64_t from_us,
+             std::int64_t to_us) {
+  std::int64_t first_us = INT64_MAX, last_us = INT64_MIN;
+  for (const ElementChange& c : r.changes) {
+    if (!c.measured()) continue;
+    first_us = std::min(first_us, c.since_us - kTimeError_us);
+    last_us = std::max(last_us, c.since_us + kTimeError_us);
   }
-  if (!r.compared.empty()) return;
-  const std::size_t windows = r.estimates.windows();
-  r.compared.push_back(
-      {StageKind::forced, "all of it", {0, windows}, {windows - std::min(most, windows), windows}});
+  if (last_us == INT64_MIN) return add_stage(r, kind, name, false, from_us, to_us);
+  add_stage(r, kind, name + ", before the change", false, from_us, std::min(to_us, first_us));
+  add_stage(r, kind, name + ", after the change", true, std::max(from_us, last_us), to_us);
+}
+
+void compare(SessionReport& r) {
+  for (const StageKind kind : {StageKind::forced, StageKind::free})
+    if (const Stage* stage = longest(r.stages, kind))
+      add_cut(r, kind, stage_word(kind), stage->from_us, stage->to_us);
+  if (r.compared.empty())
+    add_cut(r, StageKind::forced, "all of it", r.estimates.start_us.front(),
+            r.estimates.end_us.back());
+  if (r.compared.empty())
+    add_stage(r, StageKind::forced, "all of it", false, r.estimates.start_us.front(),
+              r.estimates.end_us.back());
 }
 
 Eigen::VectorXd as_vector(const std::vector<double>& values) {
@@ -66,24 +86,29 @@ void evaluate(SessionReport& r) {
   for (double& value : r.reference_static)
     if (!(value > 0)) value = estimator::kNaN;
   r.reference_dynamic.assign(count, estimator::kNaN);
+  r.changes = session_changes(r.estimates);
+  r.judged = judged_elements(r.estimates);
   if (r.motion) r.stages = find_stages(*r.motion);
   compare(r);
   if (!r.motion || !r.config) return;
 
   const SessionMotion& m = *r.motion;
   const estimator::Structure& structure = r.config->pipeline.structure;
-  const Stage* forced = longest(r.stages, StageKind::forced);
-  const Eigen::Index from = forced ? m.row_at(forced->from_us) : 0,
-                     to = forced ? m.row_at(forced->to_us) : m.accel.rows();
-  r.transfer = transfer_functions(
-      structure, m, from, to,
-      r.reference_from_drawings ? as_vector(r.reference_static) : Eigen::VectorXd());
+  const Eigen::VectorXd reference =
+      r.reference_from_drawings ? as_vector(r.reference_static) : Eigen::VectorXd();
+  for (std::size_t i = 0; i < r.compared.size(); ++i) {
+    const ReportStage& stage = r.compared[i];
+    if (stage.kind != StageKind::forced) continue;
+    const Eigen::Index from = m.row_at(stage.from_us), to = m.row_at(stage.to_us);
+    auto& transfer = stage.after ? r.transfer_after : r.transfer;
+    if (transfer.empty()) transfer = transfer_functions(structure, m, from, to, reference);
+    std::vector<double> identified;
+    for (std::size_t p = 0; p < count; ++p)
+      identified.push_back(summarise(r.estimates, p, stage.whole).boxplot.median);
+    r.loops.push_back({i, frame_loops(structure, m, as_vector(identified),
+                                      r.config->pipeline.options.high_pass_hz, kLoop_s, from, to)});
+  }
   add_dynamic_references(r, structure);
-  std::vector<double> identified;
-  for (std::size_t p = 0; p < count; ++p)
-    identified.push_back(summarise(r.estimates, p, r.compared.front().whole).boxplot.median);
-  r.loops = frame_loops(structure, m, as_vector(identified),
-                        r.config->pipeline.options.high_pass_hz, kLoop_s);
 }
 
 double session_seconds(const SessionReport& r, std::int64_t time_us) {
