@@ -5,6 +5,7 @@
 
 #include "daemon/estimation/estimation_events.h"
 #include "daemon/estimation/intake_events.h"
+#include "daemon/events/event_words.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
@@ -176,7 +177,11 @@ void Estimation::archive(Archive& a) {
   for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMostCount);
   a(intake_, can_, can_events_, absurd_events_, raised_);
   if (watch_) a(*watch_);
-  if (shaking_) a(*shaking_, counted_before_);
+  if (shaking_) {
+    a(*shaking_, counted_before_);
+    findings_.resize(a.count(findings_.size()));
+    for (event_t& e : findings_) archive_event(a, e);
+  }
   if (!gap_) return;
   a(*gap_);
   a.any_size(noise_density_);
@@ -252,6 +257,12 @@ std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
 void Estimation::publish_state() {
   const std::vector<estimator::AxisCounters> axes = axis_counters();
   for (const event_t& event : absurd_events_.look(axes, seconds_.newest_us())) announce(event);
+  for (event_t event : std::vector<event_t>(raised_.all())) {
+    if (!green_and_past(event, seconds_.newest_us())) continue;
+    event.state = event_state::cleared;
+    event.time_us = seconds_.newest_us();
+    announce(event);
+  }
   const estimator::PipelineCounters pipeline = pipeline_.counters();
   const drivers::IntakeCounters& intake = intake_.counters();
   StatusCounts counts;

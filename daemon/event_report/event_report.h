@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,11 @@ double drift_ratio(const EventReport& report, const Config& config, int story);
 std::string event_report_name(const EventReport& report);
 
 /// As an event of kind "strong_motion": its severity is the color's, its segment the page's name.
-/// Green is no finding: it comes as cleared.
 event_t event_of(const EventReport& report, const Config& config);
+
+/// Green is no finding, and is cleared by itself kGreenShown_s later: whether this event is due.
+inline constexpr double kGreenShown_s = 600;
+bool green_and_past(const event_t& event, std::int64_t now_us);
 
 std::string event_report_html(const EventReport& report, const Config& config);
 /// Schema framewatch.event_report/1, docs/formats.md.

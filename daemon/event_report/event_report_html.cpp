@@ -90,7 +90,9 @@ std::string stiffness_section(const EventReport& r, const Config& config) {
     rows.push_back(
         {html_text(table[p].name), table[p].panel < 0 ? "kN/m" : "kN/(rad*m)", mean(k.before), from,
          mean(k.during), mean(k.after), k.free ? "free vibration" : "last windows",
-         k.known() ? fmt::format("{:+.1f} +- {:.1f}", 100 * k.ratio(), 100 * k.std_error()) : "-"});
+         k.known()
+             ? fmt::format("{:+.1f} +- {:.1f}", 100 * k.ratio(), std::max(0.1, 100 * k.std_error()))
+             : "-"});
     if (!k.known() || names.categories.size() == kMostBars) continue;
     names.categories.push_back(table[p].name);
     bars.x.push_back(static_cast<double>(names.categories.size()));

@@ -47,6 +47,13 @@ void judge_drifts(const EventReport& r, const Config& config, EventVerdict& out,
   }
 }
 
+/// "frame y2 of story 1 (kx_1_y2)".
+std::string element_words(const estimator::Parameter& p) {
+  return fmt::format("{} {} of {} {} ({})", p.panel < 0 ? "frame" : "floor panel",
+                     p.name.substr(p.name.rfind('_') + 1), p.panel < 0 ? "story" : "floor", p.story,
+                     p.name);
+}
+
 /// Number of stiffnesses that could be compared.
 int judge_losses(const EventReport& r, const Config& config, std::vector<Reason>& reasons) {
   const EventReportSettings& s = *config.event_report;
@@ -62,7 +69,8 @@ int judge_losses(const EventReport& r, const Config& config, std::vector<Reason>
     const double limit = color == EventColor::red ? s.red_loss_ratio : s.yellow_loss_ratio;
     reasons.push_back({color, loss / limit,
                        fmt::format("{} lost {:.1f} % (+-{:.1f} %) of its stiffness (limit {:g} %)",
-                                   table[p].name, 100 * loss, 100 * k.std_error(), 100 * limit)});
+                                   element_words(table[p]), 100 * loss,
+                                   std::max(0.1, 100 * k.std_error()), 100 * limit)});
   }
   return known;
 }
@@ -117,9 +125,8 @@ event_t event_of(const EventReport& r, const Config& config) {
   m.time_us = to_microseconds(r.shaking.found);
   m.since_us = to_microseconds(r.shaking.start);
   m.id = m.since_us;
-  const bool green = verdict.color == EventColor::green;
-  m.state = green ? event_state::cleared : event_state::raised;
-  m.severity = green                                 ? severity::information
+  m.state = event_state::raised;
+  m.severity = verdict.color == EventColor::green    ? severity::information
                : verdict.color == EventColor::yellow ? severity::warning
                                                      : severity::alarm;
   m.kind = "strong_motion";
@@ -131,6 +138,11 @@ event_t event_of(const EventReport& r, const Config& config) {
   m.message = fmt::format("after strong motion: {}, {}; report {}", color_word(verdict.color),
                           verdict.reasons.front(), m.segment);
   return m;
+}
+
+bool green_and_past(const event_t& e, std::int64_t now_us) {
+  return e.kind == "strong_motion" && e.severity == severity::information &&
+         1e-6 * static_cast<double>(now_us - e.time_us) >= kGreenShown_s;
 }
 
 }  // namespace framewatch::daemon

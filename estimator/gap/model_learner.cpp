@@ -15,8 +15,8 @@ constexpr double kEnough = 1.0 / 3;  // of learn_s
 }  // namespace
 
 ModelLearner::ModelLearner(int parameters, int elements, double learn_s)
-    : elements_(static_cast<std::size_t>(elements)), learn_s_(learn_s), stretches_(kMost) {
-  for (Stretch& s : stretches_) {
+    : elements_(static_cast<std::size_t>(elements)), learn_s_(learn_s), joined_(kMost) {
+  for (JoinedWindow& s : joined_) {
     s.value.assign(static_cast<std::size_t>(parameters), kNaN);
     s.std_error = s.value;
   }
@@ -40,7 +40,7 @@ bool ModelLearner::push(const WindowEstimate& e) {
 
 std::vector<WindowMean> ModelLearner::learned() const {
   std::vector<WindowMean> out;
-  for (std::size_t p = 0; p < stretches_.front().value.size(); ++p) {
+  for (std::size_t p = 0; p < joined_.front().value.size(); ++p) {
     out.push_back(mean_of(values(p), 0, count_));
     if (2 * static_cast<std::size_t>(out.back().count) < count_) out.back() = {kNaN, kNaN, 0};
   }
@@ -50,14 +50,13 @@ std::vector<WindowMean> ModelLearner::learned() const {
 std::vector<WindowValue> ModelLearner::values(std::size_t p) const {
   std::vector<WindowValue> out;
   for (std::size_t i = 0; i < count_; ++i)
-    out.push_back({stretches_[i].start, stretches_[i].end, stretches_[i].value[p],
-                   stretches_[i].std_error[p]});
+    out.push_back({joined_[i].start, joined_[i].end, joined_[i].value[p], joined_[i].std_error[p]});
   return out;
 }
 
 void ModelLearner::add(const WindowEstimate& e) {
   if (count_ == kMost) join_neighbors();
-  Stretch& s = stretches_[count_++];
+  JoinedWindow& s = joined_[count_++];
   s.start = e.start;
   s.end = e.end;
   s.length_s = SeparateWindows::length_s(e);
@@ -70,25 +69,25 @@ void ModelLearner::add(const WindowEstimate& e) {
 
 void ModelLearner::join_neighbors() {
   for (std::size_t i = 0; i < kMost / 2; ++i) {
-    const Stretch &a = stretches_[2 * i], &b = stretches_[2 * i + 1];
-    Stretch joined = a;
-    joined.end = b.end;
-    joined.length_s += b.length_s;
+    const JoinedWindow &a = joined_[2 * i], &b = joined_[2 * i + 1];
+    JoinedWindow both = a;
+    both.end = b.end;
+    both.length_s += b.length_s;
     for (std::size_t p = 0; p < a.value.size(); ++p) {
       if (std::isnan(b.value[p])) continue;
       const double own = std::isnan(a.value[p]) ? 0 : 1 / (a.std_error[p] * a.std_error[p]);
       const double weight = own + 1 / (b.std_error[p] * b.std_error[p]);
-      joined.value[p] = b.value[p] + (own > 0 ? own / weight * (a.value[p] - b.value[p]) : 0);
-      joined.std_error[p] = 1 / std::sqrt(weight);
+      both.value[p] = b.value[p] + (own > 0 ? own / weight * (a.value[p] - b.value[p]) : 0);
+      both.std_error[p] = 1 / std::sqrt(weight);
     }
-    stretches_[i] = std::move(joined);
+    joined_[i] = std::move(both);
   }
   count_ = kMost / 2;
 }
 
 void ModelLearner::keep(std::size_t from, std::size_t to) {
-  std::rotate(stretches_.begin(), stretches_.begin() + static_cast<std::ptrdiff_t>(from),
-              stretches_.begin() + static_cast<std::ptrdiff_t>(to));
+  std::rotate(joined_.begin(), joined_.begin() + static_cast<std::ptrdiff_t>(from),
+              joined_.begin() + static_cast<std::ptrdiff_t>(to));
   count_ = to - from;
 }
 
@@ -102,7 +101,7 @@ std::optional<ChangePoint> ModelLearner::change() const {
 
 double ModelLearner::length_s(std::size_t from, std::size_t to) const {
   double sum = 0;
-  for (std::size_t i = from; i < to; ++i) sum += stretches_[i].length_s;
+  for (std::size_t i = from; i < to; ++i) sum += joined_[i].length_s;
   return sum;
 }
 

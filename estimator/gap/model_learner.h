@@ -27,7 +27,7 @@ class ModelLearner {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(windows_, stretches_);
+    a(windows_, joined_);
     a.within(count_, 0, kMost);
     a(complete_);
   }
@@ -35,7 +35,7 @@ class ModelLearner {
  private:
   static constexpr std::size_t kMost = 64, kConfirming = 2;
   /// A window, or neighbors joined to make room.
-  struct Stretch {
+  struct JoinedWindow {
     Time start{}, end{};
     double length_s = 0;  ///< without the time between joined windows
     std::vector<double> value, std_error;
@@ -60,8 +60,8 @@ class ModelLearner {
   std::size_t elements_;
   double learn_s_;
   SeparateWindows windows_;
-  std::vector<Stretch> stretches_;
-  std::size_t count_ = 0;  ///< of stretches in use
+  std::vector<JoinedWindow> joined_;
+  std::size_t count_ = 0;  ///< of those in use
   bool complete_ = false;
 };
 

@@ -118,8 +118,8 @@ double ShakingWatch::follow(std::size_t axis, double accel) {
   m.s2 = m.s1;
   m.s1 = s;
   m.settled_s += 1 / rate_hz_;
-  if (m.settled_s * corner_hz_ < kSettlePeriods) return kNaN;
-  moved_[axis] = s / std::pow(2 * std::numbers::pi * corner_hz_, 2);
+  if (m.settled_s * corner_hz_ >= kSettlePeriods)
+    moved_[axis] = s / std::pow(2 * std::numbers::pi * corner_hz_, 2);
   return x;
 }
 

@@ -52,7 +52,9 @@ class EventReportTest : public testing::Test {
 TEST_F(EventReportTest, IsGreenBelowEveryThreshold) {
   EXPECT_EQ(verdict().color, EventColor::green);
   const event_t m = event_of(report_, *config_);
-  EXPECT_EQ(m.state, event_state::cleared);
+  EXPECT_EQ(m.severity, severity::information);
+  EXPECT_FALSE(green_and_past(m, m.time_us + 599'000'000));
+  EXPECT_TRUE(green_and_past(m, m.time_us + 600'000'000));
   EXPECT_EQ(m.kind, "strong_motion");
   EXPECT_EQ(m.segment, "event-20261124T004628Z.html");
   EXPECT_NE(m.message.find(m.segment), std::string::npos);
@@ -67,12 +69,14 @@ TEST_F(EventReportTest, IsYellowOrRedByDrift) {
   EXPECT_NE(verdict().reasons.front().find("story 2 drifted by 2.00 %"), std::string::npos);
   EXPECT_EQ(event_of(report_, *config_).severity, severity::alarm);
   EXPECT_EQ(event_of(report_, *config_).place, "story 2");
+  EXPECT_FALSE(green_and_past(event_of(report_, *config_), INT64_MAX));
 }
 
 TEST_F(EventReportTest, IsYellowOrRedByALossThatIsCertain) {
   report_.shaking.stiffness[1].after.value = 900;
   EXPECT_EQ(verdict().color, EventColor::yellow);
-  EXPECT_NE(verdict().reasons.front().find("kx_1_y2 lost 10.0 %"), std::string::npos)
+  EXPECT_NE(verdict().reasons.front().find("frame y2 of story 1 (kx_1_y2) lost 10.0 %"),
+            std::string::npos)
       << verdict().reasons.front();
   report_.shaking.stiffness[1].after.std_error = 50;
   EXPECT_EQ(verdict().color, EventColor::green);

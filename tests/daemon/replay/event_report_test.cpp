@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/live/live_estimation.h"
 #include "daemon/replay/replay_command.h"
 #include "daemon/simulation/simulate_command.h"
 #include "drivers/lcm/lcm_log.h"
@@ -117,6 +118,31 @@ TEST_F(EventReportReplay, CutInTwoGivesTheSameReport) {
   ASSERT_EQ(replay(second), 0);
   const std::string name = only_event("a.lcmlog").segment;
   EXPECT_TRUE(test::read_file(path("a/" + name)) == test::read_file(path("cut/" + name)));
+}
+
+TEST_F(EventReportReplay, LiveWritesTheSameWithoutBeingAsked) {
+  ASSERT_EQ(replay(arguments("a", "a.lcmlog")), 0);
+  const std::string name = only_event("a.lcmlog").segment;
+  std::vector<ConfigProblem> problems;
+  const auto config = load_config(path("building.toml"), problems);
+  ASSERT_TRUE(config);
+  std::vector<event_t> events;
+  {
+    drivers::LcmProvider lcm("memq://");
+    LiveEstimation live(*config, lcm);
+    live.on_event([&](const event_t& e) { events.push_back(e); });
+    drivers::LcmLogReader reader;
+    ASSERT_TRUE(reader.open(path("rec.lcmlog")));
+    drivers::LogEvent event;
+    while (reader.next(event) == drivers::LogRead::event) {
+      lcm.publish(event.channel, event.data.data(), static_cast<unsigned>(event.data.size()));
+      ASSERT_TRUE(live.poll(0));
+    }
+    live.finish();
+  }
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events.front().segment, name);
+  EXPECT_TRUE(test::read_file(path("live/" + name)) == test::read_file(path("a/" + name)));
 }
 
 TEST_F(EventReportReplay, NeedsTheSection) {
