@@ -30,7 +30,7 @@ std::string with_capital(std::string text) {
 std::string effect_words(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
   std::string name(name_of(f.chosen.kind));
   std::replace(name.begin(), name.end(), '_', ' ');
-  return fmt::format("{}{} at {}", f.approximate ? "about " : "", name,
+  return fmt::format("{}{} at {}", f.approximate ? "something like " : "", name,
                      place_text(f.chosen.place, o.plant.structure, o.plant.axes));
 }
 

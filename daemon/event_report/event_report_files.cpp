@@ -23,9 +23,8 @@ const std::string kBeginning = "event-";
 std::vector<std::string> reports_in(const std::string& directory) {
   std::vector<std::string> out;
   std::error_code error;
-  fs::directory_iterator it(directory, error);
-  for (; !error && it != fs::directory_iterator(); it.increment(error)) {
-    const fs::path& path = it->path();
+  for (fs::directory_iterator at(directory, error), end; !error && at != end; at.increment(error)) {
+    const fs::path& path = at->path();
     const std::string name = path.stem().string();
     if (path.extension() == ".json" && name.starts_with(kBeginning) &&
         read_utc_stamp(name.substr(kBeginning.size())))
