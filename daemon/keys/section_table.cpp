@@ -42,7 +42,8 @@ const SectionDescription kSections[] = {
      "([history](history.md)).",
      Reach::restart},
     {"event_report", "[event_report]",
-     "Optional: after every strong motion a page and a JSON file say what the building went through "
+     "Optional: after every strong motion a page and a JSON file say what the building went "
+     "through "
      "([after an earthquake](operate.md#after-an-earthquake)).",
      Reach::restart},
     {"actions", "[actions]",
