@@ -3,8 +3,8 @@
 #include "daemon/command_line/command_list.h"
 #include "daemon/commands/convert_command.h"
 #include "daemon/history/history_command.h"
+#include "daemon/report/report_command.h"
 #include "daemon/session/record_command.h"
-#include "daemon/session/report_command.h"
 #include "daemon/simulation/simulate_command.h"
 
 namespace framewatch::daemon {

@@ -52,6 +52,8 @@ void add_replay(CommandList& commands) {
                       "make a first such file from what comes out");
   command->add_option("--write-baseline", arguments.write_baseline,
                       "baseline file for [watch] to write, of all windows of the replay");
+  command->add_option("--event-reports", arguments.event_reports,
+                      "folder for the reports that [event_report] asks for after strong motion");
   command->add_option("--junit", arguments.junit, "file for the result of --expect, as JUnit XML");
   command->add_flag("--salvage", arguments.salvage,
                     "replay what is intact of a damaged log instead of refusing it");

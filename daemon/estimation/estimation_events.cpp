@@ -37,8 +37,10 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
 event_t gap_event(const estimator::GapNews& news, const Config& config) {
   const bool raised = news.state != estimator::AlarmState::cleared;
   const auto worst = static_cast<std::size_t>(news.worst_axis);  // of a state file, perhaps
-  const std::string name =
+  const std::string channel =
       worst < config.pipeline.axes.size() ? config.pipeline.axes[worst].name : "";
+  const estimator::ParameterTable table(config.pipeline.structure);
+  const bool named = news.parameter >= 0 && news.parameter < table.elements();
   event_t m{};
   m.time_us = to_microseconds(news.found);
   m.since_us = to_microseconds(news.since);
@@ -46,7 +48,7 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
   m.state = static_cast<std::int32_t>(news.state);
   m.severity = raised ? severity::warning : severity::information;
   m.kind = "gap";
-  m.place = name;
+  m.place = named ? table[news.parameter].name : channel;
   m.value = 100 * news.excess;
   m.std_error = std::numeric_limits<double>::quiet_NaN();
   m.unit = "%";
@@ -54,8 +56,12 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
   m.message =
       raised
           ? fmt::format("simulation and measurement differ by {:.0f} % beyond noise, most at {}",
-                        m.value, name)
+                        m.value, channel)
           : fmt::format("simulation and measurement agree again: {:.0f} % beyond noise", m.value);
+  if (named && raised)
+    m.message += fmt::format("; {} is {:.1f} % (+-{:.1f} %) {} the model", m.place,
+                             100 * std::abs(news.ratio), 100 * news.std_error,
+                             news.ratio < 0 ? "below" : "above");
   return m;
 }
 

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "daemon/metrics/metrics.h"
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 #include "daemon/web/live_view.h"
 #include "daemon/web/web_server.h"
 #include "daemon/web/web_socket.h"

@@ -1,4 +1,4 @@
-#include "daemon/session/report_command.h"
+#include "daemon/report/report_command.h"
 
 #include <filesystem>
 

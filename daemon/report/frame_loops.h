@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "daemon/session/session_motion.h"
+#include "daemon/report/session_motion.h"
 
 namespace framewatch::daemon {
 
@@ -26,11 +26,13 @@ struct FrameLoops {
   std::string reason;  ///< why there are none; empty when there are
 };
 
-/// The strongest `seconds` of the motion, in a 1.5 times longer stretch whose ends are tapered
-/// away; displacements are accelerations integrated twice in the frequency domain above
-/// high_pass_hz, and the forces see the same filter. A frame's force is its floors' inertia above
-/// less what the panels give its neighbors; theta (SI, table order, NaN: not known) has the panels.
+/// The strongest `seconds` of rows from..to-1 of the motion, in a 1.5 times longer stretch whose
+/// ends are tapered away; displacements are accelerations integrated twice in the frequency domain
+/// above high_pass_hz, and the forces see the same filter. A frame's force is its floors' inertia
+/// above less what the panels give its neighbors; theta (SI, table order, NaN: not known) has the
+/// panels.
 FrameLoops frame_loops(const estimator::Structure& structure, const SessionMotion& motion,
-                       const Eigen::VectorXd& theta, double high_pass_hz, double seconds);
+                       const Eigen::VectorXd& theta, double high_pass_hz, double seconds,
+                       Eigen::Index from, Eigen::Index to);
 
 }  // namespace framewatch::daemon

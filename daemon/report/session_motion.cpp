@@ -1,4 +1,4 @@
-#include "daemon/session/session_motion.h"
+#include "daemon/report/session_motion.h"
 
 #include <algorithm>
 #include <cmath>

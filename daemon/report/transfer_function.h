@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "daemon/session/session_motion.h"
+#include "daemon/report/session_motion.h"
 
 namespace framewatch::daemon {
 
@@ -19,11 +19,13 @@ struct TransferFunction {
   std::vector<double> measured;   ///< absolute value, 1
   std::vector<double> coherence;  ///< 0..1
   std::vector<double> model;      ///< empty without reference values, or over 100 unknowns
-  double measured_peak_hz = 0;    ///< the highest at 0.7 to 1.4 of the model's; NaN: none
-  double model_peak_hz = 0;       ///< the lowest of at least 30 % of the highest
+  /// The lowest peak of the model's motion along the direction, and the measured peak whose shape
+  /// along it is most like that one's (MAC), at 0.6 to 1.6 times its frequency; NaN: none is alike.
+  double measured_mode_hz = 0, model_mode_hz = 0;
+  double mac = 0;  ///< of the two shapes, weighted by mass: 1 is the same; NaN: no pair
 
   /// (measured over model)^2: what reference-static stiffnesses are multiplied by to become
-  /// reference-dynamic ones; NaN without either peak.
+  /// reference-dynamic ones; NaN without such a pair.
   double stiffness_ratio() const;
 };
 

@@ -1,4 +1,4 @@
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 
 #include <array>
 #include <cctype>

@@ -6,13 +6,10 @@
 
 #include "daemon/documents/html_page.h"
 #include "daemon/estimates/estimate_table.h"
-#include "daemon/events/event_words.h"
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 
 namespace framewatch::daemon {
 namespace {
-
-constexpr std::size_t kMostEvents = 100;
 
 std::string number(double value, int digits = 4) {
   return std::isfinite(value) ? fmt::format("{:#.{}g}", value, digits) : "-";
@@ -28,21 +25,6 @@ std::string without(const SessionReport& r, std::size_t p, WindowRange windows) 
   for (std::size_t w = windows.from; w < windows.to; ++w) ++counts[r.estimates.reason[p][w]];
   const auto worst = std::max_element(counts.begin() + 1, counts.end());
   return *worst == 0 ? "" : reason_word(static_cast<int>(worst - counts.begin()));
-}
-
-std::string event_rows(const SessionReport& r) {
-  std::vector<std::vector<std::string>> rows;
-  for (const event_t& e : r.estimates.events) {
-    if (rows.size() == kMostEvents) break;
-    rows.push_back({fmt::format("{:.2f}", session_seconds(r, e.time_us)),
-                    word(kEventStates, e.state), word(kSeverities, e.severity), html_text(e.place),
-                    html_text(e.message)});
-  }
-  if (rows.empty()) return "<p>No events.</p>\n";
-  return html_table({"time, s", "state", "severity", "place", "what"}, rows) +
-         (r.estimates.events.size() > kMostEvents
-              ? fmt::format("<p>{} more.</p>\n", r.estimates.events.size() - kMostEvents)
-              : std::string());
 }
 
 }  // namespace
@@ -94,7 +76,7 @@ std::string stages_section(const SessionReport& r) {
 }
 
 std::string health_section(const SessionReport& r) {
-  std::string out = "<h2>Health and events</h2>\n";
+  std::string out = "<h2>Health of the measurement</h2>\n";
   if (r.estimates.status) {
     const status_t& s = *r.estimates.status;
     out += fmt::format(
@@ -113,7 +95,7 @@ std::string health_section(const SessionReport& r) {
                        "clipped", "noise, um/s^2/sqrt(Hz)"},
                       rows);
   }
-  return out + event_rows(r);
+  return out;
 }
 
 }  // namespace framewatch::daemon

@@ -1,7 +1,4 @@
-#include "daemon/session/session_report.h"
-
-#include <algorithm>
-#include <cmath>
+#include "daemon/report/session_report.h"
 
 #include <fmt/core.h>
 
@@ -11,7 +8,7 @@
 namespace framewatch::daemon {
 namespace {
 
-std::string summary(const SessionReport& r) {
+std::string session_section(const SessionReport& r) {
   const SessionEstimates& e = r.estimates;
   std::vector<std::vector<std::string>> rows;
   const auto row = [&](const char* name, const std::string& value) {
@@ -39,26 +36,7 @@ std::string summary(const SessionReport& r) {
   row("windows",
       fmt::format("{} of {:g} s, {:g} s apart", e.windows(), e.table.window_rows / e.table.rate_hz,
                   e.table.hop_rows / e.table.rate_hz));
-  std::size_t with_value = 0, stiffnesses = 0;
-  double worst = 0;
-  std::string worst_name;
-  for (std::size_t p = 0; p < e.parameters(); ++p) {
-    if (e.table.kind[p] > 1) continue;
-    ++stiffnesses;
-    const ParameterSummary one = summarise(e, p, r.compared.front().whole);
-    with_value += one.boxplot.count > 0;
-    const double change = one.boxplot.median / r.reference_static[p] - 1;
-    if (std::abs(change) > std::abs(worst)) {
-      worst = change;
-      worst_name = e.table.name[p];
-    }
-  }
-  row("stiffnesses identified",
-      fmt::format("{} of {}, {}", with_value, stiffnesses, html_text(r.compared.front().name)));
-  if (!worst_name.empty())
-    row("furthest from its reference",
-        fmt::format("{}: {:+.1f} %", html_text(worst_name), 100 * worst));
-  return html_table({"", ""}, rows);
+  return "<h2>Session</h2>\n" + html_table({"", ""}, rows);
 }
 
 std::string provenance(const SessionReport& r) {
@@ -89,10 +67,11 @@ std::string provenance(const SessionReport& r) {
 
 std::string session_report_html(const SessionReport& r) {
   const std::string title = r.title.empty() ? "Session of " + r.estimates.table.structure : r.title;
-  return html_page(title, "<h1>" + html_text(title) + "</h1>\n" + summary(r) +
-                              figure_10_section(r) + parameter_section(r) + transfer_section(r) +
-                              loops_section(r) + histories_section(r) + check_section(r) +
-                              health_section(r) + provenance(r));
+  return html_page(title, verdict_section(r) + "<h1>" + html_text(title) + "</h1>\n" +
+                              events_section(r) + session_section(r) + figure_10_section(r) +
+                              loops_section(r) + transfer_section(r) + histories_section(r) +
+                              parameter_section(r) + check_section(r) + health_section(r) +
+                              provenance(r));
 }
 
 }  // namespace framewatch::daemon

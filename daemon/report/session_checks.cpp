@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "daemon/documents/html_page.h"
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -78,7 +78,7 @@ std::string quotient_plots(const TransferFunction& t) {
   const std::string direction = t.direction == estimator::Direction::x ? "x" : "y";
   SvgAxis f{"frequency, Hz"};
   f.low = 0;
-  if (std::isfinite(t.model_peak_hz)) f.high = std::min(6 * t.model_peak_hz, t.frequency_hz.back());
+  if (std::isfinite(t.model_mode_hz)) f.high = std::min(6 * t.model_mode_hz, t.frequency_hz.back());
   SvgPlot gain("top floor over base, along " + direction, f,
                {"acceleration ratio", std::nan(""), std::nan(""), true}, 485, 240);
   gain.add(SvgSeries{"measured", 0, SvgMark::line, t.frequency_hz, t.measured});
@@ -128,36 +128,63 @@ std::string histories_section(const SessionReport& r) {
 }
 
 std::string transfer_section(const SessionReport& r) {
-  if (r.transfer.empty()) return "";
+  const bool changed = !r.transfer_after.empty();
   std::vector<std::string> plots;
   std::vector<std::vector<std::string>> rows;
-  for (const TransferFunction& t : r.transfer) {
-    plots.push_back(quotient_plots(t));
-    const auto hz = [](double f) { return std::isfinite(f) ? fmt::format("{:.3f}", f) : "-"; };
-    rows.push_back({t.direction == estimator::Direction::x ? "x" : "y", hz(t.measured_peak_hz),
-                    hz(t.model_peak_hz), hz(t.stiffness_ratio()), fmt::format("{}", t.segments)});
-  }
+  const auto add = [&](const std::vector<TransferFunction>& transfer, const char* when) {
+    for (const TransferFunction& t : transfer) {
+      plots.push_back(quotient_plots(t));
+      const auto number = [](double f, int digits) {
+        return std::isfinite(f) ? fmt::format("{:.{}f}", f, digits) : "-";
+      };
+      rows.push_back({std::string(t.direction == estimator::Direction::x ? "x" : "y") + when,
+                      number(t.measured_mode_hz, 3), number(t.model_mode_hz, 3), number(t.mac, 2),
+                      number(t.stiffness_ratio(), 3), fmt::format("{}", t.segments)});
+    }
+  };
+  add(r.transfer, changed ? ", before the change" : "");
+  add(r.transfer_after, ", after the change");
+  if (rows.empty()) return "";
   return "<h2>Transfer functions</h2>\n" +
          html_figure(
              plots,
              "Mean of the top floor's frames over the base, from the longest forced stage. "
              "The model has the reference-static values and moves with the measured base.") +
-         html_table({"direction", "measured peak, Hz", "model's peak, Hz",
+         html_table({"direction", "measured mode, Hz", "model's mode, Hz", "likeness (MAC)",
                      "reference-dynamic / reference-static", "segments"},
                     rows) +
-         "<p>Reference-dynamic stiffness is reference-static stiffness times the square of the "
-         "ratio "
-         "of the two fundamental peaks, for the frames of that direction.</p>\n";
+         "<p>The model's lowest mode along the direction, and the measured peak whose shape is "
+         "most "
+         "like its: MAC 1 is the same shape, below 0.8 nothing is paired. Reference-dynamic "
+         "stiffness is reference-static stiffness times the square of the ratio of the two "
+         "frequencies, for the frames of that direction.</p>\n";
 }
 
-std::string loops_section(const SessionReport& r) {
-  if (!r.loops) return "";
-  std::string out = "<h2>Drift and restoring force</h2>\n";
-  if (!r.loops->reason.empty())
-    return out + "<p>Not shown: " + html_text(r.loops->reason) + ".</p>\n";
-  std::vector<std::string> plots;
+namespace {
+
+/// The loop and the identified stiffness of one stage.
+void add_loop(const SessionReport& r, const FrameLoop& loop, std::size_t stage, int color,
+              SvgPlot& plot) {
+  std::vector<double> d, f;
+  const auto stride =
+      std::max<std::size_t>(1, loop.drift_m.size() / static_cast<std::size_t>(kMostLoopPoints));
+  for (std::size_t i = 0; i < loop.drift_m.size(); i += stride) {
+    d.push_back(1e3 * loop.drift_m[i]);
+    f.push_back(loop.force_n[i]);
+  }
+  plot.add(SvgSeries{"", color, SvgMark::thin_line, d, f});
+  if (loop.parameter < 0) return;
+  const auto p = static_cast<std::size_t>(loop.parameter);
+  const double k = summarise(r.estimates, p, r.compared[stage].whole).boxplot.median;
+  const double end = loop.largest_drift_m;
+  if (std::isfinite(k))
+    plot.add(SvgSeries{"", color, SvgMark::dashed, {-1e3 * end, 1e3 * end}, {-k * end, k * end}});
+}
+
+/// What the loops of one stage came to, and the stage's name in the color of its loops.
+std::string loop_table(const SessionReport& r, const StageLoops& of) {
   std::vector<std::vector<std::string>> rows;
-  for (const FrameLoop& loop : r.loops->loops) {
+  for (const FrameLoop& loop : of.loops.loops) {
     const double height =
         r.config->pipeline.structure.story_height[static_cast<std::size_t>(loop.story - 1)];
     double largest_force = 0;
@@ -165,35 +192,48 @@ std::string loops_section(const SessionReport& r) {
     rows.push_back({html_text(loop.name), fmt::format("{:.3f}", 1e3 * loop.largest_drift_m),
                     fmt::format("{:.3f}", 100 * loop.largest_drift_m / height),
                     fmt::format("{:.2f}", largest_force)});
-    if (plots.size() == kMostLoops) continue;
-    std::vector<double> d, f;
-    const auto stride =
-        std::max<std::size_t>(1, loop.drift_m.size() / static_cast<std::size_t>(kMostLoopPoints));
-    for (std::size_t i = 0; i < loop.drift_m.size(); i += stride) {
-      d.push_back(1e3 * loop.drift_m[i]);
-      f.push_back(loop.force_n[i]);
-    }
-    SvgPlot plot(loop.name, {"story drift, mm"}, {"force, N"}, 242, 210);
-    plot.add(SvgSeries{"", 0, SvgMark::thin_line, d, f});
-    if (loop.parameter >= 0) {
-      const auto p = static_cast<std::size_t>(loop.parameter);
-      const double k = summarise(r.estimates, p, r.compared.front().whole).boxplot.median;
-      const double end = loop.largest_drift_m;
-      if (std::isfinite(k))
-        plot.add(SvgSeries{"", 1, SvgMark::dashed, {-1e3 * end, 1e3 * end}, {-k * end, k * end}});
-    }
-    plots.push_back(plot.svg());
   }
-  out += html_figure(
-      plots, fmt::format("{:.1f} s to {:.1f} s, the strongest motion: restoring force with damping "
-                         "over story drift, above {:g} Hz; dashed: the identified stiffness "
-                         "(median).{}",
-                         session_seconds(r, r.loops->from_us), session_seconds(r, r.loops->to_us),
-                         r.config->pipeline.options.high_pass_hz,
-                         r.loops->loops.size() > kMostLoops ? " The first frames only." : ""));
-  return out +
+  return "<h3>" + html_text(r.compared[of.stage].name) + "</h3>\n" +
          html_table({"frame", "largest drift, mm", "of the story height, %", "largest force, N"},
                     rows);
+}
+
+}  // namespace
+
+std::string loops_section(const SessionReport& r) {
+  if (r.loops.empty()) return "";
+  std::string out = "<h2>Drift and restoring force</h2>\n", tables, spans;
+  std::vector<const StageLoops*> shown;
+  for (const StageLoops& of : r.loops) {
+    if (!of.loops.reason.empty()) {
+      out += "<p>Not shown of " + html_text(r.compared[of.stage].name) + ": " +
+             html_text(of.loops.reason) + ".</p>\n";
+      continue;
+    }
+    spans += fmt::format("{}{}, {:.1f} s to {:.1f} s", shown.empty() ? "" : "; ",
+                         shown.empty() ? html_text(r.compared[of.stage].name)
+                                       : "orange: " + html_text(r.compared[of.stage].name),
+                         session_seconds(r, of.loops.from_us), session_seconds(r, of.loops.to_us));
+    shown.push_back(&of);
+    tables += loop_table(r, of);
+  }
+  if (shown.empty()) return out;
+  std::vector<std::string> plots;
+  const std::vector<FrameLoop>& frames = shown.front()->loops.loops;
+  for (std::size_t i = 0; i < std::min(frames.size(), kMostLoops); ++i) {
+    SvgPlot plot(frames[i].name, {"story drift, mm"}, {"force, N"}, 242, 210);
+    int color = 0;
+    for (const StageLoops* of : shown) add_loop(r, of->loops.loops[i], of->stage, color++, plot);
+    plots.push_back(plot.svg());
+  }
+  return out +
+         html_figure(plots,
+                     fmt::format("The strongest motion ({}): restoring force with damping "
+                                 "over story drift, above {:g} Hz; dashed: the identified "
+                                 "stiffness (median).{}",
+                                 spans, r.config->pipeline.options.high_pass_hz,
+                                 frames.size() > kMostLoops ? " The first frames only." : "")) +
+         tables;
 }
 
 }  // namespace framewatch::daemon

@@ -7,19 +7,29 @@
 
 #include "daemon/config/config.h"
 #include "daemon/estimates/session_estimates.h"
-#include "daemon/session/frame_loops.h"
-#include "daemon/session/session_file.h"
-#include "daemon/session/session_motion.h"
-#include "daemon/session/transfer_function.h"
+#include "daemon/report/frame_loops.h"
+#include "daemon/report/session_changes.h"
+#include "daemon/report/session_file.h"
+#include "daemon/report/session_motion.h"
+#include "daemon/report/transfer_function.h"
 
 namespace framewatch::daemon {
 
-/// A stage of the session that the report compares with another: forced beside free vibration.
+/// A stage of the session that the report compares with another: forced beside free vibration, each
+/// of them before and after a change of the building, never across one.
 struct ReportStage {
   StageKind kind;
-  std::string name;   ///< "forced vibration"; "all of it" when no raw samples tell the stages
-  WindowRange whole;  ///< every window that lies wholly in the stage
+  std::string name;  ///< "forced vibration, after the change"; "all of it" without raw samples
+  std::int64_t from_us, to_us;  ///< sensor time
+  bool after = false;           ///< a change
+  WindowRange whole;            ///< every window that lies wholly in the stage
   WindowRange boxes;  ///< the boxplot_windows of them next to the stage's end (free: beginning)
+};
+
+/// Drift and force in the strongest motion of a stage.
+struct StageLoops {
+  std::size_t stage;  ///< of SessionReport::compared
+  FrameLoops loops;
 };
 
 struct ReportFile {
@@ -33,14 +43,17 @@ struct SessionReport {
   std::optional<SessionFile> session;  ///< of `framewatch record`
   std::optional<Config> config;
   std::optional<SessionMotion> motion;
-  std::vector<Stage> stages;          ///< empty without motion
-  std::vector<ReportStage> compared;  ///< one or two
+  std::vector<Stage> stages;  ///< empty without motion
+  std::vector<ElementChange> changes;
+  std::vector<std::size_t> judged;    ///< stiffnesses in which a change would have been found
+  std::vector<ReportStage> compared;  ///< at least one
   /// Table order, SI, NaN: none. reference_static: the design of the configuration, or what the
   /// estimator began with; reference_dynamic: of frames, by the ratio of natural frequencies.
   std::vector<double> reference_static, reference_dynamic;
   bool reference_from_drawings = false;
-  std::vector<TransferFunction> transfer;
-  std::optional<FrameLoops> loops;
+  std::vector<TransferFunction> transfer;        ///< of the longest forced stage before a change
+  std::vector<TransferFunction> transfer_after;  ///< and after it; empty without one
+  std::vector<StageLoops> loops;
   std::vector<ReportFile> files;
 };
 
@@ -50,7 +63,12 @@ void evaluate(SessionReport& report);
 /// The whole page.
 std::string session_report_html(const SessionReport& report);
 
+/// What a building's owner wants to know, in one sentence, as text.
+std::string verdict_sentence(const SessionReport& report);
+
 // The sections below are HTML, empty when there is nothing to show.
+std::string verdict_section(const SessionReport& report);
+std::string events_section(const SessionReport& report);
 std::string figure_10_section(const SessionReport& report);
 std::string parameter_section(const SessionReport& report);
 std::string stages_section(const SessionReport& report);

@@ -1,4 +1,4 @@
-#include "daemon/session/frame_loops.h"
+#include "daemon/report/frame_loops.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,8 +35,9 @@ Places places(const estimator::Structure& s, const SessionMotion& m) {
   return out;
 }
 
-/// First row of the `size` rows with the largest floor acceleration in their middle, all finite.
-Index strongest(const SessionMotion& m, Index size) {
+/// First row of the `size` rows of first..end-1 with the largest floor acceleration in their
+/// middle, all finite.
+Index strongest(const SessionMotion& m, Index size, Index first, Index end) {
   VectorXd most = VectorXd::Zero(m.accel.rows());
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
     if (m.axes[a].story == 0) continue;
@@ -54,7 +55,7 @@ Index strongest(const SessionMotion& m, Index size) {
   Index best = -1;
   double best_value = -1;
   const Index step = std::max<Index>(1, size / 20);
-  for (Index from = 0; from + size <= m.accel.rows(); from += step) {
+  for (Index from = first; from + size <= end; from += step) {
     const double value = most.segment(from + size / 6, size * 2 / 3).squaredNorm();
     if (value > best_value && m.accel.middleRows(from, size).allFinite()) {
       best_value = value;
@@ -99,12 +100,12 @@ std::vector<double> shown(const VectorXd& all) {
 }  // namespace
 
 FrameLoops frame_loops(const estimator::Structure& s, const SessionMotion& m, const VectorXd& theta,
-                       double high_pass_hz, double seconds) {
+                       double high_pass_hz, double seconds, Index first, Index end) {
   FrameLoops out;
   const Places at = places(s, m);
   const Index size = estimator::smooth_size(
-      std::min<Index>(static_cast<Index>(1.5 * seconds * m.rate_hz), m.accel.rows()));
-  const Index from = size > 6 * static_cast<Index>(m.rate_hz) ? strongest(m, size) : -1;
+      std::min<Index>(static_cast<Index>(1.5 * seconds * m.rate_hz), end - first));
+  const Index from = size > 6 * static_cast<Index>(m.rate_hz) ? strongest(m, size, first, end) : -1;
   if (std::count(at.axis.begin(), at.axis.end(), -1) > 0) out.reason = "a frame has no sensor";
   if (from < 0) out.reason = "no stretch of 6 s has all its samples";
   const estimator::ParameterTable table(s);

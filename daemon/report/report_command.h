@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/session/session_report.h"
+#include "daemon/report/session_report.h"
 
 namespace framewatch::daemon {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "daemon/session/axis_check.h"
-#include "daemon/session/session_motion.h"
+#include "daemon/report/channel_result.h"
+#include "daemon/report/session_motion.h"
 
 namespace framewatch::daemon {
 
