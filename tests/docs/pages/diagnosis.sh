@@ -41,8 +41,8 @@ push() { # push SEED
     print "time_s,y,u"
     for (step = 0; step < 120 * 5000; ++step) {
       t = step / 5000; u = 0
-      if (step % 10 == 0) { for (i = 0; i < 40; ++i) u += 0.3 * sin(w[i] * t + phase[i]); held = u }
-      if (step % 100 == 0) printf "%.2f,%.9f,%.9f\n", t, y + 1e-5 * (rand() - 0.5), held
+      if (step % 10 == 0) { for (i = 0; i < 40; ++i) u += 0.05 * sin(w[i] * t + phase[i]); held = u }
+      if (step % 100 == 0) printf "%.2f,%.9f,%.9f\n", t, y + 1e-4 * (rand() - 0.5), held
       v += (held - 0.3 * v - 8 * y - 400 * y * y * y) / 2 / 5000
       y += v / 5000
     }
