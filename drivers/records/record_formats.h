@@ -5,7 +5,7 @@
 
 #include "drivers/base/file_problems.h"
 #include "drivers/records/record.h"
-#include "drivers/records/record_file.h"
+#include "drivers/records/record_options.h"
 
 // The readers behind read_record, one file each. All of them report to `problems` and return
 // nothing when there is a problem.

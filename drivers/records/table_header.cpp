@@ -10,7 +10,7 @@
 #include "drivers/base/number_text.h"
 #include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_file.h"
+#include "drivers/records/record_options.h"
 
 namespace framewatch::drivers {
 namespace {
