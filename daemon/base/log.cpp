@@ -6,14 +6,24 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
+#include "daemon/base/terminal_colour.h"
 
 namespace framewatch::daemon {
+namespace {
+
+std::string name_of_program(LogLevel level) {
+  const std::string name = "framewatch:";
+  if (level > LogLevel::warning) return name;
+  return toned(level == LogLevel::warning ? Tone::doubtful : Tone::bad, name, stderr);
+}
+
+}  // namespace
 
 void log(LogLevel level, const std::string& message) {
   static const bool journal = std::getenv("JOURNAL_STREAM") != nullptr;
   const std::string text = printable(message);
   const std::string line = journal ? fmt::format("<{}>framewatch: {}\n", int(level), text)
-                                   : fmt::format("framewatch: {}\n", text);
+                                   : fmt::format("{} {}\n", name_of_program(level), text);
   // Not by fmt::print, which throws when stderr takes nothing: a daemon goes on.
   (void)std::fputs(line.c_str(), stderr);
 }

@@ -2,34 +2,86 @@
 
 #include <unistd.h>
 
-#include <utility>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include <fmt/core.h>
 
+#include "drivers/base/caught.h"
+
 namespace framewatch::daemon {
+namespace {
 
-Progress::Progress(std::string command, std::int64_t total, std::string rate_unit, double scale,
-                   bool quiet)
-    : command_(std::move(command)),
-      rate_unit_(std::move(rate_unit)),
-      total_(total),
-      scale_(scale),
-      on_(!quiet && ::isatty(2) == 1) {}
+constexpr std::chrono::milliseconds kFirst{2000}, kBetween{500};
 
-Progress::~Progress() {
-  if (shown_) fmt::print(stderr, "\n");
+}  // namespace
+
+std::string time_left_text(double seconds) {
+  const auto s = static_cast<std::int64_t>(std::ceil(std::clamp(seconds, 0.0, 1e9)));
+  if (s < 100) return fmt::format("{} s left", s);
+  const std::int64_t minutes = (s + 59) / 60;
+  if (minutes < 100) return fmt::format("{} min left", minutes);
+  return fmt::format("{} h {} min left", minutes / 60, minutes % 60);
+}
+
+ProgressLine::ProgressLine(std::string command, bool quiet) : command_(std::move(command)) {
+  if (quiet || ::isatty(STDERR_FILENO) != 1) return;
+  // Without a thread for it there is no line, and the work goes on.
+  (void)drivers::caught([&] {
+    drawing_ = std::jthread(
+        [this](const std::stop_token& stop) { (void)drivers::caught([&] { draw(stop); }); });
+  });
+}
+
+ProgressLine::~ProgressLine() {
+  if (!is_on()) return;
+  drawing_.request_stop();
+  drawing_.join();
+  if (shown_) (void)std::fputs("\r\033[K", stderr);
+}
+
+void ProgressLine::operator()(const std::string& what, double share) {
+  if (!is_on()) return;
+  const std::lock_guard lock(mutex_);
+  what_ = what;
+  share_ = std::min(share, 1.0);
+}
+
+void ProgressLine::part_begins() {
+  const std::lock_guard lock(mutex_);
+  start_ = Clock::now();
+}
+
+double ProgressLine::elapsed_s() const {
+  const std::lock_guard lock(mutex_);
+  return std::chrono::duration<double>(Clock::now() - start_).count();
+}
+
+std::string ProgressLine::text() const {
+  const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
+  if (!(share_ > 0)) return fmt::format("{}: {}, {:.0f} s so far", command_, what_, elapsed_s);
+  return fmt::format("{}: {:.0f} %, {}, {}", command_, 100 * share_,
+                     time_left_text(elapsed_s * (1 / share_ - 1)), what_);
+}
+
+void ProgressLine::draw(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  const auto stopped = [&] { return stop.stop_requested(); };
+  for (auto pause = kFirst; !wake_.wait_for(lock, stop, pause, stopped); pause = kBetween) {
+    if (what_.empty()) continue;
+    const std::string line = "\r\033[K" + text();
+    shown_ = true;
+    (void)std::fputs(line.c_str(), stderr);
+    (void)std::fflush(stderr);
+  }
 }
 
 void Progress::show(std::int64_t done) {
   if (done <= 0 || total_ <= 0) return;
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-  if (elapsed.count() < next_s_) return;
-  next_s_ = elapsed.count() + 0.5;
-  shown_ = true;
-  const double share = static_cast<double>(done) / static_cast<double>(total_);
-  fmt::print(stderr, "\r{}: {:3.0f} %, {:.3g} {}/s, {:.0f} s left ", command_, 100 * share,
-             static_cast<double>(done) / scale_ / elapsed.count(), rate_unit_,
-             elapsed.count() * (1 / share - 1));
+  line_(fmt::format("{:.3g} {}/s", static_cast<double>(done) / scale_ / line_.elapsed_s(),
+                    rate_unit_),
+        static_cast<double>(done) / static_cast<double>(total_));
 }
 
 }  // namespace framewatch::daemon

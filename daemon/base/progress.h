@@ -1,35 +1,72 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <thread>
+#include <utility>
 
 namespace framewatch::daemon {
 
-/// Percent, rate and time left on stderr, when that is a terminal and the work takes over 2 s.
+/// "8 s left", "4 min left", "2 h 10 min left".
+std::string time_left_text(double seconds);
+
+/// What a command is at, how much of it is done and how long the rest takes: a line on stderr,
+/// drawn twice a second by a thread of its own, when that is a terminal and the work takes over
+/// 2 s. It is gone when the work is done.
+class ProgressLine {
+ public:
+  ProgressLine(std::string command, bool quiet);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  bool is_on() const { return drawing_.joinable(); }
+  /// share: of the whole that is done, 0..1; 0: not known, and nothing is said of the time left.
+  void operator()(const std::string& what, double share);
+  /// From now on shares are of another whole, which begins now.
+  void part_begins();
+  double elapsed_s() const;  ///< of the part
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(const std::stop_token& stop);
+  std::string text() const;
+
+  std::string command_;
+  mutable std::mutex mutex_;  ///< of what follows
+  std::condition_variable_any wake_;
+  std::string what_;
+  double share_ = 0;
+  Clock::time_point start_ = Clock::now();
+  bool shown_ = false;
+  std::jthread drawing_;
+};
+
+/// Percent, rate and time left of work that is counted.
 class Progress {
  public:
   /// rate_unit: what `done / scale` counts per second.
-  Progress(std::string command, std::int64_t total, std::string rate_unit, double scale,
-           bool quiet);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
+  Progress(std::string command, std::int64_t total, std::string rate_unit, double scale, bool quiet)
+      : line_(std::move(command), quiet),
+        rate_unit_(std::move(rate_unit)),
+        total_(total),
+        scale_(scale) {}
 
-  /// May be called for every event: it looks at the clock now and then only.
+  /// May be called for every event.
   void operator()(std::int64_t done) {
-    if (on_ && ++calls_ % 128 == 0) show(done);
+    if (line_.is_on() && ++calls_ % 128 == 0) show(done);
   }
 
  private:
   void show(std::int64_t done);
 
-  std::string command_, rate_unit_;
+  ProgressLine line_;
+  std::string rate_unit_;
   std::int64_t total_, calls_ = 0;
   double scale_;
-  bool on_, shown_ = false;
-  double next_s_ = 2;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace framewatch::daemon

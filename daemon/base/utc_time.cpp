@@ -1,8 +1,10 @@
 #include "daemon/base/utc_time.h"
 
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <system_error>
 
 #include <fmt/core.h>
@@ -106,6 +108,19 @@ std::string sensor_time_text(std::int64_t time_us) {
   const Civil c = civil(time_us);
   return fmt::format("{}-{:02}-{:02} {:02}:{:02}:{:02} UTC", c.year, c.month, c.day, c.hour,
                      c.minute, c.second);
+}
+
+std::string utc_and_local_text(std::int64_t time_us) {
+  const auto seconds = static_cast<std::time_t>(time_us / 1'000'000);
+  std::tm local{};
+  std::array<char, 64> text{};
+  const std::string utc = sensor_time_text(time_us);
+  if (::localtime_r(&seconds, &local) == nullptr || local.tm_gmtoff == 0) return utc;
+  const Civil c = civil(time_us);
+  const bool same_day = static_cast<unsigned>(local.tm_mday) == c.day;
+  const std::size_t length = std::strftime(
+      text.data(), text.size(), same_day ? "%H:%M:%S %Z" : "%Y-%m-%d %H:%M:%S %Z", &local);
+  return fmt::format("{} ({})", utc, std::string_view(text.data(), length));
 }
 
 }  // namespace framewatch::daemon

@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "daemon/base/exit_code.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/base/unpack_limit.h"
 
 namespace framewatch::daemon {
@@ -12,12 +14,43 @@ CLI::App* CommandList::add(const std::string& name, const std::string& purpose) 
   return app_.add_subcommand(name, purpose);
 }
 
-void CommandList::set_action(CLI::App* command, std::function<int()> action) {
-  command->callback([this, action = std::move(action)] { chosen_ = action; });
+void CommandList::set_action(CLI::App* command, std::function<int()> action,
+                             std::function<void()> prepare) {
+  command->callback([this, command, action = std::move(action), prepare = std::move(prepare)] {
+    if (prepare) prepare();
+    chosen_ = action;
+    name_of_chosen_ = command->get_name();
+  });
 }
 
-void add_config(CLI::App* command, std::string& config) {
-  command->add_option("CONFIG", config, "configuration file (TOML)")->required();
+void CommandList::reads_files(CLI::Option* option) {
+  option->transform(CLI::Validator(
+      [this](std::string& path) {
+        reads_file(path);
+        return std::string();
+      },
+      ""));
+}
+
+void CommandList::reads_file(std::string& path) {
+  if (path != "-") return;
+  ++reads_standard_input_;
+  path = drivers::kStandardInput;
+}
+
+int CommandList::run_chosen() const {
+  if (!chosen_) return kBadInput;
+  if (reads_standard_input_ > 1)
+    return refuse(name_of_chosen_, "- is standard input, which is one file only");
+  if (reads_standard_input_ == 1)
+    if (const std::string why = drivers::keep_standard_input(); !why.empty())
+      return refuse(name_of_chosen_, "standard input " + why);
+  return chosen_();
+}
+
+void add_config(CommandList& commands, CLI::App* command, std::string& config) {
+  commands.reads_files(
+      command->add_option("CONFIG", config, "configuration file (TOML)")->required());
 }
 
 void add_installed_config(CLI::App* command, std::string& config) {

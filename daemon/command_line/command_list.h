@@ -8,6 +8,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }  // namespace CLI
 
 namespace framewatch::daemon {
@@ -28,24 +29,38 @@ class CommandList {
   }
 
   /// What happens when `command` is chosen; returns the exit status. It may throw a CLI::ParseError
-  /// for options that do not go together.
-  void set_action(CLI::App* command, std::function<int()> action);
+  /// for options that do not go together. `prepare` comes before it, when the options are parsed.
+  void set_action(CLI::App* command, std::function<int()> action,
+                  std::function<void()> prepare = {});
 
-  /// Runs the chosen command, after parsing. Returns its exit status; 2 when none was chosen.
-  [[nodiscard]] int run_chosen() const { return chosen_ ? chosen_() : 2; }
+  /// This option names files to read: "-" is standard input.
+  void reads_files(CLI::Option* option);
+  /// The same of one path, in `prepare`.
+  void reads_file(std::string& path);
+
+  /// Runs the chosen command, after parsing. Returns its exit status; 2 when none was chosen, or
+  /// when standard input, which it wants, cannot be had.
+  [[nodiscard]] int run_chosen() const;
 
  private:
   CLI::App& app_;
   std::list<std::any> arguments_;
   std::function<int()> chosen_;
+  std::string name_of_chosen_;
+  int reads_standard_input_ = 0;  ///< times
 };
 
 // Options that several commands have.
-void add_config(CLI::App* command, std::string& config);            ///< CONFIG, required
+void add_config(CommandList& commands, CLI::App* command,
+                std::string& config);                               ///< CONFIG, required
 void add_installed_config(CLI::App* command, std::string& config);  ///< CONFIG, with a default
 void add_url(CLI::App* command, std::string& url);                  ///< --url
 void add_json(CLI::App* command, bool& json);                       ///< --json
 void add_max_size(CLI::App* command);  ///< --max-size, of what compressed input unpacks to
+
+// help_commands.cpp: what every program has.
+void add_help(CommandList& commands);
+void add_completion(CommandList& commands);
 
 // live_commands.cpp: the daemon and what one does with it while it runs.
 void add_demo(CommandList& commands);

@@ -47,16 +47,22 @@ void add_run(CommandList& commands) {
       "SIGHUP reads CONFIG anew: what can change while it runs does, anything else is refused.\n"
       "Exit status: 0 stopped, 2 bad usage, configuration or input.\n"
       "Example: framewatch run configs/table_two_story.toml");
-  add_config(command, arguments.config);
+  add_config(commands, command, arguments.config);
   add_url(command, arguments.url);
-  command->add_option("--state", arguments.state,
-                      "file that carries what was learned over a restart: read at the start,\n"
-                      "written every --state-every seconds and at the end");
+  command
+      ->add_option("--state", arguments.state,
+                   "file that carries what was learned over a restart: read at the start,\n"
+                   "written every --state-every seconds and at the end")
+      ->type_name("FILE");
   command->add_option("--state-every", arguments.state_every_s, "seconds between two writes of it")
       ->check(CLI::Range(1, 86400))
       ->capture_default_str();
-  command->add_option("--can-log", arguments.can_log,
-                      "file for every frame of the CAN buses, as candump -l writes it");
+  command
+      ->add_option("--can-log", arguments.can_log,
+                   "file for every frame of the CAN buses, as candump -l writes it")
+      ->type_name("FILE");
+  command->add_flag("--by-name", arguments.by_name,
+                    "channels without a source are those that nodes name (channel_table_t)");
   command->add_flag("--quiet", arguments.quiet, "only what goes wrong");
   commands.set_action(command, [&arguments] { return run(arguments); });
 }
@@ -71,15 +77,17 @@ void add_serve(CommandList& commands) {
       "Examples:\n"
       "  framewatch serve configs/table_two_story.toml\n"
       "  framewatch serve b.toml --address 192.168.1.7 --token-file /etc/framewatch/token");
-  add_config(command, arguments.config);
+  add_config(commands, command, arguments.config);
   add_url(command, arguments.url);
   command->add_option("--address", arguments.address, "IP address to listen on")
       ->capture_default_str();
   command->add_option("--port", arguments.port, "to listen on; 0: any free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  command->add_option("--token-file", arguments.token_file,
-                      "file with the token, 16 letters, digits, - or _ at least");
+  command
+      ->add_option("--token-file", arguments.token_file,
+                   "file with the token, 16 letters, digits, - or _ at least")
+      ->type_name("FILE");
   command->add_option("--host", arguments.hosts, "further host name the page may be opened under");
   command
       ->add_option("--sessions", arguments.sessions,
@@ -94,7 +102,8 @@ void add_serve(CommandList& commands) {
                    "of them from one address, at most; behind a proxy all come from one")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
-  command->add_option("--page", arguments.files, "folder to read the page from, for work on it");
+  command->add_option("--page", arguments.files, "folder to read the page from, for work on it")
+      ->type_name("DIR");
   command->add_flag("--quiet", arguments.quiet, "only the address and what goes wrong");
   commands.set_action(command, [&arguments] { return serve(arguments); });
 }

@@ -13,7 +13,8 @@ void add_check(CommandList& commands) {
   CLI::App* command = commands.add(
       "check", "every problem of a configuration at once, and what will be identifiable with it");
   command->footer("Example: framewatch check configs/table_two_story.toml");
-  command->add_option("CONFIG", arguments.config, "configuration file (TOML)");
+  commands.reads_files(command->add_option(
+      "CONFIG", arguments.config, "configuration file, or scenario file of simulate (TOML)"));
   add_json(command, arguments.json);
   command->add_flag("--print-options-markdown", arguments.print_options_markdown)->group("");
   command->add_flag("--print-effects-markdown", arguments.print_effects_markdown)->group("");
@@ -62,13 +63,19 @@ void add_diagnose(CommandList& commands) {
       "Examples:\n"
       "  framewatch diagnose building.toml --train monday.csv --holdout tuesday.csv --out d\n"
       "  framewatch diagnose building.toml --event 1795291200000000 --out d");
-  add_config(command, arguments.config);
-  command->add_option("--train", arguments.train, "record files and LCM event logs");
-  command->add_option("--holdout", arguments.holdout, "records of other motions, to judge by");
+  add_config(commands, command, arguments.config);
+  commands.reads_files(
+      command->add_option("--train", arguments.train, "record files and LCM event logs")
+          ->type_name("FILE"));
+  commands.reads_files(
+      command->add_option("--holdout", arguments.holdout, "records of other motions, to judge by")
+          ->type_name("FILE"));
   command->add_option("--event", arguments.event,
                       "id of a gap event: the samples stored of it, first half and second half, "
                       "instead of --train and --holdout");
-  command->add_option("--out", arguments.out, "directory to write to")->required();
+  command->add_option("--out", arguments.out, "directory to write to")
+      ->required()
+      ->type_name("DIR");
   command->add_option("--without", arguments.without, "effects that are not looked for, by name");
   command->add_option("--force", arguments.component.force,
                       "component test: column with the force on floor 1, N");

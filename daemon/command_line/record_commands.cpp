@@ -18,8 +18,10 @@ void add_simulate(CommandList& commands) {
       "  framewatch simulate configs/scenario_table_two_story.toml --out rec.lcmlog\n"
       "  framewatch simulate configs/scenario_paper_table1.toml --lcm --speed 2\n"
       "  framewatch simulate configs/can/scenario_tower.toml --can vcan0");
-  command->add_option("SCENARIO", arguments.scenario, "scenario file (TOML)")->required();
-  command->add_option("--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog");
+  commands.reads_files(
+      command->add_option("SCENARIO", arguments.scenario, "scenario file (TOML)")->required());
+  command->add_option("--out", arguments.out, "file to write: .csv, .csv.gz or .lcmlog")
+      ->type_name("FILE");
   CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
                                          "publish live, on this URL or the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
@@ -32,7 +34,8 @@ void add_simulate(CommandList& commands) {
       ->capture_default_str();
   command->add_option("--seconds", arguments.seconds, "instead of the scenario's duration")
       ->check(CLI::Range(1e-3, 1e6));
-  command->add_option("--truth", arguments.truth, "JSON file to write what is hidden to");
+  command->add_option("--truth", arguments.truth, "JSON file to write what is hidden to")
+      ->type_name("FILE");
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
   add_max_size(command);
   commands.set_action(command, [&arguments, lcm, can] {
@@ -55,7 +58,7 @@ void add_record(CommandList& commands) {
       "  framewatch record table.toml --test sweep --trigger 0.2 --pre-trigger 5 --seconds 60\n"
       "  framewatch record table.toml --standby --out /data/sessions\n"
       "  framewatch record table.toml --send start --test sweep");
-  add_config(command, arguments.config);
+  add_config(commands, command, arguments.config);
   add_url(command, arguments.url);
   command->add_option("--out", arguments.out, "folder that gets a folder per session")
       ->type_name("DIR")
@@ -72,16 +75,25 @@ void add_record(CommandList& commands) {
   command->add_option("--tap-test", arguments.tap_s,
                       "first wait at most so many seconds for a tap next to every sensor, in the\n"
                       "building's positive direction: tells reversed ones");
+  command->add_option("--wait", arguments.wait_s, "seconds to wait for the first samples")
+      ->check(CLI::Range(1, 86400))
+      ->capture_default_str();
+  command->add_flag("--by-name", arguments.by_name,
+                    "channels without a source are those that nodes name (channel_table_t)");
   command->add_flag("!--no-check", arguments.check, "begin without the check of the channels");
   command->add_flag("--strict", arguments.strict, "record nothing when a channel has a problem");
   command->add_flag("--standby", arguments.standby, "wait for commands, session after session");
   command
       ->add_option("--send", arguments.send, "tell the recorder that runs: start, arm, tap or stop")
       ->check(CLI::IsMember({"start", "arm", "tap", "stop"}));
-  command->add_option("--finish", arguments.finish,
-                      "stages and report of a session that was cut off, or whose report failed");
-  command->add_option("--reports", arguments.reports,
-                      "folder for the report (default: the session's own)");
+  command
+      ->add_option("--finish", arguments.finish,
+                   "stages and report of a session that was cut off, or whose report failed")
+      ->type_name("DIR");
+  command
+      ->add_option("--reports", arguments.reports,
+                   "folder for the report (default: the session's own)")
+      ->type_name("DIR");
   command->add_flag("--csv", arguments.csv, "raw samples and estimates as CSV too");
   command->add_flag("--mat", arguments.mat, "raw samples and estimates for MATLAB too");
   command->add_flag("--split", arguments.split, "a raw log for every stage too");
@@ -102,17 +114,26 @@ void add_report(CommandList& commands) {
       "With --config and --raw also stages (forced and free vibration side by side),\n"
       "reference-dynamic values, transfer functions, drifts and forces.\n"
       "Example: framewatch report est.lcmlog --config table.toml --raw raw.lcmlog --out r.html");
-  command->add_option("EST", arguments.estimates, "LCM event log of estimates")->required();
-  command->add_option("--out", arguments.out, "page to write (default: EST with .html)");
-  command->add_option("--config", arguments.config, "the building's configuration (TOML)");
-  command->add_option("--raw", arguments.raw,
-                      "raw samples: LCM event logs and record files, in order of time");
+  commands.reads_files(
+      command->add_option("EST", arguments.estimates, "LCM event log of estimates")->required());
+  command->add_option("--out", arguments.out, "page to write (default: EST with .html)")
+      ->type_name("FILE");
+  commands.reads_files(
+      command->add_option("--config", arguments.config, "the building's configuration (TOML)")
+          ->type_name("FILE"));
+  commands.reads_files(
+      command
+          ->add_option("--raw", arguments.raw,
+                       "raw samples: LCM event logs and record files, in order of time")
+          ->type_name("FILE"));
   command->add_option("--title", arguments.title, "of the page");
   command->add_option("--test", arguments.test, "name of the test");
   command->add_option("--operator", arguments.operator_name, "who made it");
   command->add_option("--notes", arguments.notes, "what the next reader should know");
-  command->add_option("--session", arguments.session,
-                      "session.json of framewatch record: check of the channels, trigger");
+  command
+      ->add_option("--session", arguments.session,
+                   "session.json of framewatch record: check of the channels, trigger")
+      ->type_name("FILE");
   command->add_flag("--quiet", arguments.quiet, "do not print the page's path");
   add_max_size(command);
   commands.set_action(command, [&arguments] { return report(arguments); });
@@ -134,7 +155,8 @@ void add_convert(CommandList& commands) {
       "  framewatch convert est.lcmlog --boxplot est.csv");
   command
       ->add_option("FILES", arguments.inputs,
-                   "IN... OUT: record files or one event log, then the output")
+                   "IN... OUT: record files or one event log, then the output; - is a standard\n"
+                   "stream")
       ->required()
       ->expected(2, 1000)
       ->type_name("");
@@ -155,8 +177,10 @@ void add_convert(CommandList& commands) {
       ->allow_extra_args(false);
   command->add_option("--format", record.format, "csv, at2, columns, rows or xsens")
       ->capture_default_str();
-  command->add_option("--config", arguments.config,
-                      "configuration whose channels say where the columns of their names travel");
+  command
+      ->add_option("--config", arguments.config,
+                   "configuration whose channels say where the columns of their names travel")
+      ->type_name("FILE");
   command->add_option("--channel", arguments.channel,
                       "LCM channel to write (default ACCEL) or to read");
   command->add_flag("--boxplot", arguments.boxplot, "boxplot columns beside the estimates");
@@ -164,11 +188,13 @@ void add_convert(CommandList& commands) {
                     "the paper's removal of noise on every channel of a record, for comparison");
   command->add_option("--start-us", arguments.start_us, "sensor time of a record's time zero");
   add_max_size(command);
-  commands.set_action(command, [&arguments] {
-    arguments.out = arguments.inputs.back();
-    arguments.inputs.pop_back();
-    return convert(arguments);
-  });
+  commands.set_action(
+      command, [&arguments] { return convert(arguments); },
+      [&arguments, &commands] {
+        arguments.out = arguments.inputs.back();
+        arguments.inputs.pop_back();
+        for (std::string& in : arguments.inputs) commands.reads_file(in);
+      });
 }
 
 void add_history(CommandList& commands) {
@@ -195,10 +221,14 @@ void add_history(CommandList& commands) {
                       "seconds that a summary is of (default: the shortest that fits a screen,\n"
                       "of a file the shortest)");
   command->add_option("--parameter", arguments.parameters, "names, * and ? allowed (default: all)");
-  command->add_option("--out", arguments.out,
-                      "file for the summaries: .csv, .csv.gz or .mat (MATLAB 5)");
-  command->add_option("--raw", arguments.raw,
-                      "file for raw samples: .lcmlog, .csv, .csv.gz or .mseed (miniSEED)");
+  command
+      ->add_option("--out", arguments.out,
+                   "file for the summaries: .csv, .csv.gz or .mat (MATLAB 5)")
+      ->type_name("FILE");
+  command
+      ->add_option("--raw", arguments.raw,
+                   "file for raw samples: .lcmlog, .csv, .csv.gz or .mseed (miniSEED)")
+      ->type_name("FILE");
   command->add_option("--channel", arguments.channels, "of the raw samples (default: all)");
   command->add_option("--network", arguments.network, "SEED network code")->capture_default_str();
   command->add_option("--station", arguments.station, "SEED station code")->capture_default_str();

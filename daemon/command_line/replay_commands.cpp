@@ -20,13 +20,16 @@ void add_replay(CommandList& commands) {
       "  framewatch replay building.toml record.csv --json\n"
       "  framewatch replay building.toml golden.lcmlog --write-expect expected.toml\n"
       "  framewatch replay building.toml golden.lcmlog --expect expected.toml --junit result.xml");
-  add_config(command, arguments.config);
+  add_config(commands, command, arguments.config);
+  commands.reads_files(
+      command
+          ->add_option("LOG", arguments.inputs,
+                       "LCM event logs, plain or .zst, and record files (CSV), in order of time")
+          ->required());
   command
-      ->add_option("LOG", arguments.inputs,
-                   "LCM event logs, plain or .zst, and record files (CSV), in order of time")
-      ->required();
-  command->add_option("--out", arguments.out,
-                      "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5)");
+      ->add_option("--out", arguments.out,
+                   "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5)")
+      ->type_name("FILE");
   command->add_flag("--boxplot", arguments.boxplot, "boxplot statistics in .csv and .mat too");
   command
       ->add_option("--from", arguments.span.from_s,
@@ -43,18 +46,30 @@ void add_replay(CommandList& commands) {
   CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
                                          "publish too, on this URL or the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
-  command->add_option("--save-state", arguments.save_state,
-                      "file to go on from with --load-state: the input goes on elsewhere");
-  command->add_option("--load-state", arguments.load_state,
-                      "go on where an earlier replay, or the daemon, stopped");
-  command->add_option("--expect", arguments.expect, "file that says what must come out (TOML)");
-  command->add_option("--write-expect", arguments.write_expect,
-                      "make a first such file from what comes out");
-  command->add_option("--write-baseline", arguments.write_baseline,
-                      "baseline file for [watch] to write, of all windows of the replay");
-  command->add_option("--event-reports", arguments.event_reports,
-                      "folder for the reports that [event_report] asks for after strong motion");
-  command->add_option("--junit", arguments.junit, "file for the result of --expect, as JUnit XML");
+  command
+      ->add_option("--save-state", arguments.save_state,
+                   "file to go on from with --load-state: the input goes on elsewhere")
+      ->type_name("FILE");
+  command
+      ->add_option("--load-state", arguments.load_state,
+                   "go on where an earlier replay, or the daemon, stopped")
+      ->type_name("FILE");
+  command->add_option("--expect", arguments.expect, "file that says what must come out (TOML)")
+      ->type_name("FILE");
+  command
+      ->add_option("--write-expect", arguments.write_expect,
+                   "make a first such file from what comes out")
+      ->type_name("FILE");
+  command
+      ->add_option("--write-baseline", arguments.write_baseline,
+                   "baseline file for [watch] to write, of all windows of the replay")
+      ->type_name("FILE");
+  command
+      ->add_option("--event-reports", arguments.event_reports,
+                   "folder for the reports that [event_report] asks for after strong motion")
+      ->type_name("DIR");
+  command->add_option("--junit", arguments.junit, "file for the result of --expect, as JUnit XML")
+      ->type_name("FILE");
   command->add_flag("--salvage", arguments.salvage,
                     "replay what is intact of a damaged log instead of refusing it");
   command->add_flag("--quiet", arguments.quiet, "no progress, no summary");
@@ -74,8 +89,9 @@ void add_diff(CommandList& commands) {
       "Exit status: 0 the estimates are the same, byte by byte; 1 they are not; 2 bad usage or "
       "input.\n"
       "Example: framewatch diff yesterday.lcmlog today.lcmlog");
-  command->add_option("A", arguments.a, "LCM event log, plain or .zst")->required();
-  command->add_option("B", arguments.b, "likewise")->required();
+  commands.reads_files(
+      command->add_option("A", arguments.a, "LCM event log, plain or .zst")->required());
+  commands.reads_files(command->add_option("B", arguments.b, "likewise")->required());
   add_json(command, arguments.json);
   command->add_flag("--quiet", arguments.quiet, "only the exit status");
   add_max_size(command);
@@ -93,8 +109,10 @@ void add_repair(CommandList& commands) {
       "  framewatch repair night.lcmlog --out night.repaired.lcmlog\n"
       "  framewatch repair night.lcmlog --check --json");
   command->add_option("LOG", arguments.log, "LCM event log, plain or .zst")->required();
-  command->add_option("--out", arguments.out,
-                      "log to write (default: LOG with .repaired before its ending)");
+  command
+      ->add_option("--out", arguments.out,
+                   "log to write (default: LOG with .repaired before its ending)")
+      ->type_name("FILE");
   command->add_flag("--check", arguments.check, "write nothing, only say what is damaged");
   add_json(command, arguments.json);
   add_max_size(command);
@@ -110,11 +128,11 @@ void add_refine(CommandList& commands) {
   command->footer(
       "Exit status: 0 refined, 1 not (too short, quiet, ...), 2 bad usage or input.\n"
       "Example: framewatch refine building.toml record.lcmlog --from 12 --to 22");
-  add_config(command, arguments.config);
-  command
-      ->add_option("LOG", arguments.inputs,
-                   "LCM event logs and record files (CSV), in order of time")
-      ->required();
+  add_config(commands, command, arguments.config);
+  commands.reads_files(command
+                           ->add_option("LOG", arguments.inputs,
+                                        "LCM event logs and record files (CSV), in order of time")
+                           ->required());
   command->add_option("--from", arguments.from_s, "seconds after the first sample")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

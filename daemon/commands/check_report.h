@@ -29,7 +29,7 @@ struct CheckReport {
 
 CheckReport make_check_report(const Config& config);
 
-/// For people, several lines.
+/// For people, several lines, without the warnings.
 std::string to_text(const CheckReport& report);
 /// For programs, schema framewatch.check/1. `report` empty: the problems are why.
 std::string to_json(const std::string& path, const std::optional<CheckReport>& report,

@@ -105,7 +105,6 @@ std::string to_text(const CheckReport& r) {
     out +=
         channel_text(r.config.pipeline.structure, r.config.pipeline.axes[i], r.config.sources[i]);
   out += identifiable_text(r);
-  for (const std::string& warning : r.warnings) out += "warning: " + warning + "\n";
   return out;
 }
 

@@ -12,6 +12,7 @@
 #include "daemon/config/config.h"
 #include "daemon/estimates/estimates_csv.h"
 #include "daemon/simulation/simulation_output.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/records/plausibility.h"
@@ -32,7 +33,7 @@ constexpr double kRateTolerance = 0.02;
 constexpr std::int64_t kMaxStartUs = 4'000'000'000'000'000;
 
 bool is_csv(const std::string& path) {
-  return path.ends_with(".csv") || path.ends_with(".csv.gz");
+  return path == drivers::kStandardOutput || path.ends_with(".csv") || path.ends_with(".csv.gz");
 }
 
 bool is_log(const std::string& path) {
@@ -44,7 +45,9 @@ void check_arguments(const ConvertArguments& a, Problems& problems) {
   (void)record_options(a.record, problems);
   if (a.inputs.empty()) problems.push_back({"convert", "needs an input and an output file"});
   if (!is_csv(a.out) && !a.out.ends_with(".lcmlog"))
-    problems.push_back({a.out, "the output's name must end in .lcmlog, .csv or .csv.gz"});
+    problems.push_back({a.out,
+                        "the output's name must end in .lcmlog, .csv or .csv.gz, or be - "
+                        "(standard output, CSV)"});
   for (const std::string& in : a.inputs) {
     std::error_code error;
     if (in == a.out || std::filesystem::equivalent(in, a.out, error))
@@ -164,6 +167,23 @@ std::string list(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
+/// Of several windows' estimates those of the main one, which other_windows_s do not name; said on
+/// stderr. Empty when nobody asked for a channel and it is not there.
+std::string main_window(const std::vector<std::string>& estimates, const std::string& asked) {
+  constexpr std::string_view kMain = "ESTIMATE";
+  const auto is_main = [&](const std::string& name) { return name.ends_with(kMain); };
+  const auto main = std::find_if(estimates.begin(), estimates.end(), is_main);
+  if (!asked.empty() || main == estimates.end() ||
+      std::count_if(estimates.begin(), estimates.end(), is_main) > 1)
+    return {};
+  std::vector<std::string> others = estimates;
+  std::erase(others, *main);
+  log(LogLevel::notice, fmt::format("the main window's estimates, of {}; --channel takes those of "
+                                    "another length: {}",
+                                    *main, list(others)));
+  return *main;
+}
+
 /// Why there is not exactly one channel to convert.
 std::string no_choice(const drivers::LogContents& contents, const std::string& asked) {
   const std::string channels =
@@ -223,7 +243,8 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
   const auto contents = drivers::log_contents(in, problems);
   if (!contents) return;
   const std::string accel = chosen(contents->accel, a.channel);
-  const std::string estimates = chosen(contents->estimates, a.channel);
+  std::string estimates = chosen(contents->estimates, a.channel);
+  if (accel.empty() && estimates.empty()) estimates = main_window(contents->estimates, a.channel);
   if (accel.empty() == estimates.empty()) {
     problems.push_back({in, no_choice(*contents, a.channel)});
     return;

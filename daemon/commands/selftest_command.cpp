@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/terminal_colour.h"
 #include "daemon/config/config_problems.h"
 
 namespace framewatch::daemon {
@@ -13,7 +14,9 @@ namespace {
 
 void print_text(const std::vector<MachineCheck>& checks) {
   for (const MachineCheck& check : checks) {
-    fmt::print("{:<4} {:<10} {}\n", check.good ? "ok" : "bad", check.name, check.found);
+    fmt::print("{} {:<10} {}\n",
+               check.good ? toned(Tone::good, "ok  ", stdout) : toned(Tone::bad, "bad ", stdout),
+               check.name, check.found);
     if (!check.good) fmt::print("{:15} -> {}\n", "", check.remedy);
   }
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -16,6 +15,8 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/median.h"
 #include "daemon/base/printable.h"
+#include "daemon/base/terminal_colour.h"
+#include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/config/sections.h"
@@ -29,15 +30,6 @@ namespace {
 constexpr int kNotWell = 1, kUnreachable = 2;
 constexpr std::int64_t kListen_us = 4'000'000;
 constexpr int kPoll_ms = 100;
-
-std::string utc(std::int64_t us) {
-  const std::time_t seconds = us / 1'000'000;
-  std::tm when{};
-  ::gmtime_r(&seconds, &when);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &when);
-  return text;
-}
 
 /// Per second of sensor time while somebody listened; empty when nothing came twice.
 std::optional<double> rate(const Heard& h, std::int64_t first, std::int64_t last) {
@@ -58,7 +50,7 @@ void line(const char* what, const std::string& text) {
 void print_process(const service_t& s, std::int64_t now_us) {
   std::string running =
       fmt::format("for {}, since {}", span_text(1e-6 * static_cast<double>(now_us - s.started_us)),
-                  utc(s.started_us));
+                  utc_and_local_text(s.started_us));
   if (s.starts > 0)
     running += fmt::format("; {}; {} starts, {} unasked",
                            s.resumed != 0 ? "went on from its state" : "began anew", s.starts,
@@ -200,7 +192,8 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
                 const std::optional<UnitState>& unit, std::int64_t now_us) {
   const std::string& name = config.pipeline.structure.name;
   fmt::print("{}: {} (framewatch {})\n", printable(name.empty() ? h.service->config : name),
-             odd.empty() ? "well" : "not well", printable(h.service->version));
+             odd.empty() ? toned(Tone::good, "well", stdout) : toned(Tone::bad, "not well", stdout),
+             printable(h.service->version));
   print_process(*h.service, now_us);
   if (unit) line("systemd", unit_text(*unit));
   print_config(*h.service, config.path);

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
+#include "drivers/base/standard_streams.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::size_t kLongestInterface = 15;
 
 void read_dbc(const std::string& name, const Config& config, CanBusReading& bus,
               std::vector<TextProblem>& problems) {
-  const std::filesystem::path beside = std::filesystem::path(config.path).parent_path();
+  const std::filesystem::path beside = drivers::folder_of_paths_in(config.path);
   const std::string path = (beside / name).string();
   std::string error;
   const std::optional<std::string> text = read_text_file(path, error);

@@ -1,6 +1,5 @@
 #include "daemon/config/config.h"
 
-#include <filesystem>
 #include <utility>
 
 #include "daemon/base/file_digest.h"
@@ -8,12 +7,13 @@
 #include "daemon/config/gap_model.h"
 #include "daemon/config/read_config.h"
 #include "daemon/keys/fields.h"
+#include "drivers/base/standard_streams.h"
 
 namespace framewatch::daemon {
 namespace {
 
 void place_all_files(Config& config) {
-  const std::string beside = std::filesystem::path(config.path).parent_path().string();
+  const std::string beside = drivers::folder_of_paths_in(config.path);
   place_files("commands", beside, config.commands);
   if (config.watch) place_files("watch", beside, *config.watch);
   if (config.gap) place_files("gap", beside, *config.gap);

@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
+#include "daemon/base/terminal_colour.h"
 
 namespace framewatch::daemon {
 
@@ -24,7 +25,8 @@ std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextPr
 
 void print_problems(const std::vector<ConfigProblem>& problems) {
   for (const ConfigProblem& p : problems)
-    fmt::print(stderr, "{}: {}\n", printable(p.where), printable_lines(p.message));
+    fmt::print(stderr, "{} {}\n", toned(Tone::bad, printable(p.where) + ":", stderr),
+               printable_lines(p.message));
 }
 
 }  // namespace framewatch::daemon

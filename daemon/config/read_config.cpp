@@ -36,8 +36,20 @@ void check_sections(const TomlValue& document, std::vector<TextProblem>& problem
 
 }  // namespace
 
+bool is_scenario(const TomlValue& document) {
+  return document.find("motion") != nullptr || document.find("truth") != nullptr ||
+         (document.find("config") != nullptr && document.find("structure") == nullptr);
+}
+
 bool read_config(const TomlValue& document, Config& config, std::vector<TextProblem>& problems) {
   const std::size_t before = problems.size();
+  if (is_scenario(document)) {
+    problems.push_back({document.entries.front().place,
+                        "this is a scenario, for framewatch simulate and check: here a "
+                        "configuration is wanted, such as the one that a scenario names by its "
+                        "key config"});
+    return false;
+  }
   check_sections(document, problems);
   const StructureReading structure = read_structure(document, problems);
   config.pipeline.structure = structure.structure;

@@ -7,6 +7,9 @@
 
 namespace framewatch::daemon {
 
+/// Whether the document describes a virtual test (`framewatch simulate`), not a building alone.
+bool is_scenario(const TomlValue& document);
+
 /// The configuration in a document that was parsed already; its path is set, its digest and the
 /// files it names beside DBC files are not touched. False when there was a problem.
 bool read_config(const TomlValue& document, Config& config, std::vector<TextProblem>& problems);

@@ -1,9 +1,7 @@
 #include "daemon/diagnosis/diagnose_command.h"
 
 #include <malloc.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -14,6 +12,7 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
+#include "daemon/base/progress.h"
 #include "daemon/base/workers.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/diagnosis/diagnose_json.h"
@@ -104,15 +103,9 @@ estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
   options.parallel = [&](int count, const std::function<void(int)>& work) {
     workers.run("", count, work);
   };
-  const bool terminal = !a.quiet && isatty(STDERR_FILENO);
-  if (terminal)
-    options.progress = [](const std::string& what, double share) {
-      fmt::print(stderr, "\r\033[K{:3.0f} %  {}", 100 * share, what);
-      std::fflush(stderr);
-    };
-  estimator::Diagnosis out = diagnose(input.plant, input.segments, options);
-  if (terminal) fmt::print(stderr, "\r\033[K");
-  return out;
+  ProgressLine progress("diagnose", a.quiet);
+  options.progress = std::ref(progress);
+  return diagnose(input.plant, input.segments, options);
 }
 
 bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {

@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 #include <toml++/toml.h>
 
+#include "daemon/documents/toml_advice.h"
+
 namespace framewatch::daemon {
 namespace {
 
@@ -152,6 +154,9 @@ std::optional<TomlValue> parse_toml(std::string text, std::vector<TextProblem>& 
       const std::size_t reason = problem.message.find("cannot redefine existing");
       const bool duplicate = reason != std::string::npos;
       if (duplicate) problem.message = "duplicate: " + problem.message.substr(reason);
+      const auto [begin, end] = line_bounds(text, problem.place.line);
+      problem.message = toml_advice(
+          problem.message, std::string_view(text).substr(begin, end - begin), problem.place.column);
       // The parser stops at its first error; a key given twice need not hide what follows it.
       const bool go_on = duplicate && remove_duplicate(text, problem.place);
       // A value over several lines loses its first only: what the parser says then is our doing.

@@ -8,6 +8,7 @@
 
 #include "daemon/estimates/estimates_csv.h"
 #include "daemon/estimates/estimates_mat.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/lcm_provider.h"
 #include "drivers/lcm/message_check.h"
@@ -88,14 +89,16 @@ std::unique_ptr<EstimateOutput> opened(std::unique_ptr<Output> output, const Est
 }
 
 bool is_csv(const std::string& path) {
-  return path.ends_with(".csv") || path.ends_with(".csv.gz");
+  return path == drivers::kStandardOutput || path.ends_with(".csv") || path.ends_with(".csv.gz");
 }
 
 }  // namespace
 
 std::string problem_of_output_name(const std::string& path) {
   if (path.ends_with(".lcmlog") || path.ends_with(".mat") || is_csv(path)) return {};
-  return path + ": the output's name must end in .lcmlog, .csv, .csv.gz or .mat";
+  return path +
+         ": the output's name must end in .lcmlog, .csv, .csv.gz or .mat, or be - "
+         "(standard output, CSV)";
 }
 
 std::unique_ptr<EstimateOutput> estimate_output(const Config& config, const EstimateFile& file,

@@ -17,6 +17,7 @@
 #include "daemon/history/history_files.h"
 #include "daemon/history/raw_export.h"
 #include "daemon/keys/suggest.h"
+#include "drivers/base/standard_streams.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -76,8 +77,8 @@ class RequestReader {
   }
 
   void check_names() {
-    if (!a_.out.empty() && !a_.out.ends_with(".csv") && !a_.out.ends_with(".csv.gz") &&
-        !a_.out.ends_with(".mat"))
+    if (!a_.out.empty() && a_.out != drivers::kStandardOutput && !a_.out.ends_with(".csv") &&
+        !a_.out.ends_with(".csv.gz") && !a_.out.ends_with(".mat"))
       problem(a_.out + ": the name for summaries must end in .csv, .csv.gz or .mat");
     if (!a_.raw.empty())
       if (const std::string rule = problem_of_raw_name(a_.raw); !rule.empty()) problem(rule);

@@ -11,6 +11,7 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/documents/miniseed_file.h"
 #include "daemon/history/history_files.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/records/record_csv_writer.h"
 #include "estimator/numeric/nan.h"
@@ -212,6 +213,7 @@ std::unique_ptr<RawExport> raw_export(const std::string& path,
 }
 
 std::string problem_of_raw_name(const std::string& path) {
+  if (path == drivers::kStandardOutput) return {};
   for (const char* ending : {".lcmlog", ".csv", ".csv.gz", ".mseed"})
     if (path.ends_with(ending)) return {};
   return path + ": the name for raw samples must end in .lcmlog, .csv, .csv.gz or .mseed";

@@ -1,9 +1,6 @@
 #include "daemon/lab/reproduce_command.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/progress.h"
 #include "daemon/lab/reproduction.h"
 #include "daemon/lab/reproduction_report.h"
 #include "drivers/base/text_output.h"
@@ -21,35 +19,6 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kBroken = 1;
-
-/// Percent, rate and time left of what is being done, on stderr, when that is a terminal and the
-/// whole takes over 2 s.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool quiet) : on_(!quiet && ::isatty(2) == 1) {}
-  ~ProgressLine() {
-    if (shown_) fmt::print(stderr, "\r\033[K");
-  }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void show(const std::string& what, int done, int count) {
-    const Clock::time_point now = Clock::now();
-    if (what != what_) part_ = now;
-    what_ = what;
-    if (!on_ || done < 2 || now - start_ < std::chrono::seconds(2)) return;
-    shown_ = true;
-    const double elapsed_s = std::chrono::duration<double>(now - part_).count();
-    fmt::print(stderr, "\r\033[Kreproduce: {}: {} %, {:.1f} runs/s, {:.0f} s left", what,
-               100 * done / count, (done - 1) / elapsed_s, elapsed_s * (count - done) / (done - 1));
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  bool on_, shown_ = false;
-  std::string what_;
-  Clock::time_point start_ = Clock::now(), part_ = start_;
-};
 
 std::string data_folder() {
   const char* set = std::getenv("FRAMEWATCH_DATA");
@@ -75,10 +44,16 @@ bool write(const std::string& path, const std::string& text) {
 }
 
 Reproduction measured(const ReproduceArguments& a) {
-  ProgressLine progress(a.quiet);
+  ProgressLine progress("reproduce", a.quiet);
+  std::string part;
   const Workers workers(
       a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
-      [&](const std::string& what, int done, int count) { progress.show(what, done, count); });
+      [&](const std::string& what, int done, int count) {
+        if (what != part) progress.part_begins();
+        part = what;
+        progress(fmt::format("{}: run {} of {}", what, done, count),
+                 static_cast<double>(done) / count);
+      });
   return reproduce_paper(a.only, a.seeds, data_folder(), workers);
 }
 

@@ -18,6 +18,7 @@
 #include "daemon/config/config.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/estimation/state_file.h"
+#include "daemon/live/heard_channels.h"
 #include "daemon/live/housekeeping.h"
 #include "daemon/live/live_events.h"
 #include "daemon/service/open_lcm.h"
@@ -71,6 +72,12 @@ int run(const RunArguments& a) {
       text ? parse_config(a.config, *text, problems) : std::nullopt;
   print_problems(problems);
   if (!config) return kBadInput;
+  if (const std::string why = nothing_to_hear(*config, a.by_name); !why.empty())
+    return refuse("run", why);
+  if (const std::string names = channels_without_source(*config, a.by_name); !names.empty())
+    log(LogLevel::warning,
+        fmt::format("{}: no source: {}: nothing comes from them unless a node names them",
+                    config->path, names));
   if (!a.state.empty() && !drivers::is_absent(a.state))  // a device would be renamed and replaced
     if (const std::string why = drivers::why_no_file(a.state); !why.empty())
       return refuse("run", fmt::format("{}: {}", a.state, why));

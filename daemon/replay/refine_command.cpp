@@ -8,6 +8,7 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
+#include "daemon/base/progress.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/documents/json_values.h"
 #include "daemon/estimation/estimation.h"
@@ -117,7 +118,13 @@ int refine(const RefineArguments& a) {
       if (estimate.reason[p] == estimator::Observability::observable)
         report.streaming[p] = estimate.value[p];
   });
+  ProgressLine progress("refine", false);
+  std::int64_t pushed = 0;
   const auto sink = [&](const estimator::AccelSample& sample) {
+    if (++pushed % 1024 == 0)
+      progress("reading samples",
+               1e-6 * static_cast<double>(to_microseconds(sample.time) - collector.first_us()) /
+                   survey.measured_seconds());
     collector.push(sample);
     if (static_cast<double>(to_microseconds(sample.time) - collector.first_us()) <=
         1e6 * (to_s + pipeline_config.options.lateness_s))
@@ -141,6 +148,10 @@ int refine(const RefineArguments& a) {
     if (report.streaming[std::size_t(p)] > 0) start[p] = report.streaming[std::size_t(p)];
   estimator::RefineOptions options;
   // Without drawings the design is a guess: nothing to be pulled to.
+  progress.part_begins();
+  options.progress = [&](int step) {
+    progress(fmt::format("step {} of {} at most", step, options.max_iterations), 0);
+  };
   options.prior = a.prior && pipeline_config.options.prior && pipeline_config.design.size() > 0;
   report.refinement = refine_max_likelihood(pipeline_config.structure, collector.axes(),
                                             pipeline_config.options.rate_hz, collector.accel(),

@@ -13,6 +13,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
+#include "daemon/base/log.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/config/baseline_file.h"
@@ -22,6 +23,7 @@
 #include "daemon/event_report/event_report_files.h"
 #include "daemon/replay/expectation_check.h"
 #include "daemon/replay/replay_summary.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/base/text_output.h"
 #include "drivers/lcm/message_check.h"
 
@@ -30,6 +32,11 @@ namespace {
 
 constexpr int kNotAsExpected = 1;
 using Clock = std::chrono::steady_clock;
+
+bool writes_standard_output(const ReplayArguments& a) {
+  const auto outputs = {a.out, a.write_expect, a.write_baseline, a.junit};
+  return std::find(outputs.begin(), outputs.end(), drivers::kStandardOutput) != outputs.end();
+}
 
 /// What can be said before any file is read.
 std::vector<std::string> argument_problems(const ReplayArguments& a) {
@@ -51,6 +58,8 @@ std::vector<std::string> argument_problems(const ReplayArguments& a) {
     found.push_back("--junit: needs --expect, its test cases are the expectations");
   if (!a.expect.empty() && !a.write_expect.empty())
     found.push_back("--write-expect: leave --expect out, it is about the old file");
+  if (a.json && writes_standard_output(a))
+    found.push_back("--json: standard output is taken by an output that is named -");
   if (!(a.span.to_s > a.span.from_s)) found.push_back("--to: must be later than --from");
   if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog")))
     found.push_back("--boxplot: is for --out with .csv or .mat; a log always has them");
@@ -229,6 +238,8 @@ class ReplayRun {
     if (problem.empty() && !a_.write_baseline.empty()) problem = write_baseline();
     if (!problem.empty()) return refuse("replay", problem);
 
+    if (counts.front().second == 0 && a_.save_state.empty())
+      log(LogLevel::warning, why_no_window(config_, estimation_, survey_.measured_seconds()));
     const std::chrono::duration<double> work = Clock::now() - start_;
     const ReplaySummary summary{series_, counts, survey_, estimation_.can(), work.count()};
     const bool holds =
@@ -240,8 +251,10 @@ class ReplayRun {
                             differences_json(checks));
       fmt::print("{}}}\n", json);
     } else if (!a_.quiet) {
-      fmt::print("{}", printable_lines(summary.text() + alarms_));
-      if (holds && expectations_) fmt::print("\nas expected: {} of {}\n", checks.size(), a_.expect);
+      std::FILE* const to = writes_standard_output(a_) ? stderr : stdout;
+      fmt::print(to, "{}", printable_lines(summary.text() + alarms_));
+      if (holds && expectations_)
+        fmt::print(to, "\nas expected: {} of {}\n", checks.size(), a_.expect);
     }
     if (holds) return 0;
     tell_differences(checks);

@@ -59,6 +59,26 @@ ReplayCounts replay_counts(const Estimation& estimation) {
            {"foreign", foreign}}};
 }
 
+std::string why_no_window(const Config& config, const Estimation& estimation, double motion_s) {
+  const estimator::EstimatorOptions& o = config.pipeline.options;
+  const double least_s = o.window_s + o.settle_s;
+  if (motion_s < least_s)
+    return fmt::format(
+        "no window: there are {:.4g} s of motion, and the first window ends {:g} s after the first "
+        "sample at the earliest (estimator.window_s {:g} s, after settle_s {:g} s or more in which "
+        "the filters settle)",
+        motion_s, least_s, o.window_s, o.settle_s);
+  std::string silent;
+  const auto counters = estimation.axis_counters();
+  for (std::size_t i = 0; i < counters.size() && i < config.pipeline.axes.size(); ++i)
+    if (counters[i].received == 0)
+      silent += (silent.empty() ? "" : ", ") + config.pipeline.axes[i].name;
+  if (!silent.empty()) return "no window: there is no sample of " + silent;
+  return fmt::format(
+      "no window: the filters had not settled, or {} interruptions made every window start anew",
+      estimation.pipeline().counters().interruptions);
+}
+
 std::string ReplaySummary::text() const {
   const auto count = [&](std::size_t i) { return counts[i].second; };
   std::string out = fmt::format(

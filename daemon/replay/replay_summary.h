@@ -28,4 +28,7 @@ struct ReplaySummary {
   std::string json() const;
 };
 
+/// Why no window came out of `motion_s` seconds of samples, for a person.
+std::string why_no_window(const Config& config, const Estimation& estimation, double motion_s);
+
 }  // namespace framewatch::daemon

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "drivers/base/input_file.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/can/can_log.h"
 #include "drivers/lcm/message_types.h"
 
@@ -20,8 +21,8 @@ constexpr int kDamageLines = 20;
 bool looks_like_record(const std::string& path) {
   if (drivers::is_event_log(path)) return false;
   const std::string name = std::filesystem::path(path).filename();
-  return name.find(".csv") != std::string::npos || name.ends_with(".txt") ||
-         name.ends_with(".AT2") || name.ends_with(".at2");
+  return path == drivers::kStandardInput || name.find(".csv") != std::string::npos ||
+         name.ends_with(".txt") || name.ends_with(".AT2") || name.ends_with(".at2");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/base/text_output.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -85,7 +86,7 @@ int report(const ReportArguments& a) {
   for (const std::string& raw : a.raw) files.push_back({"raw samples", raw});
   const std::string problem = write_report(std::move(r), files, path);
   if (!problem.empty()) return refuse("report", problem);
-  if (!a.quiet) fmt::print("{}\n", path);
+  if (!a.quiet && path != drivers::kStandardOutput) fmt::print("{}\n", path);
   return 0;
 }
 

@@ -19,6 +19,21 @@ constexpr double kNearRange = 0.9;
 
 }  // namespace
 
+std::string channels_text(const std::vector<ChannelResult>& results) {
+  std::string out =
+      fmt::format("{:<16} {:>22} {:>12} {:>12} {:>9}  {}\n", "channel", "noise, um/s^2/sqrt(Hz)",
+                  "rms, m/s^2", "rests at", "saturated", "");
+  for (const ChannelResult& r : results)
+    out += fmt::format(
+        "{:<16} {:>22} {:>12.2g} {:>+12.4f} {:>9}  {}\n", r.name,
+        std::isfinite(r.noise_density) ? fmt::format("{:.3g}", 1e6 * r.noise_density) : "?", r.rms,
+        r.offset, r.saturated,
+        !r.problem.empty() ? r.problem
+        : r.polarity > 0   ? "polarity right"
+                           : "");
+  return out;
+}
+
 ChannelCheck::ChannelCheck(const std::vector<estimator::SensorAxis>& axes, double rate_hz)
     : axes_(axes),
       rate_hz_(rate_hz),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "daemon/report/channel_result.h"
@@ -10,6 +11,9 @@
 #include "estimator/structure/sensors.h"
 
 namespace framewatch::daemon {
+
+/// A table of them for people, a line each.
+std::string channels_text(const std::vector<ChannelResult>& results);
 
 /// Computes statistics of all channels, before a test and of it, and finds their problems.
 class ChannelCheck {

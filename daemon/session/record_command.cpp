@@ -5,9 +5,8 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <deque>
@@ -24,6 +23,7 @@
 #include "daemon/base/log.h"
 #include "daemon/base/stop_signal.h"
 #include "daemon/config/config_problems.h"
+#include "daemon/live/heard_channels.h"
 #include "daemon/session/recorder.h"
 #include "daemon/session/session_command.h"
 #include "daemon/session/session_desk.h"
@@ -65,19 +65,6 @@ class FolderLock {
  private:
   drivers::Descriptor file_;
 };
-
-void print_channels(const std::vector<ChannelResult>& results) {
-  fmt::print("{:<16} {:>22} {:>12} {:>12} {:>9}  {}\n", "channel", "noise, um/s^2/sqrt(Hz)",
-             "rms, m/s^2", "rests at", "saturated", "");
-  for (const ChannelResult& r : results)
-    fmt::print("{:<16} {:>22} {:>12.2g} {:>+12.4f} {:>9}  {}\n", r.name,
-               std::isfinite(r.noise_density) ? fmt::format("{:.3g}", 1e6 * r.noise_density) : "?",
-               r.rms, r.offset, r.saturated,
-               !r.problem.empty() ? r.problem
-               : r.polarity > 0   ? "polarity right"
-                                  : "");
-  std::fflush(stdout);
-}
 
 class RecordCommand {
  public:
@@ -146,10 +133,7 @@ class RecordCommand {
     switch (step_) {
       case Step::check:
         if (recorder_.checked()) return after_check(now_us);
-        if (started_us_ == 0) started_us_ = now_us;
-        if (now_us < started_us_ + kNoSamples_us) return;
-        started_us_ = now_us;
-        return log(LogLevel::warning, "no samples yet: are the sensors' messages on this LCM?");
+        return wait_for_samples(now_us);
       case Step::tap:
         if (recorder_.state() == RecorderState::tapping && now_us < tap_until_us_) return;
         if (recorder_.state() == RecorderState::tapping) (void)recorder_.stop("", now_us);
@@ -173,6 +157,24 @@ class RecordCommand {
     }
   }
 
+  /// Since the newest sample, or since it listens when none has come.
+  void wait_for_samples(std::int64_t now_us) {
+    if (const double s = recorder_.checked_s(); started_us_ == 0 || s > heard_s_) {
+      heard_s_ = s;
+      started_us_ = now_us;
+      next_word_us_ = now_us + kNoSamples_us;
+    }
+    if (now_us < std::min(next_word_us_, waits_until_us())) return;
+    next_word_us_ = now_us + kNoSamples_us;
+    if (now_us >= waits_until_us())
+      return fail(fmt::format("no samples for {:g} s (--wait): nothing was recorded", a_.wait_s));
+    log(LogLevel::warning, "no samples yet: are the sensors' messages on this LCM? Ctrl-C ends it");
+  }
+
+  std::int64_t waits_until_us() const {
+    return started_us_ + static_cast<std::int64_t>(1e6 * a_.wait_s);
+  }
+
   void after_check(std::int64_t now_us) {
     if (a_.tap_s <= 0) return judge_channels();
     (void)recorder_.tap();
@@ -182,7 +184,8 @@ class RecordCommand {
 
   void judge_channels() {
     const std::vector<ChannelResult> results = recorder_.channel_results();
-    if (!a_.quiet) print_channels(results);
+    if (!a_.quiet) fmt::print("{}", channels_text(results));
+    std::fflush(stdout);
     for (const ChannelResult& r : results)
       if (a_.strict && !r.problem.empty())
         return fail(fmt::format("{}: {}: nothing is recorded (--strict)", r.name, r.problem));
@@ -293,7 +296,8 @@ class RecordCommand {
   Step step_ = Step::standby;
   int exit_code_ = 0;
   bool stopping_ = false;
-  std::int64_t started_us_ = 0, tap_until_us_ = 0, next_status_us_ = 0;
+  double heard_s_ = 0;
+  std::int64_t started_us_ = 0, next_word_us_ = 0, tap_until_us_ = 0, next_status_us_ = 0;
   std::deque<std::string> to_finish_;
   std::string finishing_;
   std::optional<ChildProcess> child_;
@@ -323,6 +327,11 @@ int record(const RecordArguments& a) {
   }
   if (!a.send.empty() && !a.url.empty()) {
     (void)refuse("record", "--send goes over the recorder's socket, not over LCM: leave --url out");
+    good = false;
+  }
+  if (const std::string why = config && a.send.empty() ? nothing_to_hear(*config, a.by_name) : "";
+      !why.empty()) {
+    (void)refuse("record", why);
     good = false;
   }
   if (!good) return kBadInput;

@@ -20,6 +20,8 @@ struct RecordArguments {
   std::string reports;           ///< folder for reports; empty: the session's own
   bool csv = false, mat = false, split = false, report = true;
   bool quiet = false;
+  bool by_name = false;  ///< nodes name the channels that have no source
+  double wait_s = 60;    ///< for the first samples, without `standby`
 };
 
 /// framewatch record: one session; with `standby` one session per command until SIGINT or SIGTERM.

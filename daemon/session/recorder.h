@@ -57,6 +57,8 @@ class Recorder {
   RecorderState state() const { return state_; }
   /// Whether the channels have been checked.
   bool checked() const { return !check_results_.empty(); }
+  /// Seconds of samples that the check has had so far.
+  double checked_s() const { return check_.seconds(); }
   /// Results of the newest check, or of the running session.
   std::vector<ChannelResult> channel_results() const;
   const std::string& news() const { return news_; }

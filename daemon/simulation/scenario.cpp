@@ -17,6 +17,7 @@
 #include "daemon/simulation/scenario_sensors.h"
 #include "daemon/simulation/scenario_truth.h"
 #include "daemon/simulation/simulation_size.h"
+#include "drivers/base/standard_streams.h"
 #include "estimator/simulate/building_model.h"
 
 namespace framewatch::daemon {
@@ -97,7 +98,7 @@ class ScenarioReader {
   }
 
   std::string relative(const std::string& file) const {
-    return (std::filesystem::path(path_).parent_path() / file).string();
+    return (std::filesystem::path(drivers::folder_of_paths_in(path_)) / file).string();
   }
 
   bool read_building(ConfigSection& top, Config& config) {

@@ -15,6 +15,7 @@
 #include "daemon/simulation/simulation_output.h"
 #include "daemon/simulation/simulation_size.h"
 #include "daemon/simulation/simulation_truth.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/base/text_output.h"
 #include "drivers/lcm/lcm_provider.h"
 
@@ -73,7 +74,8 @@ int simulate(const SimulateArguments& a) {
   if (!a.quiet)
     fmt::print(stderr, "{}: {} channels, {} instants at {:g} Hz{}{}\n",
                scenario->config.pipeline.structure.name, scenario->config.pipeline.axes.size(),
-               count, scenario->rate_hz, a.out.empty() ? "" : " to ", a.out);
+               count, scenario->rate_hz, a.out.empty() ? "" : " to ",
+               a.out == drivers::kStandardOutput ? "standard output" : a.out);
   return 0;
 }
 

@@ -8,6 +8,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/config/axis_names.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/records/record_csv_writer.h"
 
@@ -102,7 +103,7 @@ class LiveOutput : public SimulationOutput {
 
 std::unique_ptr<SimulationOutput> file_output(const Scenario& s, const std::string& path,
                                               std::string& error) {
-  if (path.ends_with(".csv") || path.ends_with(".csv.gz")) {
+  if (path == drivers::kStandardOutput || path.ends_with(".csv") || path.ends_with(".csv.gz")) {
     auto out = std::make_unique<CsvOutput>();
     if (out->open(s, path)) return out;
     error = out->error();
@@ -111,7 +112,7 @@ std::unique_ptr<SimulationOutput> file_output(const Scenario& s, const std::stri
     if (out->open(path)) return out;
     error = out->error();
   } else {
-    error = "the name must end in .csv, .csv.gz or .lcmlog";
+    error = "the name must end in .csv, .csv.gz or .lcmlog, or be - (standard output, CSV)";
   }
   return nullptr;
 }

@@ -13,6 +13,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "drivers/base/standard_streams.h"
+
 namespace framewatch::drivers {
 namespace {
 
@@ -110,10 +112,19 @@ bool PartialFile::still_ours() const {
          named.st_ino == open.st_ino && named.st_dev == open.st_dev;
 }
 
+bool PartialFile::open_standard_output() {
+  static std::atomic<bool> taken{false};
+  if (taken.exchange(true)) return fail("only one output can go to standard output");
+  file_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+  return file_ >= 0 || fail(std::strerror(errno));
+}
+
 bool PartialFile::open(const std::string& path) {
   discard();
   path_ = path;
   error_.clear();
+  is_standard_output_ = path == kStandardOutput;
+  if (is_standard_output_) return open_standard_output();
   struct stat there {};
   if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
     return fail(S_ISDIR(there.st_mode) ? "is a directory" : "is there and no plain file");
@@ -134,6 +145,11 @@ std::FILE* PartialFile::stream() {
 
 bool PartialFile::commit() {
   if (file_ < 0) return fail("is not open");
+  if (is_standard_output_) {
+    if (::close(file_) != 0) fail(std::strerror(errno));
+    file_ = -1;
+    return error_.empty();
+  }
   const std::string partial = path_ + ".partial";
   // A file system that cannot force anything onto a disk says EINVAL.
   if (::fsync(file_) != 0 && errno != EINVAL) fail(std::strerror(errno));
@@ -161,7 +177,7 @@ bool PartialFile::commit() {
 
 void PartialFile::discard() {
   if (file_ < 0) return;
-  if (still_ours()) ::unlink((path_ + ".partial").c_str());
+  if (!is_standard_output_ && still_ours()) ::unlink((path_ + ".partial").c_str());
   unmark(mark_);
   mark_ = -1;
   ::close(file_);

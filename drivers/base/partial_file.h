@@ -10,7 +10,8 @@ namespace framewatch::drivers {
 /// A file while it is written: PATH.partial, which commit() renames to PATH when it is whole. The
 /// partial file is made anew and never through a symbolic link. One that a run before left behind,
 /// a plain file of the same user that no process writes, is removed first; anything else of that
-/// name is refused, and so is a PATH that is there and no plain file.
+/// name is refused, and so is a PATH that is there and no plain file. The path "-" is standard
+/// output, once in a process: what is written goes there at once.
 class PartialFile {
  public:
   PartialFile() = default;
@@ -34,11 +35,13 @@ class PartialFile {
  private:
   bool make(const std::string& partial);
   bool still_ours() const;
+  bool open_standard_output();
   bool fail(const std::string& why);
 
   std::string path_;
   std::string error_;
   int file_ = -1;
+  bool is_standard_output_ = false;
   int mark_ = -1;  ///< its place among those that remove_partial_files() removes
 };
 

@@ -61,6 +61,7 @@ class Refiner {
     for (; point && out.status == RefineStatus::not_converged &&
            out.iterations < options_.max_iterations;
          ++out.iterations) {
+      if (options_.progress) options_.progress(out.iterations + 1);
       const auto step = step_at(x, *point);
       if (!step) break;
       const double longest = step->cwiseAbs().maxCoeff();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -16,6 +17,7 @@ struct RefineOptions {
   int max_iterations = 50;    ///< Gauss-Newton steps
   double tolerance = 0.01;    ///< converged when a step is below this many standard errors
   double longest_step = 0.3;  ///< of any parameter, relative to the design
+  std::function<void(int)> progress = {};  ///< gets the number of each step, from 1
 };
 
 /// converged, not_converged: all members are set; any other: only `status` is. quiet: no frame

@@ -38,7 +38,7 @@ TEST_P(ConfigProblems, AreAllToldAtTheirPlaces) {
 }
 
 const Malformed kMalformed[] = {
-    {"Syntax", "stories = 1", "stories = ", {{"2:11", "Error while parsing"}}},
+    {"Syntax", "stories = 1", "stories = ", {{"2:11", "nothing stands after the ="}}},
     {"DuplicateKey",
      "stories = 1",
      "stories = 1\nstories = 2",
@@ -50,7 +50,7 @@ const Malformed kMalformed[] = {
     {"DuplicateSection",
      "[[channel]]",
      "[structure]\nname = \"again\"\n[[channel]]",
-     {{"10:1", "duplicate: cannot redefine existing table 'structure'"}}},
+     {{"10:1", "duplicate: the section [structure] was there before"}}},
     {"UnknownSection",
      "[[channel]]",
      "[estimater]\nwindow_s = 5\n[[channel]]",

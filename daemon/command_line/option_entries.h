@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}  // namespace CLI
+
+namespace framewatch::daemon {
+
+/// One option or argument of a command, as --help lists it.
+struct OptionEntry {
+  std::string name;                  ///< --out; of an argument LOG
+  std::string value;                 ///< what follows: FILE, INT; empty: a flag
+  std::vector<std::string> choices;  ///< the only values, where they are words
+  std::string text;                  ///< what it is, on one line
+  bool is_argument = false;          ///< its place says what it is
+  bool is_required = false;
+  bool takes_many = false;
+  bool value_may_lack = false;
+};
+
+struct CommandEntry {
+  std::string name;
+  std::string purpose;  ///< on one line
+  std::string footer;   ///< exit status and examples, of several lines
+  std::vector<OptionEntry> options;
+};
+
+/// Every command of the program in the order of --help, without what is hidden.
+std::vector<CommandEntry> command_entries(const CLI::App& app);
+
+/// A completion script for a shell: "bash", "zsh" or "fish".
+std::string completion_script(const std::string& shell, const std::vector<CommandEntry>& commands);
+
+/// The manual page framewatch(1), in the language of man(7).
+std::string program_man_page(const std::vector<CommandEntry>& commands);
+/// The manual page of one command, framewatch-<command>(1).
+std::string command_man_page(const CommandEntry& command);
+
+/// What in the arguments of the program is no command, or no option of the command, each with what
+/// was probably meant. Empty when there is nothing of the kind.
+std::vector<std::string> misspelt(const std::vector<CommandEntry>& commands,
+                                  const std::vector<std::string>& arguments);
+/// The same of a word that should be a command.
+std::string no_such_command(const std::vector<CommandEntry>& commands, const std::string& word);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,177 @@
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "daemon/base/exit_code.h"
+#include "tests/support/shell.h"
+
+namespace framewatch::daemon {
+namespace usage_test {
+
+using test::ShellResult;
+
+class Usage : public testing::Test {
+ protected:
+  ShellResult shell(const std::string& line) { return test::shell(directory_, line); }
+
+  /// The first words of the list that --help prints below a heading.
+  std::vector<std::string> listed(const std::string& command, const std::string& heading) {
+    std::istringstream lines(shell("$F help " + command).out);
+    std::vector<std::string> out;
+    std::string line;
+    for (bool inside = false; std::getline(lines, line);) {
+      if (line.ends_with(':') && line.find(' ') == std::string::npos) inside = line == heading;
+      if (!inside || !line.starts_with("  ") || line[2] == ' ') continue;
+      std::string word = line.substr(2, line.find_first_of(" ,=", 2) - 2);
+      if (word == "-h") word = "--help";
+      out.push_back(word);
+    }
+    return out;
+  }
+  std::vector<std::string> commands() { return listed("", "Subcommands:"); }
+
+  test::TemporaryDirectory directory_;
+};
+
+TEST_F(Usage, AMisspeltCommandIsToldWithWhatWasMeant) {
+  const ShellResult said = shell("$F chek building.toml");
+  EXPECT_EQ(said.status, kBadInput);
+  EXPECT_EQ(said.err, "framewatch: there is no command chek: did you mean check?\n");
+  EXPECT_EQ(shell("$F re").err,
+            "framewatch: there is no command re: did you mean replay, repair, refine, reproduce, "
+            "report or record?\n");
+  EXPECT_EQ(shell("$F xyzzy").err,
+            "framewatch: there is no command xyzzy: framewatch help lists them\n");
+  EXPECT_EQ(shell("$F").err, "framewatch: which command? `framewatch help` lists them\n");
+  EXPECT_EQ(shell("$F").status, kBadInput);
+}
+
+TEST_F(Usage, EveryMisspeltOptionIsToldBeforeAnythingElse) {
+  const ShellResult said = shell("$F replay --ot x.csv --jsn b.toml a.csv");
+  EXPECT_EQ(said.status, kBadInput);
+  EXPECT_EQ(said.err,
+            "framewatch: there is no option --ot: did you mean --out?\n"
+            "framewatch: there is no option --jsn: did you mean --json?\n");
+  EXPECT_EQ(shell("$F run --stat=x b.toml").err,
+            "framewatch: there is no option --stat: did you mean --state or --state-every?\n");
+  EXPECT_EQ(shell("$F check -json b.toml").err,
+            "framewatch: there is no option -json: did you mean --json?\n");
+  EXPECT_EQ(shell("$F check --zzz b.toml").err,
+            "framewatch: there is no option --zzz: framewatch help check lists them\n");
+  // What follows -- is a name, whatever it looks like.
+  EXPECT_NE(shell("$F check -- --jsn").err.find("No such file"), std::string::npos);
+}
+
+TEST_F(Usage, OtherBadUsageNamesTheCommandAndItsHelp) {
+  EXPECT_EQ(shell("$F check").err,
+            "framewatch check: CONFIG is required\n`framewatch help check` says how it is used\n");
+  EXPECT_EQ(shell("$F demo --seconds no").status, kBadInput);
+}
+
+TEST_F(Usage, HelpOfACommandIsItsHelp) {
+  for (const std::string& command : commands()) {
+    const ShellResult help = shell("$F help " + command);
+    EXPECT_EQ(help.status, 0) << command;
+    EXPECT_EQ(help.out, shell("$F " + command + " --help").out) << command;
+  }
+  EXPECT_EQ(shell("$F help").out, shell("$F --help").out);
+  EXPECT_EQ(shell("$F help chek").err,
+            "framewatch help: there is no command chek: did you mean check?\n");
+  EXPECT_EQ(shell("$F help chek").status, kBadInput);
+}
+
+TEST_F(Usage, WhatStandardOutputDoesNotTakeIsAFailure) {
+  const std::string table = FRAMEWATCH_SOURCE_DIR "/configs/table_two_story.toml";
+  std::vector<std::string> lines{"$F --help",         "$F --version",
+                                 "$F help --man",     "$F completion bash",
+                                 "$F check " + table, "$F check " + table + " --json",
+                                 "$F selftest"};
+  for (const std::string& command : commands()) lines.push_back("$F " + command + " --help");
+  for (const std::string& line : lines) {
+    const ShellResult said = shell(line + " >/dev/full");
+    EXPECT_EQ(said.status, kBadInput) << line;
+    EXPECT_NE(said.err.find("standard output: No space left on device"), std::string::npos)
+        << line << "\n"
+        << said.err;
+  }
+}
+
+TEST_F(Usage, BashCompletesCommandsOptionsAndWords) {
+  const auto completed = [&](const std::string& words) {
+    const ShellResult said =
+        shell("eval \"$($F completion bash)\"; compopt() { :; }; COMP_WORDS=(" + words +
+              "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _framewatch; echo \"${COMPREPLY[*]}\"");
+    EXPECT_EQ(said.err, "") << words;
+    return said.out;
+  };
+  EXPECT_EQ(completed("framewatch rep"), "replay repair reproduce report\n");
+  EXPECT_EQ(completed("framewatch replay --j"), "--json --junit\n");
+  EXPECT_EQ(completed("framewatch record b.toml --send st"), "start stop\n");
+  EXPECT_EQ(completed("framewatch help sel"), "selftest\n");
+  EXPECT_EQ(completed("framewatch completion z"), "zsh\n");
+  test::write_file(directory_.path("b one.toml"), "");
+  EXPECT_EQ(completed("framewatch check b"), "b one.toml\n");
+}
+
+TEST_F(Usage, CompletionAndManualHaveEveryCommandAndOption) {
+  const std::string bash = shell("$F completion bash").out, zsh = shell("$F completion zsh").out,
+                    fish = shell("$F completion fish").out, manual = shell("$F help --man").out;
+  ASSERT_GE(commands().size(), 22u);
+  for (const std::string& command : commands()) {
+    EXPECT_NE(manual.find("\n.BR framewatch\\-" + command + " (1)\n"), std::string::npos);
+    EXPECT_NE(zsh.find("\n    " + command + ")\n"), std::string::npos) << command;
+    EXPECT_NE(fish.find(" -a " + command + " -d "), std::string::npos) << command;
+    const std::size_t at = bash.find("\n    " + command + ") options='");
+    ASSERT_NE(at, std::string::npos) << command;
+    const std::string options = bash.substr(at, bash.find('\n', at + 1) - at);
+    const std::string page = shell("$F help " + command + " --man").out;
+    for (const std::string& option : listed(command, "Options:")) {
+      EXPECT_NE(options.find(option), std::string::npos) << command << " " << option;
+      EXPECT_NE(zsh.find(option + "["), std::string::npos) << command << " " << option;
+      EXPECT_NE(fish.find("from " + command + "' -"), std::string::npos) << command;
+      EXPECT_NE(fish.find(" -l " + option.substr(2) + " "), std::string::npos) << option;
+      if (option == "--help") continue;
+      std::string escaped;
+      for (const char c : option) escaped += c == '-' ? "\\-" : std::string(1, c);
+      EXPECT_NE(page.find("\n.BI \"" + escaped + "\""), std::string::npos) << command << option;
+    }
+  }
+}
+
+/// With what this machine has of the shells; without it the test above stands alone.
+TEST_F(Usage, TheShellsTakeTheirScripts) {
+  for (const std::string check : {"bash -n", "zsh -n", "fish --no-execute"}) {
+    const std::string name = check.substr(0, check.find(' '));
+    const ShellResult said = shell("type -p " + name + " >/dev/null || exit 0; $F completion " +
+                                   name + " >script && " + check + " script");
+    EXPECT_EQ(said.status, 0) << check << "\n" << said.err;
+    EXPECT_EQ(said.err, "") << check;
+  }
+}
+
+TEST_F(Usage, ManualPagesAreRightForGroff) {
+  for (const std::string& command : commands()) {
+    const ShellResult said = shell("type -p groff >/dev/null || exit 0; $F help " + command +
+                                   " --man | groff -man -Tutf8 -ww -z");
+    EXPECT_EQ(said.status, 0) << command;
+    EXPECT_EQ(said.err, "") << command;
+  }
+}
+
+TEST_F(Usage, InstallsPagesAndScripts) {
+  const ShellResult said =
+      shell(FRAMEWATCH_SOURCE_DIR "/deploy/install-shell-files $F share && ls share/man/man1");
+  EXPECT_EQ(said.status, 0) << said.err;
+  for (const std::string& command : commands())
+    EXPECT_NE(said.out.find("framewatch-" + command + ".1\n"), std::string::npos) << command;
+  for (const char* script :
+       {"bash-completion/completions/framewatch", "zsh/vendor-completions/_framewatch",
+        "fish/vendor_completions.d/framewatch.fish"})
+    EXPECT_FALSE(test::read_file(directory_.path("share/" + std::string(script))).empty());
+}
+
+}  // namespace usage_test
+}  // namespace framewatch::daemon
