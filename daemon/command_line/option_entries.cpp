@@ -1,6 +1,7 @@
 #include "daemon/command_line/option_entries.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -42,10 +43,16 @@ OptionEntry entry_of(const CLI::Option& option) {
 std::vector<CommandEntry> command_entries(const CLI::App& app) {
   std::vector<CommandEntry> out;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    CommandEntry entry{
-        command->get_name(), on_one_line(command->get_description()), command->get_footer(), {}};
+    CommandEntry entry{command->get_name(),
+                       on_one_line(command->get_description()),
+                       command->get_footer(),
+                       {},
+                       {}};
     for (const CLI::Option* option : command->get_options())
-      if (!option->get_group().empty()) entry.options.push_back(entry_of(*option));
+      if (option->get_group().empty())
+        entry.unlisted.push_back("--" + option->get_lnames().front());
+      else
+        entry.options.push_back(entry_of(*option));
     out.push_back(std::move(entry));
   }
   for (CommandEntry& command : out)

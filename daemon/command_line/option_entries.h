@@ -26,6 +26,7 @@ struct CommandEntry {
   std::string purpose;  ///< on one line
   std::string footer;   ///< exit status and examples, of several lines
   std::vector<OptionEntry> options;
+  std::vector<std::string> unlisted;  ///< options that --help does not list: for our own tools
 };
 
 /// Every command of the program in the order of --help, without what is hidden.

@@ -1,5 +1,7 @@
 #include "daemon/commands/check_command.h"
 
+#include <utility>
+
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"

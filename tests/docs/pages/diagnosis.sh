@@ -50,4 +50,4 @@ push() { # push SEED
 }
 expected='
 cubic stiffness at story 1, frame y1
-cubic_stiffness'
+'
