@@ -1,7 +1,7 @@
 # Most of a build is headers, read again for every source. FRAMEWATCH_PRECOMPILE reads those of other
 # people once (tests/purity/check-missing-includes sees what the compiler then does not);
-# FRAMEWATCH_JOIN compiles the sources of a room as one, so is off where a missing #include of ours must
-# be seen.
+# FRAMEWATCH_JOIN compiles the sources of a room as one, so is off in the preset dev, where a missing
+# #include of ours must be seen.
 set(framewatch_standard_headers <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream>
   <functional> <map> <memory> <mutex> <numeric> <optional> <set> <string> <thread> <utility> <vector>)
 

@@ -4,7 +4,7 @@
 build_root=${FRAMEWATCH_BUILD:-$root/build}
 jobs=${FRAMEWATCH_JOBS:-$(nproc)}
 
-say() { printf '== %s\n' "$*" >&2; }
+say() { printf '== %4d s  %s\n' "$SECONDS" "$*" >&2; }
 
 # install_packages <--yes or empty> [--with NAME]...: what a build needs, or exit 2.
 install_packages() {
@@ -33,9 +33,10 @@ build_preset() {
     return 1
   fi
   use_ccache
-  # In CI nobody looks at variables, and nobody compiles one test alone.
+  # In CI nobody looks at variables, and nobody compiles one source alone: who does, at a desk, sees a
+  # missing #include.
   local flags=()
-  [ -z "${CI:-}" ] || flags=(-DCMAKE_CXX_FLAGS_DEBUG="-Og -g1" -DFRAMEWATCH_JOIN_TESTS=ON)
+  [ -z "${CI:-}" ] || flags=(-DCMAKE_CXX_FLAGS_DEBUG="-Og -g1" -DFRAMEWATCH_JOIN=ON)
   (cd "$root" && cmake --preset "$preset" -B "$build_root/$preset" "${flags[@]}" >/dev/null) &&
     cmake --build "$build_root/$preset" -j "$jobs" --target "$@"
 }

@@ -27,10 +27,10 @@ std::string no_such_option(const CommandEntry& command, const std::string& word)
   std::vector<std::string> known{"--help"};
   for (const OptionEntry& option : command.options)
     if (!option.is_argument) known.push_back(option.name);
-  const auto has = [&](const std::vector<std::string>& names) {
+  const auto is_in = [&](const std::vector<std::string>& names) {
     return std::find(names.begin(), names.end(), word) != names.end();
   };
-  if (has(known) || has(command.hidden) || word == "-h") return {};
+  if (is_in(known) || is_in(command.unlisted) || word == "-h") return {};
   const std::string dashed = word.starts_with("--") ? word : "-" + word;
   const std::string advice = meant(dashed, known);
   return fmt::format(

@@ -49,10 +49,10 @@ std::vector<CommandEntry> command_entries(const CLI::App& app) {
                        {},
                        {}};
     for (const CLI::Option* option : command->get_options())
-      if (!option->get_group().empty())
-        entry.options.push_back(entry_of(*option));
+      if (option->get_group().empty())
+        entry.unlisted.push_back("--" + option->get_lnames().front());
       else
-        entry.hidden.push_back(entry_of(*option).name);
+        entry.options.push_back(entry_of(*option));
     out.push_back(std::move(entry));
   }
   for (CommandEntry& command : out)

@@ -26,10 +26,10 @@ struct CommandEntry {
   std::string purpose;  ///< on one line
   std::string footer;   ///< exit status and examples, of several lines
   std::vector<OptionEntry> options;
-  std::vector<std::string> hidden;  ///< options that no list has, such as --print-effects-markdown
+  std::vector<std::string> unlisted;  ///< options that --help does not list: for our own tools
 };
 
-/// Every command of the program in the order of --help.
+/// Every command of the program in the order of --help, without what is hidden.
 std::vector<CommandEntry> command_entries(const CLI::App& app);
 
 /// A completion script for a shell: "bash", "zsh" or "fish".

@@ -3,8 +3,8 @@
 #include "daemon/command_line/command_list.h"
 #include "daemon/commands/convert_command.h"
 #include "daemon/history/history_command.h"
+#include "daemon/report/report_command.h"
 #include "daemon/session/record_command.h"
-#include "daemon/session/report_command.h"
 #include "daemon/simulation/simulate_command.h"
 
 namespace framewatch::daemon {
@@ -148,6 +148,7 @@ void add_convert(CommandList& commands) {
       ".csv.gz. Several records of one rate become one log. docs/formats.md has every format.\n"
       "Examples:\n"
       "  framewatch convert rec.csv --config table.toml rec.lcmlog\n"
+      "  framewatch convert sheet.csv --unit g --time-unit ms rec.lcmlog\n"
       "  framewatch convert elcentro_NS.dat --unit g elcentro.csv\n"
       "  framewatch convert hachi.txt --unit gal --step 0.01 hachi.lcmlog\n"
       "  framewatch convert ground.csv.gz first.csv.gz second.csv.gz top.csv.gz run.lcmlog\n"
@@ -159,9 +160,22 @@ void add_convert(CommandList& commands) {
       ->required()
       ->expected(2, 1000)
       ->type_name("");
-  command->add_option("--unit", arguments.unit, "of a file that does not say it: g, gal, mps2");
-  command->add_option("--step", arguments.step_s, "seconds between samples of a file without time");
-  command->add_option("--format", arguments.format, "csv, at2, two-columns, rows or xsens")
+  RecordFileArguments& record = arguments.record;
+  command->add_option("--unit", record.unit,
+                      "of a file that does not say it: g, mg, gal, mps2, or the m/s^2 of one");
+  command->add_option("--step", record.step_s, "seconds between samples of a file without time");
+  command->add_option("--time", record.time, "title of the column with the times");
+  command->add_option("--time-unit", record.time_unit, "of such a column: s, ms, us or ns");
+  command->add_option("--zone", record.zone, "of time stamps without one: Z, or such as +09:00");
+  command->add_option("--decimal", record.decimal, "comma or point, where a file leaves it open");
+  command->add_option("--columns", record.columns, "titles of the columns to take: A,B,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--names", record.names, "names of the channels, in the file's order: A,B,...")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command->add_option("--format", record.format, "csv, at2, columns, rows or xsens")
       ->capture_default_str();
   command
       ->add_option("--config", arguments.config,

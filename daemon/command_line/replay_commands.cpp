@@ -64,6 +64,10 @@ void add_replay(CommandList& commands) {
       ->add_option("--write-baseline", arguments.write_baseline,
                    "baseline file for [watch] to write, of all windows of the replay")
       ->type_name("FILE");
+  command
+      ->add_option("--event-reports", arguments.event_reports,
+                   "folder for the reports that [event_report] asks for after strong motion")
+      ->type_name("DIR");
   command->add_option("--junit", arguments.junit, "file for the result of --expect, as JUnit XML")
       ->type_name("FILE");
   command->add_flag("--salvage", arguments.salvage,

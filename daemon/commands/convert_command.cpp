@@ -42,6 +42,7 @@ bool is_log(const std::string& path) {
 
 /// What no file needs to be opened for.
 void check_arguments(const ConvertArguments& a, Problems& problems) {
+  (void)record_options(a.record, problems);
   if (a.inputs.empty()) problems.push_back({"convert", "needs an input and an output file"});
   if (!is_csv(a.out) && !a.out.ends_with(".lcmlog"))
     problems.push_back({a.out,
@@ -52,12 +53,6 @@ void check_arguments(const ConvertArguments& a, Problems& problems) {
     if (in == a.out || std::filesystem::equivalent(in, a.out, error))
       problems.push_back({in, "is input and output"});
   }
-  if (!a.unit.empty() && !drivers::accel_unit(a.unit))
-    problems.push_back({"--unit", fmt::format("'{}' is not g, gal or mps2", a.unit)});
-  if (!drivers::record_format(a.format))
-    problems.push_back({"--format", fmt::format("'{}' is not detect, csv, at2, two-columns, rows "
-                                                "or xsens",
-                                                a.format)});
   if (!a.config.empty() && !a.channel.empty())
     problems.push_back({"--channel", "the configuration names the LCM channels: leave one out"});
   if (std::abs(a.start_us) > kMaxStartUs)
@@ -90,10 +85,7 @@ void look_at(const Record& record, const std::string& path, const std::optional<
 
 std::vector<Record> read_records(const ConvertArguments& a, const std::optional<Config>& config,
                                  Problems& problems) {
-  drivers::RecordOptions options;
-  options.format = *drivers::record_format(a.format);
-  if (!a.unit.empty()) options.unit = drivers::accel_unit(a.unit);
-  if (a.step_s != 0) options.step_s = a.step_s;
+  const drivers::RecordOptions options = record_options(a.record, problems);
   std::vector<Record> records;
   for (const std::string& in : a.inputs) {
     auto record = drivers::read_record(in, options, problems);
@@ -243,11 +235,10 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
   const std::string& in = a.inputs[0];
   if (a.inputs.size() > 1) problems.push_back({in, "an event log is converted alone"});
   if (!is_csv(a.out)) problems.push_back({a.out, "an event log is converted to .csv or .csv.gz"});
-  if (!a.unit.empty() || a.step_s != 0 || a.format != "detect" || !a.config.empty() ||
-      a.start_us != 0)
+  if (a.record.any() || !a.config.empty() || a.start_us != 0)
     problems.push_back({in,
-                        "--unit, --step, --format, --config and --start-us are for records, "
-                        "not for event logs"});
+                        "--config, --start-us and what says how a record is to be read are for "
+                        "records, not for event logs"});
   if (!problems.empty()) return;
   const auto contents = drivers::log_contents(in, problems);
   if (!contents) return;

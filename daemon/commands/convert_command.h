@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "daemon/commands/record_file_arguments.h"
+
 namespace framewatch::daemon {
 
 struct ConvertArguments {
   std::vector<std::string> inputs;  ///< record files, or one LCM event log
   std::string out;                  ///< .lcmlog, .csv or .csv.gz
-  std::string unit;                 ///< g, gal, mps2; empty: not declared
-  double step_s = 0;                ///< 0: not declared
-  std::string format = "detect";
+  RecordFileArguments record;       ///< what record files do not say themselves
   std::string config;   ///< whose channels say where named columns travel; empty: by column number
   std::string channel;  ///< LCM channel to write or read; empty: ACCEL, or the only one of its kind
   bool boxplot = false;

@@ -18,6 +18,7 @@ void place_all_files(Config& config) {
   if (config.watch) place_files("watch", beside, *config.watch);
   if (config.gap) place_files("gap", beside, *config.gap);
   if (config.history) place_files("history", beside, *config.history);
+  if (config.event_report) place_files("event_report", beside, *config.event_report);
   if (config.actions) place_files("actions", beside, *config.actions);
 }
 

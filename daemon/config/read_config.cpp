@@ -63,6 +63,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   if (config.watch) config.pipeline.options.long_window_s = config.watch->options.quiet_window_s;
   config.gap = read_gap(document, problems);
   config.history = read_history(document, problems);
+  config.event_report = read_event_report(document, problems);
   config.actions = read_actions(document, problems);
   if (problems.size() == before)
     for (const std::string& rule : estimator::problems(config.pipeline))

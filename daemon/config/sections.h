@@ -42,6 +42,9 @@ std::optional<WatchSettings> read_watch(const TomlValue& document,
 std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems);
 std::optional<HistorySettings> read_history(const TomlValue& document,
                                             std::vector<TextProblem>& problems);
+/// In history.cpp.
+std::optional<EventReportSettings> read_event_report(const TomlValue& document,
+                                                     std::vector<TextProblem>& problems);
 std::optional<ActionSettings> read_actions(const TomlValue& document,
                                            std::vector<TextProblem>& problems);
 }  // namespace framewatch::daemon

@@ -7,6 +7,7 @@
 #include "daemon/keys/action_options.h"
 #include "daemon/keys/channel_options.h"
 #include "daemon/keys/command_options.h"
+#include "daemon/keys/event_report_options.h"
 #include "daemon/keys/gap_options.h"
 #include "daemon/keys/history_options.h"
 #include "daemon/keys/lcm_options.h"
@@ -29,7 +30,8 @@ struct Config {
   std::optional<WatchSettings> watch;      ///< none: nothing is watched
   std::optional<GapSettings> gap;          ///< none: nothing is simulated beside the measurement
   std::optional<HistorySettings> history;  ///< none: nothing is kept
-  std::optional<ActionSettings> actions;   ///< none: nobody is notified
+  std::optional<EventReportSettings> event_report;  ///< none: nothing is written after shaking
+  std::optional<ActionSettings> actions;            ///< none: nobody is notified
   std::vector<estimator::Effect> effects;  ///< that the building has beyond the linear model
 };
 

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 
 #include "daemon/lab/demo_files.h"
-#include "daemon/session/report_command.h"
+#include "daemon/report/report_command.h"
 
 namespace framewatch::daemon {
 

@@ -20,6 +20,7 @@
 #include "daemon/diagnosis/diagnose_output.h"
 #include "daemon/diagnosis/diagnose_records.h"
 #include "daemon/diagnosis/diagnose_report.h"
+#include "daemon/diagnosis/diagnose_verdict.h"
 #include "drivers/base/text_output.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/diagnosis/diagnose_verdict.h"
 #include "daemon/diagnosis/where_map.h"
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
@@ -17,10 +18,6 @@ namespace {
 
 constexpr int kForceDeformationPoints = 4000;
 constexpr std::size_t kRanked = 15;
-
-std::string percent(double share) {
-  return fmt::format("{:.2f} %", 100 * share);
-}
 
 std::string place(const DiagnoseOutput& o, const estimator::EffectPlace& p) {
   return html_text(place_text(p, o.plant.structure, o.plant.axes));
@@ -36,8 +33,9 @@ std::string gap_section(const DiagnoseOutput& o) {
   for (std::size_t r = 0; r < o.diagnosis.before.size() && r < o.diagnosis.after.size(); ++r) {
     const estimator::Gap& before = o.diagnosis.before[r];
     const estimator::Gap& after = o.diagnosis.after[r];
-    rows.push_back({html_text(o.records[r].path) + " (" + use(o, r) + ")", percent(before.overall),
-                    percent(after.overall), percent(before.overall_floor)});
+    rows.push_back({html_text(o.records[r].path) + " (" + use(o, r) + ")",
+                    gap_percent(before.overall), gap_percent(after.overall),
+                    gap_percent(before.overall_floor)});
     SvgAxis names{""};
     SvgSeries b{"before", 1, SvgMark::rings, {}, {}}, a{"after", 0, SvgMark::dots, {}, {}},
         n{"noise floor", 6, SvgMark::bars, {}, {}};
@@ -103,8 +101,16 @@ std::string history_section(const DiagnoseOutput& o) {
          html_figure(plots, "The channel with the widest gap, around the strongest motion.");
 }
 
-std::string loop_section(const DiagnoseOutput& o) {
-  std::vector<std::string> plots;
+/// What a found law does in the last record: the element's deformation and its restoring force.
+struct LawMotion {
+  std::string place;
+  int story = 0;                     ///< of a frame; 0: it is none
+  double linear = 0, stiffness = 0;  ///< before and after, SI
+  Eigen::VectorXd deformation_m, force_n;
+};
+
+std::vector<LawMotion> law_motions(const DiagnoseOutput& o) {
+  std::vector<LawMotion> out;
   for (const estimator::FoundEffect& f : o.diagnosis.effects) {
     if (f.index < 0) continue;
     const estimator::ModelEffect& e = o.diagnosis.model.effects[static_cast<std::size_t>(f.index)];
@@ -115,21 +121,48 @@ std::string loop_section(const DiagnoseOutput& o) {
     const std::size_t r = o.segments.size() - 1;
     const int ratio = steps_per_sample(o.plant, o.segments[r].rate_hz);
     const estimator::FreeRun run = free_run(o.plant, o.diagnosis.model, o.segments[r], r, ratio);
-    if (!run.good) continue;
+    if (!run.good || run.tracks[law].d.size() == 0) continue;
     const estimator::LawTrack& track = run.tracks[law];
     const int element = element_of(o.plant, e.place);
-    const double k = o.diagnosis.model.theta[element], linear = o.diagnosis.linear.theta[element];
+    const double k = o.diagnosis.model.theta[element];
+    out.push_back({place_text(e.place, o.plant.structure, o.plant.axes),
+                   e.place.kind == estimator::PlaceKind::frame ? e.place.story : 0,
+                   o.diagnosis.linear.theta[element], k, track.d, k * track.d + track.force});
+  }
+  return out;
+}
+
+/// What a law means for whoever looks after the building.
+std::string meaning(const DiagnoseOutput& o, const LawMotion& m) {
+  Eigen::Index at = 0;
+  const double drift = m.deformation_m.cwiseAbs().maxCoeff(&at);
+  const double force = std::abs(m.force_n[at]), linear = m.linear * drift;
+  if (!(drift > 0) || !(linear > 0)) return "";
+  std::string out =
+      fmt::format("At its largest deformation in the last record, {:.3g} mm", 1e3 * drift);
+  if (m.story > 0) {
+    const double height = o.plant.structure.story_height[static_cast<std::size_t>(m.story - 1)];
+    out += fmt::format(" ({:.2f} % of the story's height)", 100 * drift / height);
+  }
+  return out + fmt::format(", {} carries {:.3g} kN, {:.0f} % {} than the linear model says.",
+                           m.place, 1e-3 * force, 100 * std::abs(force / linear - 1),
+                           force < linear ? "less" : "more");
+}
+
+std::string loop_section(const std::vector<LawMotion>& motions) {
+  std::vector<std::string> plots;
+  for (const LawMotion& m : motions) {
     std::vector<double> d, before, after;
-    const Eigen::Index stride = std::max<Eigen::Index>(1, track.d.size() / kForceDeformationPoints);
-    for (Eigen::Index i = 0; i < track.d.size(); i += stride) {
-      d.push_back(track.d[i]);
-      before.push_back(linear * track.d[i]);
-      after.push_back(k * track.d[i] + track.force[i]);
+    const Eigen::Index stride =
+        std::max<Eigen::Index>(1, m.deformation_m.size() / kForceDeformationPoints);
+    for (Eigen::Index i = 0; i < m.deformation_m.size(); i += stride) {
+      d.push_back(m.deformation_m[i]);
+      before.push_back(m.linear * m.deformation_m[i]);
+      after.push_back(m.force_n[i]);
     }
-    SvgPlot plot(place_text(e.place, o.plant.structure, o.plant.axes), {"deformation, m"},
-                 {"restoring force, N"});
-    plot.add({"after", 0, SvgMark::thin_line, d, after});
-    plot.add({"before: linear", 1, SvgMark::dots, d, before});
+    SvgPlot plot(m.place, {"deformation, m"}, {"restoring force, N"});
+    plot.add({"with the effect", 0, SvgMark::thin_line, d, after});
+    plot.add({"linear model", 1, SvgMark::dots, d, before});
     plots.push_back(plot.svg());
   }
   return plots.empty() ? ""
@@ -159,15 +192,16 @@ std::string where_section(const DiagnoseOutput& o) {
     rows.push_back(
         {place(o, w.place), fmt::format("{:.3f}", w.ratio), when(o, w), band(w), peak(w)});
   return fmt::format(
-             "<h2>Where</h2>\n<p>If one place may do anything at all, the rest of a linear "
-             "building "
-             "fits again when it is the right one: the misfit falls to 1, from {:.3g}.</p>\n",
+             "<h2>Where</h2>\n<p>One place after the other is allowed to do anything at all. At "
+             "the "
+             "right one the rest of a linear building then fits: what is left falls from {:.3g} "
+             "times the sensors' noise to 1.</p>\n",
              o.diagnosis.ratio_before) +
          html_figure(
              where_map(o.plant.structure, o.plant.axes, o.diagnosis.map, o.diagnosis.ratio_before),
              "Plans of the stories. The stronger a frame, panel, mass or sensor is drawn, "
              "the less is left when it may do anything; the three best are numbered.") +
-         html_table({"place", "misfit left, 1 is noise", "when", "frequencies", "largest"}, rows);
+         html_table({"place", "left, times noise", "when", "frequencies", "largest"}, rows);
 }
 
 const char* why_it_lost(estimator::TrialOutcome outcome) {
@@ -195,7 +229,7 @@ std::string ranking(const DiagnoseOutput& o, const std::vector<estimator::Trial>
       name += " and " + std::string(name_of(t.second->first));
       where += " and " + place(o, t.second->second);
     }
-    rows.push_back({html_text(name), where, percent(t.fraction),
+    rows.push_back({html_text(name), where, gap_percent(t.fraction),
                     fmt::format("{:.0f}", t.cost - best), why_it_lost(t.outcome)});
   }
   const std::size_t more = trials.size() - rows.size();
@@ -220,8 +254,7 @@ std::string effects_section(const DiagnoseOutput& o) {
                                                         : "",
            html_text(std::string(d.parameters[i].unit))});
     if (!rows.empty()) out += html_table({"parameter", "value", "standard error", "unit"}, rows);
-    out += fmt::format("<p>Held-out gap {} before, {} after.</p>\n", percent(f.before),
-                       percent(f.after));
+    out += "<p>" + with_capital(confidence_words(f)) + ".</p>\n";
     if (f.approximate)
       out +=
           "<p>More than noise is left: what acts is not quite this, the nearest name in the "
@@ -251,33 +284,29 @@ std::string provenance(const DiagnoseOutput& o) {
 
 }  // namespace
 
-std::string diagnosis_text(const DiagnoseOutput& o) {
-  const estimator::Diagnosis& d = o.diagnosis;
-  std::string out = fmt::format("{}: misfit {:.3g} of noise before, {:.3g} after\n",
-                                verdict_word(d.verdict), d.ratio_before, d.ratio_after);
-  for (const estimator::FoundEffect& f : d.effects)
-    out += fmt::format("  {}{} at {}: held-out gap {} -> {}\n", f.approximate ? "about " : "",
-                       name_of(f.chosen.kind),
-                       place_text(f.chosen.place, o.plant.structure, o.plant.axes),
-                       percent(f.before), percent(f.after));
-  if (d.effects.empty() && d.verdict == estimator::Verdict::unexplained && !d.where.empty())
-    out += fmt::format("  something unknown at {}\n",
-                       place_text(d.where.front().place, o.plant.structure, o.plant.axes));
-  if (!d.reason.empty()) out += "  " + d.reason + "\n";
-  return out;
-}
-
 std::string diagnosis_report(const DiagnoseOutput& o) {
+  const estimator::Diagnosis& d = o.diagnosis;
+  const std::vector<LawMotion> motions = law_motions(o);
+  std::string body = "<p class=\"verdict\">" + html_text(verdict_sentence(o)) + "</p>\n<p>" +
+                     html_text(gap_sentence(o)) + "</p>\n";
+  std::string items;
+  for (const estimator::FoundEffect& f : d.effects)
+    items += "<li>" + html_text(with_capital(effect_words(o, f)) + ": " + confidence_words(f)) +
+             ".</li>\n";
+  for (const LawMotion& m : motions)
+    if (const std::string text = meaning(o, m); !text.empty())
+      items += "<li>" + html_text(text) + "</li>\n";
+  if (!items.empty()) body += "<ul>\n" + items + "</ul>\n";
+  if (!d.reason.empty()) body += "<p>" + html_text(d.reason) + "</p>\n";
   const std::string title = "Diagnosis of " + o.plant.structure.name;
-  std::string body = "<h1>" + html_text(title) + "</h1>\n<p><strong>" +
-                     std::string(verdict_word(o.diagnosis.verdict)) + "</strong></p>\n<pre>" +
-                     html_text(diagnosis_text(o)) + "</pre>\n";
-  body +=
-      gap_section(o) + history_section(o) + effects_section(o) + loop_section(o) + where_section(o);
+  body += "<h1>" + html_text(title) + "</h1>\n";
+  body += loop_section(motions) + where_section(o) + gap_section(o) + history_section(o) +
+          effects_section(o);
   body += fmt::format(
-      "<h2>What stays unexplained</h2>\n<p>The misfit is {:.3g} times what the sensors' noise "
-      "explains after all effects; 1 would be nothing but noise.</p>\n",
-      o.diagnosis.ratio_after);
+      "<h2>What stays unexplained</h2>\n<p>After all effects the simulation differs from the "
+      "measurement by {:.3g} times what the sensors' noise explains; 1 would be nothing but "
+      "noise.</p>\n",
+      d.ratio_after);
   return html_page(title, body + provenance(o));
 }
 

@@ -8,7 +8,5 @@ namespace framewatch::daemon {
 
 /// report.html: a self-contained page.
 std::string diagnosis_report(const DiagnoseOutput& output);
-/// The verdict, a line for every effect, and the reason if there is one.
-std::string diagnosis_text(const DiagnoseOutput& output);
 
 }  // namespace framewatch::daemon

@@ -28,8 +28,13 @@ constexpr const char* kStyle =
     "figure{margin:1.2em 0;break-inside:avoid}figure>div{display:flex;flex-wrap:wrap;gap:.4em}"
     "figcaption{color:var(--soft);font-size:13px;max-width:60em}"
     "details summary{cursor:pointer;color:var(--soft)}"
-    "@media print{body{font-size:10pt;margin:0;max-width:none}h2,h3{break-after:avoid}"
-    ".wide{overflow:visible}table{font-size:7.5pt}th,td{padding:.2em .4em}"
+    ".verdict{font-size:1.35em;line-height:1.35;font-weight:600;max-width:40em;margin:.2em 0 .6em}"
+    "@page{size:A4;margin:14mm 13mm}"
+    "@media print{body{font-size:10pt;margin:0;padding:0;max-width:none}"
+    "h1{margin:.4em 0}h2{margin-top:1.1em}h2,h3{break-after:avoid}"
+    "figure{break-inside:auto;margin:.6em 0}figure>div{zoom:.68}.plot{break-inside:avoid}"
+    "figcaption{break-before:avoid}p{orphans:3;widows:3}"
+    ".wide{overflow:visible}table{font-size:7.5pt;margin:.5em 0}th,td{padding:.2em .4em}"
     "tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit}}";
 
 }  // namespace

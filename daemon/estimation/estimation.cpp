@@ -5,12 +5,20 @@
 
 #include "daemon/estimation/estimation_events.h"
 #include "daemon/estimation/intake_events.h"
+#include "daemon/events/event_words.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
 
+constexpr std::size_t kMostFindings = 50;
 constexpr double kMost_degc = 200;  // either way: no thermometer on a building says more
+
+void subtract(const estimator::AxisCounters& before, estimator::AxisCounters& from) {
+  from.received -= before.received, from.missing -= before.missing, from.late -= before.late;
+  from.repaired -= before.repaired, from.stuck -= before.stuck, from.clipped -= before.clipped;
+  from.rejected -= before.rejected, from.absurd -= before.absurd;
+}
 
 }  // namespace
 
@@ -25,17 +33,22 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
             publisher_.other(estimate);
             watch(estimate);
           },
-          [this](const estimator::SampleSet& instant) { look_for_gap(instant); }),
+          [this](const estimator::SampleSet& instant) {
+            look_for_gap(instant);
+            look_for_shaking(instant);
+          }),
       intake_(
           wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
           intake_settings(config)),
       can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
       can_events_(config.can),
-      absurd_events_(config.pipeline.axes) {
+      absurd_events_(config.pipeline.axes),
+      channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s) {
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   begin_watch();
   begin_gap();
+  begin_shaking();
 }
 
 void Estimation::begin_watch() {
@@ -52,12 +65,34 @@ void Estimation::begin_gap() {
                config_.gap->options, config_.gap->model);
 }
 
+void Estimation::begin_shaking() {
+  if (!config_.event_report) return;
+  shaking_.emplace(config_.pipeline.structure, pipeline_.axes(), config_.pipeline.options,
+                   config_.event_report->options);
+  counted_before_.resize(config_.pipeline.axes.size());
+}
+
+void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
+  if (!shaking_) return;
+  const bool ended = shaking_->push(instant, baseline());
+  if (shaking_->began()) {
+    counted_before_ = axis_counters();
+    findings_.clear();
+  }
+  if (!ended) return;
+  EventReport report{shaking_->ended(), axis_counters(), findings_};
+  for (std::size_t a = 0; a < report.axes.size(); ++a) subtract(counted_before_[a], report.axes[a]);
+  announce(event_of(report, config_));
+  if (taps_.shaken) taps_.shaken(report);
+}
+
 void Estimation::main_window(const estimator::WindowEstimate& estimate) {
   if (observer_) observer_(estimate);
   publisher_.estimate(estimate);
   ++windows_;
   watch(estimate);
   if (gap_) gap_->learn(estimate, pipeline_.theta0());
+  if (shaking_) shaking_->push(estimate);
 }
 
 void Estimation::look_for_gap(const estimator::SampleSet& instant) {
@@ -65,6 +100,7 @@ void Estimation::look_for_gap(const estimator::SampleSet& instant) {
   const estimator::GapWindow* window = gap_->push(instant, noise_density_);
   if (window == nullptr) return;
   publisher_.gap(*window);
+  if (shaking_) shaking_->gap(window->nrmse);
   const estimator::GapNews* news = gap_->news();
   if (news == nullptr) return;
   announce(gap_event(*news, config_));
@@ -114,6 +150,8 @@ void Estimation::intake_notice(const drivers::IntakeNotice& notice) {
 
 void Estimation::announce(const event_t& event) {
   raised_.note(event);
+  if (shaking_ && shaking_->active() && findings_.size() < kMostFindings)
+    findings_.push_back(event);
   publisher_.event(event);
   if (taps_.event) taps_.event(event);
 }
@@ -125,6 +163,7 @@ void Estimation::withdraw(const std::string& kind) {
 void Estimation::sample(const estimator::AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
   if (taps_.sample) taps_.sample(sample);
+  channel_events_.sample(sample);
   pipeline_.push(sample);
 }
 
@@ -138,8 +177,13 @@ template <typename Archive>
 void Estimation::archive(Archive& a) {
   a(seconds_);
   for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMostCount);
-  a(intake_, can_, can_events_, absurd_events_, raised_);
+  a(intake_, can_, can_events_, absurd_events_, channel_events_, raised_);
   if (watch_) a(*watch_);
+  if (shaking_) {
+    a(*shaking_, counted_before_);
+    findings_.resize(a.count(findings_.size()));
+    for (event_t& e : findings_) archive_event(a, e);
+  }
   if (!gap_) return;
   a(*gap_);
   a.any_size(noise_density_);
@@ -170,6 +214,7 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   copy(before.can_, can_);
   copy(before.can_events_, can_events_);
   copy(before.absurd_events_, absurd_events_);
+  copy(before.channel_events_, channel_events_);
   copy(before.raised_, raised_);
   windows_ = before.windows_;
   absurd_temperatures_ = before.absurd_temperatures_;
@@ -192,6 +237,10 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   } else if (!keep_window && config_.watch->options.amplitude) {
     watch_->forget_quiet();  // amplitudes are over the noise, which is another one
   }
+  if (shaking_ && before.shaking_ && copy(*before.shaking_, *shaking_)) {
+    counted_before_ = before.counted_before_;
+    findings_ = before.findings_;
+  }
   const bool gap_goes_on = gap_ && before.gap_ && copy(*before.gap_, *gap_);
   if (!gap_goes_on) {
     begin_gap();
@@ -211,6 +260,13 @@ std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
 void Estimation::publish_state() {
   const std::vector<estimator::AxisCounters> axes = axis_counters();
   for (const event_t& event : absurd_events_.look(axes, seconds_.newest_us())) announce(event);
+  for (const event_t& event : channel_events_.look(axes, seconds_.newest_us())) announce(event);
+  for (event_t event : std::vector<event_t>(raised_.all())) {
+    if (!green_and_past(event, seconds_.newest_us())) continue;
+    event.state = event_state::cleared;
+    event.time_us = seconds_.newest_us();
+    announce(event);
+  }
   const estimator::PipelineCounters pipeline = pipeline_.counters();
   const drivers::IntakeCounters& intake = intake_.counters();
   StatusCounts counts;

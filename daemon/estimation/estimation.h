@@ -13,13 +13,16 @@
 #include "daemon/config/config.h"
 #include "daemon/estimation/absurd_events.h"
 #include "daemon/estimation/can_events.h"
+#include "daemon/estimation/channel_events.h"
 #include "daemon/estimation/publisher.h"
 #include "daemon/estimation/sensor_seconds.h"
 #include "daemon/estimation/wanted_axes.h"
+#include "daemon/event_report/event_report.h"
 #include "daemon/events/raised_events.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/gap/gap_monitor.h"
+#include "estimator/shaking/shaking_watch.h"
 
 namespace framewatch::daemon {
 
@@ -52,7 +55,8 @@ class Estimation {
     std::function<void(const estimator::AccelSample&)> sample;
     std::function<void(const temperature_t&)> temperature;
     std::function<void(const estimator::GapNews&)> gap;
-    std::function<void(const event_t&)> event;  ///< after it was published
+    std::function<void(const event_t&)> event;            ///< after it was published
+    std::function<void(const EventReport&)> shaken = {};  ///< of a strong motion that has ended
   };
   void tap(Taps taps) { taps_ = std::move(taps); }
 
@@ -91,6 +95,8 @@ class Estimation {
   void main_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
   void look_for_gap(const estimator::SampleSet& instant);
+  void look_for_shaking(const estimator::SampleSet& instant);
+  void begin_shaking();
   void begin_watch();
   void begin_gap();
   void intake_notice(const drivers::IntakeNotice& notice);
@@ -106,11 +112,15 @@ class Estimation {
   estimator::Pipeline pipeline_;
   std::optional<estimator::Watch> watch_;
   std::optional<estimator::GapMonitor> gap_;
-  std::vector<double> noise_density_;  ///< as of the last second
+  std::optional<estimator::ShakingWatch> shaking_;
+  std::vector<estimator::AxisCounters> counted_before_;  ///< when the strong motion began
+  std::vector<event_t> findings_;                        ///< since then
+  std::vector<double> noise_density_;                    ///< as of the last second
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   CanEvents can_events_;
   AbsurdEvents absurd_events_;
+  ChannelEvents channel_events_;
   SensorSeconds seconds_;
   LiveState live_;
   std::int64_t windows_ = 0;

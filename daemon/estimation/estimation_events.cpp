@@ -11,16 +11,6 @@
 #include "daemon/events/event_words.h"
 
 namespace framewatch::daemon {
-namespace {
-
-/// A sensor clock that counts from 1970 is read as a date, another one in seconds.
-std::string time_text(std::int64_t time_us) {
-  constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
-  return time_us < kYear2000_us ? fmt::format("{:.2f} s", 1e-6 * static_cast<double>(time_us))
-                                : sensor_time_text(time_us);
-}
-
-}  // namespace
 
 event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
   const std::string& name = table[alarm.parameter].name;
@@ -40,15 +30,17 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
                   ? fmt::format("{} is at its baseline again", name)
                   : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {}", name,
                                 std::abs(change), error, change < 0 ? "below" : "above",
-                                time_text(m.since_us));
+                                sensor_time_text(m.since_us));
   return m;
 }
 
 event_t gap_event(const estimator::GapNews& news, const Config& config) {
   const bool raised = news.state != estimator::AlarmState::cleared;
   const auto worst = static_cast<std::size_t>(news.worst_axis);  // of a state file, perhaps
-  const std::string name =
+  const std::string channel =
       worst < config.pipeline.axes.size() ? config.pipeline.axes[worst].name : "";
+  const estimator::ParameterTable table(config.pipeline.structure);
+  const bool named = news.parameter >= 0 && news.parameter < table.elements();
   event_t m{};
   m.time_us = to_microseconds(news.found);
   m.since_us = to_microseconds(news.since);
@@ -56,7 +48,7 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
   m.state = static_cast<std::int32_t>(news.state);
   m.severity = raised ? severity::warning : severity::information;
   m.kind = "gap";
-  m.place = name;
+  m.place = named ? table[news.parameter].name : channel;
   m.value = 100 * news.excess;
   m.std_error = std::numeric_limits<double>::quiet_NaN();
   m.unit = "%";
@@ -64,8 +56,12 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
   m.message =
       raised
           ? fmt::format("simulation and measurement differ by {:.0f} % beyond noise, most at {}",
-                        m.value, name)
+                        m.value, channel)
           : fmt::format("simulation and measurement agree again: {:.0f} % beyond noise", m.value);
+  if (named && raised)
+    m.message += fmt::format("; {} is {:.1f} % (+-{:.1f} %) {} the model", m.place,
+                             100 * std::abs(news.ratio), 100 * news.std_error,
+                             news.ratio < 0 ? "below" : "above");
   return m;
 }
 

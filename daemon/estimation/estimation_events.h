@@ -11,7 +11,8 @@ namespace framewatch::daemon {
 /// News of a parameter's alarm as an event of kind "stiffness_change"; value and std_error in %.
 event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table);
 
-/// News of the gap between simulation and measurement as an event of kind "gap"; value in %.
+/// News of the gap between simulation and measurement as an event of kind "gap"; value in %. Its
+/// place is the stiffness that has changed, or the channel with the largest gap where none has.
 event_t gap_event(const estimator::GapNews& news, const Config& config);
 
 /// The end of a raised event that is not looked for under a new configuration.

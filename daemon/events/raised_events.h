@@ -11,6 +11,13 @@
 
 namespace framewatch::daemon {
 
+/// An event as part of a state.
+template <typename Archive>
+void archive_event(Archive& a, event_t& e) {
+  a(e.time_us, e.since_us, e.id, e.state, e.severity, e.kind, e.place, e.value, e.std_error, e.unit,
+    e.message, e.segment);
+}
+
 /// The events that are raised and not cleared, in the order they were raised, and who acknowledged
 /// them.
 class RaisedEvents {
@@ -30,9 +37,7 @@ class RaisedEvents {
   template <typename Archive>
   void archive(Archive& a) {
     events_.resize(a.count(events_.size()));
-    for (event_t& e : events_)
-      a(e.time_us, e.since_us, e.id, e.state, e.severity, e.kind, e.place, e.value, e.std_error,
-        e.unit, e.message, e.segment);
+    for (event_t& e : events_) archive_event(a, e);
     acknowledged_.resize(a.count(acknowledged_.size()));
     for (Acknowledged& k : acknowledged_) a(k.id, k.by);
   }

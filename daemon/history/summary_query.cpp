@@ -11,6 +11,16 @@
 
 namespace framewatch::daemon {
 
+namespace {
+
+/// Of rows that `run` can have written: others are of a damaged or a foreign file.
+constexpr const char* kSound =
+    " WHERE period_s BETWEEN 1 AND 1000000000"
+    " AND start_us BETWEEN -2000000000000000000 AND 2000000000000000000"
+    " AND last_us BETWEEN -2000000000000000000 AND 2000000000000000000";
+
+}  // namespace
+
 std::string SummaryQuery::open(const std::string& directory) {
   const std::string path = summary_file(directory);
   if (drivers::is_absent(path)) {
@@ -48,15 +58,16 @@ std::vector<SummaryParameter> SummaryQuery::parameters() {
 
 std::vector<SummaryPeriods> SummaryQuery::periods() {
   SqliteStatement s = file_.prepare(
-      "SELECT period_s, count(*), min(start_us), max(start_us) FROM period GROUP BY period_s"
-      " ORDER BY period_s");
+      fmt::format("SELECT period_s, count(*), min(start_us), max(start_us) FROM period{}"
+                  " GROUP BY period_s ORDER BY period_s",
+                  kSound));
   std::vector<SummaryPeriods> out;
   while (s.row()) out.push_back({s.integer(0), s.integer(1), s.integer(2), s.integer(3)});
   return out;
 }
 
 std::optional<std::int64_t> SummaryQuery::newest_us() {
-  SqliteStatement s = file_.prepare("SELECT max(last_us) FROM period");
+  SqliteStatement s = file_.prepare(fmt::format("SELECT max(last_us) FROM period{}", kSound));
   if (!s.row() || s.null(0)) return std::nullopt;
   return s.integer(0);
 }

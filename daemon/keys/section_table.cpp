@@ -41,6 +41,11 @@ const SectionDescription kSections[] = {
      "Optional: `framewatch run` keeps raw samples, summaries and events on disk "
      "([history](history.md)).",
      Reach::restart},
+    {"event_report", "[event_report]",
+     "Optional: after every strong motion a page and a JSON file say what the building went "
+     "through "
+     "([after an earthquake](operate.md#after-an-earthquake)).",
+     Reach::restart},
     {"actions", "[actions]",
      "Optional: `framewatch run` tells people of events, by a command and a webhook "
      "([telling people](actions.md)).",

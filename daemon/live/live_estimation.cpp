@@ -50,7 +50,8 @@ void LiveEstimation::begin_estimation() {
                     },
                     [this](const event_t& event) {
                       if (on_event_) on_event_(event);
-                    }});
+                    },
+                    [this](const EventReport& report) { reports_.write(report, *config_); }});
 }
 
 void LiveEstimation::reconfigure(Config next, Reach reach) {

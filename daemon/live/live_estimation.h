@@ -12,6 +12,7 @@
 #include "daemon/config/settings.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/estimation/gap_segments.h"
+#include "daemon/event_report/event_report_files.h"
 #include "daemon/history/history.h"
 #include "daemon/keys/option_table.h"
 #include "daemon/live/live_times.h"
@@ -74,6 +75,7 @@ class LiveEstimation {
   LiveState state_;
   LiveTimes times_;
   std::optional<GapSegments> segments_;  ///< none: none are stored
+  EventReportFiles reports_;
   History* history_ = nullptr;
   std::function<void(const event_t&)> on_event_;
   const std::string request_channel_;

@@ -172,6 +172,7 @@ void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
   for (const char* severity : kSeverities) {
     counts[{"stiffness_change", severity}] = 0;
     counts[{"gap", severity}] = 0;
+    counts[{"strong_motion", severity}] = 0;
     counts[{"two_senders", severity}] = 0;
     counts[{"channel_table", severity}] = 0;
   }

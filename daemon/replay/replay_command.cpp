@@ -20,6 +20,7 @@
 #include "daemon/config/config_problems.h"
 #include "daemon/estimates/estimate_output.h"
 #include "daemon/estimation/state_file.h"
+#include "daemon/event_report/event_report_files.h"
 #include "daemon/replay/expectation_check.h"
 #include "daemon/replay/replay_summary.h"
 #include "drivers/base/standard_streams.h"
@@ -129,7 +130,14 @@ class ReplayRun {
         estimation_(config, sink(), [this](const estimator::WindowEstimate& e) {
           series_.add(e);
           learner_.push(e);
-        }) {}
+        }) {
+    if (a.event_reports.empty()) return;
+    estimation_.tap({{}, {}, {}, {}, [this](const EventReport& report) {
+                       const std::string problem =
+                           write_event_report(report, config_, a_.event_reports);
+                       if (failed_.empty()) failed_ = problem;
+                     }});
+  }
 
   int run() {
     if (!a_.load_state.empty()) {
@@ -309,6 +317,8 @@ int replay(const ReplayArguments& a) {
   const bool boxplots_are_read =
       !a.out.empty() || a.lcm || !a.save_state.empty() || !a.load_state.empty();
   if (!boxplots_are_read) config->pipeline.options.boxplot_windows = 0;
+  if (!a.event_reports.empty() && !config->event_report)
+    return refuse("replay", "--event-reports: needs [event_report] in " + a.config);
   std::optional<Expectations> expectations;
   if (!a.expect.empty()) {
     problems.clear();

@@ -57,6 +57,12 @@ void of_process(const service_t& s, const Config& config, std::int64_t now_us,
                               1e-9 * static_cast<double>(s.disk_free_bytes)));
 }
 
+bool is_raised(const service_t& s, const std::string& kind, const std::string& place) {
+  for (std::size_t i = 0; i < s.event_id.size(); ++i)
+    if (s.event_kind[i] == kind && s.event_place[i] == place) return true;
+  return false;
+}
+
 void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string>& out) {
   const service_t& s = *heard.service;
   const double silent = silent_s(s, now_us);
@@ -68,7 +74,7 @@ void of_samples(const Heard& heard, std::int64_t now_us, std::vector<std::string
   }
   const auto newest = std::max_element(s.newest_us.begin(), s.newest_us.end());
   for (std::size_t i = 0; i < s.name.size(); ++i)
-    if (*newest - s.newest_us[i] > kBehind_us)
+    if (*newest - s.newest_us[i] > kBehind_us && !is_raised(s, "channel_silent", s.name[i]))
       out.push_back(s.newest_us[i] == 0
                         ? fmt::format("{}: nothing has come from it", s.name[i])
                         : fmt::format("{}: silent for {}", s.name[i],

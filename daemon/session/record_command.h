@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 
 namespace framewatch::daemon {
 

@@ -11,10 +11,10 @@
 #include <framewatch/session_status_t.hpp>
 
 #include "daemon/config/config.h"
+#include "daemon/report/session_file.h"
 #include "daemon/session/axis_check.h"
 #include "daemon/session/message_ring.h"
 #include "daemon/session/rest_level.h"
-#include "daemon/session/session_file.h"
 #include "daemon/session/session_log.h"
 #include "daemon/session/tap_test.h"
 #include "drivers/can/can_intake.h"

@@ -5,7 +5,7 @@
 #include <framewatch/session_command_t.hpp>
 
 #include "daemon/config/config.h"
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 
 namespace framewatch::daemon {
 

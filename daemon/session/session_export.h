@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/session/session_motion.h"
+#include "daemon/report/session_motion.h"
 
 namespace framewatch::daemon {
 

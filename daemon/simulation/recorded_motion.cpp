@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_file.h"
 
 namespace framewatch::daemon {
@@ -44,7 +45,7 @@ std::string problem_of(const drivers::Record& record, const std::vector<double>&
 estimator::GroundMotion read_recorded_motion(const std::string& path,
                                              const MotionFileFormat& format, std::string& problem) {
   drivers::RecordOptions options;
-  if (!format.unit.empty()) options.unit = drivers::accel_unit(format.unit);
+  options.unit_mps2 = drivers::mps2_per(format.unit);
   if (format.step_s > 0) options.step_s = format.step_s;
   std::vector<drivers::Problem> problems;
   const auto record = drivers::read_record(path, options, problems);

@@ -40,6 +40,7 @@ std::string building_json(const Config& config, double rate_hz) {
                     {"rate_hz", rate_hz},
                     {"window_s", o.window_s},
                     {"high_pass_hz", o.high_pass_hz},
+                    {"watch", config.watch.has_value()},
                     {"version", FRAMEWATCH_VERSION},
                     {"config_sha256", config.sha256}});
 }

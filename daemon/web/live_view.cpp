@@ -1,6 +1,7 @@
 #include "daemon/web/live_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -18,6 +19,7 @@
 #include "daemon/live/heard_channels.h"
 #include "daemon/web/page_json.h"
 #include "drivers/base/encoded.h"
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -47,12 +49,14 @@ LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give
       estimate_channels_(estimate_channels(config)),
       motion_(config.pipeline.options.rate_hz),
       acquisition_(config.pipeline.axes, config.pipeline.options,
-                   [this](const estimator::SampleSet& set) { motion_.push(set); }),
+                   [this](const estimator::SampleSet& set) { instant(set); }),
       intake_(
           wanted_axes(config),
           [this](const estimator::AccelSample& sample) { acquisition_.push(sample); },
           intake_settings(config)),
+      shaking_(config.pipeline),
       ring_(kRing),
+      history_(config.pipeline),
       commands_(std::move(give), [this](const PageCommand& command, const std::string& problem) {
         push("refused", refused_json(command.id, problem));
       }) {
@@ -61,8 +65,8 @@ LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give
 
 std::vector<std::string> LiveView::channels() const {
   std::vector<std::string> out = sample_channels(config_);
-  for (const char* name :
-       {"PARAMETERS", "STATUS", "EVENT", "GAP", "CAN", "SESSION", "SERVICE", "ACKNOWLEDGED"})
+  for (const char* name : {"PARAMETERS", "STATUS", "EVENT", "GAP", "CAN", "SESSION", "SERVICE",
+                           "ACKNOWLEDGED", "WATCH"})
     out.push_back(config_.lcm.prefix + name);
   out.insert(out.end(), estimate_channels_.begin(), estimate_channels_.end());
   return out;
@@ -98,8 +102,12 @@ void LiveView::message(const std::string& channel, const void* data, std::size_t
   } else if (name.starts_with("ESTIMATE")) {
     estimate(channel, data, size);
   } else if (name == "STATUS") {
-    if (const auto s = drivers::decoded<status_t>(bytes(data, size)))
+    if (const auto s = drivers::decoded<status_t>(bytes(data, size))) {
+      same_config_ = s->config_sha256 == config_.sha256;
       keep("status", status_json(*s, config_.sha256));
+    }
+  } else if (name == "WATCH") {
+    if (auto w = drivers::decoded<watch_t>(bytes(data, size))) told_watch_ = std::move(*w);
   } else if (name == "SESSION") {
     if (const auto s = drivers::decoded<session_status_t>(bytes(data, size)))
       keep("session", session_status_json(*s));
@@ -140,11 +148,20 @@ void LiveView::estimate(const std::string& channel, const void* data, std::size_
   const auto at = std::find(estimate_channels_.begin(), estimate_channels_.end(), channel);
   if (at == estimate_channels_.end()) return;
   auto found = drivers::decoded<window_estimate_t>(bytes(data, size));
-  if (!found) return;
+  // Arithmetic on the times of others stays exact.
+  if (!found || found->window_end_us > drivers::kLatestTime_us ||
+      found->window_end_us < -drivers::kLatestTime_us)
+    return;
   const auto window = static_cast<int>(at - estimate_channels_.begin());
   look_for_changes(window, *found);
   if (window != 0) return;
   new_estimate_ = true;
+  estimate_at_ = flushes_;
+  fit_.push(*found);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    history_.estimate(*found);
+  }
   newest_ = std::move(*found);
 }
 
@@ -161,23 +178,86 @@ void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
       publish_(e.time_us, config_.lcm.prefix + "EVENT", drivers::encoded(e));
 }
 
-std::string LiveView::baseline() const {
-  return baseline_json(watch_ ? watch_->baseline() : std::vector<double>{});
+void LiveView::instant(const estimator::SampleSet& set) {
+  motion_at_ = flushes_;
+  motion_.push(set);
+  shaking_.push(set);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  history_.instant(set);
+}
+
+std::vector<double> LiveView::baseline() const {
+  if (told_watch_ && told_watch_->baseline.size() == parameters_.size())
+    return told_watch_->baseline;
+  return watch_ && !config_.watch ? watch_->baseline() : std::vector<double>{};
+}
+
+bool LiveView::watched(std::size_t parameter) const {
+  if (told_watch_ && parameter < told_watch_->watched.size())
+    return told_watch_->watched[parameter] != 0;
+  return watch_ && watch_->watched(parameter);
+}
+
+double LiveView::seconds_since(std::int64_t flush) const {
+  return static_cast<double>(flushes_ - flush) / kFlushesPerSecond;
+}
+
+/// The caller holds the mutex.
+Known LiveView::known() const {
+  Known out;
+  out.findings = alarms_.findings(config_);
+  if (const auto misfit = fit_.finding()) out.findings.push_back(*misfit);
+  const std::vector<double> baseline = this->baseline();
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    if (!watched(p)) continue;
+    ++out.watched;
+    out.with_baseline += p < baseline.size() && std::isfinite(baseline[p]) ? 1 : 0;
+    out.observable += newest_ && p < newest_->reason.size() && newest_->reason[p] == 0 ? 1 : 0;
+  }
+  out.samples = shaking_.first_us() != 0;
+  out.silent_s = seconds_since(motion_at_);
+  out.estimates = newest_.has_value();
+  out.estimates_silent_s = seconds_since(estimate_at_);
+  out.same_config = same_config_;
+  out.residual = fit_.residual();
+  out.newest = shaking_.newest();
+  out.strongest = shaking_.strongest();
+  out.followed_since_us = shaking_.first_us();
+  return out;
+}
+
+/// An event that a viewer who joins later gets at once, if it differs from the one before. The
+/// caller holds the mutex.
+void LiveView::push_if_new(const std::string& name, const std::string& json) {
+  if (json != kept_[name]) ring_.push(name, json);
+  kept_[name] = json;
 }
 
 void LiveView::flush() {
-  if (const std::string rows = motion_.take(); !rows.empty()) push("motion", rows);
-  if (++flushes_ % kFlushesPerSecond == 0) {
-    const std::string json = baseline();
+  ++flushes_;
+  if (const std::string rows = motion_.take(); !rows.empty()) {
+    push("motion", rows);
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (json != kept_["baseline"]) ring_.push("baseline", json);
-    kept_["baseline"] = json;
+    history_.motion(rows, flushes_, kFlushesPerSecond);
+  }
+  if (flushes_ % kFlushesPerSecond == 0) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    silent_s_ = seconds_since(motion_at_);
+    push_if_new("baseline", baseline_json(baseline()));
+    push_if_new("answers", answers_json(known(), config_));
+    push_if_new("last", history_.last_json());
     ring_.push("alive", "{}");
   }
   if (!newest_) return;
   if (std::exchange(new_estimate_, false)) push("estimate", estimate_json(*newest_));
-  if (flushes_ % kFlushesPerBoxplot == 0 && newest_->boxplots > 0)
-    push("boxes", boxes_json(*newest_));
+  if (flushes_ % kFlushesPerBoxplot != 0) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (const std::string boxes = history_.boxes_json(); !boxes.empty()) push_if_new("boxes", boxes);
+}
+
+std::string LiveView::history_json() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return history_.json(silent_s_);
 }
 
 std::string LiveView::building_json() const {
@@ -187,7 +267,8 @@ std::string LiveView::building_json() const {
 EventRing::Cursor LiveView::join() {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::string first = "retry: 1000\n\n";
-  for (const char* name : {"status", "baseline", "session", "can", "gap"})
+  for (const char* name :
+       {"status", "baseline", "last", "boxes", "answers", "session", "can", "gap"})
     if (const std::string& json = kept_[name]; !json.empty()) first += EventRing::text(name, json);
   for (const std::string& alarm : alarms_.all()) first += EventRing::text("alarm", alarm);
   return ring_.join(std::move(first));
@@ -213,9 +294,11 @@ std::optional<std::int64_t> LiveView::acknowledge(std::int64_t id, const std::st
   return request.request;
 }
 
-void LiveView::renew_baseline() {
+bool LiveView::renew_baseline() {
+  if (config_.watch) return false;
   const std::lock_guard<std::mutex> lock(mutex_);
   renew_ = true;
+  return true;
 }
 
 bool LiveView::tell_recorder(const session_command_t& command) {

@@ -9,14 +9,19 @@
 
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/session_command_t.hpp>
+#include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
 #include "daemon/estimation/message_sink.h"
+#include "daemon/findings/answers.h"
+#include "daemon/findings/model_fit.h"
+#include "daemon/findings/shaking.h"
 #include "daemon/web/event_ring.h"
 #include "daemon/web/motion_rows.h"
 #include "daemon/web/page_alarms.h"
 #include "daemon/web/page_commands.h"
+#include "daemon/web/page_history.h"
 #include "daemon/web/page_watch.h"
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/motion/acquisition.h"
@@ -41,14 +46,17 @@ class LiveView {
 
   /// The building, its sensors and parameters, as the page draws them: JSON.
   std::string building_json() const;
+  /// The last minutes (PageHistory): JSON.
+  std::string history_json() const;
   EventRing::Cursor join();
   std::size_t read(EventRing::Cursor& cursor, char* buffer, std::size_t size);
   /// Id of the request that goes to `framewatch run`, whose refusal would come as an event
   /// "refused"; 0 when the event is the page's own. Empty when there is no such event, or too many
   /// requests wait. viewer: who it is, as far as the page knows.
   std::optional<std::int64_t> acknowledge(std::int64_t id, const std::string& viewer);
-  /// The next seconds become the baseline that stiffnesses are compared with.
-  void renew_baseline();
+  /// The next seconds become the baseline that stiffnesses are compared with. False with [watch]:
+  /// then it is that of `framewatch run`.
+  bool renew_baseline();
   /// Goes to `framewatch record`. False when too many commands wait.
   bool tell_recorder(const session_command_t& command);
 
@@ -60,7 +68,13 @@ class LiveView {
   void keep(const std::string& name, std::string json);
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);
-  std::string baseline() const;
+  void instant(const estimator::SampleSet& instant);
+  void push_if_new(const std::string& name, const std::string& json);
+  /// What changes are judged against, and which of the parameters are.
+  std::vector<double> baseline() const;
+  bool watched(std::size_t parameter) const;
+  Known known() const;
+  double seconds_since(std::int64_t flush) const;
 
   const Config& config_;
   MessageSink publish_;
@@ -70,13 +84,19 @@ class LiveView {
   drivers::AccelIntake intake_;
   std::vector<std::string> parameters_;  ///< names; empty: not known yet
   std::optional<PageWatch> watch_;
+  std::optional<watch_t> told_watch_;  ///< of `framewatch run` with [watch]
   std::optional<window_estimate_t> newest_;
-  bool new_estimate_ = false;  ///< since the last flush
-  int flushes_ = 0;
+  bool new_estimate_ = false;                                   ///< since the last flush
+  std::int64_t flushes_ = 0, motion_at_ = 0, estimate_at_ = 0;  ///< flushes: the view's clock
+  Shaking shaking_;
+  ModelFit fit_;
+  bool same_config_ = true;
 
   mutable std::mutex mutex_;  ///< guards what is below
   EventRing ring_;
   PageAlarms alarms_;
+  PageHistory history_;
+  double silent_s_ = 0;                      ///< since the newest sample
   std::map<std::string, std::string> kept_;  ///< newest JSON by event name, for viewers that join
   bool renew_ = false;
 

@@ -70,15 +70,37 @@ std::vector<std::string> PageAlarms::all() const {
   return out;
 }
 
-std::string PageAlarms::json(const event_t& e) const {
-  if (acknowledged_ && e.state != event_state::cleared) {
+std::optional<Acknowledgement> PageAlarms::acknowledgement(const event_t& e) const {
+  if (e.state == event_state::cleared) return std::nullopt;
+  if (acknowledged_) {
     const std::vector<std::int64_t>& ids = acknowledged_->id;
     if (const auto found = std::find(ids.begin(), ids.end(), e.id); found != ids.end()) {
       const auto at = static_cast<std::size_t>(found - ids.begin());
-      return alarm_json(e, true, {0, acknowledged_->who[at], acknowledged_->comment[at]});
+      return Acknowledgement{0, acknowledged_->who[at], acknowledged_->comment[at]};
     }
   }
-  return alarm_json(e, acknowledged_here_.contains(e.id), {});
+  return acknowledged_here_.contains(e.id) ? std::optional(Acknowledgement{}) : std::nullopt;
+}
+
+std::string PageAlarms::json(const event_t& e) const {
+  const std::optional<Acknowledgement> by = acknowledgement(e);
+  return alarm_json(e, by.has_value(), by.value_or(Acknowledgement{}));
+}
+
+std::vector<Finding> PageAlarms::findings(const Config& config) const {
+  std::vector<Finding> out;
+  for (const auto& [id, event] : events_) {
+    if (event.state == event_state::cleared) continue;
+    out.push_back(finding_of(event, config));
+    if (const auto by = acknowledgement(event)) {
+      out.back().acknowledged = true;
+      out.back().who = by->who;
+    }
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Finding& a, const Finding& b) {
+    return a.severity != b.severity ? a.severity > b.severity : a.since_us < b.since_us;
+  });
+  return out;
 }
 
 }  // namespace framewatch::daemon

@@ -12,6 +12,9 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/service_t.hpp>
 
+#include "daemon/events/acknowledgement.h"
+#include "daemon/findings/finding.h"
+
 namespace framewatch::daemon {
 
 /// The events that the page lists, and who acknowledged them. What changes comes back as JSON for
@@ -35,8 +38,12 @@ class PageAlarms {
   bool kept_elsewhere() const { return acknowledged_.has_value(); }
   /// Every event.
   std::vector<std::string> all() const;
+  /// What is raised and not cleared, by severity and then by age.
+  std::vector<Finding> findings(const Config& config) const;
 
  private:
+  /// Empty: nobody acknowledged it.
+  std::optional<Acknowledgement> acknowledgement(const event_t& event) const;
   std::string json(const event_t& event) const;
 
   std::map<std::int64_t, event_t> events_;

@@ -13,6 +13,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/events/acknowledgement.h"
+#include "daemon/findings/answers.h"
 
 // Messages as the JSON that the page gets by server-sent events (docs/dashboard.md), one line each.
 // Values that are not finite are null.
@@ -26,6 +27,8 @@ std::string status_json(const status_t& status, const std::string& config_sha256
 std::string gap_json(const gap_t& gap);
 std::string can_json(const can_status_t& status);
 std::string session_status_json(const session_status_t& status);
+/// The four answers, every open finding, and the drift ratios of the newest shake by story.
+std::string answers_json(const Known& known, const Config& config);
 /// Why a command of the page was not obeyed. id: of the request.
 std::string refused_json(std::int64_t id, const std::string& problem);
 /// acknowledged: whether the event is; by whom and with which comment, where that is known.

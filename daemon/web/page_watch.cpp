@@ -76,12 +76,6 @@ event_t PageWatch::event(const estimator::Alarm& alarm) const {
   event_t e = stiffness_event(alarm, table_);
   e.id = first_id_ + alarm.id - 1;
   e.severity = over ? severity::information : severity::alarm;
-  e.value = alarm.change.ratio;
-  e.std_error = alarm.change.std_error;
-  e.unit = "ratio";
-  e.message = over ? fmt::format("{} is back at its baseline", e.place)
-                   : fmt::format("{} is {:+.1f} % from its baseline, standard error {:.1f} %",
-                                 e.place, 100 * e.value, 100 * e.std_error);
   return e;
 }
 

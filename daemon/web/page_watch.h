@@ -31,6 +31,10 @@ class PageWatch {
   void renew();
   /// Theta order, SI; NaN for parameters that are not watched and while it is not known.
   std::vector<double> baseline() const;
+  /// Whether changes of the parameter are looked for.
+  bool watched(std::size_t parameter) const {
+    return parameter < static_cast<std::size_t>(watch_.parameters()) && watch_.watched(parameter);
+  }
 
  private:
   event_t event(const estimator::Alarm& alarm) const;

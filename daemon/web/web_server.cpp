@@ -167,6 +167,7 @@ class WebServer::Implementation {
     if (path == "/" && !request.token.empty()) return exchange(c, request.token);
     if (path == "/events") return stream(c);
     if (path == "/building.json") return text(c, view_.building_json(), kJson);
+    if (path == "/history.json") return text(c, view_.history_json(), kJson);
     if (path == "/sessions.json")
       return text(c, settings_.sessions.empty() ? "null" : sessions_json(settings_.sessions),
                   kJson);
@@ -184,7 +185,9 @@ class WebServer::Implementation {
 
   MHD_Result act(MHD_Connection* c, const std::string& path) {
     if (path == "/baseline") {
-      view_.renew_baseline();
+      if (!view_.renew_baseline())
+        return plain(c, MHD_HTTP_CONFLICT,
+                     "the baseline is that of framewatch run: [watch] of its configuration");
       return plain(c, MHD_HTTP_OK, "the next seconds are the new baseline");
     }
     if (path == "/session") return tell_recorder(c);

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/documents/json_values.h"
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 #include "daemon/session/session_log.h"
 #include "daemon/web/served_file.h"
 

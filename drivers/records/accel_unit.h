@@ -5,12 +5,14 @@
 
 namespace framewatch::drivers {
 
-/// Unit of the accelerations in a record file.
-enum class AccelUnit { g, gal, mps2 };
+/// m/s^2 in one of a unit of acceleration as people write it: "g" (9.80665), "mg", "gal" (0.01),
+/// "mps2", "m/s2", "m/s^2", "cm/s2", "mm/s^2" and the like. Empty for any other text.
+std::optional<double> mps2_per(std::string_view unit);
 
-/// "g" (9.80665 m/s^2), "gal" (0.01 m/s^2), "mps2"; empty for any other name.
-std::optional<AccelUnit> accel_unit(std::string_view name);
-/// m/s^2 in one of this unit.
-double mps2_per(AccelUnit unit);
+/// What --unit takes: such a unit, or a positive number of m/s^2, of a converter's count say.
+std::optional<double> declared_unit(std::string_view text);
+
+/// Seconds in one of a unit of time: "s", "ms", "us", "ns". Empty for any other text.
+std::optional<double> seconds_per(std::string_view unit);
 
 }  // namespace framewatch::drivers

@@ -12,6 +12,8 @@
 namespace framewatch::drivers {
 namespace {
 
+constexpr double kG_mps2 = 9.80665;
+
 struct At2Header {
   std::int64_t points = 0;
   double step_s = 0;
@@ -99,7 +101,7 @@ std::optional<Record> read_at2(FileProblems& problems) {
       if (!value)
         problems.add(lines.number(),
                      fmt::format("{} is neither a finite number nor nan", show_text(field)));
-      const double accel_mps2 = value.value_or(0) * mps2_per(AccelUnit::g);
+      const double accel_mps2 = value.value_or(0) * kG_mps2;
       builder.add(lines.number(), static_cast<double>(count++) * header->step_s, {&accel_mps2, 1});
     }
   }

@@ -1,5 +1,6 @@
 #include "drivers/records/record_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -8,16 +9,19 @@
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
+#include "drivers/records/record_builder.h"
 #include "drivers/records/record_formats.h"
+#include "drivers/records/table_text.h"
 
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, RecordFormat>, 6> kFormats = {{
+constexpr std::array<std::pair<std::string_view, RecordFormat>, 7> kFormats = {{
     {"detect", RecordFormat::detect},
     {"csv", RecordFormat::csv},
     {"at2", RecordFormat::at2},
-    {"two-columns", RecordFormat::two_columns},
+    {"columns", RecordFormat::columns},
+    {"two-columns", RecordFormat::columns},
     {"rows", RecordFormat::rows},
     {"xsens", RecordFormat::xsens},
 }};
@@ -29,45 +33,112 @@ bool holds(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
-RecordFormat detect(FileProblems& problems) {
+/// Of numbers without a header: two in a row are time and value, one is a channel. More can be
+/// channels, or one channel that goes on line after line; that some of its rows are shorter, or
+/// that its end is marked, tells.
+RecordFormat format_of_numbers(std::int64_t first_line, std::size_t width, FileProblems& problems) {
+  if (width <= 2) return width == 2 ? RecordFormat::columns : RecordFormat::rows;
   LineReader lines(problems);
   std::vector<std::string_view> fields;
-  RecordFormat by_first_row = RecordFormat::detect;
+  for (std::string_view line; lines.next(line);) {
+    split_blanks(line, fields);
+    if (lines.number() <= first_line || fields.empty() || fields.front().front() == '#') continue;
+    if (fields.size() != width || !parse_sample(fields.front())) return RecordFormat::rows;
+  }
+  if (!problems.any())
+    problems.add(first_line,
+                 fmt::format("{} numbers in every row, without a header, can be read in two ways: "
+                             "as columns (write a header line such as time_s,a,b above them, or "
+                             "--format columns: time, then channels) or as one channel that goes "
+                             "on line after line (--format rows --step)",
+                             width));
+  return RecordFormat::detect;
+}
+
+RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
+  LineReader lines(problems);
+  std::vector<std::string_view> fields;
+  std::size_t width = 0;  // of the first row of numbers
+  std::int64_t first_line = 0;
+  bool text = false;  // above it
   for (std::string_view line; lines.number() < kDetectLines && lines.next(line);) {
     if (holds(line, "PacketCounter") && holds(line, "SampleTimeFine")) return RecordFormat::xsens;
     if (lines.number() <= 4 && holds(line, "NPTS")) return RecordFormat::at2;
-    split_blanks(line, fields);
-    if (fields.empty() || fields.front().front() == '#' || by_first_row != RecordFormat::detect)
-      continue;
-    const bool numbers = parse_number(fields.front()).has_value();
-    if (numbers) by_first_row = fields.size() == 2 ? RecordFormat::two_columns : RecordFormat::rows;
-    if (fields.front() == "time_s") return RecordFormat::csv;
+    if (is_comment(line) || width > 0) continue;
+    if (is_table_header(line, options)) return RecordFormat::csv;
     // A line of text may be the header of an AT2 or Xsens file: read on.
+    split_blanks(line, fields);
+    const auto cells = split_cells(line, delimiter_of(line));
+    if (cells && begins_data(cells->front())) {
+      width = std::max<std::size_t>(1, fields.size());
+      first_line = lines.number();
+    } else {
+      text = true;
+    }
   }
   if (problems.any()) return RecordFormat::detect;
   if (lines.number() == 0)
     problems.add(0, "the file is empty");
-  else if (by_first_row == RecordFormat::detect)
-    problems.add(0,
-                 "no known record format: not a CSV with the header time_s,<channel names>, not "
-                 "PEER AT2, not Xsens DOT, not rows of numbers");
-  return by_first_row;
+  else if (width == 0)
+    problems.add(
+        0,
+        "no known record format: not a table with a header such as time_s,<channel names>, "
+        "not PEER AT2, not Xsens DOT, not rows of numbers");
+  else
+    return text ? RecordFormat::csv : format_of_numbers(first_line, width, problems);
+  return RecordFormat::detect;
 }
 
 /// Reports options that the format needs and lacks, and those that do not apply to it.
 void check_declared(RecordFormat format, const RecordOptions& options, FileProblems& problems) {
-  const bool needs_unit = format == RecordFormat::two_columns || format == RecordFormat::rows;
+  const bool needs_unit = format == RecordFormat::columns || format == RecordFormat::rows;
   const bool needs_step = format == RecordFormat::rows;
-  if (needs_unit && !options.unit)
-    problems.add(0, "the file does not say its unit: declare it with --unit g, gal or mps2");
-  if (!needs_unit && options.unit)
+  if (needs_unit && !options.unit_mps2)
+    problems.add(0, "the file does not say its unit: declare it with --unit g, mg, gal or mps2");
+  if (!needs_unit && options.unit_mps2)
     problems.add(0, "the format has its own unit: --unit does not apply");
   if (needs_step && !options.step_s)
     problems.add(0, "the file has no time: declare the step in seconds, for example --step 0.01");
-  if (needs_step && options.step_s && !(std::isfinite(*options.step_s) && *options.step_s > 0))
-    problems.add(0, fmt::format("--step {} must be positive", *options.step_s));
   if (!needs_step && options.step_s)
     problems.add(0, "the file has its own time: --step does not apply");
+  if (!options.time_column.empty() || options.time_unit_s || options.zone_min || options.decimal ||
+      !options.columns.empty())
+    problems.add(
+        0, "--time, --time-unit, --zone, --decimal and --columns are for tables with a header");
+}
+
+void give_names(const std::vector<std::string>& names, Record& record, FileProblems& problems) {
+  if (names.empty()) return;
+  if (names.size() != record.names.size()) {
+    problems.add(0, fmt::format("--names gives {} names, the file has {} channels", names.size(),
+                                record.names.size()));
+    return;
+  }
+  check_names(names, 0, problems);
+  record.names = names;
+}
+
+std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
+                              FileProblems& problems) {
+  if (format != RecordFormat::csv) check_declared(format, options, problems);
+  if (options.step_s && !(std::isfinite(*options.step_s) && *options.step_s > 0))
+    problems.add(0, fmt::format("--step {} must be positive", *options.step_s));
+  if (problems.any()) return std::nullopt;
+  switch (format) {
+    case RecordFormat::csv:
+      return read_csv(options, problems);
+    case RecordFormat::at2:
+      return read_at2(problems);
+    case RecordFormat::xsens:
+      return read_xsens(problems);
+    case RecordFormat::columns:
+      return read_columns(*options.unit_mps2, problems);
+    case RecordFormat::rows:
+      return read_rows(*options.unit_mps2, *options.step_s, problems);
+    case RecordFormat::detect:
+      break;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -82,25 +153,12 @@ std::optional<Record> read_record(const std::string& path, const RecordOptions& 
                                   std::vector<Problem>& all_problems) {
   FileProblems problems(path, all_problems);
   RecordFormat format = options.format;
-  if (format == RecordFormat::detect) format = detect(problems);
+  if (format == RecordFormat::detect) format = detect(options, problems);
   if (problems.any()) return std::nullopt;
-  check_declared(format, options, problems);
+  auto record = read_as(format, options, problems);
+  if (record) give_names(options.names, *record, problems);
   if (problems.any()) return std::nullopt;
-  switch (format) {
-    case RecordFormat::csv:
-      return read_csv(problems);
-    case RecordFormat::at2:
-      return read_at2(problems);
-    case RecordFormat::xsens:
-      return read_xsens(problems);
-    case RecordFormat::two_columns:
-      return read_two_columns(*options.unit, problems);
-    case RecordFormat::rows:
-      return read_rows(*options.unit, *options.step_s, problems);
-    case RecordFormat::detect:
-      break;
-  }
-  return std::nullopt;
+  return record;
 }
 
 }  // namespace framewatch::drivers

@@ -2,25 +2,13 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "drivers/base/problem.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/records/record.h"
+#include "drivers/records/record_options.h"
 
 namespace framewatch::drivers {
-
-enum class RecordFormat { detect, csv, at2, two_columns, rows, xsens };
-
-struct RecordOptions {
-  RecordFormat format = RecordFormat::detect;
-  std::optional<AccelUnit> unit;  ///< for formats that do not state their unit, and only for them
-  std::optional<double> step_s;   ///< time between samples, for formats that do not state it
-};
-
-/// "csv", "at2", "two-columns", "rows", "xsens", and "detect".
-std::optional<RecordFormat> record_format(std::string_view name);
 
 /// Reads a record file, plain or gzip. The format is found from the content unless it is given.
 /// Time is the file's own: the device clock for Xsens, from 0 where the file has none. Lost samples

@@ -1,21 +1,25 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "drivers/base/file_problems.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/records/record.h"
+#include "drivers/records/record_options.h"
 
 // The readers behind read_record, one file each. All of them report to `problems` and return
 // nothing when there is a problem.
 namespace framewatch::drivers {
 
-std::optional<Record> read_csv(FileProblems& problems);
+/// Whether a line is the header of a table: one of its cells is what a column of times is called.
+bool is_table_header(std::string_view line, const RecordOptions& options);
+/// Columns with a header, as spreadsheets and loggers write them.
+std::optional<Record> read_csv(const RecordOptions& options, FileProblems& problems);
 std::optional<Record> read_at2(FileProblems& problems);
 std::optional<Record> read_xsens(FileProblems& problems);
-/// Time in s and acceleration in `unit` on every line.
-std::optional<Record> read_two_columns(AccelUnit unit, FileProblems& problems);
-/// Accelerations in `unit`, the same number on every line but the last, `step_s` apart.
-std::optional<Record> read_rows(AccelUnit unit, double step_s, FileProblems& problems);
+/// On every line the time in s, then the same number of accelerations.
+std::optional<Record> read_columns(double unit_mps2, FileProblems& problems);
+/// Accelerations of one channel, the same number on every line but the last, `step_s` apart.
+std::optional<Record> read_rows(double unit_mps2, double step_s, FileProblems& problems);
 
 }  // namespace framewatch::drivers

@@ -13,7 +13,7 @@ constexpr std::string_view kEndMark = "***";
 
 }  // namespace
 
-std::optional<Record> read_rows(AccelUnit unit, double step_s, FileProblems& problems) {
+std::optional<Record> read_rows(double unit_mps2, double step_s, FileProblems& problems) {
   LineReader lines(problems);
   RecordBuilder builder({name_of_file(problems.path())}, problems);
   std::vector<std::string_view> fields;
@@ -41,7 +41,7 @@ std::optional<Record> read_rows(AccelUnit unit, double step_s, FileProblems& pro
       if (!value)
         problems.add(lines.number(),
                      fmt::format("{} is neither a finite number nor nan", show_text(field)));
-      const double accel_mps2 = value.value_or(0) * mps2_per(unit);
+      const double accel_mps2 = value.value_or(0) * unit_mps2;
       builder.add(lines.number(), count++ * step_s, {&accel_mps2, 1});
     }
   }

@@ -26,6 +26,10 @@ int worst_axis(const GapWindow& w) {
 
 }  // namespace
 
+std::optional<Time> GapAlarm::showing() const {
+  return !raised_ && seconds_ > 0 ? std::optional(shown_) : std::nullopt;
+}
+
 const GapNews* GapAlarm::push(const GapWindow& w) {
   if (!(w.floor < options_.raise_ratio)) return nullptr;
   const double now = excess(w.nrmse, w.floor);
@@ -34,7 +38,7 @@ const GapNews* GapAlarm::push(const GapWindow& w) {
     seconds_ = 0;
     return nullptr;
   }
-  if (seconds_++ == 0) since_ = w.start;
+  if (seconds_++ == 0) since_ = w.start, shown_ = w.end;
   if (seconds_ < options_.lasting_s) return nullptr;
   seconds_ = 0;
   news_.found = w.end;

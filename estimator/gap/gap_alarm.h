@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "estimator/gap/gap.h"
 #include "estimator/watch/watch.h"
@@ -14,6 +15,10 @@ struct GapNews {
   Time found, since;  ///< end and start of windows
   double excess = 0;  ///< sqrt(nrmse^2 - floor^2)
   int worst_axis = -1;
+  /// Of a raised one: the stiffness that the windows since then show furthest, in standard errors,
+  /// from the model's; -1: none is.
+  int parameter = -1;
+  double ratio = 0, std_error = 0;  ///< its change against the model, relative
 
   template <typename Archive>
   void archive(Archive& a) {
@@ -22,6 +27,8 @@ struct GapNews {
     a(found, since);
     a.finite(excess);
     a.within(worst_axis, -1, 1e6);
+    a.within(parameter, -1, 1e6);
+    a.finite(ratio, std_error);
   }
 };
 
@@ -33,18 +40,20 @@ class GapAlarm {
   /// One window per second. Null when nothing begins or ends; valid until the next call.
   const GapNews* push(const GapWindow& window);
   bool raised() const { return raised_; }
+  /// End of the first of the windows that show a gap not yet raised; none while they show none.
+  std::optional<Time> showing() const;
 
   template <typename Archive>
   void archive(Archive& a) {
     a.within(seconds_, 0, a.kMostCount);
-    a(raised_, since_, news_);
+    a(raised_, since_, shown_, news_);
   }
 
  private:
   GapOptions options_;
   bool raised_ = false;
-  int seconds_ = 0;  ///< for which the windows have contradicted the alarm
-  Time since_{};
+  int seconds_ = 0;         ///< for which the windows have contradicted the alarm
+  Time since_{}, shown_{};  ///< start and end of the first of them
   GapNews news_;
 };
 

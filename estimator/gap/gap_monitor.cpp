@@ -1,5 +1,6 @@
 #include "estimator/gap/gap_monitor.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,7 +9,6 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kHeld = RunningModel::kDelay + 1;
 
 Direction direction_of(const Structure& s, const SensorAxis& axis) {
@@ -19,6 +19,12 @@ std::vector<DerivativeTriple> triples(const AxisCorrection& correction, double r
   std::vector<DerivativeTriple> out;
   for (const double rest : correction.rest()) out.push_back(matched_triple(rate_hz, rest));
   return out;
+}
+
+/// The mean of however many windows.
+BaselineLearner any_window(const ParameterTable& table) {
+  return BaselineLearner(std::vector<Watched>(static_cast<std::size_t>(table.size())),
+                         std::numeric_limits<double>::infinity());
 }
 
 std::vector<char> compared(const std::vector<int>& dof) {
@@ -50,7 +56,10 @@ GapMonitor::GapMonitor(const Structure& structure, const std::vector<SensorAxis>
       rate_hz_(estimation.rate_hz),
       high_pass_hz_(estimation.high_pass_hz),
       options_(options),
-      learner_(std::vector<Watched>(static_cast<std::size_t>(table_.size())), kInfinity),
+      learner_(table_.size(), table_.elements(), options.learn_s),
+      theta_error_(static_cast<std::size_t>(table_.size())),
+      has_law_(static_cast<std::size_t>(table_.size())),
+      since_gap_(any_window(table_)),
       alarm_(options),
       noise_variance_(axes.size()) {
   for (const SensorAxis& axis : axes)
@@ -60,19 +69,55 @@ GapMonitor::GapMonitor(const Structure& structure, const std::vector<SensorAxis>
 
 void GapMonitor::adopt(const GapModel& model) {
   theta_ = model.theta;
+  std::fill(theta_error_.begin(), theta_error_.end(), 0);
+  std::fill(has_law_.begin(), has_law_.end(), char{0});
+  for (const Effect& e : model.effects) {
+    if (e.place.kind == PlaceKind::frame)
+      has_law_[static_cast<std::size_t>(table_.frame_stiffness(e.place.story, e.place.frame))] = 1;
+    if (e.place.kind == PlaceKind::panel)
+      has_law_[static_cast<std::size_t>(table_.panel_stiffness(e.place.story, e.place.panel))] = 1;
+  }
   current_.emplace(*this, model);
 }
 
 void GapMonitor::learn(const WindowEstimate& estimate, const Eigen::VectorXd& believed) {
-  if (current_) return;
-  (void)learner_.push(estimate);
-  if (learner_.seconds() < options_.learn_s) return;
-  const Baseline seen = learner_.so_far();
+  if (current_) {
+    const auto showing = alarm_.showing();
+    if (!showing)
+      since_gap_ = any_window(table_);
+    else if (estimate.start >= *showing)
+      (void)since_gap_.push(estimate);
+    return;
+  }
+  if (!learner_.push(estimate)) return;
   GapModel model{believed, {}};
-  for (Eigen::Index p = 0; p < model.theta.size(); ++p)
-    if (seen.knows(static_cast<std::size_t>(p)))
-      model.theta[p] = seen.value[static_cast<std::size_t>(p)];
+  std::vector<double> error(theta_error_.size(), kNaN);
+  const std::vector<WindowMean> learned = learner_.learned();
+  for (std::size_t p = 0; p < learned.size(); ++p) {
+    if (!(learned[p].value > 0)) continue;
+    model.theta[static_cast<Eigen::Index>(p)] = learned[p].value;
+    error[p] = learned[p].std_error;
+  }
   adopt(model);
+  theta_error_ = error;
+}
+
+void GapMonitor::name_place(GapNews& news) const {
+  constexpr double kErrors = 3, kLeast = 0.03;
+  news.parameter = -1;
+  const Baseline seen = since_gap_.so_far();
+  double most = kErrors;
+  for (int p = 0; p < table_.elements(); ++p) {
+    const auto at = static_cast<std::size_t>(p);
+    if (!seen.knows(at) || has_law_[at]) continue;
+    const double ratio = seen.value[at] / theta_[p] - 1;
+    const double error = std::hypot(seen.std_error[at], theta_error_[at]) / theta_[p];
+    if (std::abs(ratio) < kLeast || !(std::abs(ratio) > most * error)) continue;
+    most = std::abs(ratio) / error;
+    news.parameter = p;
+    news.ratio = ratio;
+    news.std_error = error;
+  }
 }
 
 Eigen::Vector2d GapMonitor::base_mean(const std::vector<double>& of_axes) const {
@@ -151,6 +196,14 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   if (c.meter.ends_second()) noise_variances(c, noise_density);
   if (!c.meter.close(set.time - c.delay, noise_variance_)) return nullptr;
   news_ = alarm_.push(c.meter.gap());
+  if (news_ == nullptr) return &c.meter.gap();
+  const GapNews before = named_;
+  named_ = *news_;
+  if (named_.state == AlarmState::raised)
+    name_place(named_);
+  else if (before.id == named_.id)
+    named_.parameter = before.parameter;
+  news_ = &named_;
   return &c.meter.gap();
 }
 

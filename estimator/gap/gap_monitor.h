@@ -6,11 +6,13 @@
 #include "estimator/gap/axis_correction.h"
 #include "estimator/gap/gap_alarm.h"
 #include "estimator/gap/gap_meter.h"
+#include "estimator/gap/model_learner.h"
 #include "estimator/gap/noise_path.h"
 #include "estimator/gap/running_model.h"
 #include "estimator/motion/drift_controlled_integrator.h"
 #include "estimator/setup/options.h"
 #include "estimator/structure/sensors.h"
+#include "estimator/watch/baseline.h"
 
 namespace framewatch::estimator {
 
@@ -29,8 +31,8 @@ class GapMonitor {
   void adopt(const GapModel& model);
   bool has_model() const { return current_.has_value(); }
 
-  /// An estimate of the main window, to learn a model from. believed: values of the parameters that
-  /// windows do not show, theta order.
+  /// An estimate of the main window, to learn a model from, and to tell which stiffness a gap comes
+  /// from. believed: values of the parameters that windows do not show, theta order.
   void learn(const WindowEstimate& estimate, const Eigen::VectorXd& believed);
   /// One calibrated instant; noise_density of each axis, m/s^2/sqrt(Hz), or none. Once a second,
   /// while there is something to compare, the gap of the last window; valid until the next call.
@@ -43,7 +45,7 @@ class GapMonitor {
     bool modelled = has_model();
     std::vector<double> theta;
     if (modelled) theta.assign(theta_.begin(), theta_.end());
-    a(learner_, alarm_, modelled);
+    a(learner_, alarm_, since_gap_, named_, modelled);
     a.any_size(theta);
     if constexpr (Archive::kReading) {
       for (const double value : theta)
@@ -51,6 +53,7 @@ class GapMonitor {
       if (modelled && !has_model() && theta.size() == static_cast<std::size_t>(table_.size()))
         adopt({Eigen::Map<const Eigen::VectorXd>(theta.data(), table_.size()), {}});
     }
+    a(theta_error_);
     if (modelled && has_model()) a(*current_);
   }
 
@@ -83,6 +86,8 @@ class GapMonitor {
   void hold(Current& c);
   void compare(Current& c) const;
   void noise_variances(const Current& c, const std::vector<double>& noise_density);
+  /// Puts the parameter that has changed most significantly into news.
+  void name_place(GapNews& news) const;
 
   Structure structure_;
   ParameterTable table_;
@@ -90,8 +95,12 @@ class GapMonitor {
   std::vector<int> dof_;  ///< of each axis; -1: base
   double rate_hz_, high_pass_hz_;
   GapOptions options_;
-  BaselineLearner learner_;
+  ModelLearner learner_;
   Eigen::VectorXd theta_;
+  std::vector<double> theta_error_;  ///< standard errors of what was learned; 0: as given
+  std::vector<char> has_law_;        ///< of each parameter: an effect of the model acts there
+  BaselineLearner since_gap_;        ///< windows since a gap began to show
+  GapNews named_;                    ///< the last one
   std::optional<Current> current_;
   GapAlarm alarm_;
   std::vector<double> noise_variance_;

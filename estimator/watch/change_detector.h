@@ -47,6 +47,9 @@ class ChangeDetector {
   bool changed(int parameter) const { return of(parameter).sign != 0; }
   /// Only while changed().
   Change change(int parameter) const;
+  /// Running mean of the standard errors of the parameter's values, relative to the baseline; 0:
+  /// there was none.
+  double usual_error(int parameter) const { return of(parameter).usual_error; }
 
   template <typename Archive>
   void archive(Archive& a) {

@@ -11,6 +11,7 @@ constexpr double kBinsPerWindow = 20, kBin_s = 60;  // of the temperature's mean
 constexpr double kExpectedErrors = 3;
 constexpr double kUnknown_degc = 10;  // assumed deviation while the thermometer is silent
 constexpr double kNewsErrors = 2;  // standard errors a change moves by before it is reported again
+constexpr double kSharper = 0.7;   // of the error reported: a smaller one is news too
 
 /// A design off by its tolerance may not bias a value by more than this share of the least relevant
 /// change. For a panel that is one or two standard errors of its values, so that a bias common to
@@ -103,7 +104,9 @@ const std::vector<Alarm>& Watch::push(const WindowEstimate& estimate) {
   const auto window = static_cast<std::size_t>(estimate.window);
   if (window > windows_s_.size()) return news_;
   const bool quiet = window == windows_s_.size();
-  detectors_[window].push(quiet ? corrected_quiet(estimate) : corrected(estimate));
+  const WindowEstimate& judged = quiet ? corrected_quiet(estimate) : corrected(estimate);
+  detectors_[window].push(judged);
+  for (std::size_t p = 0; p < states_.size(); ++p) measure(p, judged);
   quiet ? learn_quiet(estimate) : learn(estimate);
   for (int p = 0; p < static_cast<int>(states_.size()); ++p) report(p, estimate);
   return news_;
@@ -174,24 +177,56 @@ const WindowEstimate& Watch::corrected_quiet(const WindowEstimate& e) {
   return corrected_;
 }
 
+std::size_t Watch::sizing_window(std::size_t detector) const {
+  return detector == windows_s_.size() ? detector : 0;
+}
+
+void Watch::measure(std::size_t p, const WindowEstimate& e) {
+  State& state = states_[p];
+  const auto window = static_cast<std::size_t>(e.window);
+  if (state.id == 0 || window != sizing_window(state.detector)) return;
+  if (e.start < state.sized_until || !watched_[p].counts(e, p)) return;
+  state.sized_until = e.end;
+  const double baseline =
+      window == windows_s_.size() ? quiet_baseline_.value[p] : baseline_.value[p];
+  const double error = e.std_error[p] / baseline;
+  state.size.push(e.value[p] / baseline - 1,
+                  std::max(error, detectors_[window].usual_error(static_cast<int>(p))));
+}
+
+/// From the first windows that saw it until one lies wholly behind it.
+Change Watch::size_of(int parameter) const {
+  const auto p = static_cast<std::size_t>(parameter);
+  const State& state = states_[p];
+  if (!state.size.known()) return detectors_[state.detector].change(parameter);
+  const Baseline& b = state.detector == windows_s_.size() ? quiet_baseline_ : baseline_;
+  return {state.size.ratio(), std::hypot(state.size.std_error(), b.std_error[p] / b.value[p]),
+          state.reported.since};
+}
+
 void Watch::report(int parameter, const WindowEstimate& estimate) {
   State& state = states_[static_cast<std::size_t>(parameter)];
   const auto window = static_cast<std::size_t>(estimate.window);
   const bool changed = detectors_[window].changed(parameter);
   if (state.id == 0) {
     if (!changed) return;
-    state = {++last_id_, window, detectors_[window].change(parameter)};
+    const Change found = detectors_[window].change(parameter);
+    // The change lies within the first window that shows it.
+    state = {++last_id_, window, found, {}, found.since + (estimate.end - estimate.start)};
     news_.push_back({state.id, AlarmState::raised, parameter, state.reported, estimate.end});
     return;
   }
-  if (state.detector != window) return;
-  if (!changed) {
+  if (state.detector == window && !changed) {
     news_.push_back({state.id, AlarmState::cleared, parameter, state.reported, estimate.end});
     state = {};
     return;
   }
-  const Change now = detectors_[window].change(parameter);
-  if (std::abs(now.ratio - state.reported.ratio) < kNewsErrors * state.reported.std_error) return;
+  if (window != (state.size.known() ? sizing_window(state.detector) : state.detector)) return;
+  const Change now = size_of(parameter);
+  const double moved = std::abs(now.ratio - state.reported.ratio);
+  if (moved < kNewsErrors * state.reported.std_error &&
+      now.std_error > kSharper * state.reported.std_error)
+    return;
   state.reported = now;
   news_.push_back({state.id, AlarmState::changed, parameter, now, estimate.end});
 }

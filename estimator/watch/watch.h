@@ -7,6 +7,7 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/watch/baseline.h"
 #include "estimator/watch/change_detector.h"
+#include "estimator/watch/change_size.h"
 #include "estimator/watch/dependence.h"
 #include "estimator/watch/mean_temperature.h"
 
@@ -35,8 +36,9 @@ struct Alarm {
   std::int64_t id;  ///< the same from raised to cleared; from 1
   AlarmState state;
   int parameter;
-  Change change;  ///< of a cleared alarm: the last one reported
-  Time found;     ///< end of the window that shows it
+  /// Its size so far, which sharpens while windows come; of a cleared alarm the last one reported.
+  Change change;
+  Time found;  ///< end of the window that shows it
 };
 
 /// How the parameters are watched: theta order.
@@ -104,11 +106,13 @@ class Watch {
     std::int64_t id = 0;  ///< of its alarm; 0: none
     std::size_t detector = 0;
     Change reported;
+    ChangeSize size;
+    Time sized_until{};  ///< windows that begin before are not part of the size
 
     template <typename Archive>
     void archive(Archive& a) {
       a.within(id, 0, a.kMostCount);
-      a(detector, reported);
+      a(detector, reported, size, sized_until);
     }
   };
   void begin();
@@ -119,6 +123,10 @@ class Watch {
   /// The estimate as it would be under the conditions of its baseline.
   const WindowEstimate& corrected(const WindowEstimate& estimate);
   const WindowEstimate& corrected_quiet(const WindowEstimate& estimate);
+  /// The window that sizes of the changes a detector has found are measured in.
+  std::size_t sizing_window(std::size_t detector) const;
+  void measure(std::size_t parameter, const WindowEstimate& corrected);
+  Change size_of(int parameter) const;
   void report(int parameter, const WindowEstimate& estimate);
 
   WatchOptions options_;

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "daemon/metrics/metrics.h"
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 #include "daemon/web/live_view.h"
 #include "daemon/web/web_server.h"
 #include "daemon/web/web_socket.h"
@@ -45,12 +45,7 @@ class Page {
 
   /// What it answers; of a stream of events the beginning. A last request asks it to close.
   std::string ask(Bytes request) {
-    const int s = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_port = htons(static_cast<std::uint16_t>(server_.port()));
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    require(::connect(s, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0, "a connection");
+    const int s = connected();
     const timeval patience{0, 100'000};  // for a server that waits for the rest of a request
     ::setsockopt(s, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
     const std::string all = text_of(request) + std::string(kLastRequest);
@@ -70,6 +65,22 @@ class Page {
   }
 
  private:
+  /// A host that is short of ports, or of time to accept, is no finding: it is asked again.
+  int connected() {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(static_cast<std::uint16_t>(server_.port()));
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    for (int i = 0; i < 500; ++i) {
+      const int s = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+      if (::connect(s, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0) return s;
+      ::close(s);
+      ::usleep(10'000);
+    }
+    require(false, "a connection");
+    return -1;
+  }
+
   daemon::WebSettings settings() {
     const std::string folder = scratch_folder() + "/sessions";
     std::filesystem::create_directories(folder + "/one");

@@ -7,7 +7,6 @@
 namespace framewatch::test {
 namespace {
 
-using drivers::AccelUnit;
 using drivers::RecordFormat;
 
 /// How it is to be read, then the file.
@@ -15,9 +14,12 @@ void read_record_file(Bytes input) {
   Pieces pieces(input);
   const auto how = pieces.take<std::uint8_t>();
   drivers::RecordOptions options;
-  options.format = static_cast<RecordFormat>(how % 6);
-  if (how & 64) options.unit = AccelUnit::g;
+  options.format = static_cast<RecordFormat>(how % 8 % 6);
+  if (how & 64) options.unit_mps2 = 9.80665;
   if (how & 128) options.step_s = 0.01;
+  if (how & 32) options.decimal = ',';
+  if (how & 16) options.zone_min = 540;
+  if (how & 8) options.columns = {"a"};
   const InputFile file(pieces.rest());
   std::vector<drivers::Problem> problems;
   const auto record = drivers::read_record(file.path(), options, problems);
@@ -42,7 +44,13 @@ std::vector<std::string> record_seeds() {
       "// Start Time: Unknown\n// Update Rate: 100.0Hz\n// Filter Profile: general\n"
       "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z\n"
       "00001,10000,0.1,0.2,9.81\n00002,20000,0.1,0.2,9.81\n00003,30000,0.1,0.2,9.81\n"};
+  const char* const tables[] = {
+      "Time;\"a [g]\";b (cm/s^2)\n0;\"0,5\";1,25\n0,01;-1;NA\n0,02;1;1\n",
+      "# logger\nLogger 7\ntime\ta\n[ms]\t[m/s2]\n0\t1,234\n10\t2,345\n",
+      "Date;a [mg];\n2026-11-21T17:00:00.01+09:00;1;\n2026-11-21T17:00:00.02+09:00;2;\n"};
   std::vector<std::string> out;
+  for (const char* table : tables)
+    for (const int how : {0, 16, 32, 8}) out.push_back(static_cast<char>(how) + std::string(table));
   int format = 1;
   for (const char* text : texts) {
     const int declared = format == 3 ? 64 : format == 4 ? 64 + 128 : 0;

@@ -1,94 +1,138 @@
 'use strict';
-// Boxplots of one kind of parameter, with references and the newest value.
+// Boxplots of one kind of parameter as in the paper's Figure 10, with references and the newest value:
+// each relative to its own reference, or each in its own unit on a scale of its own.
 class Boxes {
   constructor(canvas, plan, kind, onChoose) {
     this.canvas = canvas;
     this.kind = kind;
-    this.index = plan.parameters.map((_, i) => i).filter(i => plan.parameters[i].kind === kind);
     this.plan = plan;
-    const stiffness = kind < 2, unit = this.index.length ? plan.parameters[this.index[0]].unit : '';
-    this.factor = stiffness ? 1e-3 : 1;
-    this.label = ['frame stiffness', 'panel stiffness', 'frame damping', 'panel damping'][kind] + ', ' + (stiffness ? 'k' : '') + unit;
-    canvas.hidden = this.index.length === 0;
-    canvas.setAttribute('aria-label', 'boxplots: ' + this.label);
+    this.index = plan.parameters.map((_, i) => i).filter(i => plan.parameters[i].kind === kind);
+    this.title = ['Frame stiffness', 'Panel stiffness', 'Frame damping', 'Panel damping'][kind];
+    this.left = 52;
+    canvas.hidden = canvas.parentElement.hidden = this.index.length === 0;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', `Boxplots: ${this.title}. Arrow keys choose an element; the table below has all values.`);
     canvas.addEventListener('pointermove', e => {
       const k = this.place(e);
       if (k >= 0) showTip(elementText(this.index[k]), e.clientX, e.clientY); else hideTip();
     });
     canvas.addEventListener('click', e => { const k = this.place(e); if (k >= 0) onChoose(this.index[k]); });
+    canvas.addEventListener('keydown', e => {
+      const step = {ArrowRight: 1, ArrowLeft: -1}[e.key], at = this.index.indexOf(chosen);
+      if (!step) return;
+      e.preventDefault();
+      onChoose(this.index[at < 0 ? 0 : (at + step + this.index.length) % this.index.length]);
+    });
   }
   place(e) {
-    const b = this.canvas.getBoundingClientRect(), k = Math.floor((e.clientX - b.left - 54) / this.step);
+    const b = this.canvas.getBoundingClientRect(), k = Math.floor((e.clientX - b.left - this.left) / this.step);
     return k >= 0 && k < this.index.length ? k : -1;
   }
-  draw(boxes, estimate, baseline, chosen) {
+  // What is drawn of an element, in units of its axis.
+  shape(i, percent) {
+    const q = this.plan.parameters[i], has = boxes && boxes.count[i] > 0, value = known[i];
+    const size = reference(i) || (has ? boxes.median[i] : value ? value.value : null);
+    if (!size) return null;
+    const unit = engineering(size, q.unit), f = percent ? v => 100 * (v / size - 1) : v => v * unit.factor;
+    const all = k => has ? f(boxes[k][i]) : null;
+    return {
+      unit: unit.unit, low: all('low'), q1: all('q1'), median: all('median'), q3: all('q3'), high: all('high'), outliers: has ? boxes.outliers[i] : 0, count: has ? boxes.count[i] : 0,
+      reference: reference(i) ? f(reference(i)) : null, design: baseline[i] && q.design ? f(q.design) : null,
+      value: value ? f(value.value) : null, error: value ? (percent ? 100 * value.error / size : value.error * unit.factor) : 0, old: value && !isNow(i) ? value.us : 0,
+    };
+  }
+  range(shapes, least) {
+    const all = shapes.filter(s => s).flatMap(s => [s.low, s.high, s.median, s.value, s.reference]).filter(v => v !== null && Number.isFinite(v));
+    if (!all.length) return [-least, least];
+    const low = Math.min(...all), high = Math.max(...all), room = Math.max(0.1 * (high - low), least - (high - low) / 2, 1e-9);
+    return [low - room, high + room];
+  }
+  draw() {
     if (!this.index.length) return;
-    const c = this.canvas, r = devicePixelRatio || 1, w = c.clientWidth, h = c.clientHeight;
+    const c = this.canvas, r = devicePixelRatio || 1, percent = boxMode === 'percent';
+    this.left = percent ? 52 : 8;
+    c.style.minWidth = this.left + this.index.length * (percent ? 38 : 84) + 'px';
+    const w = c.clientWidth, h = c.clientHeight;
+    if (!w || !h) return;
     if (c.width !== Math.round(w * r) || c.height !== Math.round(h * r)) { c.width = Math.round(w * r); c.height = Math.round(h * r); }
-    const g = c.getContext('2d'), style = theme();
+    const g = this.g = c.getContext('2d'), style = theme(), top = 24;
     g.setTransform(r, 0, 0, r, 0, 0);
     g.clearRect(0, 0, w, h);
-    const left = 54, top = 20, bottom = h - 20;
-    this.step = (w - left - 4) / this.index.length;
-    const f = this.factor, all = [], has = i => boxes && boxes.count[i] > 0;
-    for (const i of this.index) {
-      const q = this.plan.parameters[i];
-      if (q.design) all.push(q.design * f);
-      if (has(i)) all.push(boxes.low[i] * f, boxes.high[i] * f, boxes.median[i] * f);
-      if (baseline[i]) all.push(baseline[i] * f);
-      if (estimate && estimate.reason[i] === 0) all.push(estimate.value[i] * f);
-    }
-    g.font = '12px system-ui';
-    g.fillStyle = style.ink; g.textAlign = 'left';
-    g.fillText(this.label, 4, 12);
-    if (!all.length) { g.fillStyle = style.soft; g.fillText('no values yet', left, h / 2); }
-    // The references set the scale; one wild box must not flatten the others.
-    const middle = all.filter(Number.isFinite).sort((a, b) => a - b);
-    let low = middle.length ? middle[0] : 0, high = middle.length ? middle.at(-1) : 1;
-    const designs = this.index.map(i => this.plan.parameters[i].design * f).filter(v => v > 0);
-    if (designs.length) { low = Math.max(low, -Math.max(...designs)); high = Math.min(high, 2.5 * Math.max(...designs)); }
-    const room = Math.max((high - low) * 0.1, Math.abs(high) * 0.02, 1e-9);
-    low -= room; high += room;
-    const y = v => bottom - (v - low) / (high - low) * (bottom - top);
-    for (const t of niceTicks(low, high, 4)) {
-      g.strokeStyle = style.rule; g.lineWidth = 1;
-      g.beginPath(); g.moveTo(left, y(t)); g.lineTo(w - 4, y(t)); g.stroke();
-      g.fillStyle = style.soft; g.textAlign = 'right'; g.fillText(shortNumber(t), left - 5, y(t) + 4);
-    }
-    g.save();
-    g.beginPath(); g.rect(left, top - 6, w - left, bottom - top + 12); g.clip();
+    g.font = '12px system-ui'; g.fillStyle = style.ink; g.textAlign = 'left';
+    g.fillText(this.title + (percent ? ', % from the baseline (without one: from the design)' : ', each on its own scale'), 4, 12);
+    this.step = (w - this.left - 4) / this.index.length;
+    const narrow = this.step < 66, bottom = h - (narrow ? 48 : 34); // then every second name is a row lower
+    const shapes = this.index.map(i => this.shape(i, percent));
+    if (!shapes.some(s => s)) { g.fillStyle = style.soft; g.fillText('no values yet', this.left, h / 2); }
+    let [low, high] = this.range(shapes, 5);
+    low = Math.max(low, -100); high = Math.min(high, 150); // one wild box must not flatten the others
+    if (percent) this.axis(style, low, high, this.left, w - 4, top, bottom, t => (t > 0 ? '+' : t < 0 ? '−' : '') + Math.abs(t) + ' %');
     this.index.forEach((i, k) => {
-      const x = left + (k + 0.5) * this.step, half = Math.min(16, this.step * 0.28), q = this.plan.parameters[i];
-      const across = (v, dash, color, width) => {
-        g.strokeStyle = color; g.lineWidth = width; g.setLineDash(dash);
-        g.beginPath(); g.moveTo(x - this.step * 0.44, y(v)); g.lineTo(x + this.step * 0.44, y(v)); g.stroke(); g.setLineDash([]);
-      };
-      if (i === chosen) { g.fillStyle = style.rule; g.globalAlpha = 0.4; g.fillRect(x - this.step / 2, top - 6, this.step, bottom - top + 12); g.globalAlpha = 1; }
-      if (q.design) across(q.design * f, [7, 4], style.soft, 1.4);
-      if (baseline[i]) across(baseline[i] * f, [2, 3], style.ink, 1.6);
-      if (has(i)) {
-        g.strokeStyle = style.blue; g.lineWidth = 1.5;
-        const line = (a, b, c2, d) => { g.beginPath(); g.moveTo(a, b); g.lineTo(c2, d); g.stroke(); };
-        const q1 = y(boxes.q1[i] * f), q3 = y(boxes.q3[i] * f), lo = y(boxes.low[i] * f), hi = y(boxes.high[i] * f);
-        line(x, q1, x, lo); line(x, q3, x, hi); line(x - half / 2, lo, x + half / 2, lo); line(x - half / 2, hi, x + half / 2, hi);
-        g.fillStyle = style.card; g.fillRect(x - half, q3, 2 * half, Math.max(1, q1 - q3));
-        g.strokeRect(x - half, q3, 2 * half, Math.max(1, q1 - q3));
-        g.lineWidth = 3; line(x - half, y(boxes.median[i] * f), x + half, y(boxes.median[i] * f));
-        if (boxes.outliers[i]) { g.fillStyle = style.soft; g.textAlign = 'center'; g.font = '10px system-ui'; g.fillText('+' + boxes.outliers[i], x + half + 9, Math.max(top + 4, hi)); g.font = '12px system-ui'; }
+      const s = shapes[k], x = this.left + (k + 0.5) * this.step, from = x - this.step / 2;
+      g.textAlign = 'center'; g.fillStyle = style.ink;
+      g.fillText(this.plan.parameters[i].name, x, h - (narrow && k % 2 === 0 ? 33 : 19));
+      if (i === chosen) { g.fillStyle = style.rule; g.globalAlpha = 0.4; g.fillRect(from, top - 6, this.step, bottom - top + 12); g.globalAlpha = 1; }
+      if (!s) return this.note(style, estimate ? whyNot(i) : '', x, h);
+      if (percent) this.box(style, s, x, v => bottom - (v - low) / (high - low) * (bottom - top), top, bottom);
+      else {
+        const [a, b] = this.range([s], Math.abs(s.reference || s.median || s.value || 1) * 0.002);
+        this.axis(style, a, b, from + 40, from + this.step - 4, top + 12, bottom, String, 3);
+        g.fillStyle = style.soft; g.textAlign = 'left'; g.fillText(s.unit, from + 4, top + 4);
+        this.box(style, s, from + (44 + this.step) / 2, v => bottom - (v - a) / (b - a) * (bottom - top - 12), top + 12, bottom);
       }
-      if (estimate && estimate.reason[i] === 0) {
-        const v = estimate.value[i] * f, e = estimate.error[i] * f;
-        g.strokeStyle = g.fillStyle = style.orange; g.lineWidth = 2;
-        g.beginPath(); g.moveTo(x, y(v - e)); g.lineTo(x, y(v + e)); g.stroke();
-        g.beginPath(); g.arc(x, y(v), 3.2, 0, 7); g.fill();
-      } else if (estimate) {
-        g.fillStyle = style.soft; g.textAlign = 'center'; g.font = '10px system-ui';
-        g.fillText(reasons[estimate.reason[i]] || '', x, bottom - 3); g.font = '12px system-ui';
-      }
+      const doubt = !s.outliers ? '' : narrow ? `${s.outliers} out.` : `${s.outliers} outlier${s.outliers > 1 ? 's' : ''}`;
+      this.note(style, s.old ? `${span((nowUs() - s.old) / 1e6)} old` : doubt, x, h);
     });
-    g.restore();
-    g.fillStyle = style.ink; g.textAlign = 'center';
-    const every = Math.ceil(64 / this.step);
-    this.index.forEach((i, k) => { if (k % every === 0) g.fillText(this.plan.parameters[i].name, left + (k + 0.5) * this.step, h - 5); });
   }
+  note(style, text, x, h) { const g = this.g; g.fillStyle = style.soft; g.textAlign = 'center'; g.font = '10.5px system-ui'; g.fillText(text, x, h - 5); g.font = '12px system-ui'; }
+  axis(style, low, high, from, to, top, bottom, text, wanted = 5) {
+    const g = this.g;
+    for (const t of niceTicks(low, high, wanted)) {
+      const y = bottom - (t - low) / (high - low) * (bottom - top);
+      g.strokeStyle = style.rule; g.lineWidth = 1;
+      g.beginPath(); g.moveTo(from, y); g.lineTo(to, y); g.stroke();
+      g.fillStyle = style.soft; g.textAlign = 'right'; g.fillText(text(t), from - 5, y + 4);
+    }
+  }
+  box(style, s, x, y, top, bottom) {
+    const g = this.g, half = Math.min(boxMode === 'percent' ? 16 : 12, this.step * 0.26), line = (a, b, c, d) => { g.beginPath(); g.moveTo(a, b); g.lineTo(c, d); g.stroke(); };
+    g.save();
+    g.beginPath(); g.rect(x - this.step / 2, top - 8, this.step, bottom - top + 14); g.clip();
+    const across = (v, dash, color, width) => { g.strokeStyle = color; g.lineWidth = width; g.setLineDash(dash); line(x - half * 1.6, y(v), x + half * 1.6, y(v)); g.setLineDash([]); };
+    if (s.design !== null) across(s.design, [7, 4], style.soft, 1.4);
+    if (s.reference !== null) across(s.reference, s.design !== null || baselineKnown() ? [2, 3] : [7, 4], style.ink, 1.6);
+    if (s.count) {
+      g.strokeStyle = style.blue; g.lineWidth = 1.5;
+      line(x, y(s.q1), x, y(s.low)); line(x, y(s.q3), x, y(s.high));
+      line(x - half / 2, y(s.low), x + half / 2, y(s.low)); line(x - half / 2, y(s.high), x + half / 2, y(s.high));
+      g.fillStyle = style.card; g.fillRect(x - half, y(s.q3), 2 * half, Math.max(1, y(s.q1) - y(s.q3)));
+      g.strokeRect(x - half, y(s.q3), 2 * half, Math.max(1, y(s.q1) - y(s.q3)));
+      g.lineWidth = 3; line(x - half, y(s.median), x + half, y(s.median));
+    }
+    if (s.value !== null) {
+      g.strokeStyle = g.fillStyle = s.old ? style.soft : style.orange; g.lineWidth = 2;
+      line(x, y(s.value - s.error), x, y(s.value + s.error));
+      g.beginPath(); g.arc(x, y(s.value), 3.2, 0, 7); if (s.old) g.stroke(); else g.fill();
+    }
+    g.restore();
+  }
+}
+// Every value as text, for whoever wants the numbers or cannot see the picture.
+function valueTable() {
+  if (!$('values').open) return;
+  const table = $('value-table');
+  table.replaceChildren();
+  heads(table, ['element', 'value ± standard error', 'from', 'baseline', 'design', 'change', 'median', 'quartiles', 'outliers']);
+  const body = table.createTBody();
+  plan.parameters.forEach((q, i) => {
+    const row = body.insertRow(), v = known[i], has = boxes && boxes.count[i] > 0, f = findingOf(q.name);
+    cell(row, q.name).title = place(q);
+    cell(row, v ? withError(v.value, v.error, q.unit) : whyNot(i));
+    cell(row, v ? (isNow(i) ? 'now' : when(v.us)) : '');
+    cell(row, baseline[i] ? plain(baseline[i], q.unit) : ''); cell(row, q.design ? plain(q.design, q.unit) : '');
+    cell(row, f ? `${percent(f.ratio, f.error)} ± ${percent(f.error, f.error).slice(1)}` : '');
+    cell(row, has ? plain(boxes.median[i], q.unit) : '');
+    cell(row, has ? `${plain(boxes.q1[i], q.unit)} to ${plain(boxes.q3[i], q.unit)}` : '');
+    cell(row, has ? `${boxes.outliers[i]} of ${boxes.count[i]}` : '');
+  });
 }

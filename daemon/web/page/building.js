@@ -1,5 +1,6 @@
 'use strict';
 // The building in 3D: frames as walls between floors, panels as floors, moved by what the floors do.
+const kMostExaggeration = 2000;
 class Building {
   constructor(canvas, plan, onChoose) {
     this.canvas = canvas;
@@ -8,9 +9,12 @@ class Building {
     this.tilt = 0.42;
     this.ratio = [];
     this.known = [];
+    this.old = [];
+    this.still = false;
+    this.factor = 1;
     this.chosen = 0;
     this.onChoose = onChoose;
-    this.motion = plan.axes.map(() => ({last: null, a: 0, v: 0, d: 0}));
+    this.begin();
     this.largest = 1e-6;
     const line = (spans, names, other) => {
       const at = [0];
@@ -47,6 +51,11 @@ class Building {
       this.choose((this.chosen + step + this.faces.length) % this.faces.length);
     });
   }
+  // What the integrators make of a beginning in the midst of motion is not shown.
+  begin() {
+    this.motion = this.plan.axes.map(() => ({last: null, a: 0, v: 0, d: 0}));
+    this.settling = Math.ceil(1.2 * this.plan.rate_hz / this.plan.high_pass_hz);
+  }
   makeFaces() {
     const p = this.plan, n = p.frames_x.length, faces = [];
     const xe = this.xs.length - 1, ye = this.ys.length - 1;
@@ -64,6 +73,7 @@ class Building {
   // One instant: displacement relative to the base, integrated twice above high_pass_hz.
   push(accel) {
     const dt = 1 / this.plan.rate_hz, keep = Math.exp(-2 * Math.PI * this.plan.high_pass_hz * dt);
+    if (this.settling > 0) --this.settling;
     const base = {x: accel[this.baseOf('x')] ?? 0, y: accel[this.baseOf('y')] ?? 0};
     this.plan.axes.forEach((a, i) => {
       const m = this.motion[i];
@@ -73,19 +83,19 @@ class Building {
       m.last = relative;
       m.v = keep * m.v + m.a * dt;
       m.d = keep * m.d + m.v * dt;
-      this.largest = Math.max(this.largest, Math.abs(m.d));
+      if (!this.settling) this.largest = Math.max(this.largest, Math.abs(m.d));
     });
     this.largest *= 0.9997;
   }
   drift(parameter) {
     const q = this.plan.parameters[parameter];
-    if (!q || q.frame < 0) return null;
+    if (!q || q.frame < 0 || this.settling) return null;
     const d = s => { const a = this.axisOf(s, q.frame); return s === 0 || a < 0 ? 0 : this.motion[a].d; };
     return d(q.story) - d(q.story - 1);
   }
   at(x, y, s) {
     const f = this.floorAxis[s], d = i => i >= 0 && i !== undefined ? this.motion[i].d : 0;
-    const g = this.extent * 0.13 / Math.max(this.largest, 1e-6);
+    const g = this.factor;
     const p = [this.xs[x] + g * d(f.x[Math.min(y, f.x.length - 1)]), this.ys[y] + g * d(f.y[Math.min(x, f.y.length - 1)]), this.zs[s]];
     return this.project(p);
   }
@@ -104,6 +114,8 @@ class Building {
     this.w = w; this.h = h;
     const across = Math.hypot(this.xs.at(-1), this.ys.at(-1)) * 1.25;
     this.zoom = Math.min(w / across, h / (this.zs.at(-1) * Math.cos(this.tilt) + across * Math.sin(this.tilt)) / 1.02);
+    // What hardly moves is not blown up until its noise looks like an earthquake.
+    this.factor = this.still || this.settling ? 0 : Math.min(kMostExaggeration, this.extent * 0.13 / Math.max(this.largest, 1e-9));
     this.shapes = this.faces.map((f, k) => {
       const points = f.at.map(a => this.at(...a));
       return {k, i: f.i, points, depth: points.reduce((s, p) => s + p[2], 0)};
@@ -115,7 +127,7 @@ class Building {
       this.path(g, s.points);
       const floor = this.plan.parameters[s.i].kind === 1;
       if (this.known[s.i]) {
-        g.globalAlpha = (floor ? 0.35 : 0.5) + 0.45 * Math.min(1, Math.abs(this.ratio[s.i] - 1) / kFullColor);
+        g.globalAlpha = ((floor ? 0.35 : 0.5) + 0.45 * Math.min(1, Math.abs(this.ratio[s.i] - 1) / kFullColor)) * (this.old[s.i] ? 0.75 : 1);
         g.fillStyle = ratioColor(this.ratio[s.i], style);
         g.fill();
       } else this.hatch(g, s.points, style);
@@ -125,18 +137,44 @@ class Building {
       g.strokeStyle = chosen ? style.ink : style.soft;
       g.stroke();
     }
-    g.fillStyle = style.ink;
+    const dead = deadChannels();
+    this.dots = [];
     for (const a of this.plan.axes) {
-      if (a.story === 0 || a.frame < 0) continue;
+      if (a.story === 0 || a.frame < 0) { if (dead.has(a.name)) this.dot(g, style, a.name, ground[a.direction === 'x' ? 0 : 3], true); continue; }
       const n = this.plan.frames_x.length, inX = a.frame < n;
       const p = inX ? this.at(0, a.frame, a.story) : this.at(a.frame - n, 0, a.story);
       const q = inX ? this.at(Math.min(1, this.xs.length - 1), a.frame, a.story) : this.at(a.frame - n, Math.min(1, this.ys.length - 1), a.story);
       const x = p[0] * 0.75 + q[0] * 0.25, y = p[1] * 0.75 + q[1] * 0.25;
-      g.beginPath(); g.arc(x, y, 3, 0, 7); g.fill();
+      this.dot(g, style, a.name, [x, y], dead.has(a.name));
     }
     g.font = '12px system-ui'; g.fillStyle = style.soft; g.textAlign = 'left';
-    g.fillText('motion x ' + +(this.extent * 0.13 / Math.max(this.largest, 1e-6)).toPrecision(2), 6, h - 8);
+    const rest = this.still || this.factor * this.largest < this.extent * 0.004;
+    g.fillText(this.still ? 'no motion to show' : rest ? 'hardly moves' : 'motion × ' + digits(this.factor, 2), 6, h - 8);
+    this.drifts(g, style);
     this.compass(g, style);
+  }
+  dot(g, style, name, [x, y], dead) {
+    g.beginPath(); g.arc(x, y, dead ? 7 : 3, 0, 7);
+    g.fillStyle = dead ? style.red : style.ink; g.fill();
+    if (!dead) return;
+    g.lineWidth = 2; g.strokeStyle = style.card; g.stroke();
+    g.font = '600 12px system-ui'; g.textAlign = 'left';
+    g.lineWidth = 4; g.lineJoin = 'round'; g.fillStyle = style.ink; g.strokeText(name, x + 11, y + 4); g.fillText(name, x + 11, y + 4); g.lineJoin = 'miter';
+    this.dots.push(name);
+  }
+  // Peak drift ratios of the newest shake, beside their stories.
+  drifts(g, style) {
+    if (!told.drift.length) return;
+    g.font = '12px system-ui'; g.textAlign = 'right'; g.fillStyle = style.soft;
+    g.fillText('peak drift ratio', this.w - 6, 14);
+    told.drift.forEach((d, i) => {
+      if (d.frame < 0) return;
+      const low = this.project([this.xs.at(-1) / 2, this.ys.at(-1) / 2, this.zs[i]]), high = this.project([this.xs.at(-1) / 2, this.ys.at(-1) / 2, this.zs[i + 1]]);
+      g.fillStyle = style.ink;
+      const at = [this.w - 6, Math.max(30, (low[1] + high[1]) / 2)], words = `story ${i + 1}: ${digits(100 * d.ratio, 3)} %`;
+      g.strokeStyle = style.card; g.lineWidth = 4;
+      g.strokeText(words, ...at); g.fillText(words, ...at);
+    });
   }
   compass(g, style) {
     const o = this.project([0, 0, 0]), length = 26;

@@ -1,10 +1,11 @@
 'use strict';
 // Ties the stream of events to what is drawn. All numbers shown come from the events.
 const $ = id => document.getElementById(id);
-const reasons = ['', 'warming up', 'quiet', 'floor too stiff', 'plan symmetric', 'channel lost'];
+const reasons = ['', 'first window not complete', 'moves too little', 'floor too stiff', 'plan symmetric', 'sensor lost'];
 const kSilence_ms = 1500;
 let plan, building, boxPlots = [], strips = {}, boxes, estimate, baseline = [], status, chosen = 0;
-let lastMotion = 0, lastAlive = 0, firstUs = null, lastRow = null, frames = [];
+let lastMotion = 0, lastAlive = 0, lastRow = null, frames = [], known = [];
+let boxMode = localStorage.getItem('boxes') || 'percent';
 const alarms = new Map();
 // What the browser test asks for.
 window.framewatch = {rows: 0, lost: 0, leftOut: 0, dropped: 0, latency: [], estimate: null, boxes: null, motion: null, alarms, fps: () => frames.length};
@@ -14,7 +15,7 @@ function theme() {
   const name = document.documentElement.dataset.theme;
   if (!themes[name]) {
     const s = getComputedStyle(document.documentElement);
-    themes[name] = Object.fromEntries(['ink', 'soft', 'rule', 'card', 'blue', 'orange', 'green', 'purple', 'grey'].map(k => [k, s.getPropertyValue('--' + k).trim()]));
+    themes[name] = Object.fromEntries(['ink', 'soft', 'rule', 'card', 'blue', 'orange', 'green', 'purple', 'grey', 'red', 'amber'].map(k => [k, s.getPropertyValue('--' + k).trim()]));
   }
   return themes[name];
 }
@@ -24,12 +25,6 @@ const kFullColor = 0.15;
 function ratioColor(ratio, style) {
   const t = Math.min(1, Math.abs(ratio - 1) / kFullColor);
   return mix(style.grey, ratio < 1 ? style.orange : style.blue, t);
-}
-function shortNumber(v) { return v === null ? '' : Math.abs(v) >= 1e4 || (v !== 0 && Math.abs(v) < 1e-3) ? v.toExponential(1) : String(+v.toPrecision(4)); }
-function niceTicks(low, high, wanted) {
-  const raw = (high - low) / wanted, p = 10 ** Math.floor(Math.log10(raw)), step = [1, 2, 5, 10].find(m => m * p >= raw) * p, out = [];
-  for (let t = Math.ceil(low / step) * step; t <= high; t += step) out.push(+t.toPrecision(12));
-  return out;
 }
 function showTip(text, x, y) {
   const tip = $('tip');
@@ -45,27 +40,34 @@ function place(q) {
 }
 const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.'];
 function reference(i) { return baseline[i] || plan.parameters[i].design || null; }
+const baselineKnown = () => baseline.some(b => b);
+const flows = () => lastMotion > 0 && performance.now() - lastMotion <= kSilence_ms;
+const isNow = i => flows() && estimate !== undefined && estimate.reason[i] === 0;
+const newestUs = () => Math.max(lastRow || 0, estimate ? estimate.end_us : 0);
+// Sensor time now, as far as the page can tell: an old value gets older while nothing comes.
+const nowUs = () => newestUs() + (flows() || !lastMotion ? 0 : 1e3 * (performance.now() - lastMotion));
+const whyNot = i => estimate ? reasons[estimate.reason[i]] || 'no value' : 'no value yet';
 function elementText(i) {
-  const q = plan.parameters[i], f = q.kind < 2 ? 1e-3 : 1, unit = (q.kind < 2 ? 'k' : '') + q.unit;
-  const out = [`${q.name}: ${place(q)}`, meaning[q.kind]];
-  if (estimate && estimate.reason[i] === 0) {
-    out.push(`now ${(estimate.value[i] * f).toPrecision(4)} ± ${(estimate.error[i] * f).toPrecision(2)} ${unit} (one standard error)`);
-    if (reference(i)) out.push(`${(100 * (estimate.value[i] / reference(i) - 1)).toFixed(1)} % from its ${baseline[i] ? 'baseline' : 'design'}`);
-  } else if (estimate) out.push(`no value: ${reasons[estimate.reason[i]]}`);
-  if (boxes && boxes.count[i] > 0) out.push(`median ${(boxes.median[i] * f).toPrecision(4)} ${unit}, quartiles ${(boxes.q1[i] * f).toPrecision(4)} to ${(boxes.q3[i] * f).toPrecision(4)}, ${boxes.outliers[i]} outliers in ${boxes.count[i]} windows`);
+  const q = plan.parameters[i], out = [`${q.name}: ${place(q)}`, meaning[q.kind]], v = known[i], f = findingOf(q.name);
+  if (f) out.push(`${f.ratio < 0 ? 'lost' : 'gained'} ${percent(f.ratio, f.error).slice(1)} of its stiffness, standard error ${percent(f.error, f.error).slice(1)}, since ${when(f.since_us)}`);
+  if (v) out.push(`${isNow(i) ? 'newest window' : 'last value'} ${withError(v.value, v.error, q.unit)} (one standard error)` + (isNow(i) ? '' : `, ${span((nowUs() - v.us) / 1e6)} old, of ${when(v.us)}`));
+  if (!isNow(i) && flows()) out.push(`now no value: ${whyNot(i)}`);
+  if (reference(i)) out.push(`${baseline[i] ? 'baseline' : 'design'} ${plain(reference(i), q.unit)}`);
+  if (boxes && boxes.count[i] > 0) out.push(`median ${plain(boxes.median[i], q.unit)}, quartiles ${plain(boxes.q1[i], q.unit)} to ${plain(boxes.q3[i], q.unit)}, ${boxes.outliers[i]} outliers in ${boxes.count[i]} windows`);
   return out.join('\n');
 }
-const clock = us => us > 9.4e14 ? new Date(us / 1e3).toISOString().slice(11, 19) : (us / 1e6).toFixed(1) + ' s';
-const seconds = us => (us - firstUs) / 1e6;
+const seconds = us => us / 1e6;
+let strip = null; // factor and unit of the chosen element
 
 function choose(i) {
   chosen = i;
   $('element').value = i;
   building.chosen = Math.max(0, building.faces.findIndex(f => f.i === i));
   strips.k.clear(); strips.drift.clear();
+  const q = plan.parameters[i], size = reference(i) || (known[i] ? known[i].value : 1);
+  strip = engineering(size, q.unit);
   past.forEach(pushStiffness);
-  const q = plan.parameters[i];
-  strips.k.name(`${q.name}, ${(q.kind < 2 ? 'k' : '') + q.unit}: value and one standard error`);
+  strips.k.name(`${q.name}, ${strip.unit}: value and one standard error`);
   strips.drift.name(q.frame >= 0 ? `story drift in ${place(q)}, mm` : 'story drift: choose a frame');
 }
 function start(json) {
@@ -74,6 +76,7 @@ function start(json) {
   $('name').textContent = plan.name || 'framewatch';
   $('version').textContent = `framewatch ${plan.version}, configuration ${plan.config_sha256.slice(0, 12)}`;
   $('window').textContent = `windows of ${plan.window_s} s`;
+  $('baseline').hidden = plan.watch; // then it is framewatch run's, of its configuration
   plan.parameters.forEach((q, i) => $('element').add(new Option(`${q.name}  (${place(q)})`, i)));
   plan.axes.forEach((a, i) => $('channel').add(new Option(a.name, i)));
   building = new Building($('building'), plan, choose);
@@ -82,17 +85,18 @@ function start(json) {
   $('channel').value = top;
   strips.accel = new Strip(parent, 'acceleration, m/s²', 'Absolute acceleration of the chosen channel and of the base, calibrated.', [{name: 'channel', color: 'blue'}, {name: 'base', color: 'orange', width: 1}], 10, rate);
   strips.drift = new Strip(parent, 'story drift, mm', 'Displacement of the floor above less that below in the frame, by two leaky integrations for the eye; the estimator integrates nothing.', [{name: 'drift', color: 'purple'}], 10, rate);
-  strips.k = new Strip(parent, 'stiffness', 'The newest window\'s value with one standard error to either side; baseline dashed.', [{name: 'value', color: 'blue', width: 2}, {name: '+ error', color: 'blue', width: 0.5}, {name: '- error', color: 'blue', width: 0.5, band: true}, {name: 'baseline', color: 'soft', dash: [5, 4]}], 60, 20);
-  strips.excitation = new Strip(parent, 'excitation: rms of the base over a second, m/s²', 'Without excitation nothing can be identified.', [{name: 'base rms', color: 'green'}], 60, 20);
-  strips.residual = new Strip(parent, 'residual over response', 'What the identified model leaves of the measured response in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 60, 20);
+  strips.k = new Strip(parent, 'stiffness', 'The newest window\'s value with one standard error to either side; baseline dashed.', [{name: 'value', color: 'blue', width: 2}, {name: '+ error', color: 'blue', width: 0.5}, {name: '- error', color: 'blue', width: 0.5, band: true}, {name: 'baseline', color: 'soft', dash: [5, 4]}], 300, 4);
+  strips.excitation = new Strip(parent, 'excitation: rms of the base over a second, m/s²', 'Without excitation nothing can be identified.', [{name: 'base rms', color: 'green'}], 300, 4);
+  strips.residual = new Strip(parent, 'residual over response', 'What the identified model leaves of the measured response in the newest window, rms over rms. 0: it explains everything.', [{name: 'residual', color: 'orange'}], 300, 4);
   startSession();
   choose(0);
   const bar = document.createElement('canvas');
-  bar.id = 'bar'; bar.width = 160; bar.height = 14; bar.style.width = '160px';
+  bar.id = 'bar'; bar.width = 160; bar.height = 14; bar.style.width = '160px'; bar.setAttribute('aria-hidden', 'true');
   const text = t => { const s = document.createElement('span'); s.textContent = t; return s; };
-  $('scale').replaceChildren(text('−15 %, softer'), bar, text('+15 %, stiffer than the baseline; hatched: no value'));
+  $('scale').replaceChildren(text('−15 %, softer'), bar, text('+15 %, stiffer than the baseline; paler: the last value; hatched: never had one'));
   applyTheme();
-  listen();
+  boxButton();
+  fetch('history.json').then(r => r.ok ? r.json() : null).catch(() => null).then(before).finally(listen);
   requestAnimationFrame(draw);
 }
 function applyTheme() {
@@ -100,21 +104,44 @@ function applyTheme() {
   if (g) for (let x = 0; x < 160; x++) { g.fillStyle = ratioColor(1 + kFullColor * (x / 80 - 1), theme()); g.fillRect(x, 0, 1, 14); }
   for (const s of Object.values(strips)) { s.make(); s.fresh = true; }
 }
-let rms = [];
+// What happened before the page was opened.
+function before(history) {
+  if (!history) return;
+  for (const m of history.motion) takeMotion(m);
+  lastRow = history.motion.length ? lastRow : null;
+  if (history.motion.length) lastMotion = performance.now() - 1e3 * history.silent_s;
+  Object.assign(window.framewatch, {rows: 0, lost: 0, motion: null, opened: history.rows.length});
+  pending = null;
+  resumed = true;
+  for (const [end_us, status, residual, x, y, value, error] of history.rows) {
+    const e = {end_us, status, residual, value, error, reason: value.map(v => v === null ? 2 : 0)};
+    remember(e);
+    const rms = plan.axes[+$('channel').value].direction === 'x' ? x : y;
+    strips.excitation.push([seconds(end_us), rms]);
+    strips.residual.push([seconds(end_us), status === 0 ? null : residual]);
+  }
+}
+let rms = [], resumed = false;
 function onMotion(m) {
-  if (firstUs === null) firstUs = m.first_us;
+  if (resumed) { lastRow = null; resumed = false; } // the moment between history and stream is no loss
+  takeMotion(m);
+  lastMotion = performance.now();
+  pending = lastRow;
+}
+function takeMotion(m) {
   const step = 1e6 / plan.rate_hz;
   const axis = +$('channel').value, base = building.baseOf(plan.axes[axis].direction);
   for (const [offset, accel] of m.rows) {
     const us = m.first_us + offset;
     if (lastRow !== null && us > lastRow) window.framewatch.lost += Math.max(0, Math.round((us - lastRow) / step) - 1);
+    if (lastRow !== null && Math.abs(us - lastRow) > 1e6) building.begin();
     lastRow = us;
     window.framewatch.rows++;
     building.push(accel);
     const t = seconds(us);
     strips.accel.push([t, accel[axis], accel[base]]);
     const d = building.drift(chosen);
-    if (d !== null) strips.drift.push([t, d * 1e3]);
+    strips.drift.push([t, d === null ? null : d * 1e3]);
     const b = accel[base];
     if (b !== null && b !== undefined) { rms.push(b); if (rms.length > plan.rate_hz) rms.shift(); }
   }
@@ -122,57 +149,67 @@ function onMotion(m) {
   window.framewatch.motion = m;
   const mean = rms.reduce((a, b) => a + b, 0) / (rms.length || 1);
   strips.excitation.push([seconds(lastRow), Math.sqrt(rms.reduce((a, b) => a + (b - mean) ** 2, 0) / (rms.length || 1))]);
-  lastMotion = performance.now();
-  pending = lastRow;
 }
 // Until a gap arrives there is no strip for it.
 function onGap(g) {
   window.framewatch.gap = g;
   if (!strips.gap) strips.gap = new Strip($('strips'), 'gap', 'What a simulation with the identified values does not explain of the measurement, rms over rms: of all channels, of the chosen one, and the least that sensor noise allows.', [{name: 'all channels', color: 'orange', width: 2}, {name: 'chosen channel', color: 'blue'}, {name: 'noise floor', color: 'soft', dash: [5, 4]}], 300, 4);
-  if (firstUs === null) return;
   const i = g.name.indexOf(plan.axes[+$('channel').value].name);
   strips.gap.name('gap between simulation and measurement' + (i < 0 ? '' : `, ${g.name[i]}`));
   strips.gap.push([seconds(g.end_us), g.overall, i < 0 ? null : g.nrmse[i], g.noise_floor]);
 }
 let pending = null;
-const past = []; // estimates of the last minute: another element's history is there at once
+const past = []; // estimates of the last minutes: another element's history is there at once
 function pushStiffness(e) {
-  const f = plan.parameters[chosen].kind < 2 ? 1e-3 : 1, ok = e.reason[chosen] === 0;
+  const f = strip.factor, ok = e.reason[chosen] === 0;
   const v = ok ? e.value[chosen] * f : null, s = ok ? e.error[chosen] * f : 0;
   strips.k.push([seconds(e.end_us), v, ok ? v + s : null, ok ? v - s : null, baseline[chosen] ? baseline[chosen] * f : null]);
 }
-function onEstimate(e) {
-  estimate = window.framewatch.estimate = e;
-  plan.parameters.forEach((q, i) => {
-    if (q.kind > 1) return;
-    building.known[i] = e.reason[i] === 0;
-    building.ratio[i] = reference(i) ? e.value[i] / reference(i) : 1;
-  });
-  if (firstUs === null) return;
+// The newest value of each element stays, with its time.
+function remember(e) {
+  e.value.forEach((v, i) => { if (e.reason[i] === 0) known[i] = {value: v, error: e.error[i], us: e.end_us}; });
+  if (past.length && e.end_us < past.at(-1).end_us) past.length = 0; // another clock
+  if (past.length && e.end_us - past.at(-1).end_us < 2.5e5) return;
   past.push(e);
   if (past.length > 1200) past.shift();
   pushStiffness(e);
+}
+function onLast(l) {
+  l.index.forEach((i, k) => { if (!known[i] || known[i].us < l.end_us[k]) known[i] = {value: l.value[k], error: l.error[k], us: l.end_us[k]}; });
+}
+function onEstimate(e) {
+  estimate = window.framewatch.estimate = e;
+  remember(e);
   strips.residual.push([seconds(e.end_us), e.status === 0 ? null : e.residual]);
+}
+function colour() {
+  plan.parameters.forEach((q, i) => {
+    if (q.kind > 1) return;
+    const f = findingOf(q.name);
+    building.known[i] = known[i] !== undefined;
+    building.old[i] = !isNow(i);
+    if (known[i]) building.ratio[i] = f ? 1 + f.ratio : reference(i) ? known[i].value / reference(i) : 1;
+  });
 }
 function cell(row, text, name) { const td = row.insertCell(); td.textContent = text; if (name) td.className = name; return td; }
 function heads(table, names) { const row = table.createTHead().insertRow(); for (const n of names) { const th = document.createElement('th'); th.textContent = n; row.append(th); } }
-let before = null;
+let counted = null;
 function onStatus(s) {
   status = s;
-  const dt = before ? (s.time_us - before.time_us) / 1e6 : 0;
-  $('health').textContent = `${s.windows} windows, ${s.gaps} gaps, ${s.refused} messages refused, estimator's delay ${(1e3 * s.latency_s).toFixed(1)} ms, queue at most ${s.queue_high} (${s.queue_dropped} dropped)` + (s.same_config ? '' : '. The estimator runs with another configuration than this page!');
+  const dt = counted ? (s.time_us - counted.time_us) / 1e6 : 0;
+  $('health').textContent = `${s.windows} windows, ${s.gaps} interruptions, ${s.refused} messages refused, estimator's delay ${(1e3 * s.latency_s).toFixed(1)} ms, queue at most ${s.queue_high} (${s.queue_dropped} dropped)` + (s.same_config ? '' : '. The estimator runs with another configuration than this page!');
   const table = $('channels');
   table.replaceChildren();
   heads(table, ['channel', 'rate, Hz', 'lost', 'late', 'repaired', 'rejected', 'stuck', 'clipped', 'noise, µm/s²/√Hz']);
   const body = table.createTBody();
   s.channels.forEach((c, i) => {
-    const row = body.insertRow(), old = before && before.channels[i];
-    cell(row, c.name);
+    const row = body.insertRow(), old = counted && counted.channels[i], dead = deadChannels().has(c.name);
+    cell(row, c.name + (dead ? ' (not good)' : ''), dead ? 'bad' : '');
     cell(row, dt > 0 && old ? ((c.received - old.received) / dt).toFixed(1) : '');
     for (const k of ['lost', 'late', 'repaired', 'rejected', 'stuck', 'clipped']) cell(row, c[k], old && c[k] > old[k] ? 'bad' : '');
     cell(row, c.noise === null ? '?' : (c.noise * 1e6).toPrecision(3));
   });
-  before = s;
+  counted = s;
 }
 const busStates = ['not there', 'active', 'warning', 'passive', 'off'];
 function onCan(s) {
@@ -194,40 +231,23 @@ function onAlarm(a) {
   if (a.unit === '%' && a.value !== null) Object.assign(a, {value: a.value / 100, error: a.error === null ? null : a.error / 100, unit: 'ratio'});
   a.told = a.unit !== 'ratio' || a.value === null || a.error === null;  // by its message alone
   alarms.set(a.id, a);
+  showAlarms();
+}
+function showAlarms() {
   const list = [...alarms.values()].sort((x, y) => y.time_us - x.time_us);
   $('no-alarms').hidden = list.length > 0;
   const table = $('alarms');
   table.replaceChildren();
-  if (list.length) heads(table, ['time', 'place', 'change', 'standard error', 'state', '']);
+  if (list.length) heads(table, ['since', 'place', 'change', 'standard error', 'state', '']);
   const body = table.createTBody();
   for (const x of list.slice(0, 100)) {
     const row = body.insertRow();
-    cell(row, clock(x.since_us)); cell(row, x.place).title = x.message;
-    cell(row, x.told ? x.message : (100 * x.value).toFixed(1) + ' %'); cell(row, x.told ? '' : (100 * x.error).toFixed(2) + ' %');
-    cell(row, x.state === 0 ? 'cleared' : !x.acknowledged ? 'raised' : x.who ? `acknowledged by ${x.who}` : 'acknowledged').title = x.comment || '';
+    cell(row, when(x.since_us)); cell(row, x.place).title = x.message;
+    cell(row, x.told ? x.message : percent(x.value, x.error), x.told ? 'text' : ''); cell(row, x.told ? '' : percent(x.error, x.error).slice(1));
+    cell(row, x.state === 0 ? `over, ${when(x.time_us)}` : !x.acknowledged ? 'open' : x.who ? `acknowledged by ${x.who}` : 'acknowledged').title = x.comment || '';
     const last = row.insertCell();
-    if (!x.acknowledged && x.state !== 0) last.append(acknowledgeButton(x.id));
+    if (!x.acknowledged && x.state !== 0) last.append(acknowledgeButton([x.id], x.message));
   }
-  banner(list);
-}
-const sure = n => n > 100 ? 'more than 100 standard errors' : `${Math.round(n)} standard errors`;
-const size = a => a.told ? 0 : Math.abs(a.value);
-function banner(list) {
-  const open = list.filter(x => x.state !== 0 && !x.acknowledged).sort((x, y) => size(y) - size(x)), box = $('alarm');
-  box.hidden = open.length === 0;
-  if (!open.length) return;
-  const a = open[0], q = plan.parameters.find(p => p.name === a.place);
-  const what = document.createElement('strong');
-  what.textContent = a.told ? a.message : `${q ? place(q) : a.place}: ${a.value < 0 ? 'softer' : 'stiffer'} by ${Math.abs(100 * a.value).toFixed(1)} %`;
-  const error = document.createElement('span');
-  error.textContent = a.told ? `since ${clock(a.since_us)}` : `± ${(100 * a.error).toPrecision(2)} % (${sure(Math.abs(a.value / a.error))}), ${a.place}, since ${clock(a.since_us)}` + (open.length > 1 ? `; ${open.length - 1} more` : '');
-  box.replaceChildren(what, error, acknowledgeButton(a.id));
-}
-function acknowledgeButton(id) {
-  const b = document.createElement('button');
-  b.textContent = 'Acknowledge';
-  b.onclick = () => post('acknowledge?id=' + id);
-  return b;
 }
 async function post(path) {
   const answer = await fetch(path, {method: 'POST'}).catch(() => null);
@@ -251,6 +271,7 @@ function listen() {
   on('motion', onMotion); on('estimate', onEstimate); on('status', onStatus); on('alarm', onAlarm);
   on('session', onSession); on('gap', onGap); on('can', onCan); on('refused', onRefused);
   on('boxes', b => { boxes = window.framewatch.boxes = b; });
+  on('answers', onAnswers); on('last', onLast);
   on('baseline', b => { baseline = b.value; });
   on('dropped', d => { window.framewatch.dropped = d.events; });
   on('alive', () => {});
@@ -275,27 +296,47 @@ function draw() {
 }
 function slow(now) {
   sessionAge(now);
-  for (const b of boxPlots) b.draw(boxes, estimate, baseline, chosen);
-  $('chosen').textContent = elementText(chosen).split('\n').slice(0, 1).concat(elementText(chosen).split('\n').slice(2)).join('; ');
+  colour();
+  building.still = !flows();
+  for (const b of boxPlots) b.draw();
+  const [name, , ...rest] = elementText(chosen).split('\n');
+  say2($('chosen'), [name, ...rest].join('; '));
+  if (now - (slow.table || 0) > 1000) { slow.table = now; valueTable(); }
   if (now - lastAlive > 3000) say('no connection to the server', 'dead');
   else if (lastMotion === 0) say('waiting for samples', 'wait');
-  else if (now - lastMotion > kSilence_ms) say(`no samples for ${((now - lastMotion) / 1e3).toFixed(0)} s`, 'dead');
-  else if (!estimate || estimate.status === 0) say('warming up', 'wait');
+  else if (now - lastMotion > kSilence_ms) say(`no samples for ${span((now - lastMotion) / 1e3)}`, 'dead');
+  else if (deadChannels().size) say(`live, but ${deadChannels().size} of ${plan.axes.length} sensors not good`, 'amber');
+  else if (!estimate || estimate.status === 0) say('first window not complete', 'wait');
+  else if (told.findings.some(f => f.kind === 'belief')) say('live, but the model does not fit', 'amber');
   else say('live', 'live');
   const l = [...window.framewatch.latency].sort((a, b) => a - b), median = l.length ? l[l.length >> 1] : null;
   $('rates').textContent = `${frames.length} frames/s` + (median !== null ? `, sample to screen ${median.toFixed(0)} ms` : '') + (window.framewatch.dropped ? `, ${window.framewatch.dropped} events dropped` : '');
 }
-document.documentElement.dataset.theme = localStorage.getItem('theme') || (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
-$('theme').onclick = () => {
-  const next = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
-  document.documentElement.dataset.theme = next;
-  localStorage.setItem('theme', next);
-  applyTheme();
+const root = document.documentElement;
+function useTheme(name) { root.dataset.theme = name; applyTheme(); }
+root.dataset.theme = localStorage.getItem('theme') || (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light');
+$('theme').onclick = () => { useTheme(root.dataset.theme === 'dark' ? 'light' : 'dark'); localStorage.setItem('theme', root.dataset.theme); };
+// Paper is white; what is on canvases has to be drawn anew for it.
+let screenTheme = null;
+addEventListener('beforeprint', () => { screenTheme = root.dataset.theme; useTheme('light'); building.draw(); for (const b of boxPlots) b.draw(); for (const s of Object.values(strips)) s.draw(); });
+addEventListener('afterprint', () => { if (screenTheme) useTheme(screenTheme); });
+function zoneButton() { $('zone').textContent = zone === 'UTC' ? 'Times: UTC' : 'Times: local'; }
+$('zone').onclick = () => {
+  zone = zone === 'UTC' ? 'local' : 'UTC';
+  localStorage.setItem('zone', zone);
+  zoneButton(); showAnswers(); showAlarms();
+  for (const s of Object.values(strips)) { s.make(); s.fresh = true; }
 };
-$('baseline').onclick = () => post('baseline');
+zoneButton();
+function boxButton() { $('box-mode').textContent = boxMode === 'percent' ? 'Show true values' : 'Show percent'; }
+$('box-mode').onclick = () => { boxMode = boxMode === 'percent' ? 'true' : 'percent'; localStorage.setItem('boxes', boxMode); boxButton(); };
+$('values').addEventListener('toggle', () => plan && valueTable());
+$('baseline').onclick = () => $('ask-baseline').showModal();
+$('ask-baseline').addEventListener('close', () => { if ($('ask-baseline').returnValue === 'yes') post('baseline'); $('ask-baseline').returnValue = ''; });
 $('element').onchange = e => choose(+e.target.value);
 $('channel').onchange = () => { strips.accel.clear(); if (strips.gap) strips.gap.clear(); };
 document.querySelectorAll('.why').forEach(b => {
+  b.setAttribute('aria-label', 'What is this? ' + b.dataset.why);
   const show = () => { const r = b.getBoundingClientRect(); showTip(b.dataset.why, r.left, r.bottom); };
   b.onmouseenter = b.onfocus = b.onclick = show;
   b.onmouseleave = b.onblur = hideTip;

@@ -1,5 +1,5 @@
 'use strict';
-// Histories on uPlot. Rings are mirrored so that the newest stretch is one subarray.
+// Histories on uPlot. Rings are mirrored so that the newest stretch is one subarray. x: sensor time, s.
 class Ring {
   constructor(columns, size) { this.size = size; this.n = 0; this.data = Array.from({length: columns}, () => new Float64Array(2 * size).fill(NaN)); }
   push(values) {
@@ -11,6 +11,7 @@ class Ring {
     return this.data.map((d, c) => c === 0 ? d.subarray(end - count, end) : Array.from(d.subarray(end - count, end), v => Number.isNaN(v) ? null : v));
   }
 }
+const kPause_s = 3; // longer: the line is broken
 class Strip {
   constructor(parent, title, why, series, seconds, rate) {
     this.box = document.createElement('div');
@@ -18,7 +19,7 @@ class Strip {
     parent.append(this.box);
     this.title = title; this.why = why; this.series = series;
     this.ring = new Ring(series.length + 1, Math.ceil(seconds * rate));
-    this.seconds = seconds;
+    this.seconds = seconds; this.least = 0.9 / rate; this.last = null;
     this.make();
   }
   make() {
@@ -27,15 +28,30 @@ class Strip {
     this.plot = new uPlot({
       title: this.title, width: Math.max(200, this.box.clientWidth || 400), height: 150, legend: {show: this.series.length > 1, live: false},
       cursor: {drag: {x: false, y: false}}, scales: {x: {time: false}, y: {range: (u, a, b) => a === null || b === null ? [0, 1] : uPlot.rangeNum(a, b, 0.12, true)}},
-      axes: [{...axis, size: 26, values: (u, v) => v.map(x => x + ' s')}, {...axis, size: 56, values: (u, v, i, room, step) => v.map(x => Math.abs(x) >= 1e5 || step < 1e-4 ? x.toExponential(1) : x.toFixed(Math.max(0, Math.ceil(-Math.log10(step)))))}],
+      axes: [{...axis, size: 26, space: 84, incrs: [1, 2, 5, 10, 15, 30, 60, 120, 300], values: (u, v) => v.map(x => clock(x * 1e6))}, {...axis, size: 56, values: (u, v, i, room, step) => v.map(x => x.toFixed(Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)))))}],
       series: [{}, ...this.series.map(s => ({label: s.name, stroke: style[s.color], width: s.width || 1.4, dash: s.dash, points: {show: false}, spanGaps: false}))],
       bands: this.series.some(s => s.band) ? [{series: [3, 2], fill: style.blue + '33'}] : [],
     }, [[], ...this.series.map(() => [])], this.box);
     this.box.querySelector('.u-title').title = this.why;
+    this.box.setAttribute('role', 'img');
+    this.box.setAttribute('aria-label', `${this.title}. ${this.why}`);
   }
-  name(title) { if (title === this.title) return; this.title = title; this.box.querySelector('.u-title').textContent = title; }
-  clear() { this.ring = new Ring(this.series.length + 1, this.ring.size); }
-  push(values) { this.ring.push(values); this.fresh = true; }
+  name(title) {
+    if (title === this.title) return;
+    this.title = title;
+    this.box.querySelector('.u-title').textContent = title;
+    this.box.setAttribute('aria-label', `${title}. ${this.why}`);
+  }
+  clear() { this.ring = new Ring(this.series.length + 1, this.ring.size); this.last = null; this.fresh = true; }
+  // Values closer than the rate are left out.
+  push(values) {
+    if (this.last !== null && values[0] < this.last) this.clear();
+    if (this.last !== null && values[0] - this.last < this.least) return;
+    if (this.last !== null && values[0] - this.last > kPause_s) this.ring.push([values[0] - 1e-3, ...values.slice(1).map(() => null)]);
+    this.last = values[0];
+    this.ring.push(values);
+    this.fresh = true;
+  }
   draw() {
     const width = Math.max(200, this.box.clientWidth);
     if (Math.abs(this.plot.width - width) > 2) this.plot.setSize({width, height: 150});
@@ -43,6 +59,6 @@ class Strip {
     this.fresh = false;
     const view = this.ring.view(), last = view[0].at(-1);
     this.plot.setData(view, false);
-    this.plot.setScale('x', {min: Math.max(last - this.seconds, view[0][0] - 1e-3), max: last});
+    if (last !== undefined) this.plot.setScale('x', {min: Math.max(last - this.seconds, view[0][0] - 1e-3), max: last});
   }
 }

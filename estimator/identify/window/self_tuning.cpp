@@ -27,7 +27,7 @@ SelfTuning::SelfTuning(const FloorLayout& layout, const ParameterTable& table,
       noise_known_(noise_known),
       noise_(standby_->tuning().noise_density()),
       work_(table.size()),
-      next_theta0_(table.size()) {
+      next_theta0_(Eigen::VectorXd::Zero(table.size())) {
   const double front = layout.own() + 2.0 * layout.frames() + 1;
   catch_up_per_instant_ = static_cast<int>(std::clamp<double>(
       kCatchUpWork / (layout.floors() * front * front), kLeastCatchUp, kMostCatchUp));

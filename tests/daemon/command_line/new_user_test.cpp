@@ -44,6 +44,7 @@ TEST_F(NewUser, ARecordOfTwoRowsGivesNoWindowAndTheReason) {
 }
 
 TEST_F(NewUser, ABuildingWithoutSourcesIsNotRun) {
+  ASSERT_EQ(shell("sed -i '/^source/d' building.toml").status, 0);
   for (const char* command : {"run", "record"}) {
     const ShellResult said = shell(std::string("timeout 60 $F ") + command + " building.toml");
     EXPECT_EQ(said.status, kBadInput) << command;

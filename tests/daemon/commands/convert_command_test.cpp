@@ -97,10 +97,10 @@ TEST_F(Convert, RefusesBadUseAndWritesNothing) {
   expect_refused(from({path("rec.csv"), path("rec.csv")}, "o.lcmlog"), "appears twice");
   expect_refused(from({path("rec.csv")}, "no/o.lcmlog"), "No such file");
   auto arguments = from({path("rec.csv")}, "o.lcmlog");
-  arguments.unit = "furlong";
-  expect_refused(arguments, "not g, gal or mps2");
+  arguments.record.unit = "furlong";
+  expect_refused(arguments, "not g, mg, gal or mps2");
   arguments = from({path("rec.csv")}, "o.lcmlog");
-  arguments.format = "tape";
+  arguments.record.format = "tape";
   expect_refused(arguments, "'tape'");
   arguments = from({path("rec.csv")}, "o.lcmlog");
   arguments.boxplot = true;
@@ -108,6 +108,22 @@ TEST_F(Convert, RefusesBadUseAndWritesNothing) {
   arguments = from({path("rec.csv")}, "o.lcmlog");
   arguments.config = path("none.toml");
   expect_refused(arguments, "none.toml");
+}
+
+TEST_F(Convert, ReadsASpreadsheetAndNeverInterleavesColumns) {
+  test::write_file(path("sheet.csv"), "\xEF\xBB\xBFTime;a [m/s2]\r\n0;0,5\r\n0,01;-1\r\n");
+  ASSERT_EQ(convert(from({path("sheet.csv")}, "o.csv")), 0);
+  EXPECT_EQ(test::read_file(path("o.csv")), "time_s,a\n0,0.5\n0.01,-1\n");
+  test::write_file(path("three.txt"), "0.00 1 2\n0.01 3 4\n0.02 5 6\n");
+  auto arguments = from({path("three.txt")}, "o.lcmlog");
+  arguments.record.unit = "g";
+  arguments.record.step_s = 0.01;
+  expect_refused(arguments, "can be read in two ways");
+  arguments.record = {};
+  arguments.record.zone = "Tokyo";
+  arguments.record.decimal = "dot";
+  arguments.record.time_unit = "h";
+  expect_refused(arguments, "'dot' is not comma or point");
 }
 
 template <typename Type>

@@ -164,6 +164,14 @@ TEST_F(GapLoop, IsClosedLive) {
   const std::string model = test::read_file(path("diagnosis/model.toml"));
   EXPECT_NE(model.find("kind = \"cubic_stiffness\"\nstory = 1\nframe = \"y1\""), std::string::npos)
       << model;
+  const std::string page = test::read_file(path("diagnosis/report.html"));
+  const std::size_t verdict = page.find("<p class=\"verdict\">The model lacks ");
+  ASSERT_NE(verdict, std::string::npos);
+  EXPECT_LT(verdict, page.find("<h1>"));
+  for (const char* wanted :
+       {"cubic stiffness at story 1, frame y1", "confidence", "noise alone would make"})
+    EXPECT_LT(page.find(wanted), page.find("<h1>")) << wanted;
+  EXPECT_EQ(page.find("misfit"), std::string::npos);
   ASSERT_EQ(adopt({path("building.toml"), path("diagnosis/model.toml"), true}), 0);
   testing::internal::CaptureStderr();
   keeper.look(live.estimation(), now_us += 1'000'000);

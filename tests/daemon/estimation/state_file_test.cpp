@@ -1,5 +1,6 @@
 #include "daemon/estimation/state_file.h"
 
+#include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,7 +26,7 @@ using test::TemporaryDirectory;
 using test::write_file;
 
 constexpr double kSeconds = 11;
-constexpr int kNodes = 10;
+constexpr int kNodes = 10, kFilledWith = 165;
 
 Config table() {
   std::vector<ConfigProblem> problems;
@@ -35,11 +36,15 @@ Config table() {
 class StateFile : public testing::Test {
  protected:
   static void SetUpTestSuite() {
+    ::mallopt(M_PERTURB, kFilledWith);  // a state has nothing of what the memory held before
     directory_ = new TemporaryDirectory;
     test::record_table_test(log(), kSeconds);
     ASSERT_EQ(run({log()}, "uncut.lcmlog", "", ""), 0);
   }
-  static void TearDownTestSuite() { delete directory_; }
+  static void TearDownTestSuite() {
+    ::mallopt(M_PERTURB, 0);
+    delete directory_;
+  }
 
   static std::string path(const std::string& name) { return directory_->path(name); }
   static std::string log() { return path("rec.lcmlog"); }

@@ -247,11 +247,14 @@ TEST(TwoSenders, WhatIsRaisedIsClearedAndGoesOnOverARestart) {
   ASSERT_TRUE(after.estimation.load(reader));
   EXPECT_FALSE(after.well());
   for (std::int64_t i = 500; i < 5000; ++i) send(after, i, kSensors);
-  ASSERT_EQ(after.events.size(), 1u);
+  std::erase_if(after.events, [](const event_t& e) { return e.kind == "channel_silent"; });
+  ASSERT_EQ(after.events.size(), 1u);  // beside the other nodes, which send nothing
   EXPECT_EQ(after.events[0].state, event_state::cleared);
   EXPECT_EQ(after.events[0].id, run.events[0].id);
   EXPECT_EQ(after.events[0].since_us, run.events[0].since_us);
-  EXPECT_TRUE(after.well());
+  const auto& raised = after.estimation.raised().all();
+  EXPECT_TRUE(std::none_of(raised.begin(), raised.end(),
+                           [](const event_t& e) { return e.kind == "two_senders"; }));
 }
 
 TEST(TwoSenders, ReplayRefusesALogWhoseTableContradictsTheConfiguration) {

@@ -127,6 +127,30 @@ TEST_F(DamagedHistory, EventsThatCanStillBeReadAreTakenOver) {
   expect_a_new_one({1});
 }
 
+TEST_F(DamagedHistory, PeriodsThatNobodyCanHaveWrittenAreLeftOut) {
+  std::vector<SummaryPeriods> sound;
+  std::optional<std::int64_t> newest_us;
+  for (const bool damaged : {false, true}) {
+    if (damaged) {
+      SqliteFile file;
+      ASSERT_TRUE(file.open(database()));
+      for (const std::string row :
+           {"0, 5, 1, 6", "-60, 5, 1, 6", "9223372036854775807, 5, 1, 6",
+            "1, 9223372036854775807, 1, 6", "1, 5, 1, -9223372036854775807 - 1"})
+        ASSERT_TRUE(file.execute("INSERT INTO period VALUES (" + row + ", 0)")) << row;
+    }
+    SummaryQuery query;
+    ASSERT_EQ(query.open(folder()), "");
+    if (damaged) {
+      ASSERT_EQ(query.periods().size(), sound.size());
+      EXPECT_EQ(query.periods().front().count, sound.front().count);
+      EXPECT_EQ(query.newest_us(), newest_us);
+    }
+    sound = query.periods();
+    newest_us = query.newest_us();
+  }
+}
+
 TEST_F(DamagedHistory, DamageThatShowsWhileItRunsIsSetAsideThen) {
   damage("event");
   expect_a_new_one({});

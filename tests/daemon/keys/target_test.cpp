@@ -9,6 +9,7 @@
 #include "daemon/keys/can_options.h"
 #include "daemon/keys/channel_options.h"
 #include "daemon/keys/command_options.h"
+#include "daemon/keys/event_report_options.h"
 #include "daemon/keys/gap_options.h"
 #include "daemon/keys/history_options.h"
 #include "daemon/keys/lcm_options.h"
@@ -98,6 +99,7 @@ TEST(KeyTargets, EveryKeyReachesItsFieldAndNoOther) {
   round_trip<WatchSettings>("watch", keys);
   round_trip<GapSettings>("gap", keys);
   round_trip<HistorySettings>("history", keys);
+  round_trip<EventReportSettings>("event_report", keys);
   round_trip<ActionSettings>("actions", keys);
   int all = 0;
   for (const Option& o : options()) all += o.target ? 1 : 0;

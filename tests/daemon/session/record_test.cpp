@@ -15,7 +15,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "daemon/base/user_name.h"
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 #include "daemon/session/session_finish.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/lcm_source.h"

@@ -11,7 +11,7 @@
 #include <framewatch/session_command_t.hpp>
 #include <framewatch/temperature_t.hpp>
 
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 #include "drivers/base/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_log.h"

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "daemon/replay/replay_command.h"
-#include "daemon/session/session_file.h"
-#include "daemon/session/session_motion.h"
+#include "daemon/report/session_file.h"
+#include "daemon/report/session_motion.h"
 #include "drivers/lcm/lcm_log.h"
 #include "tests/daemon/session/recorder_bench.h"
 #include "tests/support/recorded_table_test.h"

@@ -81,19 +81,18 @@ TEST_F(PageWatchTest, NamesTheFrameThatDroppedAndWhenItIsBack) {
   for (const event_t& e : events) {
     EXPECT_EQ(e.place, table()[kDropped].name);
     EXPECT_EQ(e.kind, "stiffness_change");
-    EXPECT_EQ(e.unit, "ratio");
+    EXPECT_EQ(e.unit, "%");
     // Once it is back, longer windows may still say so for a while, with an alarm of their own.
     if (static_cast<double>(e.time_us) < 1e6 * kBackAt_s) {
       EXPECT_EQ(e.id, 7);
-      newest_value = e.value;
+      newest_value = e.value / 100;
     }
   }
   EXPECT_EQ(events.front().state, event_state::raised);
   EXPECT_EQ(events.front().severity, severity::alarm);
-  EXPECT_NE(events.front().message.find(" % from its baseline, standard error "),
-            std::string::npos);
+  EXPECT_NE(events.front().message.find(" below its baseline since "), std::string::npos);
   EXPECT_EQ(events.back().state, event_state::cleared);
-  EXPECT_EQ(events.back().message, table()[kDropped].name + " is back at its baseline");
+  EXPECT_EQ(events.back().message, table()[kDropped].name + " is at its baseline again");
   EXPECT_NEAR(newest_value, -kDrop_ratio, 0.03);
 }
 

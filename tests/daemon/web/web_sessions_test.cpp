@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/session/session_file.h"
+#include "daemon/report/session_file.h"
 #include "daemon/web/served_file.h"
 #include "tests/support/temporary.h"
 

@@ -14,6 +14,7 @@ namespace framewatch::drivers {
 namespace record_file_test {
 
 constexpr double kG = 9.80665;
+constexpr double kGal = 0.01;
 
 /// Reads `text` as a file of the given name; ends with what was found.
 class RecordFile : public testing::Test {
@@ -45,9 +46,9 @@ class RecordFile : public testing::Test {
   std::vector<Problem> problems_;
 };
 
-RecordOptions declared(std::optional<AccelUnit> unit, std::optional<double> step_s = {}) {
+RecordOptions declared(std::optional<double> unit_mps2, std::optional<double> step_s = {}) {
   RecordOptions options;
-  options.unit = unit;
+  options.unit_mps2 = unit_mps2;
   options.step_s = step_s;
   return options;
 }
@@ -113,7 +114,7 @@ TEST_F(RecordFile, RefusesMalformedCsv) {
   expect_refused("time_s,a\n0,1\n", 0, "at least 2 samples");
   expect_refused("time_s,a,a\n0,1,1\n1,1,1\n", 1, "appears twice");
   expect_refused("time_s,a,\n0,1,1\n1,1,1\n", 1, "name is empty");
-  expect_refused("time_s,\"a\"\n0,1\n1,1\n", 1, "no quotes");
+  expect_refused("time_s,\"a\"\"b\"\n0,1\n1,1\n", 1, "no quotes");
   expect_refused("time_s,a\n0,1\n1,2,3\n2,1\n", 3, "3 fields where the header has 2");
   expect_refused("time_s,a\n0,1\n1\n2,1\n", 3, "1 fields");
   expect_refused("time_s,a\n0,1\n1,x2\n2,1\n", 3, "a: \"x2\"");
@@ -134,8 +135,8 @@ TEST_F(RecordFile, RefusesMalformedCsv) {
       1, "not a text file");
   expect_refused("hello\nworld\n", 0, "no known record format");
   expect_refused("time_s,a\n0,1\n" + std::string(2 << 20, '1'), 3, "longer than");
-  expect_refused("time_s,a\n0,1\n1,1\n", 0, "--unit does not apply", declared(AccelUnit::g));
-  expect_refused("time_s,a\n0,1\n1,1\n", 0, "--step does not apply", declared({}, 0.1));
+  expect_refused("time_s,a\n0,1\n1,1\n", 1, "--unit does not apply", declared(kG));
+  expect_refused("time_s,a\n0,1\n1,1\n", 1, "--step does not apply", declared({}, 0.1));
 }
 
 TEST_F(RecordFile, ReportsEveryProblemButAtMostTwenty) {
@@ -181,32 +182,32 @@ TEST_F(RecordFile, RefusesMalformedAt2) {
 }
 
 TEST_F(RecordFile, ReadsTwoColumnsAndRowsWithDeclaredUnit) {
-  const auto two = read("0 1\n0.5\t2\n1;3\n", declared(AccelUnit::g));
+  const auto two = read("0 1\n0.5\t2\n1;3\n", declared(kG));
   ASSERT_TRUE(two);
   EXPECT_DOUBLE_EQ(two->accel_mps2[0][2], 3 * kG);
-  const auto one = read("1\n2\n3\n", declared(AccelUnit::gal, 0.25));
+  const auto one = read("1\n2\n3\n", declared(kGal, 0.25));
   ASSERT_TRUE(one);
   EXPECT_DOUBLE_EQ(one->accel_mps2[0][2], 0.03);
   EXPECT_DOUBLE_EQ(one->time_s[2], 0.5);
-  const auto rows = read("1 2 3\n4 5 6\n7\n*** End Data ***\n", declared(AccelUnit::mps2, 1));
+  const auto rows = read("1 2 3\n4 5 6\n7\n*** End Data ***\n", declared(1.0, 1));
   ASSERT_TRUE(rows);
   EXPECT_EQ(rows->accel_mps2[0], (std::vector<double>{1, 2, 3, 4, 5, 6, 7}));
 }
 
 TEST_F(RecordFile, RefusesMalformedColumns) {
   expect_refused("0 1\n1 2\n", 0, "declare it with --unit");
-  expect_refused("1\n2\n", 0, "--step", declared(AccelUnit::g));
-  expect_refused("1\n2\n", 0, "positive", declared(AccelUnit::g, -1));
-  expect_refused("1\n2\n", 0, "positive", declared(AccelUnit::g, std::nan("")));
-  expect_refused("0 1\n1 2 3\n2 3\n", 2, "3 values", declared(AccelUnit::g));
-  expect_refused("0 1\n1\n2 3\n", 2, "1 values", declared(AccelUnit::g));
-  expect_refused("0 1\n1 1,5.x\n", 2, "3 values", declared(AccelUnit::g));
-  expect_refused("0 1\n0 1\n", 2, "must increase", declared(AccelUnit::g));
-  expect_refused("0 1\n1 inf\n2 1\n", 2, "finite", declared(AccelUnit::g));
-  expect_refused("1 2 3\n4 5\n6 7 8\n", 2, "ragged", declared(AccelUnit::g, 1));
-  expect_refused("1 2 3\n4 5 6 7\n", 2, "ragged", declared(AccelUnit::g, 1));
-  expect_refused("1\n2\nend\n", 3, "\"end\"", declared(AccelUnit::g, 1));
-  expect_refused("1\n2\n*** End\n3\n", 4, "more after", declared(AccelUnit::g, 1));
+  expect_refused("1\n2\n", 0, "--step", declared(kG));
+  expect_refused("1\n2\n", 0, "positive", declared(kG, -1));
+  expect_refused("1\n2\n", 0, "positive", declared(kG, std::nan("")));
+  expect_refused("0 1\n1 2 3\n2 3\n", 2, "3 values", declared(kG));
+  expect_refused("0 1\n1\n2 3\n", 2, "1 values", declared(kG));
+  expect_refused("0 1\n1 1,5.x\n", 2, "3 values", declared(kG));
+  expect_refused("0 1\n0 1\n", 2, "must increase", declared(kG));
+  expect_refused("0 1\n1 inf\n2 1\n", 2, "finite", declared(kG));
+  expect_refused("1 2 3\n4 5\n6 7 8\n", 2, "ragged", declared(kG, 1));
+  expect_refused("1 2 3\n4 5 6 7\n", 2, "ragged", declared(kG, 1));
+  expect_refused("1\n2\nend\n", 3, "\"end\"", declared(kG, 1));
+  expect_refused("1\n2\n*** End\n3\n", 4, "more after", declared(kG, 1));
 }
 
 const char* const kXsensHead =
@@ -270,7 +271,7 @@ TEST_F(RecordFile, RefusesCutAndDamagedGzip) {
 
 struct GroundMotion {
   const char* file;
-  AccelUnit unit;
+  double unit;
   std::optional<double> step_s;
   std::size_t points;
   double peak;        ///< in its unit, as PROVENANCE.txt states
@@ -280,14 +281,14 @@ struct GroundMotion {
 
 TEST_F(RecordFile, ReadsTheGroundMotionsAsTheirProvenanceSays) {
   const std::vector<GroundMotion> motions = {
-      {"elcentro_NS.dat", AccelUnit::g, {}, 2688, 0.34874, 5e-6, 50},
-      {"elcentro_EW.dat", AccelUnit::g, {}, 2674, 0.2141, 5e-5, 50},
-      {"elcacc1.txt", AccelUnit::gal, 0.01, 5376, 341.7, 0.05, 100},
-      {"hachi.txt", AccelUnit::gal, 0.01, 3601, 224.77, 0.005, 100},
-      {"kobe.txt", AccelUnit::gal, 0.01, 4998, 817, 1.0, 100},
-      {"north.txt", AccelUnit::gal, 0.01, 2999, 825.9, 0.1, 100},
-      {"mexico.txt", AccelUnit::gal, 0.01, 18011, 97.8, 0.2, 100},
-      {"elCentro_peknold_opensees.dat", AccelUnit::g, 0.02, 1559, 0.3188, 5e-5, 50},
+      {"elcentro_NS.dat", kG, {}, 2688, 0.34874, 5e-6, 50},
+      {"elcentro_EW.dat", kG, {}, 2674, 0.2141, 5e-5, 50},
+      {"elcacc1.txt", kGal, 0.01, 5376, 341.7, 0.05, 100},
+      {"hachi.txt", kGal, 0.01, 3601, 224.77, 0.005, 100},
+      {"kobe.txt", kGal, 0.01, 4998, 817, 1.0, 100},
+      {"north.txt", kGal, 0.01, 2999, 825.9, 0.1, 100},
+      {"mexico.txt", kGal, 0.01, 18011, 97.8, 0.2, 100},
+      {"elCentro_peknold_opensees.dat", kG, 0.02, 1559, 0.3188, 5e-5, 50},
   };
   for (const GroundMotion& motion : motions) {
     SCOPED_TRACE(motion.file);
@@ -295,8 +296,7 @@ TEST_F(RecordFile, ReadsTheGroundMotionsAsTheirProvenanceSays) {
     const auto record = read_record(path, declared(motion.unit, motion.step_s), problems_);
     ASSERT_TRUE(record) << problems_.at(0).message;
     EXPECT_EQ(record->time_s.size(), motion.points);
-    EXPECT_NEAR(peak(record->accel_mps2[0]) / mps2_per(motion.unit), motion.peak,
-                motion.peak_error);
+    EXPECT_NEAR(peak(record->accel_mps2[0]) / motion.unit, motion.peak, motion.peak_error);
     EXPECT_NEAR(record->rate_hz, motion.rate_hz, 1e-6);
     EXPECT_TRUE(record->notes.empty());
   }

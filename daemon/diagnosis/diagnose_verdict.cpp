@@ -1,0 +1,93 @@
+#include "daemon/diagnosis/diagnose_verdict.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "estimator/diagnose/verdict/verdict.h"
+
+namespace framewatch::daemon {
+namespace {
+
+double mean_floor(const std::vector<estimator::Gap>& gaps, std::size_t from) {
+  double sum = 0;
+  for (std::size_t r = from; r < gaps.size(); ++r) sum += gaps[r].overall_floor;
+  return gaps.size() > from ? sum / static_cast<double>(gaps.size() - from) : 0;
+}
+
+}  // namespace
+
+std::string gap_percent(double share) {
+  return fmt::format("{:.2f} %", 100 * share);
+}
+
+std::string with_capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string effect_words(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
+  std::string name(name_of(f.chosen.kind));
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return fmt::format("{}{} at {}", f.approximate ? "something like " : "", name,
+                     place_text(f.chosen.place, o.plant.structure, o.plant.axes));
+}
+
+std::string confidence_words(const estimator::FoundEffect& f) {
+  const char* how = f.confidence >= 0.95  ? "sure"
+                    : f.confidence >= 0.8 ? "likely"
+                                          : "possible, others are nearly as good";
+  return fmt::format(
+      "{} (confidence {:.0f} %), it explains {:.0f} % of what the sensors' noise does "
+      "not",
+      how, 100 * f.confidence, 100 * f.chosen.fraction);
+}
+
+std::string verdict_sentence(const DiagnoseOutput& o) {
+  const estimator::Diagnosis& d = o.diagnosis;
+  std::string missing;
+  for (const estimator::FoundEffect& f : d.effects)
+    missing += (missing.empty() ? "" : ", and ") + effect_words(o, f);
+  switch (d.verdict) {
+    case estimator::Verdict::adequate:
+      return missing.empty()
+                 ? "Nothing is missing: the model explains the measurement as well as the sensors' "
+                   "noise allows."
+                 : "The model explains the measurement with " + missing + ".";
+    case estimator::Verdict::explained:
+      return "The model lacks " + missing + "; with it the measurement is explained.";
+    case estimator::Verdict::partly_explained:
+      return "The model lacks " + (missing.empty() ? std::string("something") : missing) +
+             "; something else is missing too.";
+    case estimator::Verdict::unexplained:
+      break;
+  }
+  if (d.where.empty())
+    return "Something is missing in the model, and it is not known what or where.";
+  return "Something is missing in the model, most likely at " +
+         place_text(d.where.front().place, o.plant.structure, o.plant.axes) +
+         ", and no known effect explains it.";
+}
+
+std::string gap_sentence(const DiagnoseOutput& o) {
+  const estimator::Diagnosis& d = o.diagnosis;
+  const bool held_out = o.holdout_from < d.before.size() && o.holdout_from < d.after.size();
+  const std::size_t from = held_out ? o.holdout_from : 0;
+  return fmt::format(
+      "In the {} simulation and measurement differ by {} before and {} after; noise "
+      "alone would make {}.",
+      held_out ? "held-out records" : "records", gap_percent(estimator::mean_gap(d.before, from)),
+      gap_percent(estimator::mean_gap(d.after, from)), gap_percent(mean_floor(d.before, from)));
+}
+
+std::string diagnosis_text(const DiagnoseOutput& o) {
+  const estimator::Diagnosis& d = o.diagnosis;
+  std::string out = verdict_sentence(o) + "\n  " + gap_sentence(o) + "\n";
+  for (const estimator::FoundEffect& f : d.effects)
+    out += fmt::format("  {}: {}\n", effect_words(o, f), confidence_words(f));
+  if (!d.reason.empty()) out += "  " + d.reason + "\n";
+  return out;
+}
+
+}  // namespace framewatch::daemon

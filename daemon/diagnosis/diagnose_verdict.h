@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/diagnosis/diagnose_output.h"
+
+namespace framewatch::daemon {
+
+// A diagnosis in words for people who look after the building; all of it is text, not HTML.
+
+/// What is missing, and where, in one sentence.
+std::string verdict_sentence(const DiagnoseOutput& output);
+
+/// The one figure of the gap: free-run NRMSE of the records that nothing was fitted to, before and
+/// after, beside its floor.
+std::string gap_sentence(const DiagnoseOutput& output);
+
+/// "something like bouc wen at story 1, frame y1".
+std::string effect_words(const DiagnoseOutput& output, const estimator::FoundEffect& effect);
+
+/// How sure its name is.
+std::string confidence_words(const estimator::FoundEffect& effect);
+
+/// What the command prints: all of these.
+std::string diagnosis_text(const DiagnoseOutput& output);
+
+/// "12.34 %".
+std::string gap_percent(double share);
+/// With a capital letter at the beginning.
+std::string with_capital(std::string text);
+
+}  // namespace framewatch::daemon

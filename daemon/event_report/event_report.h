@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <framewatch/event_t.hpp>
+
+#include "daemon/config/config.h"
+#include "estimator/motion/sample_merger.h"
+#include "estimator/shaking/shaking.h"
+
+namespace framewatch::daemon {
+
+/// What is told after a strong motion. The same samples give the same.
+struct EventReport {
+  estimator::Shaking shaking;
+  std::vector<estimator::AxisCounters> axes;  ///< what happened to the samples meanwhile
+  std::vector<event_t> findings;              ///< announced meanwhile
+};
+
+enum class EventColor { green, yellow, red };
+const char* color_word(EventColor color);
+
+/// By the thresholds of [event_report]. reasons: one sentence each, the gravest first; of green
+/// what was looked at.
+struct EventVerdict {
+  EventColor color = EventColor::green;
+  std::vector<std::string> reasons;
+  int worst_story = 0;           ///< 0: no drift is known
+  double worst_drift_ratio = 0;  ///< of its height
+};
+EventVerdict judge(const EventReport& report, const Config& config);
+
+/// Largest drift ratio of a story's frames; NaN: of none it is known.
+double drift_ratio(const EventReport& report, const Config& config, int story);
+
+/// "event-20261124T004628Z", by the time it began; .html and .json of it are written.
+std::string event_report_name(const EventReport& report);
+
+/// As an event of kind "strong_motion": its severity is the color's, its segment the page's name.
+event_t event_of(const EventReport& report, const Config& config);
+
+/// Green is no finding, and is cleared by itself kGreenShown_s later: whether this event is due.
+inline constexpr double kGreenShown_s = 600;
+bool green_and_past(const event_t& event, std::int64_t now_us);
+
+std::string event_report_html(const EventReport& report, const Config& config);
+/// Schema framewatch.event_report/1, docs/formats.md.
+std::string event_report_json(const EventReport& report, const Config& config);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,237 @@
+#include "daemon/findings/answers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/events/event_words.h"
+#include "daemon/service/health.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kSilent_s = 3;
+constexpr double kStronger = 1.2;  // than the newest shake: worth a line of its own
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::vector<const Finding*> of_kind(const Known& known, FindingKind kind) {
+  std::vector<const Finding*> out;
+  for (const Finding& f : known.findings)
+    if (f.kind == kind) out.push_back(&f);
+  return out;
+}
+
+/// A sentence ends with a full stop.
+std::string sentence(std::string text) {
+  text = capital(std::move(text));
+  if (!text.empty() && text.back() != '.') text += '.';
+  return text;
+}
+
+AnswerLine line_of(const Finding& f) {
+  return {sentence(f.text), f.since_us, 0};
+}
+
+void say_who_knows(const std::vector<const Finding*>& findings, Answer& out) {
+  for (const Finding* f : findings)
+    if (f->acknowledged)
+      out.more.push_back({f->who.empty()
+                              ? fmt::format("{} is acknowledged.", f->place)
+                              : fmt::format("{} is acknowledged by {}.", f->place, f->who),
+                          0, 0});
+}
+
+Answer is_changed(const Known& k) {
+  Answer out{"Is the building changed?", AnswerState::good, {}, {}};
+  const std::vector<const Finding*> changes = of_kind(k, FindingKind::change);
+  if (changes.size() == 1) {
+    out.line = line_of(*changes.front());
+    out.line.text = "Yes. " + out.line.text;
+  } else if (!changes.empty()) {
+    const auto first = std::min_element(changes.begin(), changes.end(),
+                                        [](auto* a, auto* b) { return a->since_us < b->since_us; });
+    out.line = {fmt::format("Yes, in {} places.", changes.size()), (*first)->since_us, 0};
+    for (const Finding* f : changes) out.more.push_back(line_of(*f));
+  }
+  if (!changes.empty()) {
+    const bool open = std::any_of(changes.begin(), changes.end(),
+                                  [](const Finding* f) { return !f->acknowledged; });
+    out.state = open ? AnswerState::bad : AnswerState::look;
+    say_who_knows(changes, out);
+    return out;
+  }
+  if (k.with_baseline == 0) {
+    out.state = AnswerState::wait;
+    out.line.text = "Not known yet: what it is like unchanged is learned first, while it moves.";
+    return out;
+  }
+  out.line.text =
+      k.with_baseline < k.watched
+          ? fmt::format("No change found in {} of {} elements; the others have no baseline yet.",
+                        k.with_baseline, k.watched)
+          : fmt::format("No. None of {} elements differs from its baseline.", k.watched);
+  if (k.observable < k.with_baseline)
+    out.more.push_back({fmt::format("Now {} of them have a value: where it hardly moves, the last "
+                                    "values stand.",
+                                    k.observable),
+                        0, 0});
+  return out;
+}
+
+Answer is_believed(const Known& k, const Config& config) {
+  Answer out{"Is what I see to be believed?", AnswerState::good, {}, {}};
+  const std::vector<const Finding*> doubts = of_kind(k, FindingKind::belief);
+  std::set<std::string> dead;
+  for (const Finding* f : doubts)
+    if (f->of_channel) dead.insert(f->place);
+  for (const Finding* f : doubts) out.more.push_back(line_of(*f));
+  if (!k.same_config) out.more.push_back({"The estimator runs with another configuration.", 0, 0});
+  if (!k.samples || k.silent_s > kSilent_s) {
+    out.state = k.samples ? AnswerState::bad : AnswerState::wait;
+    out.line.text = k.samples ? fmt::format("No: no samples for {}. What is shown is old.",
+                                            span_text(k.silent_s))
+                              : "There is nothing to believe yet: no samples have come.";
+  } else if (k.estimates && k.estimates_silent_s > kSilent_s) {
+    out.state = AnswerState::bad;
+    out.line.text = fmt::format("No: samples come, but the estimator says nothing for {}.",
+                                span_text(k.estimates_silent_s));
+  } else if (!out.more.empty()) {
+    out.state = AnswerState::look;
+    const bool one = doubts.size() == 1 && k.same_config;
+    out.line = one ? out.more.front() : AnswerLine{"Only in part.", 0, 0};
+    if (one) out.line.text = "Only in part. " + out.line.text;
+    if (one) out.more.clear();
+  } else if (!k.estimates) {
+    out.state = AnswerState::wait;
+    out.line.text = "Samples come; no window is complete yet.";
+  } else {
+    out.line.text = fmt::format("Yes. All {} sensors send", config.pipeline.axes.size());
+    out.line.text +=
+        k.residual && k.observable > 0
+            ? fmt::format(
+                  ", and the model leaves {} of the motion unexplained.",
+                  *k.residual < 0.0005 ? "under 0.1 %" : fmt::format("{:.1f} %", 100 * *k.residual))
+            : ".";
+  }
+  if (!dead.empty()) {
+    const std::size_t all = config.pipeline.axes.size();
+    out.more.push_back({fmt::format("{} of {} sensors are good.", all - dead.size(), all), 0, 0});
+  }
+  say_who_knows(doubts, out);
+  return out;
+}
+
+/// Three digits that count: "1.73 %", "0.0421 %".
+std::string drift_words(double ratio) {
+  const double percent = 100 * ratio;
+  const int before = percent > 0 ? static_cast<int>(std::floor(std::log10(percent))) + 1 : 1;
+  return fmt::format("{:.{}f} %", percent, std::clamp(3 - before, 0, 9));
+}
+
+std::string shear_words(const Shake& shake, const Config& config) {
+  const estimator::Structure& s = config.pipeline.structure;
+  std::string out;
+  for (std::size_t d = 0; d < 2; ++d) {
+    if ((d == 0 ? s.n() : s.m()) == 0) continue;
+    out += fmt::format("{}{} along {}", out.empty() ? "" : ", ",
+                       shake.base_shear_n[d] > 0 ? force_words(shake.base_shear_n[d]) : "not known",
+                       d == 0 ? "x" : "y");
+  }
+  return out;
+}
+
+Answer went_through(const Known& k, const Config& config) {
+  Answer out{"What did it just go through?", AnswerState::good, {}, {}};
+  if (k.newest == nullptr) {
+    out.state = k.followed_since_us == 0 ? AnswerState::wait : AnswerState::good;
+    out.line = {k.followed_since_us == 0
+                    ? "Not known yet."
+                    : fmt::format("Nothing: no acceleration over {:g} m/s².", Shaking::kMoves_mps2),
+                k.followed_since_us, 0};
+    return out;
+  }
+  const Shake& shake = *k.newest;
+  const bool over = shake.over || k.silent_s > kSilent_s;
+  const estimator::Structure& s = config.pipeline.structure;
+  out.line = {
+      fmt::format("{}: peak drift ratio {}, base shear {}.", over ? "A shake" : "It is shaking",
+                  drift_words(shake.drift_ratio()), shear_words(shake, config)),
+      shake.from_us, over ? shake.to_us : 0};
+  out.state = over ? AnswerState::good : AnswerState::look;
+  for (std::size_t i = shake.story.size(); i-- > 0;) {
+    const StoryPeak& peak = shake.story[i];
+    out.more.push_back(
+        {peak.frame < 0
+             ? fmt::format("Story {}: not known", i + 1)
+             : fmt::format("Story {}: drift ratio {} ({:.2f} mm) in frame {}", i + 1,
+                           drift_words(peak.drift_ratio),
+                           1e3 * peak.drift_ratio * s.story_height[i], s.frame_name(peak.frame)),
+         0, 0});
+  }
+  out.more.push_back({fmt::format("Peak acceleration {:.2f} m/s² of the ground, {:.2f} m/s² of a "
+                                  "floor",
+                                  shake.base_accel_mps2, shake.floor_accel_mps2),
+                      0, 0});
+  if (k.strongest != nullptr && k.strongest->drift_ratio() > kStronger * shake.drift_ratio())
+    out.more.push_back(
+        {fmt::format("The strongest so far: drift ratio {}, base shear {}.",
+                     drift_words(k.strongest->drift_ratio()), shear_words(*k.strongest, config)),
+         k.strongest->from_us, k.strongest->to_us});
+  return out;
+}
+
+Answer to_do(const Known& k) {
+  Answer out{"What should I do?", AnswerState::good, {}, {}};
+  std::vector<const Finding*> open;
+  for (const Finding& f : k.findings)
+    if (!f.acknowledged && f.severity >= severity::warning) open.push_back(&f);
+  std::stable_sort(open.begin(), open.end(), [](const Finding* a, const Finding* b) {
+    return a->kind != b->kind ? a->kind < b->kind : a->severity > b->severity;
+  });
+  std::vector<std::string> steps;
+  if (k.samples && k.silent_s > kSilent_s)
+    steps.emplace_back("Find out why no samples come: framewatch status.");
+  else if (k.estimates && k.estimates_silent_s > kSilent_s)
+    steps.emplace_back("Find out why framewatch run says nothing: framewatch status.");
+  for (const Finding* f : open)
+    if (std::find(steps.begin(), steps.end(), f->advice) == steps.end()) steps.push_back(f->advice);
+  if (!k.same_config)
+    steps.emplace_back("Start serve or run anew, so that both have the same configuration.");
+  if (steps.empty()) {
+    out.line.text = !k.samples             ? "Start framewatch run, and whatever sends the samples."
+                    : k.with_baseline == 0 ? "Nothing but wait."
+                                           : "Nothing.";
+    out.state = k.samples ? AnswerState::good : AnswerState::wait;
+    return out;
+  }
+  out.line.text = capital(steps.front());
+  for (std::size_t i = 1; i < steps.size(); ++i) out.more.push_back({capital(steps[i]), 0, 0});
+  out.state = !open.empty() && open.front()->kind == FindingKind::change ? AnswerState::bad
+                                                                         : AnswerState::look;
+  return out;
+}
+
+}  // namespace
+
+std::string force_words(double newton) {
+  constexpr const char* kUnits[] = {"N", "kN", "MN", "GN"};
+  double value = newton;
+  std::size_t unit = 0;
+  for (; std::abs(value) >= 999.5 && unit + 1 < std::size(kUnits); ++unit) value /= 1000;
+  return fmt::format("{:.3g} {}", value, kUnits[unit]);
+}
+
+std::array<Answer, 4> answers(const Known& known, const Config& config) {
+  return {is_changed(known), is_believed(known, config), went_through(known, config), to_do(known)};
+}
+
+}  // namespace framewatch::daemon

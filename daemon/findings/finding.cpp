@@ -1,0 +1,105 @@
+#include "daemon/findings/finding.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "daemon/events/event_words.h"
+#include "estimator/structure/parameter_table.h"
+
+namespace framewatch::daemon {
+namespace {
+
+/// Kinds of events whose place is a channel of which samples are wrong or do not come.
+constexpr std::array kOfChannels = {"channel_silent", "channel_stuck", "absurd_samples",
+                                    "two_senders",    "losses",        "channel_table"};
+
+bool is_channel(const Config& config, const std::string& place) {
+  const auto& axes = config.pipeline.axes;
+  return std::any_of(axes.begin(), axes.end(), [&](const auto& a) { return a.name == place; });
+}
+
+std::string sure_words(double errors) {
+  return errors > 100 ? "more than 100 standard errors"
+                      : fmt::format("{:.0f} standard errors", errors);
+}
+
+void describe_change(Finding& f, const Config& config) {
+  const std::string where = place_words(config, f.place);
+  f.kind = FindingKind::change;
+  f.advice = fmt::format(
+      "Have a structural engineer look at {} before the building is used as before; then "
+      "acknowledge "
+      "the finding.",
+      where);
+  if (!std::isfinite(f.change_ratio) || !(f.std_error > 0)) return;  // its message says it
+  f.text = fmt::format("{} ({}) {} {} of its stiffness, standard error {} ({}).", where, f.place,
+                       f.change_ratio < 0 ? "has lost" : "has gained",
+                       percent_words(std::abs(f.change_ratio), f.std_error),
+                       percent_words(f.std_error, f.std_error),
+                       sure_words(std::abs(f.change_ratio) / f.std_error));
+}
+
+void describe_channel(Finding& f, const std::string& kind) {
+  f.kind = FindingKind::belief;
+  f.of_channel = true;
+  if (kind == "channel_silent" || kind == "channel_stuck")
+    f.advice = fmt::format("Look at sensor {}: power, cable, mounting.", f.place);
+  else if (kind == "absurd_samples")
+    f.advice = fmt::format("Look at sensor {}: its values are not possible.", f.place);
+  else if (kind == "two_senders" || kind == "channel_table")
+    f.advice = fmt::format("Find out who else sends as {}: a node's number given twice?", f.place);
+  else
+    f.advice = fmt::format("Look at the network of {}: samples are lost.", f.place);
+}
+
+}  // namespace
+
+std::string place_words(const Config& config, const std::string& parameter) {
+  const estimator::Structure& s = config.pipeline.structure;
+  const estimator::ParameterTable table(s);
+  const auto at = table.find(parameter);
+  if (!at) return parameter;
+  const estimator::Parameter& p = table[*at];
+  return p.frame >= 0
+             ? fmt::format("story {}, frame {}", p.story, s.frame_name(p.frame))
+             : fmt::format("floor {}, panel {}", p.story, p.name.substr(p.name.rfind('_') + 1));
+}
+
+std::string percent_words(double ratio, double std_error) {
+  const double error = 100 * std::abs(std_error);
+  const int digits =
+      error > 0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(error))), 0, 2) : 1;
+  return fmt::format("{:.{}f} %", 100 * ratio, digits);
+}
+
+Finding finding_of(const event_t& e, const Config& config) {
+  Finding f;
+  f.id = e.id;
+  f.severity = e.severity;
+  f.place = e.place;
+  f.since_us = e.since_us;
+  f.text = e.message;
+  if (e.kind == "stiffness_change") {
+    f.change_ratio = e.value / 100;
+    f.std_error = e.std_error / 100;
+    describe_change(f, config);
+  } else if (e.kind == "gap") {
+    f.kind = FindingKind::belief;
+    f.text = fmt::format("The model does not fit: {}.", e.message);
+    f.advice = fmt::format("Find out what the model lacks near {}: framewatch diagnose.", e.place);
+  } else if (std::find(kOfChannels.begin(), kOfChannels.end(), e.kind) != kOfChannels.end() &&
+             is_channel(config, e.place)) {
+    describe_channel(f, e.kind);
+  } else if (e.kind == "sequence_leap") {
+    f.advice =
+        "Nothing, if sensor nodes were started anew; else find out who sends under their numbers.";
+  } else {
+    f.advice = fmt::format("See to {} {}: framewatch status says more.", e.kind, e.place);
+  }
+  return f;
+}
+
+}  // namespace framewatch::daemon

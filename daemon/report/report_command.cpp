@@ -1,0 +1,93 @@
+#include "daemon/report/report_command.h"
+
+#include <filesystem>
+
+#include <fmt/core.h>
+
+#include "daemon/base/exit_code.h"
+#include "daemon/base/file_digest.h"
+#include "daemon/base/printable.h"
+#include "drivers/base/standard_streams.h"
+#include "drivers/base/text_output.h"
+#include "estimator/structure/parameter_table.h"
+
+namespace framewatch::daemon {
+namespace {
+
+std::string out_path(const ReportArguments& a) {
+  return a.out.empty() ? std::filesystem::path(a.estimates).replace_extension(".html").string()
+                       : a.out;
+}
+
+/// Whether the configuration describes the building of the estimates.
+bool fits(const Config& config, const SessionEstimates& estimates) {
+  const estimator::ParameterTable table(config.pipeline.structure);
+  if (static_cast<std::size_t>(table.size()) != estimates.parameters()) return false;
+  for (int p = 0; p < table.size(); ++p)
+    if (table[p].name != estimates.table.name[static_cast<std::size_t>(p)]) return false;
+  return true;
+}
+
+}  // namespace
+
+std::string write_report(SessionReport r,
+                         const std::vector<std::pair<std::string, std::string>>& files,
+                         const std::string& path) {
+  for (const auto& [use, file] : files) r.files.push_back({use, file, sha256_of_file(file)});
+  evaluate(r);
+  return drivers::write_text_file(path, session_report_html(r));
+}
+
+int report(const ReportArguments& a) {
+  if (!a.raw.empty() && a.config.empty())
+    return refuse("report", "--raw needs --config, which says what the channels are");
+  const std::string path = out_path(a);
+  std::vector<std::string> inputs = a.raw;
+  inputs.insert(inputs.end(), {a.estimates, a.config});
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (input == path || std::filesystem::equivalent(input, path, error))
+      return refuse("report", path + ": is input and output");
+  }
+  SessionReport r;
+  r.title = a.title;
+  r.test = a.test;
+  r.operator_name = a.operator_name;
+  r.notes = a.notes;
+  bool good = true;
+  const auto complain = [&](const std::string& problem) {
+    fmt::print(stderr, "{}\n", printable_lines(problem));
+    good = false;
+  };
+  if (!a.config.empty()) {
+    std::vector<ConfigProblem> problems;
+    r.config = load_config(a.config, problems);
+    for (const ConfigProblem& p : problems) complain(p.where + ": " + p.message);
+  }
+  if (!a.session.empty()) {
+    std::string error;
+    r.session = read_session_file(a.session, error);
+    if (!r.session) complain(a.session + ": " + error);
+  }
+  std::vector<drivers::Problem> problems;
+  auto estimates = read_session_estimates(a.estimates, problems);
+  for (const drivers::Problem& p : problems) complain(p.where + ": " + p.message);
+  if (estimates && r.config && !fits(*r.config, *estimates))
+    complain(a.config + ": describes another building than " + a.estimates);
+  if (good && !a.raw.empty()) {
+    std::vector<std::string> raw_problems;
+    r.motion = read_session_motion(*r.config, a.raw, raw_problems);
+    for (const std::string& p : raw_problems) complain(p);
+  }
+  if (!good || !estimates) return kBadInput;
+  r.estimates = *std::move(estimates);
+  std::vector<std::pair<std::string, std::string>> files{{"estimates", a.estimates}};
+  if (!a.config.empty()) files.push_back({"configuration", a.config});
+  for (const std::string& raw : a.raw) files.push_back({"raw samples", raw});
+  const std::string problem = write_report(std::move(r), files, path);
+  if (!problem.empty()) return refuse("report", problem);
+  if (!a.quiet && path != drivers::kStandardOutput) fmt::print("{}\n", path);
+  return 0;
+}
+
+}  // namespace framewatch::daemon

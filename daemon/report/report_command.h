@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/report/session_report.h"
+
+namespace framewatch::daemon {
+
+struct ReportArguments {
+  std::string estimates;         ///< LCM event log of estimates
+  std::string out;               ///< empty: beside the log, .html
+  std::string config;            ///< needed with raw
+  std::vector<std::string> raw;  ///< logs and record files, in order of time
+  std::string title, test, operator_name, notes;
+  std::string session;  ///< session.json of `framewatch record`; empty: none
+  bool quiet = false;
+};
+
+/// Evaluates a session and writes its page, which lists `files` (use, path) with their SHA-256.
+/// Returns an empty string, or the reason of a failure; then there is no page.
+std::string write_report(SessionReport session,
+                         const std::vector<std::pair<std::string, std::string>>& files,
+                         const std::string& path);
+
+/// framewatch report: one self-contained HTML page of a session. Exit code.
+int report(const ReportArguments& arguments);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,133 @@
+#include "daemon/report/session_changes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "daemon/events/event_words.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/watch/watch.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using estimator::WindowValue;
+
+constexpr double kTimeStep_s = 0.1;
+constexpr int kFewestWindows = 4;
+
+bool is_stiffness(const SessionEstimates& s, std::size_t p) {
+  return s.table.kind[p] <= static_cast<int>(estimator::ParameterKind::panel_stiffness);
+}
+
+double least_change(const SessionEstimates& s, std::size_t p) {
+  const estimator::WatchOptions usual;
+  return s.table.kind[p] == static_cast<int>(estimator::ParameterKind::frame_stiffness)
+             ? usual.least_change_k
+             : usual.least_change_g;
+}
+
+/// Windows of the session that do not overlap, with the parameter's values.
+std::vector<WindowValue> separate(const SessionEstimates& s, std::size_t p) {
+  std::vector<WindowValue> out;
+  std::int64_t end_us = 0;
+  for (std::size_t w = 0; w < s.windows(); ++w) {
+    if (!std::isfinite(s.value[p][w]) || (!out.empty() && s.start_us[w] < end_us)) continue;
+    end_us = s.end_us[w];
+    out.push_back({estimator::from_microseconds(s.start_us[w]),
+                   estimator::from_microseconds(end_us), s.value[p][w], s.std_error[p][w]});
+  }
+  return out;
+}
+
+/// When the mean of the windows passes from one value to the other: a window that has seen a share
+/// of the time behind the change has that share of the change.
+std::int64_t moment(const SessionEstimates& s, const ElementChange& c, std::int64_t from_us,
+                    std::int64_t to_us) {
+  double best = INFINITY;
+  std::int64_t at_us = from_us;
+  const auto step_us = static_cast<std::int64_t>(1e6 * kTimeStep_s);
+  for (std::int64_t t = from_us; t <= to_us; t += step_us) {
+    double loss = 0;
+    for (std::size_t w = 0; w < s.windows(); ++w) {
+      const double value = s.value[c.parameter][w];
+      if (s.end_us[w] < from_us || s.start_us[w] > to_us || !std::isfinite(value)) continue;
+      const auto length = static_cast<double>(s.end_us[w] - s.start_us[w]);
+      const double behind = std::clamp(static_cast<double>(s.end_us[w] - t) / length, 0.0, 1.0);
+      const double expected = c.before.value + behind * (c.after.value - c.before.value);
+      loss += std::pow((value - expected) / s.std_error[c.parameter][w], 2);
+    }
+    if (loss < best) {
+      best = loss;
+      at_us = t;
+    }
+  }
+  return at_us;
+}
+
+/// The changes of a stretch of windows, the largest first divided.
+void divide(const SessionEstimates& s, std::size_t p, const std::vector<WindowValue>& values,
+            std::vector<ElementChange>& out) {
+  const auto found = estimator::find_change(values, least_change(s, p));
+  if (!found) return;
+  const auto at = [&](std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i); };
+  divide(s, p, {values.begin(), at(found->before_end)}, out);
+  ElementChange c{p, 0, found->before, found->after, found->ratio(), found->std_error()};
+  c.since_us = moment(s, c, to_microseconds(values[found->before_end - 1].end),
+                      to_microseconds(values[found->after_begin].start));
+  out.push_back(c);
+  divide(s, p, {at(found->after_begin), values.end()}, out);
+}
+
+/// Changes that are raised at the end of the log, of elements in which none was found.
+void add_announced(const SessionEstimates& s, std::vector<ElementChange>& out) {
+  for (std::size_t p = 0; p < s.parameters(); ++p) {
+    const event_t* last = nullptr;
+    for (const event_t& e : s.events)
+      if (e.kind == "stiffness_change" && e.place == s.table.name[p]) last = &e;
+    const bool known = std::any_of(out.begin(), out.end(),
+                                   [&](const ElementChange& c) { return c.parameter == p; });
+    if (last == nullptr || last->state == event_state::cleared || known) continue;
+    out.push_back({p, last->since_us, {}, {}, last->value / 100, last->std_error / 100});
+  }
+}
+
+}  // namespace
+
+std::vector<ElementChange> session_changes(const SessionEstimates& s) {
+  std::vector<ElementChange> out;
+  for (std::size_t p = 0; p < s.parameters(); ++p)
+    if (is_stiffness(s, p)) divide(s, p, separate(s, p), out);
+  add_announced(s, out);
+  std::stable_sort(out.begin(), out.end(), [](const ElementChange& a, const ElementChange& b) {
+    return a.since_us < b.since_us;
+  });
+  return out;
+}
+
+std::vector<std::size_t> judged_elements(const SessionEstimates& s) {
+  std::vector<std::size_t> out;
+  for (std::size_t p = 0; p < s.parameters(); ++p) {
+    if (!is_stiffness(s, p)) continue;
+    const std::vector<WindowValue> values = separate(s, p);
+    if (values.size() < kFewestWindows) continue;
+    const estimator::WindowMean mean = estimator::mean_of(values, 0, values.size());
+    // Of the difference between two halves.
+    if (2 * estimator::kChangeErrors * mean.std_error < 2 * least_change(s, p) * mean.value)
+      out.push_back(p);
+  }
+  return out;
+}
+
+std::string element_words(const parameter_table_t& table, std::size_t p) {
+  const std::string& name = table.name[p];
+  const std::size_t place = name.rfind('_');
+  const bool frame = table.kind[p] == static_cast<int>(estimator::ParameterKind::frame_stiffness);
+  const bool panel = table.kind[p] == static_cast<int>(estimator::ParameterKind::panel_stiffness);
+  if (place == std::string::npos || (!frame && !panel)) return name;
+  return fmt::format(fmt::runtime(frame ? "frame {} of story {}" : "floor panel {} of floor {}"),
+                     name.substr(place + 1), table.story[p]);
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "daemon/base/utc_time.h"
+#include "daemon/documents/html_page.h"
+#include "daemon/documents/svg_plot.h"
+#include "daemon/events/event_words.h"
+#include "daemon/report/session_report.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr std::size_t kMostEvents = 100, kMostNamed = 3, kMostInChart = 40;
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::string since(const SessionReport& r, std::int64_t time_us) {
+  const double s = session_seconds(r, time_us);
+  const std::string clock = sensor_time_text(time_us);
+  const bool dated = clock.find("UTC") != std::string::npos;
+  if (s < 0) return "since before the session" + (dated ? ", " + clock : std::string());
+  return fmt::format("since {:.1f} s after the start{}", s, dated ? " (" + clock + ")" : "");
+}
+
+/// In percent, rounded up to a tenth: never "+-0.0".
+double error_percent(const ElementChange& c) {
+  return std::max(0.1, std::ceil(1000 * c.std_error) / 10);
+}
+
+/// "has lost 15.0 % (+-0.4 %) of its stiffness".
+std::string what(const ElementChange& c) {
+  return c.ratio < 0 ? fmt::format("has lost {:.1f} % (+-{:.1f} %) of its stiffness",
+                                   -100 * c.ratio, error_percent(c))
+                     : fmt::format("has become stiffer by {:.1f} % (+-{:.1f} %)", 100 * c.ratio,
+                                   error_percent(c));
+}
+
+std::vector<ElementChange> largest_first(std::vector<ElementChange> changes) {
+  std::stable_sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) {
+    return std::abs(a.ratio) > std::abs(b.ratio);
+  });
+  return changes;
+}
+
+std::size_t stiffnesses(const SessionReport& r) {
+  return static_cast<std::size_t>(std::count_if(r.estimates.table.kind.begin(),
+                                                r.estimates.table.kind.end(),
+                                                [](int kind) { return kind < 2; }));
+}
+
+/// What is said of the elements that have not changed.
+std::string the_others(const SessionReport& r) {
+  std::size_t same = 0;
+  for (const std::size_t p : r.judged)
+    same += std::none_of(r.changes.begin(), r.changes.end(),
+                         [&](const ElementChange& c) { return c.parameter == p; });
+  const std::size_t changed = [&] {
+    std::vector<std::size_t> names;
+    for (const ElementChange& c : r.changes) names.push_back(c.parameter);
+    std::sort(names.begin(), names.end());
+    return static_cast<std::size_t>(std::unique(names.begin(), names.end()) - names.begin());
+  }();
+  const std::size_t unseen = stiffnesses(r) - same - changed;
+  std::string out;
+  if (same > 0 && changed > 0)
+    out += fmt::format("{} other element{} of the building {} not changed. ", same,
+                       same == 1 ? "" : "s", same == 1 ? "has" : "have");
+  if (unseen > 0)
+    out += fmt::format(
+        "Of {} element{} nothing can be said: {} did not move enough, or not for "
+        "long enough. ",
+        unseen, unseen == 1 ? "" : "s", unseen == 1 ? "it" : "they");
+  return out;
+}
+
+/// Whether the sensors could be believed.
+std::string sensors_sentence(const SessionReport& r) {
+  if (!r.estimates.status) return "";
+  const status_t& s = *r.estimates.status;
+  std::string bad;
+  for (std::size_t i = 0; i < s.name.size(); ++i) {
+    const std::int64_t lost = s.lost[i] + s.rejected[i] + s.stuck[i] + s.clipped[i];
+    if (lost > 0 || s.received[i] == 0)
+      bad += (bad.empty() ? "" : ", ") + s.name[i] +
+             (s.received[i] == 0
+                  ? " (silent)"
+                  : fmt::format(" ({} of {} samples lost or bad)", lost, s.received[i] + lost));
+  }
+  return bad.empty() ? fmt::format("All {} sensors worked.", s.name.size())
+                     : "Not every sensor worked: " + bad + ".";
+}
+
+/// The change of every element in one chart, with its error.
+std::string change_chart(const SessionReport& r) {
+  SvgAxis names{""};
+  SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
+  const ReportStage *before = nullptr, *after = nullptr;
+  for (const ReportStage& stage : r.compared) {
+    if (stage.kind != r.compared.front().kind) continue;
+    (stage.after ? after : before) = &stage;
+  }
+  if (before == nullptr || after == nullptr) return "";
+  std::vector<std::size_t> shown = r.judged;
+  for (const ElementChange& c : r.changes) shown.push_back(c.parameter);
+  std::sort(shown.begin(), shown.end());
+  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+  for (const std::size_t p : shown) {
+    if (names.categories.size() == kMostInChart) break;
+    const ParameterSummary a = summarise(r.estimates, p, before->whole),
+                           b = summarise(r.estimates, p, after->whole);
+    if (!std::isfinite(a.mean) || !std::isfinite(b.mean)) continue;
+    names.categories.push_back(r.estimates.table.name[p]);
+    bars.x.push_back(static_cast<double>(names.categories.size()));
+    const auto change = std::find_if(r.changes.begin(), r.changes.end(), [&](const auto& c) {
+      return c.parameter == p && c.measured();
+    });
+    const double windows = r.estimates.table.window_rows / r.estimates.table.hop_rows;
+    const auto error = [&](const ParameterSummary& s, const WindowRange& w) {
+      return s.std_error / std::sqrt(std::max(1.0, static_cast<double>(w.size()) / windows));
+    };
+    bars.y.push_back(100 * (change == r.changes.end() ? b.mean / a.mean - 1 : change->ratio));
+    bars.error.push_back(100 *
+                         (change == r.changes.end()
+                              ? std::hypot(error(a, before->whole), error(b, after->whole)) / a.mean
+                              : change->std_error));
+  }
+  if (names.categories.empty()) return "";
+  SvgPlot plot("change of every stiffness", names, {"change, %"}, 980, 240);
+  plot.add(bars);
+  plot.add_rule(0);
+  return html_figure({plot.svg()},
+                     "Stiffness after the change against before it, with its standard error.");
+}
+
+/// The stiffness of a changed element over time, its means as lines.
+std::string change_history(const SessionReport& r, const ElementChange& c) {
+  const auto [factor, unit] = paper_unit(r.estimates.table.kind[c.parameter]);
+  std::vector<double> t, v, before, after;
+  for (std::size_t w = 0; w < r.estimates.windows(); ++w) {
+    t.push_back(session_seconds(r, r.estimates.end_us[w]));
+    v.push_back(factor * r.estimates.value[c.parameter][w]);
+  }
+  const double at = session_seconds(r, c.since_us);
+  SvgAxis y{unit};
+  const double low = factor * std::min(c.before.value, c.after.value),
+               high = factor * std::max(c.before.value, c.after.value);
+  y.low = low - 0.6 * (high - low);
+  y.high = high + 0.6 * (high - low);
+  SvgPlot plot(element_words(r.estimates.table, c.parameter), {"time, s"}, y, 980, 220);
+  plot.add(SvgSeries{"each window, at its end", 5, SvgMark::thin_line, t, v});
+  plot.add(SvgSeries{"before",
+                     0,
+                     SvgMark::line,
+                     {t.front(), at},
+                     {factor * c.before.value, factor * c.before.value}});
+  plot.add(SvgSeries{
+      "after", 1, SvgMark::line, {at, t.back()}, {factor * c.after.value, factor * c.after.value}});
+  return html_figure({plot.svg()},
+                     html_text(capital(element_words(r.estimates.table, c.parameter)) + " (" +
+                               r.estimates.table.name[c.parameter] + ") " + what(c) + " " +
+                               since(r, c.since_us) + "."));
+}
+
+std::string change_table(const SessionReport& r) {
+  std::vector<std::vector<std::string>> rows;
+  for (const ElementChange& c : r.changes) {
+    const auto [factor, unit] = paper_unit(r.estimates.table.kind[c.parameter]);
+    const auto mean = [factor = factor](const estimator::WindowMean& m) {
+      return m.count > 0 ? fmt::format("{:.4g} +- {:.2g}", factor * m.value, factor * m.std_error)
+                         : std::string("-");
+    };
+    rows.push_back({html_text(element_words(r.estimates.table, c.parameter)),
+                    html_text(r.estimates.table.name[c.parameter]), unit, mean(c.before),
+                    mean(c.after),
+                    fmt::format("{:+.1f} +- {:.1f}", 100 * c.ratio, error_percent(c)),
+                    fmt::format("{:.1f}", session_seconds(r, c.since_us))});
+  }
+  return rows.empty() ? ""
+                      : html_table({"element", "parameter", "unit", "before", "after", "change, %",
+                                    "since, s"},
+                                   rows);
+}
+
+}  // namespace
+
+std::string verdict_sentence(const SessionReport& r) {
+  const std::vector<ElementChange> changes = largest_first(r.changes);
+  if (changes.empty() && r.judged.empty())
+    return "Whether the building has changed cannot be said: it did not move enough, or not for "
+           "long enough.";
+  if (changes.empty())
+    return fmt::format(
+        "The building has not changed: {} of its {} frames and floor panels kept "
+        "their stiffness, and the loss of 3 % of a frame would have shown.",
+        r.judged.size(), stiffnesses(r));
+  std::string out;
+  for (std::size_t i = 0; i < std::min(changes.size(), kMostNamed); ++i)
+    out += (i == 0 ? "" : "; ") + element_words(r.estimates.table, changes[i].parameter) + " " +
+           what(changes[i]) + ", " + since(r, changes[i].since_us);
+  if (changes.size() > kMostNamed)
+    out += fmt::format("; and {} more changes", changes.size() - kMostNamed);
+  return capital(out) + ".";
+}
+
+std::string verdict_section(const SessionReport& r) {
+  std::string out = "<p class=\"verdict\">" + html_text(verdict_sentence(r)) + "</p>\n";
+  const std::string rest = the_others(r) + sensors_sentence(r);
+  if (!rest.empty()) out += "<p>" + html_text(rest) + "</p>\n";
+  out += change_chart(r);
+  const std::vector<ElementChange> changes = largest_first(r.changes);
+  for (std::size_t i = 0; i < std::min(changes.size(), kMostNamed); ++i)
+    if (changes[i].measured()) out += change_history(r, changes[i]);
+  return out + change_table(r);
+}
+
+std::string events_section(const SessionReport& r) {
+  std::vector<std::vector<std::string>> rows;
+  for (const event_t& e : r.estimates.events) {
+    if (rows.size() == kMostEvents) break;
+    rows.push_back({fmt::format("{:.2f}", session_seconds(r, e.time_us)),
+                    word(kEventStates, e.state), word(kSeverities, e.severity), html_text(e.place),
+                    html_text(e.message)});
+  }
+  if (rows.empty()) return "<h2>Events</h2>\n<p>None was announced while it was measured.</p>\n";
+  return "<h2>Events</h2>\n<p>As they were announced while it was measured.</p>\n" +
+         html_table({"time, s", "state", "severity", "place", "what"}, rows) +
+         (r.estimates.events.size() > kMostEvents
+              ? fmt::format("<p>{} more.</p>\n", r.estimates.events.size() - kMostEvents)
+              : std::string());
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,76 @@
+'use strict';
+// The four answers at the top and the open findings, as the server gives them: nothing is judged here.
+let told = {answers: [], findings: [], drift: []};
+const openFindings = () => told.findings.filter(f => !f.acknowledged);
+const findingOf = name => told.findings.find(f => f.kind === 'change' && f.place === name && f.ratio !== null);
+const deadChannels = () => new Set(told.findings.filter(f => f.of_channel).map(f => f.place));
+
+function say2(node, text) { if (node.textContent !== text) node.textContent = text; }
+function times(line) {
+  if (!line.since_us) return '';
+  return line.until_us ? ` From ${when(line.since_us)} to ${when(line.until_us)}.` : ` Since ${when(line.since_us)}.`;
+}
+const full = line => line.text + times(line);
+function onAnswers(a) {
+  told = window.framewatch.told = a;
+  showAnswers();
+}
+function showAnswers() {
+  const list = $('answers');
+  while (list.children.length < told.answers.length) {
+    const item = document.createElement('li');
+    item.append(document.createElement('h2'), document.createElement('p'), document.createElement('ul'));
+    list.append(item);
+  }
+  told.answers.forEach((a, i) => {
+    const item = list.children[i], [question, line, more] = item.children;
+    item.className = a.state;
+    say2(question, a.question);
+    say2(line, full(a.line));
+    while (more.children.length > a.more.length) more.lastChild.remove();
+    while (more.children.length < a.more.length) more.append(document.createElement('li'));
+    a.more.forEach((m, k) => say2(more.children[k], full(m)));
+  });
+  showFindings();
+}
+function acknowledgeButton(ids, what) {
+  const b = document.createElement('button');
+  b.textContent = ids.length > 1 ? `Acknowledge all ${ids.length}` : 'Acknowledge';
+  b.setAttribute('aria-label', `${b.textContent}: ${what}`);
+  b.onclick = async () => { for (const id of ids) await post('acknowledge?id=' + id); };
+  return b;
+}
+// Findings of one cause are one line: a switch that loses power takes all its sensors with it.
+function grouped(findings) {
+  const groups = new Map();
+  for (const f of findings) {
+    const key = f.kind === 'service' ? f.advice : 'finding ' + f.id;
+    if (!groups.has(key)) groups.set(key, []);
+    groups.get(key).push(f);
+  }
+  return [...groups.values()];
+}
+let announced = new Set(), listed = '';
+function showFindings() {
+  const open = openFindings(), text = JSON.stringify([open, zone]);
+  if (text === listed) return;
+  listed = text;
+  $('no-findings').hidden = open.length > 0;
+  const fresh = open.filter(f => !announced.has(f.id));
+  announced = new Set(open.map(f => f.id));
+  if (fresh.length) say2($('alert'), fresh.map(f => f.text).join(' '));
+  const focused = document.activeElement && document.activeElement.dataset ? document.activeElement.dataset.id : undefined;
+  $('findings').replaceChildren(...grouped(open).map(group => {
+    const f = group[0];
+    const item = document.createElement('li'), what = document.createElement('span'), since = document.createElement('span');
+    item.className = f.severity > 1 ? 'bad' : 'look';
+    what.textContent = f.text[0].toUpperCase() + f.text.slice(1) + (group.length > 1 ? ` (and ${group.length - 1} more like it)` : '');
+    since.className = 'soft';
+    since.textContent = 'since ' + when(f.since_us);
+    item.append(what, since);
+    if (f.id) { const b = acknowledgeButton(group.map(g => g.id), f.text); b.dataset.id = f.id; item.append(b); }
+    return item;
+  }));
+  const again = focused && document.querySelector(`#findings button[data-id="${focused}"]`);
+  if (again) again.focus();
+}

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/motion/sample.h"
+#include "estimator/watch/change_point.h"
+
+namespace framewatch::estimator {
+
+struct ShakingOptions {
+  /// The base (all axes, where it has no sensor) moves strongly above this distance from its mean.
+  double trigger_mps2 = 0.1;
+  double quiet_s = 20;  ///< below it for so long: the strong motion has ended
+};
+
+/// What the stiffness before the shaking was taken from.
+enum class BeforeFrom { none, baseline, windows_before, first_windows };
+
+/// A stiffness before, during and after strong motion; count 0: not known.
+struct ShakenStiffness {
+  WindowMean before, during, after;
+  BeforeFrom before_from = BeforeFrom::none;
+  bool free = false;  ///< `after` is of windows behind the strong motion; else of its last ones
+
+  bool known() const { return before.count > 0 && after.count > 0; }
+  double ratio() const { return after.value / before.value - 1; }
+  double std_error() const;  ///< of ratio()
+};
+
+/// One strong motion, as the sensors and the windows showed it.
+struct Shaking {
+  Time start{}, end{};                     ///< first and last instant above the trigger
+  Time found{};                            ///< when it was clear that it had ended
+  std::vector<double> peak_accel_mps2;     ///< of each axis, absolute, without its mean; NaN: none
+  std::vector<double> peak_drift_m;        ///< of each frame in each story (Structure::dof)
+  std::vector<ShakenStiffness> stiffness;  ///< of the stiffness half of theta
+  double gap_nrmse = 0;                    ///< the largest meanwhile; NaN: not simulated
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "estimator/motion/oscillator_section.h"
+#include "estimator/setup/options.h"
+#include "estimator/shaking/shaking.h"
+#include "estimator/structure/parameter_table.h"
+#include "estimator/structure/sensors.h"
+#include "estimator/watch/baseline.h"
+
+namespace framewatch::estimator {
+
+/// Notices strong motion, follows its peaks, and says at its end what the building went through.
+/// Displacements are accelerations through one oscillator section at the estimation's high-pass
+/// (docs/equations.md 8, 12). Bounded: a motion of over kLongest_s is divided.
+class ShakingWatch {
+ public:
+  static constexpr double kShortest_s = 0.5, kLongest_s = 900;
+
+  ShakingWatch(const Structure& structure, const std::vector<SensorAxis>& axes,
+               const EstimatorOptions& estimation, const ShakingOptions& options);
+
+  /// One calibrated instant. True once a strong motion has ended; it is in ended() then.
+  bool push(const SampleSet& set, const Baseline* baseline);
+  /// An estimate of the main window.
+  void push(const WindowEstimate& estimate);
+  /// The gap of simulation and measurement.
+  void gap(double nrmse);
+  bool active() const { return active_; }
+  bool began() const { return began_; }  ///< at the last push of an instant
+  const Shaking& ended() const { return ended_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(active_, start_, last_, next_index_, motions_, before_, first_, final_, after_, during_);
+    for (std::vector<double>* of : {&accel_, &drift_}) a(*of);
+    a(gap_);
+  }
+
+ private:
+  /// Displacement of one axis above the corner, w^2 times.
+  struct Motion {
+    double mean = 0, x1 = 0, x2 = 0, s1 = 0, s2 = 0;
+    double settled_s = -1;  ///< since the last interruption; -1: begins
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a.finite(mean, x1, x2, s1, s2, settled_s);
+    }
+  };
+  /// The newest of the windows that were put in, at most `most`, which do not overlap.
+  struct Windows {
+    std::size_t most = 3, count = 0;
+    std::vector<Time> start, end;
+    std::vector<double> value, std_error;  ///< windows x parameters; NaN: not shown
+
+    Windows(std::size_t most, std::size_t parameters);
+    bool overlaps(const WindowEstimate& e) const { return count > 0 && e.start < end[count - 1]; }
+    void put(const WindowEstimate& e, std::size_t parameters);
+    WindowMean mean(std::size_t parameter, std::size_t parameters) const;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a.within(count, 0, static_cast<double>(most));
+      a(start, end, value, std_error);
+    }
+  };
+  void begin(Time now);
+  void finish(Time now, const Baseline* baseline);
+  double follow(std::size_t axis, double accel);
+  void take_peaks();
+
+  Structure structure_;
+  std::vector<SensorAxis> axes_;
+  std::size_t elements_;
+  double rate_hz_, corner_hz_;
+  ShakingOptions options_;
+  OscillatorSection section_;
+  std::vector<int> axis_of_dof_, base_axes_;
+  std::vector<Motion> motions_;
+  /// Of each axis at this instant: acceleration without its mean, absolute, and displacement, m;
+  /// NaN: not settled.
+  std::vector<double> now_, moved_;
+  bool active_ = false, began_ = false;
+  Time start_{}, last_{};
+  std::int64_t next_index_ = -1;
+  std::vector<double> accel_, drift_;  ///< peaks
+  double gap_ = 0;
+  Windows before_, first_, final_, after_;
+  BaselineLearner during_;
+  Shaking ended_;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,196 @@
+'use strict';
+// The four answers of the page in what can happen to a building: quiet, shaking, damaged, acknowledged, a
+// sensor that dies, opened after all of it. A screenshot of each, and the words that must be on it.
+const {chromium} = require('playwright-core');
+const {spawn} = require('child_process');
+const fs = require('fs'), os = require('os'), path = require('path');
+
+const [program, browserPath, configs] = process.argv.slice(2);
+// Limits.
+const kPatience = {timeout: 60000}; // of whatever a busy machine may take
+const kDrop_s = 60, kPlayed_s = 900, // ended when they have been looked at
+   kDrop_ratio = -0.15, kMostOff = 0.02, kSharp = 0.6, kLate_s = 20;
+const kDamaged = 'kx_1_y2', kDead = 'F1-X2';
+
+const children = [], failures = [];
+const expect = (good, what) => { console.log((good ? 'ok    ' : 'FAILED') + ' ' + what); if (!good) failures.push(what); };
+function start(...args) {
+  const child = spawn(program, args, {stdio: ['ignore', 'pipe', 'inherit']});
+  children.push(child);
+  child.ended = new Promise(done => child.on('exit', done));
+  return child;
+}
+const pause = ms => new Promise(done => setTimeout(done, ms));
+const work = fs.mkdtempSync(path.join(os.tmpdir(), 'framewatch-answers-'));
+process.env.XDG_RUNTIME_DIR = work; // where commands go
+const url = `udpm://239.255.76.67:${6800 + process.pid % 1000}?ttl=0`;
+const config = path.join(configs, 'table_two_story.toml');
+function scenario(name, {change = '', motion = t => t, building = t => t}) {
+  const own = path.join(work, name + '-building.toml'), out = path.join(work, name + '.toml');
+  fs.writeFileSync(own, building(fs.readFileSync(config, 'utf8')));
+  fs.writeFileSync(out, motion(fs.readFileSync(path.join(configs, 'scenario_table_two_story.toml'), 'utf8')).replace('"table_two_story.toml"', JSON.stringify(own)) + change);
+  return out;
+}
+const shake = file => start('simulate', file, '--lcm', url, '--seconds', String(kPlayed_s), '--quiet');
+async function stop(child) { child.kill('SIGINT'); await child.ended; await pause(5000); }
+const drop = at_s => `\n[[change]]\nat_s = ${at_s}.0\nparameter = "${kDamaged}"\nfactor = ${1 + kDrop_ratio}\n`;
+
+const said = [];
+async function open(browser, address, options) {
+  const page = await browser.newPage({viewport: {width: 1400, height: 1350}, ...options});
+  page.on('console', m => said.push(m.text()));
+  page.on('pageerror', e => said.push(e.message));
+  await page.goto(address);
+  return page;
+}
+const answer = (page, i) => page.locator('#answers > li').nth(i).innerText();
+const state = page => page.textContent('#state');
+async function until(page, what, condition, argument) {
+  const came = await page.waitForFunction(condition, argument, kPatience).catch(() => null);
+  expect(came !== null, what);
+}
+async function shot(page, name) {
+  await page.evaluate(() => scrollTo(0, 0));
+  await pause(700);
+  await page.screenshot({path: name + '.png', fullPage: true});
+  expect(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${name}: nothing is cut off at the side`);
+  const names = await page.evaluate(() => [...document.querySelectorAll('button,select,input,canvas')].filter(e => e.offsetParent && !(e.textContent.trim() || e.ariaLabel || e.getAttribute('aria-label') || e.labels && e.labels.length || e.closest('[role=img],[aria-hidden]'))).map(e => e.id || e.outerHTML));
+  expect(names.length === 0, `${name}: whatever can be used has a name ${names}`);
+}
+
+async function quiet(page) {
+  const motion = shake(scenario('quiet', {motion: t => t.replace('peak_mps2 = 2.0', 'peak_mps2 = 0.0005')}));
+  await until(page, 'quiet: samples come', () => framewatch.rows > 900);
+  await until(page, 'quiet: the answers come', () => framewatch.told && framewatch.told.answers[2].state === 'good');
+  expect(/Not known yet/.test(await answer(page, 0)), 'quiet: nobody knows yet what it is like unchanged');
+  expect(/Nothing: no acceleration over 0.05 m\/s²\. Since .* UTC\./.test(await answer(page, 2)), 'quiet: it went through nothing');
+  expect((await page.textContent('#no-findings')) === 'none' && await page.isVisible('#no-findings'), 'quiet: no open findings');
+  await shot(page, 'quiet');
+  await stop(motion);
+}
+
+async function shaking(page) {
+  await until(page, 'shaking: the nodes were started anew, which is over soon', () => framewatch.told.findings.length === 0);
+  await until(page, 'shaking: it is not changed', () => /No\. None of \d+ elements/.test(document.getElementById('answers').innerText));
+  await until(page, 'shaking: peaks of each story', () => /It is shaking: peak drift ratio [\d.]+ %, base shear .* N along x.*Story 2: drift ratio.*Story 1: drift ratio/s.test(document.getElementById('answers').innerText));
+  await until(page, 'shaking: no finding is open', () => framewatch.told.findings.length === 0);
+  expect(/All 10 sensors send, and the model leaves (under )?[\d.]+ % of the motion unexplained/.test(await answer(page, 1)), 'shaking: it is to be believed');
+  expect(/Nothing\./.test(await answer(page, 3)), 'shaking: nothing to do');
+  expect((await state(page)) === 'live', 'shaking: live');
+  expect(/\d kN\/m/.test(await page.textContent('#chosen')) && !/\de[+-]/.test(await page.textContent('main')), 'shaking: numbers are in kN/m, none with an exponent');
+  await shot(page, 'shaking');
+}
+
+async function damaged(page) {
+  await until(page, 'damaged: it is said', name => framewatch.told.findings.some(f => f.place === name), kDamaged);
+  const first = await page.evaluate(() => framewatch.told.findings[0]);
+  expect(/Yes\. Story 1, frame y2 \(kx_1_y2\) has lost .* % of its stiffness, standard error .* % \(.* standard errors\)\. Since .* UTC\./.test(await answer(page, 0)), 'damaged: the first answer names element, size, error and time');
+  await until(page, 'damaged: the number sharpens', ([e, share]) => framewatch.told.findings[0] && framewatch.told.findings[0].error < share * e, [first.error, kSharp]);
+  await pause(1500);
+  const [now, event] = await page.evaluate(() => [framewatch.told.findings[0], [...framewatch.alarms.values()].find(a => a.id === framewatch.told.findings[0].id)]);
+  console.log(`first ${first.ratio} +- ${first.error}, now ${now.ratio} +- ${now.error}`);
+  expect(Math.abs(now.ratio - kDrop_ratio) < kMostOff, 'damaged: the size is right');
+  expect(now.ratio === event.value && now.error === event.error, 'damaged: finding and event have one number');
+  const size = (await answer(page, 0)).match(/has lost ([\d.]+ %)/)[1];
+  const texts = await Promise.all(['#findings', '#alarms', '#chosen'].map(id => page.textContent(id)));
+  expect(texts.every(t => t.includes(size)), `damaged: ${size} in answer, findings, events and element: ${texts[2]}`);
+  expect(/structural engineer look at story 1, frame y2/.test(await answer(page, 3)), 'damaged: what to do');
+  expect((await page.getAttribute('#alert', 'role')) === 'alert' && /has lost/.test(await page.textContent('#alert')), 'damaged: a screen reader says it');
+  await shot(page, 'damaged');
+  await page.click('#box-mode');
+  await page.click('#values summary');
+  await pause(1500);
+  expect(/kx_1_y2/.test(await page.textContent('#value-table')) && /kN\/m/.test(await page.textContent('#value-table')), 'damaged: true values on demand');
+  await page.locator('#boxes-card').screenshot({path: 'true-values.png'});
+  await page.click('#box-mode');
+  await page.click('#values summary');
+  await page.emulateMedia({media: 'print'});
+  await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+  await page.screenshot({path: 'print.png', fullPage: true});
+  await page.pdf({path: 'print.pdf', format: 'A4'});
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  await page.emulateMedia({media: 'screen'});
+}
+
+async function acknowledged(page) {
+  await page.focus('#findings button');
+  await page.keyboard.press('Enter');
+  await until(page, 'acknowledged: by keyboard, and no longer open', () => document.querySelectorAll('#findings button').length === 0);
+  await until(page, 'acknowledged: it is still changed', () => /Yes\. .*kx_1_y2 is acknowledged/s.test(document.querySelector('#answers > li').innerText));
+  await until(page, 'acknowledged: nothing to do', () => /Nothing\./.test(document.querySelectorAll('#answers > li')[3].innerText));
+  expect(/acknowledged/.test(await page.textContent('#alarms')), 'acknowledged: so says the list of events');
+  await shot(page, 'acknowledged');
+  await page.click('#baseline');
+  expect(await page.isVisible('#ask-baseline') && /cannot be undone/.test(await page.textContent('#ask-baseline')), 'a new baseline is asked about');
+  await page.keyboard.press('Escape');
+  await page.click('#baseline');
+  await page.click('#ask-baseline button[value=no]');
+  expect(/Yes\./.test(await answer(page, 0)), 'whoever keeps the present baseline keeps it');
+}
+
+async function deadChannel(page) {
+  await until(page, 'dead channel: the other nodes go on', () => framewatch.told.findings.every(f => f.kind !== 'service'));
+  await until(page, 'dead channel: a finding', name => framewatch.told.findings.some(f => f.place === name && f.of_channel), kDead);
+  await until(page, 'dead channel: the pill is amber', () => /^live, but 1 of 10 sensors not good$/.test(document.getElementById('state').textContent) && document.getElementById('state').className.includes('amber'));
+  await until(page, 'dead channel: a red dot on the building', name => building.dots.includes(name), kDead);
+  expect(new RegExp(`Only in part\\. ${kDead} is silent: no sample comes from it any more\\. Since .* UTC.*9 of 10 sensors are good`, 's').test(await answer(page, 1)), 'dead channel: the second answer says so');
+  expect(new RegExp(`Look at sensor ${kDead}`).test(await answer(page, 3)), 'dead channel: what to do');
+  expect((await page.textContent('#findings')).includes(kDead), 'dead channel: in the open findings');
+  await shot(page, 'dead-channel');
+}
+
+async function openedLate(browser, address) {
+  await pause(1000 * kLate_s);
+  const page = await open(browser, address);
+  await until(page, 'opened late: says how long nothing came', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
+  await until(page, 'opened late: the answers are there', () => framewatch.told && framewatch.told.answers.length === 4);
+  expect(/Yes\. Story 1, frame y2/.test(await answer(page, 0)), 'opened late: what happened is said');
+  expect(/No: no samples for .*What is shown is old/.test(await answer(page, 1)), 'opened late: that it is old is said');
+  expect(/A shake: peak drift ratio/.test(await answer(page, 2)), 'opened late: what it went through is said');
+  expect(await page.evaluate(() => framewatch.opened) > 60, 'opened late: the last minutes are there');
+  await until(page, 'opened late: last values with their age', () => /last value .* kN\/m .* old, of .* UTC/.test(document.getElementById('chosen').textContent));
+  expect(await page.evaluate(() => plan.parameters.every((q, i) => q.kind !== 0 || building.known[i])), 'opened late: no frame is hatched');
+  expect(await page.evaluate(() => strips.k.ring.n > 30 && strips.accel.ring.n > 100 && boxes.count.some(c => c > 0)), 'opened late: strips and boxes are not empty');
+  await shot(page, 'opened-late');
+  return page;
+}
+
+async function main() {
+  start('run', config, '--url', url, '--quiet');
+  const serve = start('serve', config, '--url', url, '--port', '0', '--sessions', path.join(work, 'none'), '--quiet');
+  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+  const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
+  const page = await open(browser, address);
+  await until(page, 'waits for samples', () => document.getElementById('state').textContent === 'waiting for samples');
+  await quiet(page);
+  const damage = shake(scenario('damage', {change: drop(kDrop_s)}));
+  await shaking(page);
+  await damaged(page);
+  await acknowledged(page);
+  await stop(damage);
+  const dead = shake(scenario('dead', {change: drop(0), building: t => t.replace('node = 5', 'node = 55').replace(`"${kDead}"`, '"spare"')}));
+  await deadChannel(page);
+  await stop(dead);
+  const late = await openedLate(browser, address);
+  await late.setViewportSize({width: 390, height: 844});
+  await shot(late, 'phone');
+  await late.setViewportSize({width: 1400, height: 1350});
+  await late.focus('#theme');
+  await late.keyboard.press('Enter');
+  await shot(late, 'dark');
+  await late.focus('#box-k');
+  const before = await late.inputValue('#element');
+  await late.keyboard.press('ArrowRight');
+  expect(await late.inputValue('#element') !== before, 'arrow keys choose a box');
+  await late.click('#zone');
+  expect((await late.textContent('#zone')) === 'Times: local' && !/UTC/.test(await late.textContent('#answers')), 'times as this device has them');
+  expect(said.length === 0, 'nothing on the console ' + said.join('; '));
+  await browser.close();
+}
+
+main().catch(e => { failures.push(e.message); console.log(e); }).finally(() => {
+  for (const child of children) if (child.exitCode === null) child.kill();
+  fs.rmSync(work, {recursive: true, force: true});
+  console.log(failures.length ? `answers: ${failures.length} failed` : 'answers: all passed');
+  process.exit(failures.length ? 1 : 0);
+});

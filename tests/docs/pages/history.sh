@@ -1,0 +1,13 @@
+# Three minutes of the evening of 2026-11-21, kept on disk.
+before() {
+  ln -s "$root/configs/table_two_story.toml" table.toml
+  cp table.toml building.toml
+  printf '[history]\ndirectory = "history"\n' >>building.toml
+  framewatch simulate "$root/configs/scenario_table_two_story.toml" --seconds 60 --out rec.csv --quiet
+  framewatch convert rec.csv --config building.toml --start-us 1795280400000000 rec.lcmlog
+  framewatch run building.toml --quiet &
+  sleep 1
+  lcm-logplayer --speed=4 rec.lcmlog >/dev/null
+  kill -INT $!
+  wait
+}

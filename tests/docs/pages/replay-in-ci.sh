@@ -1,0 +1,3 @@
+before() { ln -s "$root/configs" "$root/tests" .; }
+expected='
+'
