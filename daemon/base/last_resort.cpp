@@ -75,7 +75,8 @@ int run_to_the_end(const std::function<int()>& run) {
   }
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-  say(std::string("standard output: ") + std::strerror(errno != 0 ? errno : EIO));
+  say(std::string("standard output: ") +
+      (errno != 0 ? std::strerror(errno) : "it did not take everything"));
   return thrown.empty() ? kBadInput : status;
 }
 

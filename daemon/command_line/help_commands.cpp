@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -15,7 +16,7 @@ struct HelpArguments {
   bool man = false;
 };
 
-/// Not by fmt::print, which throws: run_to_the_end() says what standard output did not take.
+/// What it does not take is found at the end of the program: fmt::print() would throw.
 void print(const std::string& text) {
   (void)std::fputs(text.c_str(), stdout);
 }

@@ -48,7 +48,8 @@ struct MeanGroup {
 
 /// Left of Figure 10: means beside the references.
 std::string means(const SessionReport& r, int kind, const std::vector<std::size_t>& shown) {
-  const auto [factor, unit] = paper_unit(kind);
+  const auto [per_unit, unit] = paper_unit(kind);
+  const double factor = per_unit;
   std::vector<MeanGroup> groups;
   const auto reference = [&](const char* name, int color, const std::vector<double>& values) {
     MeanGroup group{name, color, {}, {}};

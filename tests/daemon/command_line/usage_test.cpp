@@ -134,7 +134,10 @@ TEST_F(Usage, CompletionAndManualHaveEveryCommandAndOption) {
       if (option == "--help") continue;
       std::string escaped;
       for (const char c : option) escaped += c == '-' ? "\\-" : std::string(1, c);
-      EXPECT_NE(page.find("\n.BI \"" + escaped), std::string::npos) << command << option;
+      const std::size_t item = page.find("\n.BI \"" + escaped);
+      ASSERT_NE(item, std::string::npos) << command << option;
+      EXPECT_NE(std::string("\" ").find(page[item + 6 + escaped.size()]), std::string::npos)
+          << page;
     }
   }
 }
