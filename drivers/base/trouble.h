@@ -16,7 +16,10 @@ class Trouble {
   /// bad: it was seen now. now_us: a clock that may be set back.
   std::optional<News> look(bool bad, std::int64_t now_us) {
     bad_us_ = bad ? now_us : std::min(bad_us_, now_us);
-    if (bad == raised_ || (!bad && now_us - bad_us_ < kCalm_us)) return std::nullopt;
+    // Clocks of foreign logs may be any number: a difference that fits no int64 is calm.
+    const std::uint64_t calm_us =
+        static_cast<std::uint64_t>(now_us) - static_cast<std::uint64_t>(bad_us_);
+    if (bad == raised_ || (!bad && calm_us < std::uint64_t{kCalm_us})) return std::nullopt;
     raised_ = bad;
     return bad ? News::begins : News::over;
   }
