@@ -7,6 +7,8 @@
 
 namespace framewatch::daemon {
 
+// Texts are of years 0 to 9999; a time beyond them is written as the nearest of these.
+
 /// "20261121T231500Z": a time in UTC, rounded down to the second.
 std::string utc_stamp(std::int64_t time_us);
 /// The time of a text that begins with such a stamp, microseconds; empty when it does not.

@@ -40,6 +40,12 @@ void RecordBuilder::add(std::int64_t line, double time_s, std::span<const double
                                     record_.time_s.back()));
     return;
   }
+  for (std::size_t i = 0; i < accel_mps2.size(); ++i) {
+    if (!std::isinf(accel_mps2[i])) continue;
+    problems_.add(line, fmt::format("{}: in m/s2 the value is more than a number can hold",
+                                    record_.names[i]));
+    return;
+  }
   record_.time_s.push_back(time_s);
   record_.lines.push_back(line);
   for (std::size_t i = 0; i < accel_mps2.size(); ++i)

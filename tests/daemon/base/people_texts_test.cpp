@@ -1,5 +1,6 @@
 #include <cstdlib>
 #include <ctime>
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -10,7 +11,8 @@
 namespace framewatch::daemon {
 namespace people_texts_test {
 
-constexpr std::int64_t kEvening_us = 1'795'291'200'000'000;  // 2026-11-21 20:00:00 UTC
+constexpr std::int64_t kMidnight_us = 1'795'305'600'000'000;  // 2026-11-22 00:00:00 UTC
+constexpr std::int64_t kEvening_us = 1'795'291'200'000'000;   // 2026-11-21 20:00:00 UTC
 
 std::string in_zone(const char* zone, std::int64_t time_us) {
   ::setenv("TZ", zone, 1);
@@ -19,6 +21,27 @@ std::string in_zone(const char* zone, std::int64_t time_us) {
   ::unsetenv("TZ");
   ::tzset();
   return text;
+}
+
+TEST(UtcText, IsReadAsItIsWritten) {
+  EXPECT_EQ(utc_text(kMidnight_us), "2026-11-22T00:00:00Z");
+  EXPECT_EQ(utc_text(kMidnight_us + 250'000), "2026-11-22T00:00:00.250Z");
+  EXPECT_EQ(utc_text(-1'000'000), "1969-12-31T23:59:59Z");
+  for (const char* text : {"2026-11-22T00:00:00Z", "2026-11-22", "2026-11-22 00:00",
+                           "2026-11-22T00:00", "1795305600", "1795305600.0"})
+    EXPECT_EQ(read_utc(text), kMidnight_us) << text;
+  EXPECT_EQ(read_utc("2026-11-22T00:00:00.25Z"), kMidnight_us + 250'000);
+  for (const char* text : {"", "yesterday", "2026-13-01", "2026-02-30", "2026-11-22T25:00", "nan",
+                           "2026-11-22T00:61", "2026-11-22X", "1e300", "2026-11-22T00:00:"})
+    EXPECT_FALSE(read_utc(text)) << text;
+}
+
+TEST(UtcText, OfATimeThatNoFourDigitsHold) {
+  constexpr std::int64_t kFarthest = std::numeric_limits<std::int64_t>::max();
+  EXPECT_EQ(utc_text(kFarthest), "9999-12-31T23:59:59.999Z");
+  EXPECT_EQ(utc_text(-kFarthest - 1), "0000-01-01T00:00:00Z");
+  EXPECT_EQ(utc_stamp(kFarthest), "99991231T235959Z");
+  EXPECT_EQ(sensor_time_text(kFarthest), "9999-12-31 23:59:59 UTC");
 }
 
 TEST(UtcAndLocalText, HasBothWhereTheyDiffer) {

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/base/utc_time.h"
 #include "daemon/history/history_files.h"
 #include "daemon/history/history_keeper.h"
 #include "daemon/history/history_retention.h"
@@ -308,19 +307,6 @@ TEST(Retention, RemovesNothingWhileTheEventsCannotBeRead) {
   config.history->keep_gb = 1e-9;
   remove_old_raw_logs(*config.history, kStart_us);
   EXPECT_EQ(raw_logs(raw_folder(config.history->directory)).size(), 10u);
-}
-
-TEST(HistoryFiles, TimesAreReadAsTheyAreWritten) {
-  EXPECT_EQ(utc_text(kStart_us), "2026-11-22T00:00:00Z");
-  EXPECT_EQ(utc_text(kStart_us + 250'000), "2026-11-22T00:00:00.250Z");
-  EXPECT_EQ(utc_text(-1'000'000), "1969-12-31T23:59:59Z");
-  for (const char* text : {"2026-11-22T00:00:00Z", "2026-11-22", "2026-11-22 00:00",
-                           "2026-11-22T00:00", "1795305600", "1795305600.0"})
-    EXPECT_EQ(read_utc(text), kStart_us) << text;
-  EXPECT_EQ(read_utc("2026-11-22T00:00:00.25Z"), kStart_us + 250'000);
-  for (const char* text : {"", "yesterday", "2026-13-01", "2026-02-30", "2026-11-22T25:00", "nan",
-                           "2026-11-22T00:61", "2026-11-22X", "1e300", "2026-11-22T00:00:"})
-    EXPECT_FALSE(read_utc(text)) << text;
 }
 
 }  // namespace history_raw_test

@@ -204,6 +204,7 @@ TEST_F(RecordFile, RefusesMalformedColumns) {
   expect_refused("0 1\n1 1,5.x\n", 2, "3 values", declared(kG));
   expect_refused("0 1\n0 1\n", 2, "must increase", declared(kG));
   expect_refused("0 1\n1 inf\n2 1\n", 2, "finite", declared(kG));
+  expect_refused("0 1\n1 1e308\n2 1\n", 2, "more than a number can hold", declared(kG));
   expect_refused("1 2 3\n4 5\n6 7 8\n", 2, "ragged", declared(kG, 1));
   expect_refused("1 2 3\n4 5 6 7\n", 2, "ragged", declared(kG, 1));
   expect_refused("1\n2\nend\n", 3, "\"end\"", declared(kG, 1));
