@@ -28,9 +28,9 @@ struct Civil {
 /// Of years 0 to 9999: what a damaged message says beyond them is the nearest of these.
 Civil civil(std::int64_t time_us) {
   using Time = ch::sys_time<ch::microseconds>;
-  constexpr Time kFirst = ch::sys_days(ch::year(0) / 1 / 1);
-  constexpr Time kLast = ch::sys_days(ch::year(10'000) / 1 / 1) - ch::microseconds(1);
-  const Time time = std::clamp(Time(ch::microseconds(time_us)), kFirst, kLast);
+  constexpr Time kEarliest = ch::sys_days(ch::year(0) / 1 / 1);
+  constexpr Time kLatest = ch::sys_days(ch::year(10'000) / 1 / 1) - ch::microseconds(1);
+  const Time time = std::clamp(Time(ch::microseconds(time_us)), kEarliest, kLatest);
   const auto day = ch::floor<ch::days>(time);
   const ch::year_month_day date(day);
   const ch::hh_mm_ss clock(time - day);
