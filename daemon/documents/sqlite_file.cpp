@@ -71,6 +71,7 @@ bool SqliteStatement::run() {
 }
 
 void SqliteStatement::again() {
+  if (!statement_) return;
   sqlite3_reset(statement_.get());
   sqlite3_clear_bindings(statement_.get());
 }

@@ -26,5 +26,22 @@ TEST(SqliteFile, AStatementThatFailsFailsTheTransaction) {
   EXPECT_EQ(count.integer(0), 0);
 }
 
+TEST(SqliteFile, AStatementThatTheSchemaHasNotFailsWhateverIsAskedOfIt) {
+  const test::TemporaryDirectory directory;
+  SqliteFile file;
+  ASSERT_TRUE(file.open(directory.path("db")));
+  EXPECT_FALSE(file.transaction([&] {
+    SqliteStatement find = file.prepare("SELECT x FROM not_there WHERE x = ?");
+    find.bind(1, std::int64_t{1});
+    EXPECT_FALSE(find.row());
+    EXPECT_TRUE(find.null(0));
+    EXPECT_EQ(find.text(0), "");
+    EXPECT_TRUE(find.numbers(0).empty());
+    find.again();
+    return true;
+  }));
+  EXPECT_NE(file.error().find("not_there"), std::string::npos) << file.error();
+}
+
 }  // namespace sqlite_file_test
 }  // namespace framewatch::daemon
