@@ -105,6 +105,8 @@ CheckReport make_check_report(const Config& config) {
   report.hop_rows = pipeline.hop_rows();
   const estimator::ParameterTable table(c.structure);
   for (int i = 0; i < table.size(); ++i) report.parameters.push_back(table[i].name);
+  for (const ConfigProblem& doubt : config.doubts)
+    report.warnings.push_back(fmt::format("{}: {}", doubt.where, doubt.message));
   warn_about_rounding(report);
   warn_about_bus_load(report);
   const bool small = c.structure.degrees_of_freedom() <= kMaxDegreesOfFreedom;
