@@ -113,17 +113,17 @@ std::string take_bays(const std::string& text, Draft& d, ColumnCache&) {
   return "";
 }
 
-std::string named(const std::vector<std::string>& frames) {
-  if (frames.empty()) return "none";
-  return frames.size() == 1 ? frames.front() : frames.front() + " to " + frames.back();
+std::string moving(const std::vector<std::string>& frames, const char* along) {
+  return frames.size() == 1
+             ? fmt::format("frame {} moves along {}", frames.front(), along)
+             : fmt::format("frames {} to {} move along {}", frames.front(), frames.back(), along);
 }
 
 std::string understood_bays(const Draft& d) {
   const estimator::Structure& s = d.plan.structure;
   std::string out;
-  if (d.has_x) out += fmt::format("frames {} move along x", named(s.frames_x));
-  if (d.has_y)
-    out += fmt::format("{}frames {} move along y", d.has_x ? ", " : "", named(s.frames_y));
+  if (d.has_x) out = moving(s.frames_x, "x");
+  if (d.has_y) out += (d.has_x ? ", " : "") + moving(s.frames_y, "y");
   return out;
 }
 

@@ -45,6 +45,22 @@ TEST_F(InitCommand, WritesWhatCheckAccepts) {
   EXPECT_EQ(shell("$F check building.toml").status, 0);
 }
 
+/// `script` gives it a terminal.
+TEST_F(InitCommand, OnATerminalItAsks) {
+  const ShellResult said = shell(
+      "printf 'none\\nlcm\\n\\n2\\nx\\n\\n3.5\\n18 t\\n\\n\\n\\n' | "
+      "timeout 60 script -qec \"$F init\" /dev/null");
+  EXPECT_EQ(said.status, 0) << said.out;
+  EXPECT_NE(said.out.find("How many stories does it have"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("frame y1 moves along x"), std::string::npos) << said.out;
+  EXPECT_EQ(shell("$F check building.toml").status, 0);
+  const ShellResult left =
+      shell("printf 'none\\nquit\\n' | timeout 60 script -qec \"$F init --out b.toml\" /dev/null");
+  EXPECT_EQ(left.status, kBadInput) << left.out;
+  EXPECT_FALSE(left.out.find("left; nothing was written") == std::string::npos) << left.out;
+  EXPECT_EQ(shell("ls b.toml*").out, "");
+}
+
 TEST_F(InitCommand, NeverWritesOverAFileUnlessForced) {
   test::write_file(directory_.path("building.toml"), "mine\n");
   const ShellResult said = shell(std::string("$F init ") + kHouse);
