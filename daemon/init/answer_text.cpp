@@ -10,7 +10,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr int kMostBays = 50;
+constexpr int kMostBays = 20;
 
 }  // namespace
 

@@ -134,8 +134,11 @@ class ChannelPlacing {
       open("bays", "",
            fmt::format(
                "this building needs {} channels, the base's and one for every frame of every "
-               "floor; there are {}: {}. 0x0 has one frame for each direction",
-               places_.size(), columns_.size(), names_left()));
+               "floor; there are {}. 0x0 has one frame for each direction{}",
+               places_.size(), columns_.size(),
+               reading_.draft.live == "can" ? "; several nodes that send one message take a "
+                                              "[[can_node]] each, by hand: docs/can.md"
+                                            : ""));
     else if (found.ambiguous)
       ask_reading(found, column_of_title[*found.ambiguous]);
     else

@@ -15,6 +15,8 @@ namespace {
 
 using Draft = BuildingDraft;
 
+constexpr int kMostStories = 200;  ///< no building has so many
+
 bool always(const Draft&) {
   return true;
 }
@@ -75,7 +77,8 @@ std::string take_dbc(const std::string& text, Draft& d, ColumnCache& files) {
 
 std::string take_stories(const std::string& text, Draft& d, ColumnCache&) {
   const auto number = drivers::parse_integer(text);
-  if (!number || *number < 1 || *number > 1000) return "a whole number from 1 to 1000";
+  if (!number || *number < 1 || *number > kMostStories)
+    return fmt::format("a whole number from 1 to {}", kMostStories);
   d.plan.structure.stories = static_cast<int>(*number);
   d.stories_known = true;
   return "";
@@ -103,7 +106,7 @@ std::string ask_bays(const Draft& d) {
 
 std::string take_bays(const std::string& text, Draft& d, ColumnCache&) {
   const auto bays = parse_bays(text);
-  if (!bays) return "bays along x, an x, bays along y: 2x1, from 0x0 to 50x50";
+  if (!bays) return "bays along x, an x, bays along y: 2x1, from 0x0 to 20x20";
   estimator::Structure& s = d.plan.structure;
   s.frames_x.clear();
   s.frames_y.clear();

@@ -55,7 +55,7 @@ TEST(InitDialogue, AWrongAnswerIsAskedAgainAndAnyCanBeChanged) {
                      "2", "4,3.5", ""});
   ASSERT_TRUE(plan) << person.said;
   EXPECT_EQ(plan->structure.story_height, (std::vector<double>{4, 3.5}));
-  EXPECT_NE(person.said.find("That does not do: a whole number from 1 to 1000"), std::string::npos)
+  EXPECT_NE(person.said.find("That does not do: a whole number from 1 to 200"), std::string::npos)
       << person.said;
   EXPECT_NE(person.said.find("That does not do: there are 3 numbers"), std::string::npos)
       << person.said;
