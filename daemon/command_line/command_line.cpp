@@ -47,10 +47,10 @@ int parse_and_run(int argc, const char* const* argv) {
 
   CommandList commands(app);
   for (const auto add :  // in the order in which --help lists them
-       {add_demo,     add_run,      add_replay, add_diff,      add_repair,   add_refine,
-        add_diagnose, add_adopt,    add_check,  add_convert,   add_simulate, add_reproduce,
-        add_report,   add_serve,    add_record, add_history,   add_status,   add_acknowledge,
-        add_tell,     add_selftest, add_help,   add_completion})
+       {add_demo,        add_run,    add_replay,   add_diff,   add_repair,    add_refine,
+        add_diagnose,    add_adopt,  add_init,     add_check,  add_convert,   add_simulate,
+        add_reproduce,   add_report, add_serve,    add_record, add_history,   add_status,
+        add_acknowledge, add_tell,   add_selftest, add_help,   add_completion})
     add(commands);
 
   const std::vector<std::string> problems =

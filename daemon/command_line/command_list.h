@@ -13,6 +13,8 @@ class Option;
 
 namespace framewatch::daemon {
 
+struct RecordFileArguments;
+
 /// The commands of the program with their options. Each add_<command> below declares one command:
 /// its options, which write the fields of its arguments struct, and what runs when it is chosen.
 class CommandList {
@@ -56,6 +58,8 @@ void add_config(CommandList& commands, CLI::App* command,
 void add_installed_config(CLI::App* command, std::string& config);  ///< CONFIG, with a default
 void add_url(CLI::App* command, std::string& url);                  ///< --url
 void add_json(CLI::App* command, bool& json);                       ///< --json
+/// --unit, --step and the like: what a record does not say itself.
+void add_record_options(CLI::App* command, RecordFileArguments& record);
 void add_max_size(CLI::App* command);  ///< --max-size, of what compressed input unpacks to
 
 // help_commands.cpp: what every program has.
@@ -85,6 +89,7 @@ void add_repair(CommandList& commands);
 void add_refine(CommandList& commands);
 
 // model_commands.cpp: configurations and models.
+void add_init(CommandList& commands);
 void add_check(CommandList& commands);
 void add_reproduce(CommandList& commands);
 void add_diagnose(CommandList& commands);

@@ -4,9 +4,78 @@
 #include "daemon/commands/check_command.h"
 #include "daemon/diagnosis/adopt_command.h"
 #include "daemon/diagnosis/diagnose_command.h"
+#include "daemon/init/init_command.h"
 #include "daemon/lab/reproduce_command.h"
 
 namespace framewatch::daemon {
+
+void add_init(CommandList& commands) {
+  InitArguments& arguments = commands.arguments<InitArguments>();
+  CLI::App* command = commands.add(
+      "init", "a first configuration of your building, asked for or from options and a record");
+  command->footer(
+      "On a terminal it asks what the options do not say. Titles of columns such as base_x, F2-X,\n"
+      "\"floor 2 frame y1\" are places where that can be read in one way only; PLACE is 0:x "
+      "(base,\n"
+      "along x), 2:y1 (floor 2, frame y1), or 2:x where one frame moves along x. The frames that\n"
+      "move along x are called y1, y2, ... in order of y, those along y x1, x2, ... in order of "
+      "x.\n"
+      "Exit status: 0 written, 2 not, with everything that is missing.\n"
+      "Examples:\n"
+      "  framewatch init\n"
+      "  framewatch init --record shaken.csv --unit g\n"
+      "  framewatch init --record shaken.csv --stories 3 --bays 0x0 --heights 4.2,3.5,3.5 \\\n"
+      "    --mass 18000 --channel acc0=0:x\n"
+      "  framewatch init --live lcm --stories 5 --bays 1x1 --span-x 10.7 --span-y 15 \\\n"
+      "    --heights 3.5 --mass 400kg/m2 --start 0.5Hz --out tower.toml");
+  auto& answers = arguments.answers;
+  const auto answer = [&](const char* name, const char* what, const char* type) {
+    return command
+        ->add_option_function<std::string>(
+            std::string("--") + name,
+            [&answers, name](const std::string& text) { answers.by_option[name] = text; }, what)
+        ->type_name(type);
+  };
+  answer("record", "record from whose header the channels come", "FILE");
+  add_record_options(command, answers.record);
+  answer("live", "where live samples come from (default with a record: none)", "TEXT")
+      ->check(CLI::IsMember({"lcm", "can", "none"}));
+  answer("interface", "of the CAN bus (default: can0)", "TEXT");
+  answer("dbc", "file that describes the CAN bus", "FILE");
+  answer("building", "its name", "TEXT");
+  answer("stories", "stories above the base", "INT");
+  answer("directions", "that the accelerometers measure (default: both)", "TEXT")
+      ->check(CLI::IsMember({"x", "y", "both"}));
+  answer("bays", "of the plan, along x and y: 2x1; 0 where one frame stands for all", "TEXT");
+  answer("span-x", "spans along x, m: one for all, or a list", "LIST");
+  answer("span-y", "spans along y, m", "LIST");
+  answer("heights", "of the stories from the bottom, m: one for all, or a list", "LIST");
+  answer("floors", "in their plane (default: flexible)", "TEXT")
+      ->check(CLI::IsMember({"flexible", "rigid"}));
+  answer("mass", "of each floor, kg or with its unit: 18000, 18t, 500kg/m2; or a list", "LIST");
+  answer("area", "of a floor, m^2, for a mass in kg/m2 where spans do not give it", "FLOAT");
+  answer(
+      "start",
+      "where tuning starts: a first frequency (1.8Hz), period (0.55s), story stiffness (25MN/m),\n"
+      "height (46 Hz m / height), stories (T = 0.1 s a story) or none\n"
+      "(default: height; with stories below 2 m: none)",
+      "TEXT");
+  answer("rate", "samples a second, without a record (default: 100)", "FLOAT");
+  answer("titles", "what y1 in a column's title is: the frame y1, or the first one along y", "TEXT")
+      ->check(CLI::IsMember({"frames", "directions"}));
+  command
+      ->add_option("--channel", answers.channels,
+                   "where a column is: NAME=PLACE, such as acc3=2:y1")
+      ->type_name("TEXT")
+      ->allow_extra_args(false);
+  command->add_option("--out", arguments.out, "file to write")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command->add_flag("--force", arguments.force, "write over a file that is there");
+  command->add_flag("--quiet", arguments.quiet, "do not say what was understood");
+  add_max_size(command);
+  commands.set_action(command, [&arguments] { return init(arguments); });
+}
 
 void add_check(CommandList& commands) {
   CheckArguments& arguments = commands.arguments<CheckArguments>();

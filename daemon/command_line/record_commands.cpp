@@ -160,23 +160,7 @@ void add_convert(CommandList& commands) {
       ->required()
       ->expected(2, 1000)
       ->type_name("");
-  RecordFileArguments& record = arguments.record;
-  command->add_option("--unit", record.unit,
-                      "of a file that does not say it: g, mg, gal, mps2, or the m/s^2 of one");
-  command->add_option("--step", record.step_s, "seconds between samples of a file without time");
-  command->add_option("--time", record.time, "title of the column with the times");
-  command->add_option("--time-unit", record.time_unit, "of such a column: s, ms, us or ns");
-  command->add_option("--zone", record.zone, "of time stamps without one: Z, or such as +09:00");
-  command->add_option("--decimal", record.decimal, "comma or point, where a file leaves it open");
-  command->add_option("--columns", record.columns, "titles of the columns to take: A,B,...")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command
-      ->add_option("--names", record.names, "names of the channels, in the file's order: A,B,...")
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  command->add_option("--format", record.format, "csv, at2, columns, rows or xsens")
-      ->capture_default_str();
+  add_record_options(command, arguments.record);
   command
       ->add_option("--config", arguments.config,
                    "configuration whose channels say where the columns of their names travel")

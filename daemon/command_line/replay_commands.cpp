@@ -26,6 +26,7 @@ void add_replay(CommandList& commands) {
           ->add_option("LOG", arguments.inputs,
                        "LCM event logs, plain or .zst, and record files (CSV), in order of time")
           ->required());
+  add_record_options(command, arguments.record);
   command
       ->add_option("--out", arguments.out,
                    "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5)")

@@ -39,12 +39,21 @@ std::size_t allocated_bytes() {
 #endif
 }
 
+/// The first few names, and how many more.
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 6;
+  const std::size_t shown = std::min(names.size(), kMost);
+  std::string out;
+  for (std::size_t i = 0; i < shown; ++i) out += (i ? ", " : "") + names[i];
+  return names.size() > kMost ? fmt::format("{}, {} more", out, names.size() - kMost) : out;
+}
+
 void warn_about_panels(CheckReport& report) {
-  std::string none, weak;
-  for (const PanelOutlook& panel : report.panels) {
-    std::string& list = panel.shear_ratio < kNoShear ? none : weak;
-    if (panel.shear_ratio < kWeakShear) list += (list.empty() ? "" : ", ") + panel.parameter;
-  }
+  std::vector<std::string> no_shear, weak_shear;
+  for (const PanelOutlook& panel : report.panels)
+    if (panel.shear_ratio < kWeakShear)
+      (panel.shear_ratio < kNoShear ? no_shear : weak_shear).push_back(panel.parameter);
+  const std::string none = some_of(no_shear), weak = some_of(weak_shear);
   if (!none.empty())
     report.warnings.push_back(
         "the plan is symmetric in the design's stiffness and mass: ground motion does not shear "
@@ -105,6 +114,8 @@ CheckReport make_check_report(const Config& config) {
   report.hop_rows = pipeline.hop_rows();
   const estimator::ParameterTable table(c.structure);
   for (int i = 0; i < table.size(); ++i) report.parameters.push_back(table[i].name);
+  for (const ConfigProblem& doubt : config.doubts)
+    report.warnings.push_back(fmt::format("{}: {}", doubt.where, doubt.message));
   warn_about_rounding(report);
   warn_about_bus_load(report);
   const bool small = c.structure.degrees_of_freedom() <= kMaxDegreesOfFreedom;

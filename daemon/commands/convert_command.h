@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/commands/record_file_arguments.h"
+#include "daemon/documents/record_file_arguments.h"
 
 namespace framewatch::daemon {
 

@@ -7,6 +7,7 @@
 #include "daemon/config/gap_model.h"
 #include "daemon/config/read_config.h"
 #include "daemon/keys/fields.h"
+#include "daemon/plausibility/doubted_building.h"
 #include "drivers/base/standard_streams.h"
 
 namespace framewatch::daemon {
@@ -30,8 +31,10 @@ std::optional<Config> parse_config(const std::string& path, const std::string& t
   config.path = path;
   config.sha256 = sha256(text);
   std::vector<TextProblem> found;
-  if (const std::optional<TomlValue> document = parse_toml(text, found))
-    read_config(*document, config, found);
+  const std::optional<TomlValue> document = parse_toml(text, found);
+  if (document && read_config(*document, config, found))
+    config.doubts = with_file(
+        path, doubted_values(*document, config.pipeline.structure, config.pipeline.design));
   if (found.empty()) {
     place_all_files(config);
     load_watch_baseline(config, problems);

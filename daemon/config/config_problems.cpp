@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/log.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/terminal_colour.h"
 
@@ -27,6 +28,11 @@ void print_problems(const std::vector<ConfigProblem>& problems) {
   for (const ConfigProblem& p : problems)
     fmt::print(stderr, "{} {}\n", toned(Tone::bad, printable(p.where) + ":", stderr),
                printable_lines(p.message));
+}
+
+void log_doubts(const std::vector<ConfigProblem>& doubts) {
+  for (const ConfigProblem& doubt : doubts)
+    log(LogLevel::warning, fmt::format("{}: {}", doubt.where, doubt.message));
 }
 
 }  // namespace framewatch::daemon

@@ -17,5 +17,7 @@ std::vector<ConfigProblem> with_file(const std::string& path, std::vector<TextPr
 
 /// All of them on stderr, a line each.
 void print_problems(const std::vector<ConfigProblem>& problems);
+/// The same of what is allowed and hardly meant, as log lines.
+void log_doubts(const std::vector<ConfigProblem>& doubts);
 
 }  // namespace framewatch::daemon

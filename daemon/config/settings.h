@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/config/config_problems.h"
 #include "daemon/keys/action_options.h"
 #include "daemon/keys/channel_options.h"
 #include "daemon/keys/command_options.h"
@@ -33,6 +34,7 @@ struct Config {
   std::optional<EventReportSettings> event_report;  ///< none: nothing is written after shaking
   std::optional<ActionSettings> actions;            ///< none: nobody is notified
   std::vector<estimator::Effect> effects;  ///< that the building has beyond the linear model
+  std::vector<ConfigProblem> doubts;       ///< allowed, and hardly meant; the person is told
 };
 
 }  // namespace framewatch::daemon

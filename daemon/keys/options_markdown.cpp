@@ -55,7 +55,23 @@ std::string options_markdown() {
       "Made by `framewatch check --print-options-markdown` from the option table; do not edit.\n\n"
       "A configuration is one TOML file. `framewatch check FILE` lists every problem of it with "
       "line and column: unknown keys, keys given twice, wrong types, shapes and units, values out "
-      "of range, channels that do not fit the building. Units are part of the keys' names.\n";
+      "of range, channels that do not fit the building. Units are part of the keys' names.\n\n"
+      "A first one is made by `framewatch init`: it asks for stories, bays, spans, heights and "
+      "masses "
+      "(or takes them as options, `framewatch init --help`), takes the channels from a record's "
+      "header, from LCM or from a CAN bus' DBC file, and writes a file with comments. A column is "
+      "put "
+      "where its title says it in one way only; otherwise it is asked for. With the bays 0x0 one "
+      "frame stands for all of its direction: one accelerometer a floor and direction is "
+      "enough.\n\n"
+      "`check`, `run` and `replay` warn of what hardly any building has, with the likely slip, and "
+      "go "
+      "on: stories outside 0.02 to 20 m, spans outside 0.05 to 100 m, floors outside 20 to 3000 "
+      "kg/m^2 (1 to 8000 in stories below 2 m, which are models on tables), a first natural "
+      "frequency "
+      "further than 10 times from 46 Hz m over the height (of models: outside 0.2 to 100 Hz), its "
+      "damping ratio outside 0.001 to 0.3, stories one of which is over 100 times as stiff as "
+      "another.\n";
   for (const SectionDescription& s : section_table()) {
     out += fmt::format("\n## `{}`\n\n{}\n\n", s.heading, s.text);
     out +=

@@ -72,6 +72,7 @@ int run(const RunArguments& a) {
       text ? parse_config(a.config, *text, problems) : std::nullopt;
   print_problems(problems);
   if (!config) return kBadInput;
+  log_doubts(config->doubts);
   if (const std::string why = nothing_to_hear(*config, a.by_name); !why.empty())
     return refuse("run", why);
   if (const std::string names = channels_without_source(*config, a.by_name); !names.empty())

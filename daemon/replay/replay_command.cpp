@@ -61,6 +61,9 @@ std::vector<std::string> argument_problems(const ReplayArguments& a) {
   if (a.json && writes_standard_output(a))
     found.push_back("--json: standard output is taken by an output that is named -");
   if (!(a.span.to_s > a.span.from_s)) found.push_back("--to: must be later than --from");
+  std::vector<drivers::Problem> undeclared;
+  (void)record_options(a.record, undeclared);
+  for (const drivers::Problem& p : undeclared) found.push_back(p.where + ": " + p.message);
   if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog")))
     found.push_back("--boxplot: is for --out with .csv or .mat; a log always has them");
   return found;
@@ -131,6 +134,7 @@ class ReplayRun {
           series_.add(e);
           learner_.push(e);
         }) {
+    survey_.declare(a.record);
     if (a.event_reports.empty()) return;
     estimation_.tap({{}, {}, {}, {}, [this](const EventReport& report) {
                        const std::string problem =
@@ -192,6 +196,7 @@ class ReplayRun {
 
   bool sound_beforehand() const {
     ReplaySurvey survey(config_, a_.salvage, a_.span);
+    survey.declare(a_.record);
     for (const std::string& path : a_.inputs) survey.add(path);
     survey.finish();
     return judge(survey);
@@ -314,6 +319,7 @@ int replay(const ReplayArguments& a) {
   std::optional<Config> config = load_config(a.config, problems);
   print_problems(problems);
   if (!config) return kBadInput;
+  log_doubts(config->doubts);
   const bool boxplots_are_read =
       !a.out.empty() || a.lcm || !a.save_state.empty() || !a.load_state.empty();
   if (!boxplots_are_read) config->pipeline.options.boxplot_windows = 0;

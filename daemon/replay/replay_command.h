@@ -13,8 +13,9 @@ struct ReplayArguments {
   std::string out;                  ///< .lcmlog, .csv, .csv.gz or .mat; empty: only the summary
   bool salvage = false;             ///< replay what is intact of damaged input
   bool quiet = false;
-  bool json = false;     ///< summary as JSON
-  bool boxplot = false;  ///< boxplot statistics in .csv and .mat
+  bool json = false;                ///< summary as JSON
+  bool boxplot = false;             ///< boxplot statistics in .csv and .mat
+  RecordFileArguments record = {};  ///< what record files do not say themselves
   ReplaySpan span = {};
   double speed = 0;                 ///< times real time; 0: as fast as possible
   bool lcm = false;                 ///< publish too

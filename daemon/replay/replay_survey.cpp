@@ -41,6 +41,12 @@ void ReplaySurvey::fault(std::string message) {
   (salvage_ ? notes_ : problems_).push_back(std::move(message));
 }
 
+void ReplaySurvey::declare(const RecordFileArguments& arguments) {
+  std::vector<drivers::Problem> told_before;
+  record_options_ = record_options(arguments, told_before);
+  declared_ = arguments.any();
+}
+
 void ReplaySurvey::add(const std::string& path) {
   if (const std::string why = drivers::why_no_file(path); !why.empty()) {
     problems_.push_back(fmt::format("{}: {}", path, why));
@@ -61,7 +67,7 @@ void ReplaySurvey::add(const std::string& path) {
   } else {
     bytes_ += static_cast<std::int64_t>(size);
     std::vector<drivers::Problem> found;
-    auto record = drivers::read_record(path, {}, found);
+    auto record = drivers::read_record(path, record_options_, found);
     for (const drivers::Problem& p : found)
       problems_.push_back(fmt::format("{}: {}", p.where, p.message));
     if (record) add_record({path, true, std::move(*record), {}});
@@ -285,6 +291,8 @@ void ReplaySurvey::finish() {
     problems_.push_back("--from, --to: no sample of the input lies there");
   const bool only_logs = std::none_of(inputs_.begin(), inputs_.end(),
                                       [](const ReplayInput& input) { return input.is_record; });
+  if (only_logs && declared_)
+    problems_.push_back("--unit, --step and the like are for record files: a log says them itself");
   if (!only_logs || !problems_.empty()) return;
   std::string names;
   for (const std::string& name : intake().binding().unbound())

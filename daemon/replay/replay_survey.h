@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
+#include "daemon/documents/record_file_arguments.h"
 #include "daemon/estimation/estimation.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
@@ -38,6 +39,9 @@ class ReplaySurvey {
  public:
   /// salvage: damaged, undecodable and infinite input is noted and left out instead of refused.
   ReplaySurvey(const Config& config, bool salvage, ReplaySpan span = {});
+
+  /// What record files do not say themselves.
+  void declare(const RecordFileArguments& arguments);
 
   /// From now on every sample is passed to `estimation` too, which must outlive the calls of add().
   void feed(Estimation& estimation) { estimation_ = &estimation; }
@@ -97,6 +101,8 @@ class ReplaySurvey {
 
   const Config& config_;
   bool salvage_;
+  drivers::RecordOptions record_options_;
+  bool declared_ = false;
   ReplaySpan span_;
   bool spanned_;
   bool goes_on_ = false;

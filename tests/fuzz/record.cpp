@@ -1,6 +1,8 @@
-// Record files of every format.
+// Record files of every format, and what `framewatch init` makes of their titles.
 #include <cmath>
+#include <set>
 
+#include "daemon/init/column_places.h"
 #include "drivers/records/record_file.h"
 #include "tests/fuzz/targets.h"
 
@@ -8,6 +10,18 @@ namespace framewatch::test {
 namespace {
 
 using drivers::RecordFormat;
+
+/// No title puts a column into two places.
+void place_columns(const std::vector<std::string>& titles) {
+  estimator::Structure building;
+  building.stories = 2;
+  building.frames_x = {"y1", "y2"};
+  building.frames_y = {"x1"};
+  const daemon::ColumnPlaces found = daemon::match_columns(building, titles, {});
+  std::set<std::size_t> used;
+  for (const auto& column : found.column_of_place)
+    require(!column || (*column < titles.size() && used.insert(*column).second), "a place each");
+}
 
 /// How it is to be read, then the file.
 void read_record_file(Bytes input) {
@@ -26,6 +40,7 @@ void read_record_file(Bytes input) {
   require(record.has_value() == problems.empty(), "a record or a problem");
   if (!record) return;
   require(record->accel_mps2.size() == record->names.size(), "a name for every column");
+  place_columns(record->names);
   for (std::size_t i = 1; i < record->time_s.size(); ++i)
     require(record->time_s[i - 1] < record->time_s[i], "time that increases");
   for (const auto& column : record->accel_mps2) {
@@ -36,7 +51,7 @@ void read_record_file(Bytes input) {
 
 std::vector<std::string> record_seeds() {
   const char* const texts[] = {
-      "time_s,base-x,F1-Y1\n0.00,0.1,-0.2\n0.01,,1e-3\n0.02,0.3,0.25\n",
+      "time_s,base-x,F1-Y1,2nd floor x1 along y\n0.00,0.1,-0.2,0\n0.01,,1e-3,0\n0.02,0.3,0.25,0\n",
       "PEER NGA STRONG MOTION DATABASE RECORD\nEl Centro, 1940, 180\n"
       "ACCELERATION TIME SERIES IN UNITS OF G\nNPTS=   6, DT=   .0100 SEC\n"
       "  .1E-02  -.2E-02  .3E-02  .4E-02  -.5E-02\n  .6E-02\n",

@@ -44,6 +44,24 @@ TEST(Check, SymmetricPlanCannotIdentifyPanels) {
   EXPECT_TRUE(warns(r, "Gk_1_x1y1"));
 }
 
+TEST(Check, ManyPanelsAreCounted) {
+  const std::string text = test::replaced(
+      test::replaced(
+          test::replaced(with_design("kx_npm = 2e4\nky_npm = 3e4\n"), "[\"x1\", \"x2\"]",
+                         "[\"x1\", \"x2\", \"x3\", \"x4\", \"x5\", \"x6\", \"x7\", \"x8\", "
+                         "\"x9\"]"),
+          "span_x_m = [1.0]", "span_x_m = [1, 1, 1, 1, 1, 1, 1, 1]"),
+      "[[channel]]\nname = \"base-x\"", [] {
+        std::string more;
+        for (int i = 3; i < 10; ++i)
+          more += "[[channel]]\nname = \"m" + std::to_string(i) + "\"\nstory = 1\nframe = \"x" +
+                  std::to_string(i) + "\"\n\n";
+        return more + "[[channel]]\nname = \"base-x\"";
+      }());
+  const CheckReport r = make_check_report(test::good(text));
+  EXPECT_TRUE(warns(r, "Gk_1_x5y1, Gk_1_x6y1, 2 more and their damping")) << to_text(r);
+}
+
 TEST(Check, EccentricPlanDoesNotWarn) {
   const CheckReport r =
       make_check_report(test::good(with_design("kx_npm = [[2e4, 3e4]]\nky_npm = 3e4\ngk = 4e4\n")));

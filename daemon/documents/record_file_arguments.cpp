@@ -1,4 +1,4 @@
-#include "daemon/commands/record_file_arguments.h"
+#include "daemon/documents/record_file_arguments.h"
 
 #include <fmt/core.h>
 

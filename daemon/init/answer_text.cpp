@@ -1,0 +1,62 @@
+#include "daemon/init/answer_text.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "drivers/base/number_text.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kMostBays = 20;
+
+}  // namespace
+
+std::optional<Quantity> parse_quantity(std::string_view text) {
+  Quantity out;
+  std::string_view rest = drivers::trimmed(text);
+  for (;;) {
+    const std::size_t end = rest.find_first_not_of("0123456789.eE+-");
+    std::string_view number = rest.substr(0, end);
+    auto value = drivers::parse_number(number);
+    if (!value || !std::isfinite(*value) || *value <= 0) return std::nullopt;
+    out.values.push_back(*value);
+    rest = drivers::trimmed(rest.substr(number.size()));
+    if (rest.empty() || rest.front() != ',') break;
+    rest = drivers::trimmed(rest.substr(1));
+  }
+  out.unit = std::string(rest);
+  std::erase(out.unit, ' ');
+  return out;
+}
+
+std::optional<std::vector<double>> spread(const std::vector<double>& values, std::size_t count) {
+  if (values.size() == 1) return std::vector<double>(count, values.front());
+  if (values.size() == count) return values;
+  return std::nullopt;
+}
+
+std::optional<Bays> parse_bays(std::string_view text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string_view::npos) return std::nullopt;
+  const auto x = drivers::parse_integer(drivers::trimmed(text.substr(0, cross)));
+  const auto y = drivers::parse_integer(drivers::trimmed(text.substr(cross + 1)));
+  const auto good = [](const auto& n) { return n && *n >= 0 && *n <= kMostBays; };
+  if (!good(x) || !good(y)) return std::nullopt;
+  return Bays{static_cast<int>(*x), static_cast<int>(*y)};
+}
+
+std::string list_text(const std::vector<double>& values) {
+  const bool equal =
+      std::all_of(values.begin(), values.end(), [&](double v) { return v == values.front(); });
+  std::string out;
+  for (const double value : values) {
+    out += fmt::format("{}{:.6g}", out.empty() ? "" : ", ", value);
+    if (equal) break;
+  }
+  return out;
+}
+
+}  // namespace framewatch::daemon

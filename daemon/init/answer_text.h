@@ -1,0 +1,33 @@
+// Numbers as a person answers them.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace framewatch::daemon {
+
+/// "4.2, 3.5 m": numbers, and what stands behind them.
+struct Quantity {
+  std::vector<double> values;
+  std::string unit;  ///< without blanks; empty: none
+};
+
+/// Positive numbers between commas, then perhaps a unit. Empty for anything else.
+std::optional<Quantity> parse_quantity(std::string_view text);
+
+/// "6" or "6, 5, 6": the first for all of `count`, or one each. Empty: neither.
+std::optional<std::vector<double>> spread(const std::vector<double>& values, std::size_t count);
+
+/// "2x1".
+struct Bays {
+  int x = 0, y = 0;
+};
+std::optional<Bays> parse_bays(std::string_view text);
+
+/// "3.5, 3.5"; equal ones once.
+std::string list_text(const std::vector<double>& values);
+
+}  // namespace framewatch::daemon

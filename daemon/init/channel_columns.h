@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/documents/record_file_arguments.h"
+#include "daemon/init/building_plan.h"
+
+namespace framewatch::daemon {
+
+/// What a record, or the signals of a CAN bus, can be channels of.
+struct ChannelColumns {
+  std::vector<ChannelColumn> columns;
+  double rate_hz = 0;              ///< of a record, rounded as its times are; 0: not known
+  std::vector<std::string> notes;  ///< what the reader assumed or left out
+  std::string problem;             ///< why there is nothing, of several lines; empty: all is well
+};
+
+ChannelColumns columns_of_record(const std::string& path, const RecordFileArguments& arguments);
+
+/// The signals of a DBC file whose unit is one of acceleration.
+ChannelColumns columns_of_dbc(const std::string& path, const std::string& interface);
+
+/// "rec.csv --unit g" as a person answers: the file's name, and options of it. A word that is no
+/// such option is a problem.
+struct RecordAnswer {
+  std::string path;
+  RecordFileArguments arguments;
+  std::string problem;
+};
+RecordAnswer parse_record_answer(const std::string& text);
+
+/// The options as they are typed: " --unit g"; a text in quotes where a shell wants them.
+std::string options_text(const RecordFileArguments& arguments);
+std::string shell_word(const std::string& text);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,133 @@
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "daemon/base/exit_code.h"
+#include "tests/support/shell.h"
+
+namespace framewatch::daemon {
+namespace init_command_test {
+
+using test::ShellResult;
+
+class InitCommand : public testing::Test {
+ protected:
+  ShellResult shell(const std::string& line) { return test::shell(directory_, line); }
+
+  test::TemporaryDirectory directory_;
+};
+
+constexpr const char* kHouse =
+    "--live lcm --stories 2 --bays 1x1 --span-x 6 --span-y 4 --heights 3 --mass 300kg/m2";
+
+TEST_F(InitCommand, WithoutATerminalAllThatIsMissingIsTold) {
+  const ShellResult said = shell("$F init --stories 2");
+  EXPECT_EQ(said.status, kBadInput);
+  for (const char* option : {"--live", "--bays", "--span-x", "--span-y", "--heights", "--mass"})
+    EXPECT_NE(said.err.find(std::string(option) + ": is missing: "), std::string::npos)
+        << option << "\n"
+        << said.err;
+  EXPECT_NE(said.err.find("framewatch init: 6 answers missing or wrong"), std::string::npos);
+  EXPECT_EQ(shell("ls").out, "");
+}
+
+TEST_F(InitCommand, WritesWhatCheckAccepts) {
+  const ShellResult said = shell(std::string("$F init ") + kHouse);
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(
+      said.out.find("building.toml: written. What follows:\n  framewatch check building.toml\n"
+                    "  framewatch run building.toml\n"),
+      std::string::npos)
+      << said.out;
+  EXPECT_NE(said.out.find("frames y1 to y2 move along x, frames x1 to x2 move along y"),
+            std::string::npos)
+      << said.out;
+  EXPECT_EQ(shell("$F check building.toml").status, 0);
+}
+
+/// `script` gives it a terminal.
+TEST_F(InitCommand, OnATerminalItAsks) {
+  const ShellResult said = shell(
+      "printf 'none\\nlcm\\n\\n2\\nx\\n\\n3.5\\n18 t\\n\\n\\n\\n' | "
+      "timeout 60 script -qec \"$F init\" /dev/null");
+  EXPECT_EQ(said.status, 0) << said.out;
+  EXPECT_NE(said.out.find("How many stories does it have"), std::string::npos) << said.out;
+  EXPECT_NE(said.out.find("frame y1 moves along x"), std::string::npos) << said.out;
+  EXPECT_EQ(shell("$F check building.toml").status, 0);
+  const ShellResult left =
+      shell("printf 'none\\nquit\\n' | timeout 60 script -qec \"$F init --out b.toml\" /dev/null");
+  EXPECT_EQ(left.status, kBadInput) << left.out;
+  EXPECT_FALSE(left.out.find("left; nothing was written") == std::string::npos) << left.out;
+  EXPECT_EQ(shell("ls b.toml*").out, "");
+}
+
+TEST_F(InitCommand, NeverWritesOverAFileUnlessForced) {
+  test::write_file(directory_.path("building.toml"), "mine\n");
+  const ShellResult said = shell(std::string("$F init ") + kHouse);
+  EXPECT_EQ(said.status, kBadInput);
+  EXPECT_NE(said.err.find("building.toml: is there already; --force"), std::string::npos);
+  EXPECT_EQ(test::read_file(directory_.path("building.toml")), "mine\n");
+  EXPECT_EQ(shell(std::string("$F init --force ") + kHouse).status, 0);
+  EXPECT_EQ(shell("$F check building.toml").status, 0);
+}
+
+TEST_F(InitCommand, StandardOutputTakesTheConfigurationAlone) {
+  const ShellResult said = shell(std::string("$F init --out - ") + kHouse + " | $F check -");
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_EQ(shell(std::string("$F init --out - --quiet ") + kHouse).err, "");
+}
+
+TEST_F(InitCommand, WhatIsImplausibleIsToldAtOnce) {
+  const ShellResult said = shell(
+      "$F init --live lcm --stories 2 --bays 1x1 --span-x 6 --span-y 4 "
+      "--heights 400 --mass 7");
+  EXPECT_EQ(said.status, 0) << said.err;
+  EXPECT_NE(said.err.find("structure.story_height_m: 400 m"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("mass in tonnes where kg is asked?"), std::string::npos) << said.err;
+}
+
+TEST_F(InitCommand, ColumnsAreNeverGuessed) {
+  test::write_file(directory_.path("r.csv"), "time_s,base,acc1,acc2\n0,0,0,0\n0.01,0,0,0\n");
+  const std::string plane =
+      "$F init --record r.csv --directions x --stories 2 --heights 3 --mass 900 ";
+  const ShellResult said = shell(plane);
+  EXPECT_EQ(said.status, kBadInput);
+  EXPECT_NE(
+      said.err.find("--channel NAME=1:y1: is missing: Which column is floor 1, frame y1, along "
+                    "x? There are acc1, acc2."),
+      std::string::npos)
+      << said.err;
+  EXPECT_EQ(shell(plane + "--channel acc1=1:y1 --channel acc2=2:x").status, 0);
+  EXPECT_EQ(shell("$F check building.toml").status, 0);
+  const ShellResult wrong = shell(plane +
+                                  "--force --channel acc1 --channel acc3=1:x "
+                                  "--channel acc1=3:x --channel base=1:x --channel acc2=1:x");
+  EXPECT_EQ(wrong.status, kBadInput);
+  for (const char* part :
+       {"acc1: write NAME=PLACE", "acc3=1:x: there is no such column; there are ",
+        "acc1=3:x: no place of this building; places are 0:x (base, along x) to 2:y1",
+        "acc2=1:x: base is there already"})
+    EXPECT_NE(wrong.err.find(part), std::string::npos) << part << "\n" << wrong.err;
+  const ShellResult few = shell(plane + "--force --bays 0x1 --span-y 4");
+  EXPECT_NE(few.err.find("this building needs 5 channels"), std::string::npos) << few.err;
+}
+
+TEST_F(InitCommand, SignalsOfACanBus) {
+  test::write_file(directory_.path("bus.dbc"),
+                   "VERSION \"\"\nBU_: N\n"
+                   "BO_ 1 Base: 2 N\n SG_ X : 0|16@1- (0.001,0) [0|0] \"g\" N\n"
+                   "BO_ 2 Floor1: 4 N\n SG_ X : 0|16@1- (0.001,0) [0|0] \"g\" N\n"
+                   " SG_ Temperature : 16|16@1- (1,0) [0|0] \"C\" N\n");
+  const ShellResult said =
+      shell("$F init --live can --dbc bus.dbc --directions x --stories 1 --heights 3 --mass 900");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const std::string text = test::read_file(directory_.path("building.toml"));
+  EXPECT_NE(text.find("name = \"Floor1.X\"\nstory = 1\nframe = \"y1\"  # along x\nsource = { can = "
+                      "\"can0\", dbc_signal = \"Floor1.X\" }\nscale = 9.80665"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(shell("$F check building.toml").status, 0) << shell("$F check building.toml").err;
+}
+
+}  // namespace init_command_test
+}  // namespace framewatch::daemon
