@@ -49,7 +49,7 @@ const nowUs = () => newestUs() + (flows() || !lastMotion ? 0 : 1e3 * (performanc
 const whyNot = i => estimate ? reasons[estimate.reason[i]] || 'no value' : 'no value yet';
 function elementText(i) {
   const q = plan.parameters[i], out = [`${q.name}: ${place(q)}`, meaning[q.kind]], v = known[i], f = findingOf(q.name);
-  if (f) out.push(`${f.ratio < 0 ? 'lost' : 'gained'} ${percent(f.ratio, f.error).slice(1)} of its stiffness, standard error ${percent(f.error, f.error).slice(1)}, since ${when(f.since_us)}`);
+  if (f) out.push(`${f.ratio < 0 ? 'lost' : 'gained'} ${percent(f.ratio, f.error).slice(1)} of its stiffness, give or take ${percent(f.error, f.error).slice(1)}, since ${when(f.since_us)}`);
   if (v) out.push(`${isNow(i) ? 'newest window' : 'last value'} ${withError(v.value, v.error, q.unit)} (one standard error)` + (isNow(i) ? '' : `, ${span((nowUs() - v.us) / 1e6)} old, of ${when(v.us)}`));
   if (!isNow(i) && flows()) out.push(`now no value: ${whyNot(i)}`);
   if (reference(i)) out.push(`${baseline[i] ? 'baseline' : 'design'} ${plain(reference(i), q.unit)}`);
@@ -93,7 +93,7 @@ function start(json) {
   const bar = document.createElement('canvas');
   bar.id = 'bar'; bar.width = 160; bar.height = 14; bar.style.width = '160px'; bar.setAttribute('aria-hidden', 'true');
   const text = t => { const s = document.createElement('span'); s.textContent = t; return s; };
-  $('scale').replaceChildren(text('−15 %, softer'), bar, text('+15 %, stiffer than the baseline; paler: the last value; hatched: never had one'));
+  $('scale').replaceChildren(text('−15 %, softer'), bar, text('+15 %, stiffer than the baseline (without one: than the design); paler: the last value; hatched: never had one'));
   applyTheme();
   boxButton();
   fetch('history.json').then(r => r.ok ? r.json() : null).catch(() => null).then(before).finally(listen);
@@ -324,7 +324,7 @@ function zoneButton() { $('zone').textContent = zone === 'UTC' ? 'Times: UTC' : 
 $('zone').onclick = () => {
   zone = zone === 'UTC' ? 'local' : 'UTC';
   localStorage.setItem('zone', zone);
-  zoneButton(); showAnswers(); showAlarms();
+  zoneButton(); showAnswers(); showAlarms(); loadEventReports();
   for (const s of Object.values(strips)) { s.make(); s.fresh = true; }
 };
 zoneButton();
