@@ -16,7 +16,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, RecordFormat>, 7> kFormats = {{
+constexpr std::array<std::pair<std::string_view, RecordFormat>, 10> kFormats = {{
     {"detect", RecordFormat::detect},
     {"csv", RecordFormat::csv},
     {"at2", RecordFormat::at2},
@@ -24,6 +24,9 @@ constexpr std::array<std::pair<std::string_view, RecordFormat>, 7> kFormats = {{
     {"two-columns", RecordFormat::columns},
     {"rows", RecordFormat::rows},
     {"xsens", RecordFormat::xsens},
+    {"cosmos", RecordFormat::cosmos},
+    {"smc", RecordFormat::smc},
+    {"knet", RecordFormat::knet},
 }};
 
 /// Lines that are read to find the format; the header of Xsens is the eighth.
@@ -55,6 +58,16 @@ RecordFormat format_of_numbers(std::int64_t first_line, std::size_t width, FileP
   return RecordFormat::detect;
 }
 
+/// A network's file says what it is on its first line; detect: it is none.
+RecordFormat format_of_network(std::string_view first_line) {
+  if (holds(first_line, "(Format v")) return RecordFormat::cosmos;
+  if (first_line.starts_with("Origin Time")) return RecordFormat::knet;
+  const std::string_view title = trimmed(first_line);
+  const bool smc =
+      title.starts_with("1 UNCORRECTED ACCEL") || title.starts_with("2 CORRECTED ACCEL");
+  return smc ? RecordFormat::smc : RecordFormat::detect;
+}
+
 RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
   LineReader lines(problems);
   std::vector<std::string_view> fields;
@@ -62,6 +75,8 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
   std::int64_t first_line = 0;
   bool text = false;  // above it
   for (std::string_view line; lines.number() < kDetectLines && lines.next(line);) {
+    if (lines.number() == 1 && format_of_network(line) != RecordFormat::detect)
+      return format_of_network(line);
     if (holds(line, "PacketCounter") && holds(line, "SampleTimeFine")) return RecordFormat::xsens;
     if (lines.number() <= 4 && holds(line, "NPTS")) return RecordFormat::at2;
     if (is_comment(line) || width > 0) continue;
@@ -83,7 +98,7 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
     problems.add(
         0,
         "no known record format: not a table with a header such as time_s,<channel names>, "
-        "not PEER AT2, not Xsens DOT, not rows of numbers");
+        "not PEER AT2, not Xsens DOT, not COSMOS, SMC or K-NET, not rows of numbers");
   else
     return text ? RecordFormat::csv : format_of_numbers(first_line, width, problems);
   return RecordFormat::detect;
@@ -101,8 +116,8 @@ void check_declared(RecordFormat format, const RecordOptions& options, FileProbl
     problems.add(0, "the file has no time: declare the step in seconds, for example --step 0.01");
   if (!needs_step && options.step_s)
     problems.add(0, "the file has its own time: --step does not apply");
-  if (!options.time_column.empty() || options.time_unit_s || options.zone_min || options.decimal ||
-      !options.columns.empty())
+  if (!options.time_column.empty() || options.time_unit_s || options.decimal ||
+      !options.columns.empty() || (options.zone_min && format != RecordFormat::cosmos))
     problems.add(
         0, "--time, --time-unit, --zone, --decimal and --columns are for tables with a header");
 }
@@ -131,6 +146,12 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
       return read_at2(problems);
     case RecordFormat::xsens:
       return read_xsens(problems);
+    case RecordFormat::cosmos:
+      return read_cosmos(options, problems);
+    case RecordFormat::smc:
+      return read_smc(problems);
+    case RecordFormat::knet:
+      return read_knet(problems);
     case RecordFormat::columns:
       return read_columns(*options.unit_mps2, problems);
     case RecordFormat::rows:

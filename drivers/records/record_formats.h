@@ -17,6 +17,10 @@ bool is_table_header(std::string_view line, const RecordOptions& options);
 std::optional<Record> read_csv(const RecordOptions& options, FileProblems& problems);
 std::optional<Record> read_at2(FileProblems& problems);
 std::optional<Record> read_xsens(FileProblems& problems);
+/// Of the options only the zone, where the file does not say it.
+std::optional<Record> read_cosmos(const RecordOptions& options, FileProblems& problems);
+std::optional<Record> read_smc(FileProblems& problems);
+std::optional<Record> read_knet(FileProblems& problems);
 /// On every line the time in s, then the same number of accelerations.
 std::optional<Record> read_columns(double unit_mps2, FileProblems& problems);
 /// Accelerations of one channel, the same number on every line but the last, `step_s` apart.
