@@ -175,7 +175,8 @@ void add_convert(CommandList& commands) {
       ->add_option("--names", record.names, "names of the channels, in the file's order: A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--format", record.format, "csv, at2, columns, rows or xsens")
+  command
+      ->add_option("--format", record.format, "csv, at2, columns, rows, xsens, cosmos, smc or knet")
       ->capture_default_str();
   command
       ->add_option("--config", arguments.config,
