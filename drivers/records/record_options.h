@@ -7,7 +7,7 @@
 
 namespace framewatch::drivers {
 
-enum class RecordFormat { detect, csv, at2, columns, rows, xsens };
+enum class RecordFormat { detect, csv, at2, columns, rows, xsens, mseed, mat };
 
 /// What a file does not say itself. Declaring what it says is a problem, and so is leaving out what
 /// decides between two readings.
@@ -23,7 +23,7 @@ struct RecordOptions {
   std::vector<std::string> names;     ///< of the channels, in the file's order; empty: its own
 };
 
-/// "csv", "at2", "columns", "two-columns", "rows", "xsens", and "detect".
+/// "csv", "at2", "columns", "two-columns", "rows", "xsens", "mseed", "mat", and "detect".
 std::optional<RecordFormat> record_format(std::string_view name);
 
 }  // namespace framewatch::drivers
