@@ -151,6 +151,8 @@ void add_convert(CommandList& commands) {
       "  framewatch convert sheet.csv --unit g --time-unit ms rec.lcmlog\n"
       "  framewatch convert elcentro_NS.dat --unit g elcentro.csv\n"
       "  framewatch convert hachi.txt --unit gal --step 0.01 hachi.lcmlog\n"
+      "  framewatch convert quake.mseed --unit 1e-6 --names base,roof quake.lcmlog\n"
+      "  framewatch convert run.mat --time t --columns acc --unit g run.lcmlog\n"
       "  framewatch convert ground.csv.gz first.csv.gz second.csv.gz top.csv.gz run.lcmlog\n"
       "  framewatch convert est.lcmlog --boxplot est.csv");
   command
@@ -164,19 +166,21 @@ void add_convert(CommandList& commands) {
   command->add_option("--unit", record.unit,
                       "of a file that does not say it: g, mg, gal, mps2, or the m/s^2 of one");
   command->add_option("--step", record.step_s, "seconds between samples of a file without time");
-  command->add_option("--time", record.time, "title of the column with the times");
+  command->add_option("--time", record.time,
+                      "title of the column (or MATLAB variable) with the times");
   command->add_option("--time-unit", record.time_unit, "of such a column: s, ms, us or ns");
   command->add_option("--zone", record.zone, "of time stamps without one: Z, or such as +09:00");
   command->add_option("--decimal", record.decimal, "comma or point, where a file leaves it open");
-  command->add_option("--columns", record.columns, "titles of the columns to take: A,B,...")
+  command
+      ->add_option("--columns", record.columns,
+                   "titles of the columns (or MATLAB variables, SEED channels) to take: A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
       ->add_option("--names", record.names, "names of the channels, in the file's order: A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command
-      ->add_option("--format", record.format, "csv, at2, columns, rows, xsens, cosmos, smc or knet")
+  command->add_option("--format", record.format, drivers::record_format_names())
       ->capture_default_str();
   command
       ->add_option("--config", arguments.config,

@@ -22,7 +22,7 @@ drivers::RecordOptions record_options(const RecordFileArguments& a,
   if (const auto format = drivers::record_format(a.format))
     out.format = *format;
   else
-    wrong("--format", a.format, "detect, csv, at2, columns, rows, xsens, cosmos, smc or knet");
+    wrong("--format", a.format, drivers::record_format_names());
   out.unit_mps2 = drivers::declared_unit(a.unit);
   if (!a.unit.empty() && !out.unit_mps2)
     wrong("--unit", a.unit, "g, mg, gal or mps2, nor a number of m/s^2");

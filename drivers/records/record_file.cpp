@@ -5,18 +5,19 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_formats.h"
+#include "drivers/records/record_signature.h"
 #include "drivers/records/table_text.h"
 
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, RecordFormat>, 10> kFormats = {{
+constexpr std::array<std::pair<std::string_view, RecordFormat>, 13> kFormats = {{
     {"detect", RecordFormat::detect},
     {"csv", RecordFormat::csv},
     {"at2", RecordFormat::at2},
@@ -24,9 +25,12 @@ constexpr std::array<std::pair<std::string_view, RecordFormat>, 10> kFormats = {
     {"two-columns", RecordFormat::columns},
     {"rows", RecordFormat::rows},
     {"xsens", RecordFormat::xsens},
+    {"mseed", RecordFormat::mseed},
+    {"mat", RecordFormat::mat},
     {"cosmos", RecordFormat::cosmos},
     {"smc", RecordFormat::smc},
     {"knet", RecordFormat::knet},
+    {"sac", RecordFormat::sac},
 }};
 
 /// Lines that are read to find the format; the header of Xsens is the eighth.
@@ -69,6 +73,8 @@ RecordFormat format_of_network(std::string_view first_line) {
 }
 
 RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
+  if (const auto binary = format_by_signature(problems)) return *binary;
+  if (problems.any()) return RecordFormat::detect;
   LineReader lines(problems);
   std::vector<std::string_view> fields;
   std::size_t width = 0;  // of the first row of numbers
@@ -98,7 +104,9 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
     problems.add(
         0,
         "no known record format: not a table with a header such as time_s,<channel names>, "
-        "not PEER AT2, not Xsens DOT, not COSMOS, SMC or K-NET, not rows of numbers");
+        "not what a strong-motion network publishes (COSMOS, SMC, K-NET, SAC, miniSEED 2), not "
+        "PEER "
+        "AT2, not Xsens DOT, not MATLAB, not rows of numbers");
   else
     return text ? RecordFormat::csv : format_of_numbers(first_line, width, problems);
   return RecordFormat::detect;
@@ -106,20 +114,27 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
 
 /// Reports options that the format needs and lacks, and those that do not apply to it.
 void check_declared(RecordFormat format, const RecordOptions& options, FileProblems& problems) {
-  const bool needs_unit = format == RecordFormat::columns || format == RecordFormat::rows;
+  const bool needs_unit = format == RecordFormat::columns || format == RecordFormat::rows ||
+                          format == RecordFormat::mseed || format == RecordFormat::sac;
   const bool needs_step = format == RecordFormat::rows;
   if (needs_unit && !options.unit_mps2)
-    problems.add(0, "the file does not say its unit: declare it with --unit g, mg, gal or mps2");
+    problems.add(0,
+                 format == RecordFormat::mseed
+                     ? "a miniSEED file does not say what a count is: declare it with --unit, "
+                       "the m/s^2 of one, for example --unit 1e-6"
+                     : "the file does not say its unit: declare it with --unit g, mg, gal or mps2");
   if (!needs_unit && options.unit_mps2)
     problems.add(0, "the format has its own unit: --unit does not apply");
   if (needs_step && !options.step_s)
     problems.add(0, "the file has no time: declare the step in seconds, for example --step 0.01");
   if (!needs_step && options.step_s)
     problems.add(0, "the file has its own time: --step does not apply");
-  if (!options.time_column.empty() || options.time_unit_s || options.decimal ||
-      !options.columns.empty() || (options.zone_min && format != RecordFormat::cosmos))
-    problems.add(
-        0, "--time, --time-unit, --zone, --decimal and --columns are for tables with a header");
+  if (!options.time_column.empty() || options.time_unit_s || options.decimal)
+    problems.add(0, "--time, --time-unit and --decimal are for tables with a header");
+  if (options.zone_min && format != RecordFormat::cosmos)
+    problems.add(0, "--zone is for tables with a header, and for COSMOS");
+  if (!options.columns.empty() && format != RecordFormat::mseed)
+    problems.add(0, "--columns is for tables with a header, MATLAB files and miniSEED");
 }
 
 void give_names(const std::vector<std::string>& names, Record& record, FileProblems& problems) {
@@ -135,7 +150,8 @@ void give_names(const std::vector<std::string>& names, Record& record, FileProbl
 
 std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
                               FileProblems& problems) {
-  if (format != RecordFormat::csv) check_declared(format, options, problems);
+  const bool table = format == RecordFormat::csv || format == RecordFormat::mat;
+  if (!table) check_declared(format, options, problems);
   if (options.step_s && !(std::isfinite(*options.step_s) && *options.step_s > 0))
     problems.add(0, fmt::format("--step {} must be positive", *options.step_s));
   if (problems.any()) return std::nullopt;
@@ -146,12 +162,18 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
       return read_at2(problems);
     case RecordFormat::xsens:
       return read_xsens(problems);
+    case RecordFormat::mseed:
+      return read_mseed(options, problems);
+    case RecordFormat::mat:
+      return read_mat(options, problems);
     case RecordFormat::cosmos:
       return read_cosmos(options, problems);
     case RecordFormat::smc:
       return read_smc(problems);
     case RecordFormat::knet:
       return read_knet(problems);
+    case RecordFormat::sac:
+      return read_sac(options, problems);
     case RecordFormat::columns:
       return read_columns(*options.unit_mps2, problems);
     case RecordFormat::rows:
@@ -168,6 +190,13 @@ std::optional<RecordFormat> record_format(std::string_view name) {
   for (const auto& [known, format] : kFormats)
     if (known == name) return format;
   return std::nullopt;
+}
+
+std::string record_format_names() {
+  std::vector<std::string_view> names;
+  for (const auto& [name, format] : kFormats)
+    if (name != "detect" && name != "two-columns") names.push_back(name);
+  return fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
 }
 
 std::optional<Record> read_record(const std::string& path, const RecordOptions& options,

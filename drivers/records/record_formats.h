@@ -21,8 +21,16 @@ std::optional<Record> read_xsens(FileProblems& problems);
 std::optional<Record> read_cosmos(const RecordOptions& options, FileProblems& problems);
 std::optional<Record> read_smc(FileProblems& problems);
 std::optional<Record> read_knet(FileProblems& problems);
+/// One channel; `unit_mps2` is of one of the file's, since few files say theirs as they should.
+std::optional<Record> read_sac(const RecordOptions& options, FileProblems& problems);
 /// On every line the time in s, then the same number of accelerations.
 std::optional<Record> read_columns(double unit_mps2, FileProblems& problems);
+/// miniSEED 2: every SEED channel is one of the record, with its own name; `unit_mps2` is of a
+/// count. Times are since 1970. Channels begin and end when they do: NaN where one has no sample.
+std::optional<Record> read_mseed(const RecordOptions& options, FileProblems& problems);
+/// MATLAB, level 5 or 7.3: vectors, columns of matrices, and fields of structs, as if they were
+/// columns of a table.
+std::optional<Record> read_mat(const RecordOptions& options, FileProblems& problems);
 /// Accelerations of one channel, the same number on every line but the last, `step_s` apart.
 std::optional<Record> read_rows(double unit_mps2, double step_s, FileProblems& problems);
 

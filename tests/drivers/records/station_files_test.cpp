@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numeric>
 
 #include <fmt/core.h>
@@ -11,10 +10,17 @@
 #include "drivers/records/record_file.h"
 #include "drivers/records/record_merge.h"
 #include "tests/support/data.h"
+#include "tests/support/station_files.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::drivers {
 namespace station_files_test {
+
+using test::cosmos;
+using test::CosmosChannel;
+using test::knet;
+using test::sac;
+using test::smc;
 
 constexpr double kG = 9.80665;
 constexpr double kStart_utc_s = 1543598946;  // 2018-11-30T17:29:06Z
@@ -26,9 +32,10 @@ class StationFile : public testing::Test {
     problems_.clear();
     return read_record(path_, options, problems_);
   }
-  void expect_refused(const std::string& text, int line, const std::string& rule) {
+  void expect_refused(const std::string& text, int line, const std::string& rule,
+                      const RecordOptions& options = {}) {
     SCOPED_TRACE(rule);
-    EXPECT_FALSE(read(text));
+    EXPECT_FALSE(read(text, options));
     ASSERT_FALSE(problems_.empty());
     if (line >= 0) {
       EXPECT_EQ(problems_[0].where, line > 0 ? fmt::format("{}:{}", path_, line) : path_);
@@ -41,75 +48,10 @@ class StationFile : public testing::Test {
   std::vector<Problem> problems_;
 };
 
-std::string numbers(std::size_t count, std::size_t per_line, std::size_t width,
-                    const std::map<std::size_t, std::string>& known, const std::string& other) {
-  std::string out;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto at = known.find(i);
-    out += fmt::format("{:>{}}", at == known.end() ? other : at->second, width);
-    if ((i + 1) % per_line == 0 || i + 1 == count) out += '\n';
-  }
-  return out;
-}
-
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   const std::size_t at = text.find(what);
   EXPECT_NE(at, std::string::npos) << what;
   return at == std::string::npos ? text : text.replace(at, what.size(), by);
-}
-
-struct CosmosChannel {
-  int number = 1;
-  int unit = 4;
-  int stage = 1;
-  std::string azimuth = "90";  ///< to the reference, 180 deg
-  std::string comment = "|<SCNL>8040.HNE.NP.01    <AUTH> 2019/05/28\n";
-  std::string values =
-      "4 acceleration pts, approx 0 secs, units=cm/sec2(04),Format=(3F9.3)\n"
-      "    1.000 -200.000-9999.001\n   -2.500\n"
-      "End-of-data for ChanHNE acceleration\n";
-};
-
-std::string cosmos(const CosmosChannel& c = {}) {
-  return fmt::format(
-             "Uncorrected acceleration  (Format v01.20 with 5 text lines)\n"
-             "Statn No: 02-008040 Code:NP-8040   USGS\n"
-             "Rcrd start time: 2018/11/30 17:29:06.332 UTC (Q=5) RcrdId: (see comment)\n"
-             "Sta Chan {:3}: 90 Deg (Rcrdr Chan  ?) Location:Basement NW corner\n"
-             "Values used when parameter or data value is unknown/unspecified:   -999, "
-             "-999.00\n",
-             c.number) +
-         " 100 Integer-header values follow on  10 lines, Format= (10I8)\n" +
-         numbers(100, 10, 8,
-                 {{0, fmt::format("{}", c.stage)},
-                  {1, "1"},
-                  {2, fmt::format("{}", c.unit)},
-                  {20, "180"},
-                  {39, "2018"},
-                  {41, "11"},
-                  {42, "30"},
-                  {43, "17"},
-                  {44, "29"},
-                  {49, fmt::format("{}", c.number)},
-                  {54, c.azimuth},
-                  {75, "0"}},
-                 "-999") +
-         " 100 Real-header values follow on  20 lines, Format= (5F15.6)\n" +
-         numbers(100, 5, 15,
-                 {{21, "0.298024"},
-                  {29, "6.332"},
-                  {39, "223.976"},
-                  {40, "0.697"},
-                  {41, "1.2553"},
-                  {46, "1.0"},
-                  {53, "0.1"},
-                  {56, "40.0"},
-                  {61, "5.0"},
-                  {63, "-9999.001"}},
-                 "-999.000000") +
-         fmt::format("   {} Comment line(s) follow, each starting with a \"|\":\n",
-                     c.comment.empty() ? 0 : 1) +
-         c.comment + c.values;
 }
 
 TEST_F(StationFile, OfCosmosHasNameUnitStartAndDirection) {
@@ -185,19 +127,6 @@ TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
   EXPECT_NEAR(r->time_s[0], kStart_utc_s + 0.332 + 9 * 3600, 1e-6);
 }
 
-std::string smc(const std::map<std::size_t, std::string>& changed = {}) {
-  std::map<std::size_t, std::string> integers = {
-      {0, "-32768"}, {1, "1994"}, {2, "17"},  {3, "12"}, {4, "31"}, {5, "3"},  {6, "250"},
-      {9, "2"},      {12, "90"},  {13, "35"}, {15, "1"}, {16, "9"}, {17, "0"}, {24, "6"}};
-  for (const auto& [at, text] : changed) integers[at] = text;
-  std::string text = "2 CORRECTED ACCELEROGRAM\n*\n5108 and more\n";
-  while (std::count(text.begin(), text.end(), '\n') < 11) text += "*\n";
-  return text + numbers(48, 8, 10, integers, "-32768") +
-         numbers(50, 5, 15, {{1, "0.2000000E+03"}}, "0.1700000E+39") + "| a comment\n" +
-         " .1000E+01-.2000E+01 .3000E+01 .4000E+01 .5000E+01 .6000E+01 .7000E+01 .8000E+01\n"
-         "-.9000E+02\n";
-}
-
 TEST_F(StationFile, OfSmcIsReadWithItsHeader) {
   const auto r = read(smc());
   ASSERT_TRUE(r) << problems_[0].where << problems_[0].message;
@@ -224,17 +153,6 @@ TEST_F(StationFile, OfSmcThatIsDamagedIsRefused) {
   expect_refused(replaced(smc(), " .4000E+01", " .4zzzE+01"), 29, "no finite number");
 }
 
-std::string knet() {
-  return "Origin Time       2018/11/30 17:29:00\nLat.              35.1\nLong.             139.1\n"
-         "Depth. (km)       40\nMag.              7.0\nStation Code      AKT001\n"
-         "Station Lat.      39.3\nStation Long.     140.9\nStation Height(m) 29\n"
-         "Record Time       2018/12/01 02:29:21\nSampling Freq(Hz) 100Hz\n"
-         "Duration Time(s)  60\nDir.              E-W\nScale Factor      3920(gal)/6182761\n"
-         "Max. Acc. (gal)   12.3\nLast Correction   2018/12/01 02:29:06\nMemo.             \n"
-         "   22640    22645    22650    22651    22640    22630    22641    22642\n"
-         "   22640   -22645\n";
-}
-
 TEST_F(StationFile, OfKnetIsReadWithItsHeader) {
   const auto r = read(knet());
   ASSERT_TRUE(r) << problems_[0].where << problems_[0].message;
@@ -259,6 +177,40 @@ TEST_F(StationFile, OfKnetThatIsDamagedIsRefused) {
   expect_refused(replaced(knet(), "100Hz", "0Hz"), 11, "rate");
   expect_refused(replaced(knet(), "02:29:21", "02:29"), 10, "no time");
   expect_refused(replaced(knet(), "22651", "2265x"), 18, "whole number");
+}
+
+RecordOptions declared(double unit_mps2) {
+  RecordOptions options;
+  options.unit_mps2 = unit_mps2;
+  return options;
+}
+
+TEST_F(StationFile, OfSacIsReadInEitherOrderOfBytes) {
+  for (const bool other : {false, true}) {
+    const auto r = read(sac(other), declared(1e-9));
+    ASSERT_TRUE(r) << problems_[0].message;
+    EXPECT_EQ(r->names, std::vector<std::string>{"NP.8040..HNE"});
+    EXPECT_DOUBLE_EQ(r->rate_hz, 200);
+    EXPECT_NEAR(r->time_s[0], kStart_utc_s + 0.832, 1e-6);
+    EXPECT_EQ(r->accel_mps2[0], (std::vector<double>{1e-9, -2e-9, 3e-9}));
+    EXPECT_EQ(r->notes[0], "NP.8040..HNE: azimuth 35 deg");
+  }
+  const auto undated = read(sac(false, {{70, -12345}}), declared(1));
+  ASSERT_TRUE(undated);
+  EXPECT_EQ(undated->time_s[0], 0);
+}
+
+TEST_F(StationFile, OfSacThatIsDamagedOrNoAccelerationIsRefused) {
+  expect_refused(sac(), 0, "--unit");
+  const auto refused = [&](const std::string& text, const std::string& rule) {
+    expect_refused(text, 0, rule, declared(1));
+  };
+  refused(sac().substr(0, 640), "3 values");
+  refused(sac(false, {{86, 7}}), "velocity");
+  refused(sac(false, {{85, 2}}), "spectrum");
+  refused(sac(false, {{105, 0}}), "uneven");
+  refused(sac(false, {{71, 0}}), "time is none");
+  refused(sac(false, {{79, 1 << 30}}), "at most");
 }
 
 /// Every file in `folder` that has this ending.
