@@ -16,7 +16,7 @@ bool RecordFileArguments::any() const {
 drivers::RecordOptions record_options(const RecordFileArguments& a,
                                       std::vector<drivers::Problem>& problems) {
   drivers::RecordOptions out;
-  const auto wrong = [&](const char* option, const std::string& value, const char* rule) {
+  const auto wrong = [&](const char* option, const std::string& value, const std::string& rule) {
     problems.push_back({option, fmt::format("'{}' is not {}", value, rule)});
   };
   if (const auto format = drivers::record_format(a.format))

@@ -99,7 +99,7 @@ TEST_F(Miniseed, OptionsOfTablesDoNotApply) {
   options_.time_column = "t";
   const auto record = read(miniseed(span(0, 100)));
   expect_said(record, "--step does not apply");
-  expect_said(record, "--time, --time-unit, --zone and --decimal are for tables");
+  expect_said(record, "--time, --time-unit and --decimal are for tables");
 }
 
 TEST_F(Miniseed, ChannelsInTurnsAreSideBySideAndMayEndWhereTheyDo) {

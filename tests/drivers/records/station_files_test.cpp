@@ -187,12 +187,12 @@ RecordOptions declared(double unit_mps2) {
 
 TEST_F(StationFile, OfSacIsReadInEitherOrderOfBytes) {
   for (const bool other : {false, true}) {
-    const auto r = read(sac(other), declared(1e-9));
+    const auto r = read(sac(other), declared(0.5));
     ASSERT_TRUE(r) << problems_[0].message;
     EXPECT_EQ(r->names, std::vector<std::string>{"NP.8040..HNE"});
     EXPECT_DOUBLE_EQ(r->rate_hz, 200);
     EXPECT_NEAR(r->time_s[0], kStart_utc_s + 0.832, 1e-6);
-    EXPECT_EQ(r->accel_mps2[0], (std::vector<double>{1e-9, -2e-9, 3e-9}));
+    EXPECT_EQ(r->accel_mps2[0], (std::vector<double>{0.5, -1, 1.5}));
     EXPECT_EQ(r->notes[0], "NP.8040..HNE: azimuth 35 deg");
   }
   const auto undated = read(sac(false, {{70, -12345}}), declared(1));
