@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 #include "tests/fuzz/scratch.h"
 #include "tests/fuzz/targets.h"
 #include "tests/support/mat.h"

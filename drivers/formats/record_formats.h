@@ -7,8 +7,8 @@
 #include "drivers/records/record.h"
 #include "drivers/records/record_options.h"
 
-// The readers behind read_record, one file each. All of them report to `problems` and return
-// nothing when there is a problem.
+// The readers of tables behind read_record, one file each (the others: drivers/stations). All of
+// them report to `problems` and return nothing when there is a problem.
 namespace framewatch::drivers {
 
 /// Whether a line is the header of a table: one of its cells is what a column of times is called.
@@ -17,17 +17,8 @@ bool is_table_header(std::string_view line, const RecordOptions& options);
 std::optional<Record> read_csv(const RecordOptions& options, FileProblems& problems);
 std::optional<Record> read_at2(FileProblems& problems);
 std::optional<Record> read_xsens(FileProblems& problems);
-/// Of the options only the zone, where the file does not say it.
-std::optional<Record> read_cosmos(const RecordOptions& options, FileProblems& problems);
-std::optional<Record> read_smc(FileProblems& problems);
-std::optional<Record> read_knet(FileProblems& problems);
-/// One channel; `unit_mps2` is of one of the file's, since few files say theirs as they should.
-std::optional<Record> read_sac(const RecordOptions& options, FileProblems& problems);
 /// On every line the time in s, then the same number of accelerations.
 std::optional<Record> read_columns(double unit_mps2, FileProblems& problems);
-/// miniSEED 2: every SEED channel is one of the record, with its own name; `unit_mps2` is of a
-/// count. Times are since 1970. Channels begin and end when they do: NaN where one has no sample.
-std::optional<Record> read_mseed(const RecordOptions& options, FileProblems& problems);
 /// MATLAB, level 5 or 7.3: vectors, columns of matrices, and fields of structs, as if they were
 /// columns of a table.
 std::optional<Record> read_mat(const RecordOptions& options, FileProblems& problems);

@@ -6,9 +6,9 @@
 
 #include "drivers/base/unpacked_file.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_formats.h"
-#include "drivers/records/sac_header.h"
-#include "drivers/records/station_channel.h"
+#include "drivers/stations/sac_header.h"
+#include "drivers/stations/station_channel.h"
+#include "drivers/stations/station_formats.h"
 
 namespace framewatch::drivers {
 namespace {

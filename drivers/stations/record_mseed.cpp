@@ -15,9 +15,9 @@
 
 #include "drivers/base/unpacked_file.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_formats.h"
 #include "drivers/records/record_merge.h"
-#include "drivers/records/seed_trace.h"
+#include "drivers/stations/seed_trace.h"
+#include "drivers/stations/station_formats.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 #include "tests/support/mat.h"
 #include "tests/support/temporary.h"
 

@@ -1,4 +1,4 @@
-#include "drivers/records/fortran_numbers.h"
+#include "drivers/stations/fortran_numbers.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "drivers/records/record_signature.h"
+#include "drivers/formats/record_signature.h"
 
 #include <libmseed.h>
 
@@ -11,8 +11,8 @@
 
 #include "drivers/base/number_text.h"
 #include "drivers/base/unpacked_file.h"
-#include "drivers/records/mat_signature.h"
-#include "drivers/records/sac_header.h"
+#include "drivers/formats/mat_signature.h"
+#include "drivers/stations/sac_header.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -1,4 +1,4 @@
-#include "drivers/records/seed_trace.h"
+#include "drivers/stations/seed_trace.h"
 
 #include <libmseed.h>
 

@@ -1,37 +1,20 @@
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
+#include "drivers/formats/record_formats.h"
+#include "drivers/formats/record_signature.h"
+#include "drivers/formats/table_text.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_formats.h"
-#include "drivers/records/record_signature.h"
-#include "drivers/records/table_text.h"
+#include "drivers/stations/station_formats.h"
 
 namespace framewatch::drivers {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, RecordFormat>, 13> kFormats = {{
-    {"detect", RecordFormat::detect},
-    {"csv", RecordFormat::csv},
-    {"at2", RecordFormat::at2},
-    {"columns", RecordFormat::columns},
-    {"two-columns", RecordFormat::columns},
-    {"rows", RecordFormat::rows},
-    {"xsens", RecordFormat::xsens},
-    {"mseed", RecordFormat::mseed},
-    {"mat", RecordFormat::mat},
-    {"cosmos", RecordFormat::cosmos},
-    {"smc", RecordFormat::smc},
-    {"knet", RecordFormat::knet},
-    {"sac", RecordFormat::sac},
-}};
 
 /// Lines that are read to find the format; the header of Xsens is the eighth.
 constexpr std::int64_t kDetectLines = 20;
@@ -185,19 +168,6 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
 }
 
 }  // namespace
-
-std::optional<RecordFormat> record_format(std::string_view name) {
-  for (const auto& [known, format] : kFormats)
-    if (known == name) return format;
-  return std::nullopt;
-}
-
-std::string record_format_names() {
-  std::vector<std::string_view> names;
-  for (const auto& [name, format] : kFormats)
-    if (name != "detect" && name != "two-columns") names.push_back(name);
-  return fmt::format("{} or {}", fmt::join(names.begin(), names.end() - 1, ", "), names.back());
-}
 
 std::optional<Record> read_record(const std::string& path, const RecordOptions& options,
                                   std::vector<Problem>& all_problems) {

@@ -1,4 +1,4 @@
-#include "drivers/records/sac_header.h"
+#include "drivers/stations/sac_header.h"
 
 #include <bit>
 #include <cmath>

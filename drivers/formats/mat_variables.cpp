@@ -1,4 +1,4 @@
-#include "drivers/records/mat_variables.h"
+#include "drivers/formats/mat_variables.h"
 
 #include <matio.h>
 
@@ -11,8 +11,8 @@
 
 #include "drivers/base/input_file.h"
 #include "drivers/base/unpack_limit.h"
-#include "drivers/records/hdf5_guard.h"
-#include "drivers/records/mat_signature.h"
+#include "drivers/formats/hdf5_guard.h"
+#include "drivers/formats/mat_signature.h"
 #include "drivers/records/record_builder.h"
 
 namespace framewatch::drivers {

@@ -1,4 +1,4 @@
-#include "drivers/records/hdf5_guard.h"
+#include "drivers/formats/hdf5_guard.h"
 
 #include <hdf5.h>
 

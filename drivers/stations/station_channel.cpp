@@ -1,4 +1,4 @@
-#include "drivers/records/station_channel.h"
+#include "drivers/stations/station_channel.h"
 
 #include <algorithm>
 #include <chrono>

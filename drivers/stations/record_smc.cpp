@@ -6,10 +6,10 @@
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
-#include "drivers/records/fortran_numbers.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_formats.h"
-#include "drivers/records/station_channel.h"
+#include "drivers/stations/fortran_numbers.h"
+#include "drivers/stations/station_channel.h"
+#include "drivers/stations/station_formats.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 #include "drivers/records/record_merge.h"
 #include "tests/support/data.h"
 #include "tests/support/station_files.h"

@@ -5,10 +5,10 @@
 
 #include <fmt/core.h>
 
-#include "drivers/records/mat_variables.h"
+#include "drivers/formats/mat_variables.h"
+#include "drivers/formats/record_formats.h"
+#include "drivers/formats/table_header.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_formats.h"
-#include "drivers/records/table_header.h"
 
 namespace framewatch::drivers {
 namespace {
