@@ -12,6 +12,7 @@
 #include "drivers/base/input_file.h"
 #include "drivers/base/unpack_limit.h"
 #include "drivers/formats/hdf5_guard.h"
+#include "drivers/formats/mat_layout.h"
 #include "drivers/formats/mat_signature.h"
 #include "drivers/records/record_builder.h"
 
@@ -68,21 +69,6 @@ std::size_t all_elements_of(const matvar_t& v) {
   return sum;
 }
 
-/// How many variables a file of level 5 says it has; empty when the last one is cut off. libmatio
-/// ends at the first that it cannot read, without a word.
-std::optional<std::size_t> count_in_level_5(InputFile& input, bool big_endian) {
-  std::size_t count = 0;
-  std::int64_t at = kMatHeaderBytes;
-  for (std::array<std::uint8_t, 8> tag{}; at < input.size(); ++count) {
-    if (input.read(tag.data(), std::ssize(tag), at) != std::ssize(tag)) return std::nullopt;
-    std::int64_t bytes = 0;
-    for (std::size_t i = 0; i < 4; ++i) bytes = bytes * 256 + tag[big_endian ? 4 + i : 7 - i];
-    at += std::ssize(tag) + bytes;
-  }
-  if (at > input.size()) return std::nullopt;
-  return count;
-}
-
 }  // namespace
 
 struct MatFileReader::State {
@@ -91,15 +77,7 @@ struct MatFileReader::State {
   std::vector<std::unique_ptr<matvar_t, FreeVariable>> tops;
   std::vector<bool> read;
   std::size_t values = 0;  ///< that were read
-  bool big_endian = false;
-
-  /// How many variables there are; empty: the file is cut off.
-  std::optional<std::size_t> count() {
-    if (Mat_GetVersion(file.get()) == MAT_FT_MAT5) return count_in_level_5(input, big_endian);
-    std::size_t names = 0;
-    (void)Mat_GetDir(file.get(), &names);
-    return names;
-  }
+  std::size_t told = 0;    ///< variables, as the file says
 
   /// False where structs are too deep or too many.
   bool list(matvar_t* v, const std::string& name, int depth, std::vector<MatVariable>& out) const {
@@ -141,15 +119,24 @@ MatFileReader::MatFileReader(FileProblems& problems) : state_(std::make_unique<S
                         : "is no MATLAB file of level 5 or 7.3 (save it with -v7)");
     return;
   }
-  state_->big_endian = head[126] == 'M';
   const bool is_hdf5 = head[124] == '\2' || head[125] == '\2';
+  const auto count = is_hdf5 ? 0 : count_in_level_5(state_->input, head[126] == 'M');
+  if (!count) {
+    problems.add(0, "is damaged or cut off, or unpacks to too much");
+    return;
+  }
   const auto name = fmt::format("/proc/self/fd/{}", state_->input.descriptor());
   if (is_hdf5 && !hdf5_is_of_one_file(name)) {
     problems.add(0, "is damaged, or wants other files opened, which is not done");
     return;
   }
   state_->file.reset(Mat_Open(name.c_str(), MAT_ACC_RDONLY));
-  if (!state_->file) problems.add(0, "cannot be read as a MATLAB file: its header is damaged");
+  if (!state_->file) {
+    problems.add(0, "cannot be read as a MATLAB file: its header is damaged");
+    return;
+  }
+  state_->told = *count;
+  if (is_hdf5) (void)Mat_GetDir(state_->file.get(), &state_->told);
 }
 
 MatFileReader::~MatFileReader() = default;
@@ -164,10 +151,9 @@ std::optional<std::vector<MatVariable>> MatFileReader::variables(FileProblems& p
                                 kMostVariables, kDeepestStruct));
     return std::nullopt;
   }
-  const auto count = state_->count();
-  if (!count || state_->tops.size() < *count) {
-    problems.add(0, fmt::format("is damaged{}: only {} variables can be read",
-                                count ? "" : " or cut off", state_->tops.size()));
+  if (state_->tops.size() < state_->told) {
+    problems.add(0, fmt::format("is damaged: {} of its {} variables can be read",
+                                state_->tops.size(), state_->told));
     return std::nullopt;
   }
   state_->read.resize(state_->tops.size());
