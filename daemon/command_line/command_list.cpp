@@ -8,6 +8,7 @@
 #include "daemon/documents/record_file_arguments.h"
 #include "drivers/base/standard_streams.h"
 #include "drivers/base/unpack_limit.h"
+#include "drivers/records/record_options.h"
 
 namespace framewatch::daemon {
 
@@ -70,18 +71,21 @@ void add_record_options(CLI::App* command, RecordFileArguments& record) {
   command->add_option("--unit", record.unit,
                       "of a file that does not say it: g, mg, gal, mps2, or the m/s^2 of one");
   command->add_option("--step", record.step_s, "seconds between samples of a file without time");
-  command->add_option("--time", record.time, "title of the column with the times");
+  command->add_option("--time", record.time,
+                      "title of the column (or MATLAB variable) with the times");
   command->add_option("--time-unit", record.time_unit, "of such a column: s, ms, us or ns");
   command->add_option("--zone", record.zone, "of time stamps without one: Z, or such as +09:00");
   command->add_option("--decimal", record.decimal, "comma or point, where a file leaves it open");
-  command->add_option("--columns", record.columns, "titles of the columns to take: A,B,...")
+  command
+      ->add_option("--columns", record.columns,
+                   "titles of the columns (or MATLAB variables, SEED channels) to take: A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
   command
       ->add_option("--names", record.names, "names of the channels, in the file's order: A,B,...")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--format", record.format, "csv, at2, columns, rows or xsens")
+  command->add_option("--format", record.format, drivers::record_format_names())
       ->capture_default_str();
 }
 

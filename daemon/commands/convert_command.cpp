@@ -17,7 +17,7 @@
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/records/plausibility.h"
 #include "drivers/records/record_csv_writer.h"
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 #include "drivers/records/record_merge.h"
 #include "estimator/motion/svd_denoise.h"
 

@@ -13,7 +13,7 @@
 #include "drivers/base/input_file.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 
 namespace framewatch::daemon {
 namespace {

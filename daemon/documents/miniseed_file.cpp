@@ -103,6 +103,13 @@ bool MiniseedFile::write_run(std::size_t channel) {
   record->samprate = rate_hz_;
   record->encoding = DE_STEIM2;
   record->byteorder = 1;
+  // Without it times are multiples of 100 us.
+  blkt_1001_s microseconds{};
+  if (msr_addblockette(record.get(), reinterpret_cast<char*>(&microseconds), sizeof microseconds,
+                       1001, 0) == nullptr) {
+    error_ = "no memory";
+    return false;
+  }
   record->datasamples = run.counts.data();
   record->numsamples = static_cast<std::int64_t>(run.counts.size());
   record->sampletype = 'i';

@@ -19,9 +19,9 @@ struct SeedChannel {
 SeedChannel seed_channel(const std::string& network, const std::string& station, std::size_t index,
                          double rate_hz);
 
-/// Writes integers as miniSEED 2: Steim-2, records of 512 bytes. A new record begins where the time
-/// of a sample is half a sample or more away from what the rate says. The file is a PartialFile
-/// that close() renames.
+/// Writes integers as miniSEED 2: Steim-2, records of 512 bytes, times in us. A new record begins
+/// where the time of a sample is half a sample or more away from what the rate says. The file is a
+/// PartialFile that close() renames.
 class MiniseedFile {
  public:
   MiniseedFile(std::vector<SeedChannel> channels, double rate_hz);

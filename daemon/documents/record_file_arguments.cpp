@@ -16,13 +16,13 @@ bool RecordFileArguments::any() const {
 drivers::RecordOptions record_options(const RecordFileArguments& a,
                                       std::vector<drivers::Problem>& problems) {
   drivers::RecordOptions out;
-  const auto wrong = [&](const char* option, const std::string& value, const char* rule) {
+  const auto wrong = [&](const char* option, const std::string& value, const std::string& rule) {
     problems.push_back({option, fmt::format("'{}' is not {}", value, rule)});
   };
   if (const auto format = drivers::record_format(a.format))
     out.format = *format;
   else
-    wrong("--format", a.format, "detect, csv, at2, columns, rows or xsens");
+    wrong("--format", a.format, drivers::record_format_names());
   out.unit_mps2 = drivers::declared_unit(a.unit);
   if (!a.unit.empty() && !out.unit_mps2)
     wrong("--unit", a.unit, "g, mg, gal or mps2, nor a number of m/s^2");

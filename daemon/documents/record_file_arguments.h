@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "drivers/base/problem.h"
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 
 namespace framewatch::daemon {
 

@@ -10,7 +10,7 @@
 #include "drivers/base/number_text.h"
 #include "drivers/dbc/dbc.h"
 #include "drivers/records/accel_unit.h"
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 #include "drivers/records/record_merge.h"
 
 namespace framewatch::daemon {

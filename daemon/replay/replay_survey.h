@@ -13,7 +13,7 @@
 #include "daemon/estimation/estimation.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 
 namespace framewatch::daemon {
 

@@ -1,20 +1,13 @@
 #include "drivers/base/line_reader.h"
 
-#include <zlib.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 
 #include <fmt/core.h>
-
-#include "drivers/base/input_file.h"
-#include "drivers/base/unpack_limit.h"
 
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::size_t kReadBytes = 1 << 16;
+constexpr std::int64_t kReadBytes = 1 << 16;
 
 bool is_control(char c) {
   return (c >= 0 && c < 0x20 && c != '\t') || c == 0x7f;
@@ -23,18 +16,7 @@ bool is_control(char c) {
 }  // namespace
 
 LineReader::LineReader(FileProblems& problems) : problems_(problems) {
-  InputFile input;
-  if (!input.open(problems.path())) {
-    fail("cannot be opened: " + input.error());
-    return;
-  }
-  packed_bytes_ = input.size();
-  file_ = gzdopen(input.release(), "rb");
-  if (file_ == nullptr) fail("cannot be opened: no memory is left");
-}
-
-LineReader::~LineReader() {
-  if (file_ != nullptr) gzclose(file_);
+  if (!file_.open(problems.path())) fail(file_.error());
 }
 
 bool LineReader::fail(const std::string& message) {
@@ -49,26 +31,15 @@ bool LineReader::fill() {
   buffer_.erase(0, begin_);
   begin_ = 0;
   const std::size_t kept = buffer_.size();
-  buffer_.resize(kept + kReadBytes);
-  errno = 0;
-  const int got = gzread(file_, buffer_.data() + kept, kReadBytes);
-  buffer_.resize(kept + static_cast<std::size_t>(std::max(got, 0)));
-  unpacked_bytes_ += std::max(got, 0);
-  if (gzdirect(file_) == 0 && unpacked_bytes_ > unpack_limit(packed_bytes_))
-    return fail(over_unpack_limit(packed_bytes_));
-  if (got == static_cast<int>(kReadBytes)) return true;
-  ended_ = true;
-  int code = Z_OK;
-  const char* text = gzerror(file_, &code);
-  if (code == Z_BUF_ERROR) return fail("the gzip stream is cut off");
-  if (code == Z_ERRNO) return fail(fmt::format("cannot be read: {}", std::strerror(errno)));
-  if (code != Z_OK && code != Z_STREAM_END)
-    return fail(fmt::format("the gzip stream is damaged: {}", text));
-  return true;
+  buffer_.resize(kept + static_cast<std::size_t>(kReadBytes));
+  const std::int64_t got = file_.read(buffer_.data() + kept, kReadBytes);
+  buffer_.resize(kept + static_cast<std::size_t>(std::max<std::int64_t>(got, 0)));
+  ended_ = got < kReadBytes;
+  return got >= 0 || fail(file_.error());
 }
 
 bool LineReader::next(std::string_view& line) {
-  if (file_ == nullptr) return false;
+  if (!file_.is_open()) return false;
   std::size_t end = buffer_.find('\n', begin_);
   while (end == std::string::npos && !ended_) {
     if (buffer_.size() - begin_ > kMaxLineBytes) {

@@ -5,8 +5,7 @@
 #include <string_view>
 
 #include "drivers/base/file_problems.h"
-
-struct gzFile_s;
+#include "drivers/base/unpacked_file.h"
 
 namespace framewatch::drivers {
 
@@ -17,7 +16,6 @@ class LineReader {
   static constexpr std::size_t kMaxLineBytes = 1 << 20;
 
   explicit LineReader(FileProblems& problems);
-  ~LineReader();
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
@@ -34,8 +32,7 @@ class LineReader {
   bool fail(const std::string& message);
 
   FileProblems& problems_;
-  gzFile_s* file_ = nullptr;
-  std::int64_t packed_bytes_ = 0, unpacked_bytes_ = 0;
+  UnpackedFile file_;
   std::string buffer_;
   std::size_t begin_ = 0;
   std::int64_t number_ = 0;

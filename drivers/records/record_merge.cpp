@@ -56,6 +56,21 @@ std::optional<Placed> place(const Record& grid, const Record& record, const std:
   return placed;
 }
 
+bool holds(const std::vector<std::string>& texts, const std::string& text) {
+  return std::find(texts.begin(), texts.end(), text) != texts.end();
+}
+
+/// What is noted of every one of several records; said once.
+std::vector<std::string> common_notes(const std::vector<Record>& records) {
+  std::vector<std::string> out;
+  if (records.size() < 2) return out;
+  for (const std::string& note : records[0].notes)
+    if (std::all_of(records.begin(), records.end(),
+                    [&](const Record& r) { return holds(r.notes, note); }))
+      out.push_back(note);
+  return out;
+}
+
 double grid_time(const Record& grid, std::int64_t at) {
   const std::int64_t last = static_cast<std::int64_t>(grid.time_s.size()) - 1;
   if (at >= 0 && at <= last) return grid.time_s[static_cast<std::size_t>(at)];
@@ -92,13 +107,14 @@ std::optional<Record> merge_records(std::vector<Record> records,
     return std::nullopt;
   }
   Record merged;
+  const std::vector<std::string> common = common_notes(records);
   merged.rate_hz = records[0].rate_hz;
   for (std::int64_t at = first; at <= last; ++at)
     merged.time_s.push_back(grid_time(records[0], at));
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Placed& p = places[i];
     for (const std::string& note : records[i].notes)
-      merged.notes.push_back(fmt::format("{}: {}", where[i], note));
+      if (!holds(common, note)) merged.notes.push_back(fmt::format("{}: {}", where[i], note));
     if (span == MergeSpan::common && (p.first < first || p.last > last))
       merged.notes.push_back(fmt::format(
           "{}: {} instants outside the common span left out", where[i],
@@ -113,6 +129,7 @@ std::optional<Record> merge_records(std::vector<Record> records,
             source[static_cast<std::size_t>(at - p.first)];
     }
   }
+  for (const std::string& note : common) merged.notes.push_back("all of them: " + note);
   return merged;
 }
 

@@ -7,7 +7,20 @@
 
 namespace framewatch::drivers {
 
-enum class RecordFormat { detect, csv, at2, columns, rows, xsens };
+enum class RecordFormat {
+  detect,
+  csv,
+  at2,
+  columns,
+  rows,
+  xsens,
+  mseed,
+  mat,
+  cosmos,
+  smc,
+  knet,
+  sac
+};
 
 /// What a file does not say itself. Declaring what it says is a problem, and so is leaving out what
 /// decides between two readings.
@@ -23,7 +36,9 @@ struct RecordOptions {
   std::vector<std::string> names;     ///< of the channels, in the file's order; empty: its own
 };
 
-/// "csv", "at2", "columns", "two-columns", "rows", "xsens", and "detect".
+/// By its name in record_format_names(), "two-columns" or "detect".
 std::optional<RecordFormat> record_format(std::string_view name);
+/// "csv, at2, ... or sac"
+std::string record_format_names();
 
 }  // namespace framewatch::drivers

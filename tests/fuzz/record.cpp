@@ -1,10 +1,18 @@
-// Record files of every format, and what `framewatch init` makes of their titles.
+// Record files: text of every format, miniSEED, MATLAB; and what `framewatch init` makes of their
+// titles.
+#include <array>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "daemon/init/column_places.h"
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
+#include "tests/fuzz/scratch.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/mat.h"
+#include "tests/support/miniseed.h"
+#include "tests/support/station_files.h"
 
 namespace framewatch::test {
 namespace {
@@ -23,18 +31,73 @@ void place_columns(const std::vector<std::string>& titles) {
     require(!column || (*column < titles.size() && used.insert(*column).second), "a place each");
 }
 
+void read_and_check(Bytes file_bytes, const drivers::RecordOptions& options);
+
 /// How it is to be read, then the file.
 void read_record_file(Bytes input) {
   Pieces pieces(input);
   const auto how = pieces.take<std::uint8_t>();
   drivers::RecordOptions options;
-  options.format = static_cast<RecordFormat>(how % 8 % 6);
+  options.format = static_cast<RecordFormat>(how % 8);
   if (how & 64) options.unit_mps2 = 9.80665;
   if (how & 128) options.step_s = 0.01;
   if (how & 32) options.decimal = ',';
   if (how & 16) options.zone_min = 540;
   if (how & 8) options.columns = {"a"};
-  const InputFile file(pieces.rest());
+  read_and_check(pieces.rest(), options);
+}
+
+/// A miniSEED file, changed.
+void read_changed_miniseed(Bytes input) {
+  Pieces pieces(input);
+  const auto how = pieces.take<std::uint8_t>();
+  drivers::RecordOptions options;
+  options.unit_mps2 = 1e-6;
+  if (how & 1) options.columns = {"XX.TEST.01.HN1"};
+  SeedSpan first, second;
+  for (int i = 0; i < 200; ++i) first.values.push_back(100 * (i % 7) - i);
+  second.values = first.values;
+  first.encoding = std::array{DE_STEIM1, DE_STEIM2, DE_INT16, DE_FLOAT32}[how / 2 % 4];
+  second.start_us = how & 8 ? 2'000'000 : 1'500'000;
+  first.record_bytes = second.record_bytes = 256;
+  if (how & 16) second.channel = "HN2";
+  const std::string whole = miniseed(first) + miniseed(second);
+  const auto bytes = changed({whole.begin(), whole.end()}, pieces);
+  read_and_check(bytes, options);
+}
+
+/// Bytes of a MATLAB file of level 5. What HDF5 makes of damage is its own affair.
+const std::vector<std::uint8_t>& good_mat(bool packed) {
+  static const auto make = [](matio_compression compression) {
+    const std::string path = scratch_folder() + "/good.mat";
+    MatWriter(path, MAT_FT_MAT5, compression)
+        .add_column("t", {0, 0.01, 0.02, 0.03})
+        .add("acc", {1, 2, 3, 4, 5, 6, 7, 8}, 4, 2)
+        .add_as<std::int16_t>("i", MAT_C_INT16, MAT_T_INT16, {1, 2, 3, 4})
+        .add_text("who", "nobody")
+        .add_complex("z", {1, 2, 3})
+        .add_struct("run", {"t", "a"}, {{0, 0.01}, {1, 2}});
+    std::ifstream file(path, std::ios::binary);
+    return std::vector<std::uint8_t>{std::istreambuf_iterator<char>(file), {}};
+  };
+  static const auto plain = make(MAT_COMPRESSION_NONE), zlib = make(MAT_COMPRESSION_ZLIB);
+  return packed ? zlib : plain;
+}
+
+void read_changed_mat(Bytes input) {
+  Pieces pieces(input);
+  const auto how = pieces.take<std::uint8_t>();
+  drivers::RecordOptions options;
+  options.unit_mps2 = 1;
+  options.time_column = how & 1 ? "t" : "run.t";
+  options.columns =
+      how & 1 ? std::vector<std::string>{"acc", "i"} : std::vector<std::string>{"run.a"};
+  if (how & 2) options.time_unit_s = 1e-3;
+  read_and_check(changed(good_mat(how & 4), pieces), options);
+}
+
+void read_and_check(Bytes file_bytes, const drivers::RecordOptions& options) {
+  const InputFile file(file_bytes);
   std::vector<drivers::Problem> problems;
   const auto record = drivers::read_record(file.path(), options, problems);
   require(record.has_value() == problems.empty(), "a record or a problem");
@@ -66,6 +129,8 @@ std::vector<std::string> record_seeds() {
   std::vector<std::string> out;
   for (const char* table : tables)
     for (const int how : {0, 16, 32, 8}) out.push_back(static_cast<char>(how) + std::string(table));
+  for (const std::string& file : {cosmos(), smc(), knet(), sac(), sac(true)})
+    for (const int how : {0, 16, 64}) out.push_back(static_cast<char>(how) + file);
   int format = 1;
   for (const char* text : texts) {
     const int declared = format == 3 ? 64 : format == 4 ? 64 + 128 : 0;
@@ -76,8 +141,16 @@ std::vector<std::string> record_seeds() {
   return out;
 }
 
+std::vector<std::string> every_way() {
+  std::vector<std::string> out;
+  for (int how = 0; how < 32; ++how) out.emplace_back(1, static_cast<char>(how));
+  return out;
+}
+
 }  // namespace
 
+const FuzzTarget kMiniseedTarget{"miniseed", &read_changed_miniseed, &every_way};
+const FuzzTarget kMatTarget{"mat", &read_changed_mat, &every_way};
 const FuzzTarget kRecordTarget{"record", &read_record_file, &record_seeds};
 
 }  // namespace framewatch::test

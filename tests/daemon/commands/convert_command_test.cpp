@@ -12,7 +12,7 @@
 #include "drivers/base/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary.h"
 

@@ -23,6 +23,7 @@
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
+#include "drivers/formats/record_file.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
@@ -252,6 +253,34 @@ TEST_F(HistoryCommand, RawSamplesAsMiniseedGiveBackEveryCount) {
   }
   ms_readmsr(&record, nullptr, 0, nullptr, nullptr, 0, 0, 0);
   EXPECT_EQ(seen, (kInstants - (kLostTo - kLostFrom)) * kAxes);
+}
+
+TEST_F(HistoryCommand, RawSamplesAsMiniseedComeBackAsARecord) {
+  HistoryArguments a = arguments();
+  a.raw = directory_.path("r.mseed");
+  ASSERT_EQ(run(a).code, 0);
+  drivers::RecordOptions options;
+  options.unit_mps2 = 1e-6;
+  std::vector<drivers::Problem> problems;
+  const auto record = drivers::read_record(a.raw, options, problems);
+  for (const auto& p : problems) ADD_FAILURE() << p.where << ": " << p.message;
+  ASSERT_TRUE(record);
+  ASSERT_EQ(record->names.size(), std::size_t{kAxes});
+  ASSERT_EQ(record->time_s.size(), std::size_t{kInstants});
+  for (int i = 0; i < kInstants; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const bool lost = i >= kLostFrom && i < kLostTo;
+    ASSERT_NEAR(record->time_s[at], static_cast<double>(kStart_us + i * 10'000L) / 1e6,
+                lost ? 1e-6 : 0)
+        << i;
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const double value = record->accel_mps2[static_cast<std::size_t>(axis)][at];
+      if (lost)
+        ASSERT_TRUE(std::isnan(value)) << i;
+      else
+        ASSERT_EQ(value, count(i, axis) * 1e-6) << i << " " << axis;
+    }
+  }
 }
 
 TEST_F(HistoryCommand, TellsEveryProblemAtOnceAndWritesNothing) {

@@ -1,4 +1,4 @@
-#include "drivers/records/table_header.h"
+#include "drivers/formats/table_header.h"
 
 #include <algorithm>
 #include <array>

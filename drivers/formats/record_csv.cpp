@@ -5,11 +5,11 @@
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
+#include "drivers/formats/record_formats.h"
+#include "drivers/formats/table_header.h"
+#include "drivers/formats/table_text.h"
 #include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_formats.h"
-#include "drivers/records/table_header.h"
-#include "drivers/records/table_text.h"
 #include "drivers/records/time_text.h"
 
 namespace framewatch::drivers {

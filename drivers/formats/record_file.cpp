@@ -1,30 +1,20 @@
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
+#include "drivers/formats/record_formats.h"
+#include "drivers/formats/record_signature.h"
+#include "drivers/formats/table_text.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_formats.h"
-#include "drivers/records/table_text.h"
+#include "drivers/stations/station_formats.h"
 
 namespace framewatch::drivers {
 namespace {
-
-constexpr std::array<std::pair<std::string_view, RecordFormat>, 7> kFormats = {{
-    {"detect", RecordFormat::detect},
-    {"csv", RecordFormat::csv},
-    {"at2", RecordFormat::at2},
-    {"columns", RecordFormat::columns},
-    {"two-columns", RecordFormat::columns},
-    {"rows", RecordFormat::rows},
-    {"xsens", RecordFormat::xsens},
-}};
 
 /// Lines that are read to find the format; the header of Xsens is the eighth.
 constexpr std::int64_t kDetectLines = 20;
@@ -55,13 +45,27 @@ RecordFormat format_of_numbers(std::int64_t first_line, std::size_t width, FileP
   return RecordFormat::detect;
 }
 
+/// A network's file says what it is on its first line; detect: it is none.
+RecordFormat format_of_network(std::string_view first_line) {
+  if (holds(first_line, "(Format v")) return RecordFormat::cosmos;
+  if (first_line.starts_with("Origin Time")) return RecordFormat::knet;
+  const std::string_view title = trimmed(first_line);
+  const bool smc =
+      title.starts_with("1 UNCORRECTED ACCEL") || title.starts_with("2 CORRECTED ACCEL");
+  return smc ? RecordFormat::smc : RecordFormat::detect;
+}
+
 RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
+  if (const auto binary = format_by_signature(problems)) return *binary;
+  if (problems.any()) return RecordFormat::detect;
   LineReader lines(problems);
   std::vector<std::string_view> fields;
   std::size_t width = 0;  // of the first row of numbers
   std::int64_t first_line = 0;
   bool text = false;  // above it
   for (std::string_view line; lines.number() < kDetectLines && lines.next(line);) {
+    if (lines.number() == 1 && format_of_network(line) != RecordFormat::detect)
+      return format_of_network(line);
     if (holds(line, "PacketCounter") && holds(line, "SampleTimeFine")) return RecordFormat::xsens;
     if (lines.number() <= 4 && holds(line, "NPTS")) return RecordFormat::at2;
     if (is_comment(line) || width > 0) continue;
@@ -83,7 +87,9 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
     problems.add(
         0,
         "no known record format: not a table with a header such as time_s,<channel names>, "
-        "not PEER AT2, not Xsens DOT, not rows of numbers");
+        "not what a strong-motion network publishes (COSMOS, SMC, K-NET, SAC, miniSEED 2), not "
+        "PEER "
+        "AT2, not Xsens DOT, not MATLAB, not rows of numbers");
   else
     return text ? RecordFormat::csv : format_of_numbers(first_line, width, problems);
   return RecordFormat::detect;
@@ -91,20 +97,27 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
 
 /// Reports options that the format needs and lacks, and those that do not apply to it.
 void check_declared(RecordFormat format, const RecordOptions& options, FileProblems& problems) {
-  const bool needs_unit = format == RecordFormat::columns || format == RecordFormat::rows;
+  const bool needs_unit = format == RecordFormat::columns || format == RecordFormat::rows ||
+                          format == RecordFormat::mseed || format == RecordFormat::sac;
   const bool needs_step = format == RecordFormat::rows;
   if (needs_unit && !options.unit_mps2)
-    problems.add(0, "the file does not say its unit: declare it with --unit g, mg, gal or mps2");
+    problems.add(0,
+                 format == RecordFormat::mseed
+                     ? "a miniSEED file does not say what a count is: declare it with --unit, "
+                       "the m/s^2 of one, for example --unit 1e-6"
+                     : "the file does not say its unit: declare it with --unit g, mg, gal or mps2");
   if (!needs_unit && options.unit_mps2)
     problems.add(0, "the format has its own unit: --unit does not apply");
   if (needs_step && !options.step_s)
     problems.add(0, "the file has no time: declare the step in seconds, for example --step 0.01");
   if (!needs_step && options.step_s)
     problems.add(0, "the file has its own time: --step does not apply");
-  if (!options.time_column.empty() || options.time_unit_s || options.zone_min || options.decimal ||
-      !options.columns.empty())
-    problems.add(
-        0, "--time, --time-unit, --zone, --decimal and --columns are for tables with a header");
+  if (!options.time_column.empty() || options.time_unit_s || options.decimal)
+    problems.add(0, "--time, --time-unit and --decimal are for tables with a header");
+  if (options.zone_min && format != RecordFormat::cosmos)
+    problems.add(0, "--zone is for tables with a header, and for COSMOS");
+  if (!options.columns.empty() && format != RecordFormat::mseed)
+    problems.add(0, "--columns is for tables with a header, MATLAB files and miniSEED");
 }
 
 void give_names(const std::vector<std::string>& names, Record& record, FileProblems& problems) {
@@ -120,7 +133,8 @@ void give_names(const std::vector<std::string>& names, Record& record, FileProbl
 
 std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
                               FileProblems& problems) {
-  if (format != RecordFormat::csv) check_declared(format, options, problems);
+  const bool table = format == RecordFormat::csv || format == RecordFormat::mat;
+  if (!table) check_declared(format, options, problems);
   if (options.step_s && !(std::isfinite(*options.step_s) && *options.step_s > 0))
     problems.add(0, fmt::format("--step {} must be positive", *options.step_s));
   if (problems.any()) return std::nullopt;
@@ -131,6 +145,18 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
       return read_at2(problems);
     case RecordFormat::xsens:
       return read_xsens(problems);
+    case RecordFormat::mseed:
+      return read_mseed(options, problems);
+    case RecordFormat::mat:
+      return read_mat(options, problems);
+    case RecordFormat::cosmos:
+      return read_cosmos(options, problems);
+    case RecordFormat::smc:
+      return read_smc(problems);
+    case RecordFormat::knet:
+      return read_knet(problems);
+    case RecordFormat::sac:
+      return read_sac(options, problems);
     case RecordFormat::columns:
       return read_columns(*options.unit_mps2, problems);
     case RecordFormat::rows:
@@ -142,12 +168,6 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
 }
 
 }  // namespace
-
-std::optional<RecordFormat> record_format(std::string_view name) {
-  for (const auto& [known, format] : kFormats)
-    if (known == name) return format;
-  return std::nullopt;
-}
 
 std::optional<Record> read_record(const std::string& path, const RecordOptions& options,
                                   std::vector<Problem>& all_problems) {

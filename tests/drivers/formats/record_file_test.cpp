@@ -1,4 +1,4 @@
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "drivers/records/table_text.h"
+#include "drivers/formats/table_text.h"
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "drivers/records/record_file.h"
+#include "drivers/formats/record_file.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::drivers {

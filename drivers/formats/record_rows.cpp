@@ -2,8 +2,8 @@
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
+#include "drivers/formats/record_formats.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_formats.h"
 
 namespace framewatch::drivers {
 namespace {

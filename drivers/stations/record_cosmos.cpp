@@ -1,0 +1,376 @@
+// Strong motion as COSMOS networks publish it (CESMD, USGS, CGS), format v1.20: raw counts (V0),
+// uncorrected (V1) and corrected (V2) acceleration, one channel a file (V1c) or several.
+// COSMOS Strong-Motion Programs Board (2001), "COSMOS strong motion data format", tables of 2015.
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "drivers/base/line_reader.h"
+#include "drivers/base/number_text.h"
+#include "drivers/records/record_builder.h"
+#include "drivers/records/record_merge.h"
+#include "drivers/records/time_text.h"
+#include "drivers/stations/fortran_numbers.h"
+#include "drivers/stations/station_channel.h"
+#include "drivers/stations/station_formats.h"
+
+namespace framewatch::drivers {
+namespace {
+
+constexpr double kG_mps2 = 9.80665;
+constexpr double kMicro = 1e-6;
+
+/// Where the headers have what is read of them, from 0.
+enum IntegerField {
+  kStage = 0,
+  kQuantity = 1,
+  kUnit = 2,
+  kReferenceAzimuth = 20,
+  kYear = 39,
+  kMonth = 41,
+  kDay = 42,
+  kHour = 43,
+  kMinute = 44,
+  kStationChannel = 49,
+  kAzimuth = 53,
+  kAzimuthToReference = 54,
+  kProblemFlag = 75,
+  kIntegers = 76,
+};
+enum RealField {
+  kMicrovoltPerCount = 21,
+  kSecond = 29,
+  kStep_s = 33,
+  kSensor_hz = 39,
+  kSensorDamping = 40,
+  kVoltPerG = 41,
+  kGain = 46,
+  kLowCorner_hz = 53,
+  kHighCorner_hz = 56,
+  kStep_ms = 61,
+  kPeak = 63,
+  kReals = 64,
+};
+constexpr int kCounts = 50;
+
+struct CosmosHeader {
+  std::int64_t line = 0;
+  std::vector<std::string> text;
+  std::vector<double> integers, reals;
+  double unknown_integer = -999, unknown_real = -999;
+  std::string seed_name;  ///< from a comment; empty when there is none
+
+  std::optional<double> integer(IntegerField field) const {
+    const double value = integers[field];
+    return value == unknown_integer || std::abs(value) > 1e9 ? std::nullopt : std::optional(value);
+  }
+  std::optional<double> real(RealField field) const {
+    const double value = reals[field];
+    return value == unknown_real ? std::nullopt : std::optional(value);
+  }
+};
+
+bool holds(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
+/// What follows `mark` in the header's text, to the end of its line; empty when it is not there.
+std::string_view after(const CosmosHeader& header, std::string_view mark) {
+  for (const std::string& line : header.text)
+    if (const auto at = line.find(mark); at != std::string::npos)
+      return trimmed(std::string_view(line).substr(at + mark.size()));
+  return {};
+}
+
+std::string_view first_word(std::string_view text) {
+  return text.substr(0, text.find_first_of(" \t"));
+}
+
+/// m/s2 of one of the file's units (table 2 of the format); empty for what is no acceleration.
+std::optional<double> mps2_of(int unit, const CosmosHeader& header) {
+  switch (unit) {
+    case 2:
+      return kG_mps2;
+    case 4:
+    case 10:
+      return 0.01;
+    case 7:
+      return 0.0254;
+    case 11:
+      return 1e-3 * kG_mps2;
+    case 12:
+      return kMicro * kG_mps2;
+    case kCounts: {
+      const auto step = header.real(kMicrovoltPerCount), sensitivity = header.real(kVoltPerG);
+      const double gain = header.real(kGain).value_or(1);
+      if (!step || !sensitivity || !(*step > 0) || !(*sensitivity > 0) || !(gain > 0))
+        return std::nullopt;
+      return *step * kMicro / *sensitivity / gain * kG_mps2;
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Directions beside an azimuth (table 6 of the format).
+std::string direction_text(const CosmosHeader& header) {
+  constexpr std::array<std::pair<int, const char*>, 9> kWords = {{
+      {400, "up"},
+      {401, "down"},
+      {402, "vertical, up or down is not said"},
+      {500, "radial"},
+      {501, "transverse"},
+      {600, "along the structure"},
+      {601, "across the structure"},
+      {700, "horizontal, azimuth unknown"},
+      {701, "horizontal, azimuth unknown"},
+  }};
+  const auto absolute = header.integer(kAzimuth);
+  const auto value = absolute ? absolute : header.integer(kAzimuthToReference);
+  if (!value) return "direction not said";
+  for (const auto& [code, word] : kWords)
+    if (*value == code) return word;
+  if (*value < 0 || *value > 360) return "direction not said";
+  if (absolute) return azimuth_text(*value);
+  const auto reference = header.integer(kReferenceAzimuth);
+  if (!reference) return fmt::format("{:g} deg from an axis whose azimuth is not said", *value);
+  return azimuth_text(std::fmod(*value + *reference, 360));
+}
+
+std::string stage_text(const CosmosHeader& header, double unit_mps2) {
+  const int stage = static_cast<int>(header.integer(kStage).value_or(-1));
+  if (stage == 0) return fmt::format("raw, {:.6g} m/s2 a count", unit_mps2);
+  if (stage == 1) return "uncorrected";
+  const auto low_hz = header.real(kLowCorner_hz), high_hz = header.real(kHighCorner_hz);
+  if (stage != 2) return "stage of processing not said";
+  if (!low_hz || !high_hz) return "corrected";
+  return fmt::format("corrected, {:g} to {:g} Hz kept", *low_hz, *high_hz);
+}
+
+std::string place_text(const CosmosHeader& header) {
+  const std::string_view place = after(header, "Location:");
+  return direction_text(header) + (place.empty() ? "" : ", " + std::string(place));
+}
+
+std::string treatment_text(const CosmosHeader& header, double unit_mps2) {
+  std::string text = stage_text(header, unit_mps2);
+  const auto flag = header.integer(kProblemFlag);
+  if (flag == 1) text += "; its network mended a fault of it";
+  if (flag == 2) text += "; its network says it has a fault";
+  text += "; not used of the header: coordinates, event";
+  if (const auto sensor_hz = header.real(kSensor_hz); sensor_hz && *sensor_hz > 0)
+    text += fmt::format(", the sensor's own {:.3g} Hz (damping {:.2g})", *sensor_hz,
+                        header.real(kSensorDamping).value_or(0));
+  return text;
+}
+
+std::string name_of(const CosmosHeader& header) {
+  if (!header.seed_name.empty()) return header.seed_name;
+  std::string name(first_word(after(header, "Code:")));
+  if (name.empty()) name = "station";
+  for (char& c : name)
+    if (c == '-') c = '.';
+  return fmt::format("{}.ch{:02}", name, header.integer(kStationChannel).value_or(0));
+}
+
+class CosmosReader {
+ public:
+  CosmosReader(const RecordOptions& options, FileProblems& problems)
+      : options_(options), problems_(problems), lines_(problems) {}
+
+  /// One record for each channel of the file.
+  std::vector<Record> read() {
+    std::vector<Record> records;
+    for (std::string_view line; !problems_.any() && lines_.next(line);) {
+      if (trimmed(line).empty() || holds(line, "End-of-data")) continue;
+      if (holds(line, "(Format v")) {
+        header_ = read_header(line);
+        continue;
+      }
+      if (auto record = read_values(line)) records.push_back(std::move(*record));
+    }
+    if (!problems_.any() && records.empty())
+      problems_.add(0, "COSMOS: no acceleration in the file");
+    if (left_out_ > 0 && !records.empty())
+      records.front().notes.push_back("velocity and displacement in the file are left out");
+    return records;
+  }
+
+ private:
+  /// A line "100 Real-header values follow on 20 lines, Format= (5F15.6)" and the values.
+  std::vector<double> read_list(std::string_view what, std::size_t least) {
+    std::string_view line;
+    if (!lines_.next(line) || !holds(line, what)) {
+      if (!problems_.any())
+        problems_.add(lines_.number(), fmt::format("COSMOS: the {} are not here", what));
+      return {};
+    }
+    const auto count = parse_integer(first_word(trimmed(line)));
+    const auto format = find_fortran_format(line);
+    if (!count || !format || *count < static_cast<std::int64_t>(least)) {
+      problems_.add(lines_.number(), fmt::format("COSMOS: the {} need their number, {} at least, "
+                                                 "and a format such as (10I8)",
+                                                 what, least));
+      return {};
+    }
+    return read_fortran_numbers(lines_, *format, static_cast<std::size_t>(*count), what, problems_)
+        .value_or(std::vector<double>{});
+  }
+
+  std::optional<CosmosHeader> read_header(std::string_view first) {
+    CosmosHeader header;
+    header.line = lines_.number();
+    header.text.emplace_back(first);
+    const auto with = first.find("with");
+    const auto count = parse_integer(
+        with == std::string_view::npos ? "" : first_word(trimmed(first.substr(with + 4))));
+    if (!count || *count < 2 || *count > 100) {
+      problems_.add(header.line,
+                    "COSMOS: the first line must say how many lines of text there are");
+      return std::nullopt;
+    }
+    std::string_view line;
+    while (header.text.size() < static_cast<std::size_t>(*count) && lines_.next(line))
+      header.text.emplace_back(line);
+    read_unknown(header);
+    header.integers = read_list("nteger-header values", kIntegers);
+    if (problems_.any()) return std::nullopt;
+    header.reals = read_list("eal-header values", kReals);
+    if (problems_.any()) return std::nullopt;
+    read_comments(header);
+    return header;
+  }
+
+  /// "Values used when parameter or data value is unknown/unspecified:   -999, -999.00"
+  static void read_unknown(CosmosHeader& header) {
+    std::vector<std::string_view> fields;
+    split_commas(after(header, "unspecified:"), fields);
+    if (const auto value = parse_number(fields.front())) header.unknown_integer = *value;
+    if (const auto value = parse_number(fields.back())) header.unknown_real = *value;
+  }
+
+  /// "|<SCNL>8040.HNE.NP.01": station, channel, network, location.
+  void read_comments(CosmosHeader& header) {
+    std::string_view line;
+    if (!lines_.next(line)) return;
+    const auto count = parse_integer(first_word(trimmed(line)));
+    if (!count || *count < 0 || !holds(line, "omment")) {
+      problems_.add(lines_.number(), "COSMOS: the number of comment lines is not here");
+      return;
+    }
+    for (std::int64_t i = 0; i < *count && lines_.next(line); ++i) {
+      const auto at = line.find("<SCNL>");
+      if (at == std::string_view::npos) continue;
+      std::string dotted(first_word(line.substr(at + 6)));
+      std::vector<std::string> parts(1);
+      for (const char c : dotted) {
+        if (c == '.')
+          parts.emplace_back();
+        else
+          parts.back() += c;
+      }
+      if (parts.size() == 4)
+        header.seed_name = fmt::format("{}.{}.{}.{}", parts[2], parts[0], parts[3], parts[1]);
+    }
+  }
+
+  /// "42000 acceleration pts, approx 210 secs, units=cm/sec2(04),Format=(1E15.6)" and the values.
+  std::optional<Record> read_values(std::string_view line) {
+    const std::int64_t at = lines_.number();
+    const auto count = parse_integer(first_word(trimmed(line)));
+    const auto format = find_fortran_format(line);
+    if (!header_ || !count || *count < 1 || !format || !holds(line, "pts")) {
+      problems_.add(at, fmt::format("COSMOS: {} is neither a header nor the number and format of "
+                                    "values",
+                                    show_text(line)));
+      return std::nullopt;
+    }
+    const bool is_accel = holds(line, "accel");
+    auto values = read_fortran_numbers(lines_, *format, static_cast<std::size_t>(*count),
+                                       "COSMOS values", problems_);
+    if (!values) return std::nullopt;
+    if (!is_accel) {
+      ++left_out_;
+      return std::nullopt;
+    }
+    return accel_record(std::move(*values), at + 1, format->per_line);
+  }
+
+  std::optional<Record> accel_record(std::vector<double> values, std::int64_t line,
+                                     std::size_t per_line) {
+    const int unit = static_cast<int>(header_->integer(kUnit).value_or(0));
+    const auto unit_mps2 = mps2_of(unit, *header_);
+    const auto step_ms = header_->real(kStep_ms);
+    const double step_s =
+        step_ms && *step_ms > 0 ? *step_ms / 1000 : header_->real(kStep_s).value_or(0);
+    if (!unit_mps2)
+      problems_.add(header_->line,
+                    unit == kCounts
+                        ? std::string("COSMOS: counts without the header's microvolts a "
+                                      "count and volts per g")
+                        : fmt::format("COSMOS: unit {} of the header is no "
+                                      "acceleration that is known",
+                                      unit));
+    if (!(step_s > 0)) problems_.add(header_->line, "COSMOS: the header has no step of time");
+    const auto start_utc_s = start();
+    if (problems_.any()) return std::nullopt;
+    for (double& value : values) value *= *unit_mps2;
+    StationChannel channel;
+    channel.name = name_of(*header_);
+    channel.step_s = step_s;
+    channel.start_utc_s = start_utc_s;
+    channel.place = place_text(*header_);
+    channel.treatment = treatment_text(*header_, *unit_mps2);
+    if (const auto peak = header_->real(kPeak); peak && unit != kCounts)
+      channel.peak_mps2 = *peak * *unit_mps2;
+    return station_record(channel, values, line, per_line, problems_);
+  }
+
+  std::optional<double> start() {
+    const auto year = header_->integer(kYear), month = header_->integer(kMonth),
+               day = header_->integer(kDay), hour = header_->integer(kHour),
+               minute = header_->integer(kMinute);
+    const auto second = header_->real(kSecond);
+    if (!year || !month || !day || !hour || !minute || !second) return std::nullopt;
+    const auto day_s =
+        utc_of_date(static_cast<int>(*year), static_cast<int>(*month), static_cast<int>(*day));
+    if (!day_s || *hour < 0 || *hour > 23 || *minute < 0 || *minute > 59 || !(*second >= 0) ||
+        !(*second < 61)) {
+      problems_.add(header_->line, "COSMOS: the header's start is no time");
+      return std::nullopt;
+    }
+    const std::string_view said = after(*header_, "start time:");
+    const bool utc = holds(said, "UTC") || holds(said, "GMT");
+    if (!utc && !options_.zone_min) {
+      problems_.add(header_->line,
+                    "COSMOS: the header does not say the zone of its start: declare "
+                    "it with --zone Z or, for example, --zone +09:00");
+      return std::nullopt;
+    }
+    return *day_s + 3600 * *hour + 60 * *minute + *second -
+           (utc ? 0.0 : 60.0 * options_.zone_min.value_or(0));
+  }
+
+  const RecordOptions& options_;
+  FileProblems& problems_;
+  LineReader lines_;
+  std::optional<CosmosHeader> header_;
+  int left_out_ = 0;
+};
+
+}  // namespace
+
+std::optional<Record> read_cosmos(const RecordOptions& options, FileProblems& problems) {
+  std::vector<Record> records = CosmosReader(options, problems).read();
+  if (problems.any()) return std::nullopt;
+  if (records.size() == 1) return std::move(records.front());
+  std::vector<Problem> found;
+  const std::vector<std::string> where(records.size(), problems.path());
+  auto merged = merge_records(std::move(records), where, MergeSpan::common, found);
+  for (const Problem& problem : found) problems.add(0, problem.message);
+  return merged;
+}
+
+}  // namespace framewatch::drivers

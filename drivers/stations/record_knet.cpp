@@ -1,0 +1,161 @@
+// Strong motion of Japan's K-NET and KiK-net (NIED): 17 lines of names and values, then whole
+// numbers. https://www.kyoshin.bosai.go.jp/kyoshin/man/knetform_en.html
+#include <cmath>
+#include <map>
+
+#include <fmt/core.h>
+
+#include "drivers/base/line_reader.h"
+#include "drivers/base/number_text.h"
+#include "drivers/records/record_builder.h"
+#include "drivers/records/time_text.h"
+#include "drivers/stations/station_channel.h"
+#include "drivers/stations/station_formats.h"
+
+namespace framewatch::drivers {
+namespace {
+
+constexpr int kHeaderLines = 17;
+constexpr std::size_t kTitleWidth = 18;  ///< "Sampling Freq(Hz) 100Hz"
+constexpr double kGal_mps2 = 0.01;
+/// The header's time is the trigger's; the record begins so much before it.
+constexpr double kBeforeTrigger_s = 15;
+constexpr double kAheadOfUtc_s = 9 * 3600;
+
+struct KnetLine {
+  std::int64_t line = 0;
+  std::string text;
+};
+
+class KnetReader {
+ public:
+  explicit KnetReader(FileProblems& problems) : problems_(problems), lines_(problems) {}
+
+  std::optional<Record> read() {
+    if (!read_header()) return std::nullopt;
+    StationChannel channel;
+    const double rate_hz = number_before("Sampling Freq", "Hz");
+    const double unit_mps2 = scale();
+    channel.start_utc_s = start();
+    channel.place = direction(channel.name);
+    channel.treatment = "uncorrected; not used of the header: coordinates, event";
+    if (!problems_.any() && !(rate_hz > 0 && rate_hz <= RecordBuilder::kMaxRateHz))
+      complain("Sampling Freq", "must be a rate");
+    if (problems_.any()) return std::nullopt;
+    channel.step_s = 1 / rate_hz;
+    std::vector<double> accel_mps2;
+    std::vector<std::string_view> fields;
+    std::size_t per_line = 0;
+    for (std::string_view line; !problems_.any() && lines_.next(line);) {
+      split_blanks(line, fields);
+      per_line = std::max(per_line, fields.size());
+      for (const std::string_view field : fields) {
+        const auto count = parse_integer(field);
+        if (!count)
+          problems_.add(lines_.number(),
+                        fmt::format("K-NET: {} is no whole number", show_text(field)));
+        accel_mps2.push_back(static_cast<double>(count.value_or(0)) * unit_mps2);
+        if (accel_mps2.size() > RecordBuilder::kMaxValues)
+          problems_.add(lines_.number(), "K-NET: too many values");
+        if (problems_.any()) return std::nullopt;
+      }
+    }
+    if (problems_.any()) return std::nullopt;
+    return station_record(channel, accel_mps2, kHeaderLines + 1, std::max<std::size_t>(1, per_line),
+                          problems_);
+  }
+
+ private:
+  bool read_header() {
+    std::string_view line;
+    while (lines_.number() < kHeaderLines && lines_.next(line)) {
+      const std::string_view title = trimmed(line.substr(0, kTitleWidth));
+      const std::string_view text =
+          line.size() > kTitleWidth ? trimmed(line.substr(kTitleWidth)) : "";
+      header_.insert({std::string(title), {lines_.number(), std::string(text)}});
+    }
+    if (lines_.number() < kHeaderLines && !problems_.any())
+      problems_.add(0, "K-NET: the 17 lines of the header are not all there");
+    return !problems_.any();
+  }
+
+  /// The line whose title begins so; a problem when there is none.
+  KnetLine find(const std::string& title) {
+    const auto at = header_.lower_bound(title);
+    if (at != header_.end() && at->first.starts_with(title)) return at->second;
+    problems_.add(0, fmt::format("K-NET: the header has no {}", title));
+    return {};
+  }
+
+  void complain(const std::string& title, const std::string& rule) {
+    const KnetLine at = find(title);
+    problems_.add(at.line, fmt::format("K-NET: {} {} {}", title, show_text(at.text), rule));
+  }
+
+  double number_before(const std::string& title, std::string_view unit) {
+    const std::string text = find(title).text;
+    const auto value = parse_number(trimmed(std::string_view(text).substr(0, text.find(unit))));
+    if (!value && !problems_.any()) complain(title, "must be a number");
+    return value.value_or(0);
+  }
+
+  /// "3920(gal)/6182761": m/s2 of 1.
+  double scale() {
+    const std::string text = find("Scale Factor").text;
+    const std::size_t unit = text.find("(gal)/");
+    const auto above = parse_number(std::string_view(text).substr(0, unit));
+    const auto below = unit == std::string::npos
+                           ? std::nullopt
+                           : parse_number(std::string_view(text).substr(unit + 6));
+    if (above && below && *above > 0 && *below > 0) return *above / *below * kGal_mps2;
+    if (!problems_.any()) complain("Scale Factor", "must be such as 3920(gal)/6182761");
+    return 0;
+  }
+
+  /// "2018/11/30 17:29:21" in Japan's time.
+  std::optional<double> start() {
+    std::string text = find("Record Time").text;
+    for (char& c : text)
+      if (c == '/') c = '-';
+    const auto stamp = parse_time_stamp(text);
+    if (!stamp && !problems_.any()) complain("Record Time", "is no time");
+    if (!stamp) return std::nullopt;
+    return stamp->local_s - kAheadOfUtc_s - kBeforeTrigger_s;
+  }
+
+  /// K-NET names its directions, KiK-net numbers them: 1 to 3 in the borehole, 4 to 6 above it.
+  std::string direction(std::string& name) {
+    const std::string dir = find("Dir.").text, station = find("Station Code").text;
+    struct Direction {
+      const char *in_file, *channel, *words;
+    };
+    constexpr Direction kDirections[] = {{"N-S", "NS", "north"},
+                                         {"E-W", "EW", "east"},
+                                         {"U-D", "UD", "up"},
+                                         {"1", "NS1", "in the borehole, north"},
+                                         {"2", "EW1", "in the borehole, east"},
+                                         {"3", "UD1", "in the borehole, up"},
+                                         {"4", "NS2", "at the surface, north"},
+                                         {"5", "EW2", "at the surface, east"},
+                                         {"6", "UD2", "at the surface, up"}};
+    for (const Direction& known : kDirections) {
+      if (dir != known.in_file) continue;
+      name = fmt::format("{}.{}", station, known.channel);
+      return known.words;
+    }
+    if (!problems_.any()) complain("Dir.", "is none of N-S, E-W, U-D, 1 to 6");
+    return {};
+  }
+
+  FileProblems& problems_;
+  LineReader lines_;
+  std::map<std::string, KnetLine> header_;
+};
+
+}  // namespace
+
+std::optional<Record> read_knet(FileProblems& problems) {
+  return KnetReader(problems).read();
+}
+
+}  // namespace framewatch::drivers

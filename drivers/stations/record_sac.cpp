@@ -1,0 +1,117 @@
+// Seismic Analysis Code, binary: one channel a file.
+#include <array>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "drivers/base/unpacked_file.h"
+#include "drivers/records/record_builder.h"
+#include "drivers/stations/sac_header.h"
+#include "drivers/stations/station_channel.h"
+#include "drivers/stations/station_formats.h"
+
+namespace framewatch::drivers {
+namespace {
+
+/// Words of the header.
+constexpr std::size_t kStep_s = 0, kBegin_s = 5, kAzimuth = 57, kFromUp = 58, kYear = 70,
+                      kDayOfYear = 71, kHour = 72, kMinute = 73, kSecond = 74, kMillisecond = 75,
+                      kPoints = 79, kFileType = 85, kQuantity = 86, kEven = 105;
+/// Texts of the header.
+constexpr std::size_t kStation = 0, kLocation = 3, kChannel = 20, kNetwork = 21;
+constexpr int kTimeSeries = 1, kDisplacement = 6, kVelocity = 7;
+
+std::string name_of(const SacHeader& header) {
+  std::string name;
+  for (const std::size_t place : {kNetwork, kStation, kLocation, kChannel}) {
+    std::string part = header.text(place);
+    for (char& c : part)
+      if (c == ',' || c == '"' || c == '.') c = '_';
+    name += (place == kNetwork ? "" : ".") + part;
+  }
+  return name == "..." ? "station" : name;
+}
+
+std::string place_of(const SacHeader& header) {
+  const auto from_up = header.number(kFromUp), azimuth = header.number(kAzimuth);
+  if (from_up == 0) return "up";
+  if (from_up == 180) return "down";
+  return azimuth && from_up == 90 ? azimuth_text(*azimuth) : "direction not said";
+}
+
+std::optional<double> start_of(const SacHeader& header, FileProblems& problems) {
+  const auto year = header.integer(kYear), day = header.integer(kDayOfYear),
+             hour = header.integer(kHour), minute = header.integer(kMinute),
+             second = header.integer(kSecond);
+  if (!year || !day || !hour || !minute || !second) return std::nullopt;
+  const auto day_s = utc_of_day_of_year(*year, *day);
+  const int millisecond = header.integer(kMillisecond).value_or(0);
+  if (!day_s || *hour < 0 || *hour > 23 || *minute < 0 || *minute > 59 || *second < 0 ||
+      *second > 60 || std::abs(millisecond) > 999) {
+    problems.add(0, "SAC: the header's time is none");
+    return std::nullopt;
+  }
+  return *day_s + 3600.0 * *hour + 60.0 * *minute + *second + 1e-3 * millisecond +
+         header.number(kBegin_s).value_or(0);
+}
+
+std::optional<std::vector<double>> read_values(UnpackedFile& file, const SacHeader& header,
+                                               double unit_mps2, FileProblems& problems) {
+  const auto points = static_cast<std::size_t>(header.integer(kPoints).value_or(0));
+  if (points > RecordBuilder::kMaxValues) {
+    problems.add(0, fmt::format("a record holds at most {} values", RecordBuilder::kMaxValues));
+    return std::nullopt;
+  }
+  std::vector<double> values;
+  std::array<char, 4096> bytes{};
+  while (values.size() < points) {
+    const std::size_t wanted = std::min(bytes.size(), 4 * (points - values.size()));
+    const std::int64_t got = file.read(bytes.data(), static_cast<std::int64_t>(wanted));
+    if (got != static_cast<std::int64_t>(wanted)) {
+      problems.add(0, !file.error().empty()
+                          ? file.error()
+                          : fmt::format("SAC: the header says {} values, the file ends before "
+                                        "them",
+                                        points));
+      return std::nullopt;
+    }
+    for (std::size_t at = 0; at < wanted; at += 4)
+      values.push_back(
+          unit_mps2 * static_cast<double>(sac_value(bytes.data() + at, header.other_byte_order())));
+  }
+  return values;
+}
+
+}  // namespace
+
+std::optional<Record> read_sac(const RecordOptions& options, FileProblems& problems) {
+  UnpackedFile file(problems.path());
+  std::string bytes(kSacHeaderBytes, '\0');
+  const std::int64_t got = file.read(bytes.data(), std::ssize(bytes));
+  const auto header = got == std::ssize(bytes) ? SacHeader::read(bytes) : std::nullopt;
+  if (!header) {
+    problems.add(0, file.error().empty() ? "is no SAC file of version 6 or 7" : file.error());
+    return std::nullopt;
+  }
+  if (header->integer(kFileType).value_or(kTimeSeries) != kTimeSeries ||
+      header->integer(kEven).value_or(1) != 1)
+    problems.add(0, "SAC: a spectrum or uneven steps, no time series");
+  const int quantity = header->integer(kQuantity).value_or(0);
+  if (quantity == kDisplacement || quantity == kVelocity)
+    problems.add(0, "SAC: the header says a displacement or a velocity, no acceleration");
+  const double step_s = header->number(kStep_s).value_or(0);
+  if (step_s * RecordBuilder::kMaxRateHz < 1)
+    problems.add(0, fmt::format("SAC: a step of {:g} s", step_s));
+  StationChannel channel;
+  channel.start_utc_s = start_of(*header, problems);
+  if (problems.any()) return std::nullopt;
+  const auto values = read_values(file, *header, options.unit_mps2.value_or(1), problems);
+  if (!values) return std::nullopt;
+  channel.name = name_of(*header);
+  channel.step_s = step_s;
+  channel.place = place_of(*header);
+  channel.treatment = "times --unit; not used of the header: coordinates, event, picks";
+  return station_record(channel, *values, 0, values->size(), problems);
+}
+
+}  // namespace framewatch::drivers

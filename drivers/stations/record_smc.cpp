@@ -1,0 +1,143 @@
+// Accelerograms of the U.S. Geological Survey's SMC format: 11 lines of text, 48 integers, 50 real
+// numbers, comments, values in cm/s2. Converse, Brady (1992), USGS Open-File Report 92-296A.
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "drivers/base/line_reader.h"
+#include "drivers/base/number_text.h"
+#include "drivers/records/record_builder.h"
+#include "drivers/stations/fortran_numbers.h"
+#include "drivers/stations/station_channel.h"
+#include "drivers/stations/station_formats.h"
+
+namespace framewatch::drivers {
+namespace {
+
+constexpr std::int64_t kTextLines = 11;
+constexpr double kGal_mps2 = 0.01;
+
+/// Where the headers have what is read of them, from 0.
+enum SmcInteger {
+  kUndefined = 0,
+  kYear = 1,
+  kDayOfYear = 2,
+  kHour = 3,
+  kMinute = 4,
+  kSecond = 5,
+  kMillisecond = 6,
+  kChannel = 9,
+  kFromUp_deg = 12,
+  kAzimuth_deg = 13,
+  kComments = 15,
+  kPoints = 16,
+  kProblem = 17,
+  kFloor = 24,
+  kIntegers = 48,
+};
+constexpr std::size_t kRate_hz = 1, kReals = 50;
+
+struct SmcHeader {
+  std::vector<std::string> text;
+  std::vector<double> integers;
+  double rate_hz = 0;
+
+  std::optional<int> integer(SmcInteger field) const {
+    const double value = integers[field];
+    if (value == integers[kUndefined] || std::abs(value) > 1e9) return std::nullopt;
+    return static_cast<int>(value);
+  }
+};
+
+/// A corrected or an uncorrected one; velocities and displacements begin otherwise.
+bool is_corrected(const SmcHeader& header) {
+  return trimmed(header.text[0]).front() == '2';
+}
+
+std::string name_of(const SmcHeader& header) {
+  const std::string_view line = trimmed(header.text[2]);
+  std::string name(line.substr(0, line.find_first_of(" \t,\"")));
+  if (name.empty()) name = "station";
+  if (const auto channel = header.integer(kChannel)) name += fmt::format(".ch{:02}", *channel);
+  return name;
+}
+
+std::string place_text(const SmcHeader& header) {
+  const auto from_up = header.integer(kFromUp_deg), azimuth = header.integer(kAzimuth_deg);
+  std::string text = "direction not said";
+  if (from_up == 0) text = "up";
+  if (from_up == 180) text = "down";
+  if (azimuth && from_up.value_or(90) == 90) text = azimuth_text(*azimuth);
+  if (const auto floor = header.integer(kFloor)) text += fmt::format(", floor {}", *floor);
+  return text;
+}
+
+std::string treatment_text(const SmcHeader& header) {
+  std::string text = is_corrected(header) ? "corrected" : "uncorrected";
+  if (header.integer(kProblem) == 1) text += "; its network says it has a fault";
+  return text + "; not used of the header: coordinates, event, the sensor's own frequency";
+}
+
+std::optional<double> start_of(const SmcHeader& header, FileProblems& problems) {
+  const auto year = header.integer(kYear), day = header.integer(kDayOfYear),
+             hour = header.integer(kHour), minute = header.integer(kMinute),
+             second = header.integer(kSecond);
+  if (!year || *year == 0 || !day || !hour || !minute || !second) return std::nullopt;
+  const auto day_s = utc_of_day_of_year(*year, *day);
+  const int millisecond = header.integer(kMillisecond).value_or(0);
+  if (!day_s || *hour < 0 || *hour > 23 || *minute < 0 || *minute > 59 || *second < 0 ||
+      *second > 60 || millisecond < 0 || millisecond > 999) {
+    problems.add(kTextLines + 1, "SMC: the header's start is no time");
+    return std::nullopt;
+  }
+  return *day_s + 3600.0 * *hour + 60.0 * *minute + *second + 1e-3 * millisecond;
+}
+
+std::optional<SmcHeader> read_header(LineReader& lines, FileProblems& problems) {
+  SmcHeader header;
+  std::string_view line;
+  while (lines.number() < kTextLines && lines.next(line)) header.text.emplace_back(line);
+  if (lines.number() < kTextLines) {
+    if (!problems.any()) problems.add(0, "SMC: the 11 lines of text are not all there");
+    return std::nullopt;
+  }
+  auto integers = read_fortran_numbers(lines, {8, 10}, kIntegers, "SMC: whole numbers", problems);
+  if (!integers) return std::nullopt;
+  header.integers = std::move(*integers);
+  const auto reals = read_fortran_numbers(lines, {5, 15}, kReals, "SMC: real numbers", problems);
+  if (!reals) return std::nullopt;
+  header.rate_hz = (*reals)[kRate_hz];
+  if (!(header.rate_hz > 0) || header.rate_hz > RecordBuilder::kMaxRateHz)
+    problems.add(kTextLines + 7, fmt::format("SMC: {:g} samples a second", header.rate_hz));
+  const int comments = header.integer(kComments).value_or(0);
+  for (int i = 0; i < comments && !problems.any(); ++i)
+    if (!lines.next(line) || line.empty() || line.front() != '|')
+      problems.add(lines.number(), fmt::format("SMC: {} of {} comment lines", i, comments));
+  return header;
+}
+
+}  // namespace
+
+std::optional<Record> read_smc(FileProblems& problems) {
+  LineReader lines(problems);
+  const auto header = read_header(lines, problems);
+  if (!header || problems.any()) return std::nullopt;
+  const auto start_utc_s = start_of(*header, problems);
+  const int points = header->integer(kPoints).value_or(0);
+  if (points < 1) problems.add(kTextLines + 3, "SMC: the header has no number of values");
+  if (problems.any()) return std::nullopt;
+  const std::int64_t line = lines.number() + 1;
+  auto values = read_fortran_numbers(lines, {8, 10}, static_cast<std::size_t>(points),
+                                     "SMC: values", problems);
+  if (!values) return std::nullopt;
+  for (double& value : *values) value *= kGal_mps2;
+  return station_record({name_of(*header),
+                         1 / header->rate_hz,
+                         start_utc_s,
+                         place_text(*header),
+                         treatment_text(*header),
+                         {}},
+                        *values, line, 8, problems);
+}
+
+}  // namespace framewatch::drivers

@@ -1,0 +1,72 @@
+#include "drivers/stations/station_channel.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include "drivers/records/record_builder.h"
+
+namespace framewatch::drivers {
+namespace {
+
+constexpr double kPeakTolerance = 0.01;
+
+std::optional<double> seconds_of(std::chrono::year_month_day date) {
+  if (!date.ok()) return std::nullopt;
+  return 86400.0 * static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+}
+
+std::string start_text(double utc_s) {
+  utc_s += 0.0005;  // rounded, not cut, to the millisecond
+  const double whole_s = std::floor(utc_s);
+  return fmt::format("begins {:%Y-%m-%dT%H:%M:%S}.{:03}Z",
+                     fmt::gmtime(static_cast<std::time_t>(whole_s)),
+                     static_cast<int>((utc_s - whole_s) * 1000));
+}
+
+}  // namespace
+
+std::optional<double> utc_of_date(int year, int month, int day) {
+  if (month < 1 || day < 1) return std::nullopt;
+  return seconds_of({std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                     std::chrono::day(static_cast<unsigned>(day))});
+}
+
+std::optional<double> utc_of_day_of_year(int year, int day) {
+  const auto first = utc_of_date(year, 1, 1);
+  if (!first || day < 1 || day > 366) return std::nullopt;
+  return *first + 86400.0 * (day - 1);
+}
+
+std::string azimuth_text(double azimuth_deg) {
+  return fmt::format("azimuth {:g} deg", azimuth_deg);
+}
+
+std::optional<Record> station_record(const StationChannel& channel,
+                                     const std::vector<double>& accel_mps2, std::int64_t line,
+                                     std::size_t per_line, FileProblems& problems) {
+  RecordBuilder builder({channel.name}, problems);
+  builder.expect(1 / channel.step_s, 0);
+  double peak_mps2 = 0;
+  for (std::size_t i = 0; i < accel_mps2.size() && !builder.full(); ++i) {
+    builder.add(line + static_cast<std::int64_t>(i / per_line),
+                channel.start_utc_s.value_or(0) + static_cast<double>(i) * channel.step_s,
+                {&accel_mps2[i], 1});
+    peak_mps2 = std::max(peak_mps2, std::abs(accel_mps2[i]));
+  }
+  builder.note(fmt::format("{}: {}", channel.name, channel.place));
+  builder.note(channel.treatment +
+               (channel.start_utc_s ? "; " + start_text(*channel.start_utc_s) : ""));
+  if (channel.peak_mps2 &&
+      std::abs(std::abs(*channel.peak_mps2) - peak_mps2) > kPeakTolerance * peak_mps2)
+    builder.note(fmt::format("the header says a peak of {:.4g} m/s2, the values have {:.4g}",
+                             std::abs(*channel.peak_mps2), peak_mps2));
+  auto record = builder.finish();
+  if (record) record->rate_hz = 1 / channel.step_s;  // its times are rounded
+  return record;
+}
+
+}  // namespace framewatch::drivers

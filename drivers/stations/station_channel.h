@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/base/file_problems.h"
+#include "drivers/records/record.h"
+
+namespace framewatch::drivers {
+
+/// One channel of a station, as the header of a network's file describes it.
+struct StationChannel {
+  std::string name;  ///< "NP.8040.01.HNE": network, station, location, channel as far as known
+  double step_s = 0;
+  std::optional<double>
+      start_utc_s;                  ///< of the first sample, since 1970; without it time is from 0
+  std::string place;                ///< for a person: direction and place of the sensor
+  std::string treatment;            ///< for a person: what was done to its values, what is not used
+  std::optional<double> peak_mps2;  ///< that the header states, of either sign
+};
+
+/// The record of a channel whose values begin on `line`, so many on each. Its note ends with when
+/// it begins, and says when the header's peak is not the values'.
+std::optional<Record> station_record(const StationChannel& channel,
+                                     const std::vector<double>& accel_mps2, std::int64_t line,
+                                     std::size_t per_line, FileProblems& problems);
+
+/// "azimuth 90 deg" clockwise from north.
+std::string azimuth_text(double azimuth_deg);
+
+/// Seconds since 1970 at the beginning of a day in UTC; empty for a date that is none.
+std::optional<double> utc_of_date(int year, int month, int day);
+std::optional<double> utc_of_day_of_year(int year, int day);
+
+}  // namespace framewatch::drivers
