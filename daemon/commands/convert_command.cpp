@@ -13,11 +13,11 @@
 #include "daemon/estimates/estimates_csv.h"
 #include "daemon/simulation/simulation_output.h"
 #include "drivers/base/standard_streams.h"
+#include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/records/plausibility.h"
 #include "drivers/records/record_csv_writer.h"
-#include "drivers/formats/record_file.h"
 #include "drivers/records/record_merge.h"
 #include "estimator/motion/svd_denoise.h"
 

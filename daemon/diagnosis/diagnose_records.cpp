@@ -11,9 +11,9 @@
 #include "daemon/estimation/estimation.h"
 #include "daemon/estimation/segment_collector.h"
 #include "drivers/base/input_file.h"
+#include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/formats/record_file.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -9,8 +9,8 @@
 #include "daemon/base/file_digest.h"
 #include "drivers/base/number_text.h"
 #include "drivers/dbc/dbc.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/formats/record_file.h"
+#include "drivers/records/accel_unit.h"
 
 namespace framewatch::daemon {
 namespace {

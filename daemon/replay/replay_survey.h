@@ -11,9 +11,9 @@
 #include "daemon/config/config.h"
 #include "daemon/documents/record_file_arguments.h"
 #include "daemon/estimation/estimation.h"
+#include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/formats/record_file.h"
 
 namespace framewatch::daemon {
 

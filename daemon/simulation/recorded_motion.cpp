@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
-#include "drivers/records/accel_unit.h"
 #include "drivers/formats/record_file.h"
+#include "drivers/records/accel_unit.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -10,9 +10,9 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "drivers/base/encoded.h"
+#include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_log.h"
-#include "drivers/formats/record_file.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary.h"
 
