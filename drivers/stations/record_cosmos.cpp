@@ -12,6 +12,7 @@
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_merge.h"
 #include "drivers/records/time_text.h"
+#include "drivers/stations/cosmos_header.h"
 #include "drivers/stations/fortran_numbers.h"
 #include "drivers/stations/station_channel.h"
 #include "drivers/stations/station_formats.h"
@@ -22,70 +23,10 @@ namespace {
 constexpr double kG_mps2 = 9.80665;
 constexpr double kMicro = 1e-6;
 
-/// Where the headers have what is read of them, from 0.
-enum IntegerField {
-  kStage = 0,
-  kQuantity = 1,
-  kUnit = 2,
-  kReferenceAzimuth = 20,
-  kYear = 39,
-  kMonth = 41,
-  kDay = 42,
-  kHour = 43,
-  kMinute = 44,
-  kStationChannel = 49,
-  kAzimuth = 53,
-  kAzimuthToReference = 54,
-  kProblemFlag = 75,
-  kIntegers = 76,
-};
-enum RealField {
-  kMicrovoltPerCount = 21,
-  kSecond = 29,
-  kStep_s = 33,
-  kSensor_hz = 39,
-  kSensorDamping = 40,
-  kVoltPerG = 41,
-  kGain = 46,
-  kLowCorner_hz = 53,
-  kHighCorner_hz = 56,
-  kStep_ms = 61,
-  kPeak = 63,
-  kReals = 64,
-};
 constexpr int kCounts = 50;
-
-struct CosmosHeader {
-  std::int64_t line = 0;
-  std::vector<std::string> text;
-  std::vector<double> integers, reals;
-  double unknown_integer = -999, unknown_real = -999;
-  std::string seed_name;  ///< from a comment; empty when there is none
-
-  std::optional<double> integer(IntegerField field) const {
-    const double value = integers[field];
-    return value == unknown_integer || std::abs(value) > 1e9 ? std::nullopt : std::optional(value);
-  }
-  std::optional<double> real(RealField field) const {
-    const double value = reals[field];
-    return value == unknown_real ? std::nullopt : std::optional(value);
-  }
-};
 
 bool holds(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
-}
-
-/// What follows `mark` in the header's text, to the end of its line; empty when it is not there.
-std::string_view after(const CosmosHeader& header, std::string_view mark) {
-  for (const std::string& line : header.text)
-    if (const auto at = line.find(mark); at != std::string::npos)
-      return trimmed(std::string_view(line).substr(at + mark.size()));
-  return {};
-}
-
-std::string_view first_word(std::string_view text) {
-  return text.substr(0, text.find_first_of(" \t"));
 }
 
 /// m/s2 of one of the file's units (table 2 of the format); empty for what is no acceleration.
@@ -186,7 +127,7 @@ class CosmosReader {
     for (std::string_view line; !problems_.any() && lines_.next(line);) {
       if (trimmed(line).empty() || holds(line, "End-of-data")) continue;
       if (holds(line, "(Format v")) {
-        header_ = read_header(line);
+        header_ = read_cosmos_header(lines_, line, problems_);
         continue;
       }
       if (auto record = read_values(line)) records.push_back(std::move(*record));
@@ -199,83 +140,6 @@ class CosmosReader {
   }
 
  private:
-  /// A line "100 Real-header values follow on 20 lines, Format= (5F15.6)" and the values.
-  std::vector<double> read_list(std::string_view what, std::size_t least) {
-    std::string_view line;
-    if (!lines_.next(line) || !holds(line, what)) {
-      if (!problems_.any())
-        problems_.add(lines_.number(), fmt::format("COSMOS: the {} are not here", what));
-      return {};
-    }
-    const auto count = parse_integer(first_word(trimmed(line)));
-    const auto format = find_fortran_format(line);
-    if (!count || !format || *count < static_cast<std::int64_t>(least)) {
-      problems_.add(lines_.number(), fmt::format("COSMOS: the {} need their number, {} at least, "
-                                                 "and a format such as (10I8)",
-                                                 what, least));
-      return {};
-    }
-    return read_fortran_numbers(lines_, *format, static_cast<std::size_t>(*count), what, problems_)
-        .value_or(std::vector<double>{});
-  }
-
-  std::optional<CosmosHeader> read_header(std::string_view first) {
-    CosmosHeader header;
-    header.line = lines_.number();
-    header.text.emplace_back(first);
-    const auto with = first.find("with");
-    const auto count = parse_integer(
-        with == std::string_view::npos ? "" : first_word(trimmed(first.substr(with + 4))));
-    if (!count || *count < 2 || *count > 100) {
-      problems_.add(header.line,
-                    "COSMOS: the first line must say how many lines of text there are");
-      return std::nullopt;
-    }
-    std::string_view line;
-    while (header.text.size() < static_cast<std::size_t>(*count) && lines_.next(line))
-      header.text.emplace_back(line);
-    read_unknown(header);
-    header.integers = read_list("nteger-header values", kIntegers);
-    if (problems_.any()) return std::nullopt;
-    header.reals = read_list("eal-header values", kReals);
-    if (problems_.any()) return std::nullopt;
-    read_comments(header);
-    return header;
-  }
-
-  /// "Values used when parameter or data value is unknown/unspecified:   -999, -999.00"
-  static void read_unknown(CosmosHeader& header) {
-    std::vector<std::string_view> fields;
-    split_commas(after(header, "unspecified:"), fields);
-    if (const auto value = parse_number(fields.front())) header.unknown_integer = *value;
-    if (const auto value = parse_number(fields.back())) header.unknown_real = *value;
-  }
-
-  /// "|<SCNL>8040.HNE.NP.01": station, channel, network, location.
-  void read_comments(CosmosHeader& header) {
-    std::string_view line;
-    if (!lines_.next(line)) return;
-    const auto count = parse_integer(first_word(trimmed(line)));
-    if (!count || *count < 0 || !holds(line, "omment")) {
-      problems_.add(lines_.number(), "COSMOS: the number of comment lines is not here");
-      return;
-    }
-    for (std::int64_t i = 0; i < *count && lines_.next(line); ++i) {
-      const auto at = line.find("<SCNL>");
-      if (at == std::string_view::npos) continue;
-      std::string dotted(first_word(line.substr(at + 6)));
-      std::vector<std::string> parts(1);
-      for (const char c : dotted) {
-        if (c == '.')
-          parts.emplace_back();
-        else
-          parts.back() += c;
-      }
-      if (parts.size() == 4)
-        header.seed_name = fmt::format("{}.{}.{}.{}", parts[2], parts[0], parts[3], parts[1]);
-    }
-  }
-
   /// "42000 acceleration pts, approx 210 secs, units=cm/sec2(04),Format=(1E15.6)" and the values.
   std::optional<Record> read_values(std::string_view line) {
     const std::int64_t at = lines_.number();

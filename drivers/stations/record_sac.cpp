@@ -1,4 +1,5 @@
 // Seismic Analysis Code, binary: one channel a file.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
