@@ -7,12 +7,11 @@
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
 #include "drivers/formats/record_formats.h"
+#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
 
 namespace framewatch::drivers {
 namespace {
-
-constexpr double kG_mps2 = 9.80665;
 
 struct At2Header {
   std::int64_t points = 0;
@@ -45,7 +44,7 @@ std::optional<At2Header> parse_counts(const std::string& line) {
   return header;
 }
 
-std::optional<At2Header> read_header(LineReader& lines, FileProblems& problems) {
+std::optional<At2Header> read_at2_header(LineReader& lines, FileProblems& problems) {
   std::array<std::string, 4> header;
   for (std::string& kept : header) {
     std::string_view line;
@@ -89,7 +88,7 @@ void split_stuck(std::string_view line, std::vector<std::string_view>& fields) {
 
 std::optional<Record> read_at2(FileProblems& problems) {
   LineReader lines(problems);
-  const auto header = read_header(lines, problems);
+  const auto header = read_at2_header(lines, problems);
   if (!header) return std::nullopt;
   RecordBuilder builder({name_of_file(problems.path())}, problems);
   std::vector<std::string_view> fields;
@@ -101,7 +100,7 @@ std::optional<Record> read_at2(FileProblems& problems) {
       if (!value)
         problems.add(lines.number(),
                      fmt::format("{} is neither a finite number nor nan", show_text(field)));
-      const double accel_mps2 = value.value_or(0) * kG_mps2;
+      const double accel_mps2 = value.value_or(0) * kStandardGravity_mps2;
       builder.add(lines.number(), static_cast<double>(count++) * header->step_s, {&accel_mps2, 1});
     }
   }

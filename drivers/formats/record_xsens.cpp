@@ -23,7 +23,7 @@ struct XsensColumns {
   std::array<std::size_t, kColumns.size()> index{};
 };
 
-std::optional<XsensColumns> read_header(LineReader& lines, FileProblems& problems) {
+std::optional<XsensColumns> read_xsens_header(LineReader& lines, FileProblems& problems) {
   std::string_view line;
   std::vector<std::string_view> fields;
   while (lines.next(line) && lines.number() <= kMaxHeaderLines) {
@@ -136,7 +136,7 @@ class XsensReader {
 
 std::optional<Record> read_xsens(FileProblems& problems) {
   LineReader lines(problems);
-  const auto columns = read_header(lines, problems);
+  const auto columns = read_xsens_header(lines, problems);
   if (!columns) return std::nullopt;
   XsensReader reader(*columns, problems);
   std::vector<std::string_view> fields;

@@ -5,6 +5,9 @@
 
 namespace framewatch::drivers {
 
+constexpr double kStandardGravity_mps2 = 9.80665;
+constexpr double kGal_mps2 = 0.01;
+
 /// m/s^2 in one of a unit of acceleration as people write it: "g" (9.80665), "mg", "gal" (0.01),
 /// "mps2", "m/s2", "m/s^2", "cm/s2", "mm/s^2" and the like. Empty for any other text.
 std::optional<double> mps2_per(std::string_view unit);

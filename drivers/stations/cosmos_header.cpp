@@ -8,9 +8,7 @@
 namespace framewatch::drivers {
 namespace {
 
-bool holds(std::string_view text, std::string_view part) {
-  return text.find(part) != std::string_view::npos;
-}
+constexpr std::size_t kIntegersRead = 76, kRealsRead = 64;
 
 /// A line "100 Real-header values follow on 20 lines, Format= (5F15.6)" and the values.
 std::vector<double> read_list(LineReader& lines, std::string_view what, std::size_t least,
@@ -68,6 +66,10 @@ void read_comments(LineReader& lines, CosmosHeader& header, FileProblems& proble
 
 }  // namespace
 
+bool holds(std::string_view text, std::string_view part) {
+  return text.find(part) != std::string_view::npos;
+}
+
 std::string_view after(const CosmosHeader& header, std::string_view mark) {
   for (const std::string& line : header.text)
     if (const auto at = line.find(mark); at != std::string::npos)
@@ -95,9 +97,9 @@ std::optional<CosmosHeader> read_cosmos_header(LineReader& lines, std::string_vi
   while (header.text.size() < static_cast<std::size_t>(*count) && lines.next(line))
     header.text.emplace_back(line);
   read_unknown(header);
-  header.integers = read_list(lines, "nteger-header values", kIntegers, problems);
+  header.integers = read_list(lines, "nteger-header values", kIntegersRead, problems);
   if (problems.any()) return std::nullopt;
-  header.reals = read_list(lines, "eal-header values", kReals, problems);
+  header.reals = read_list(lines, "eal-header values", kRealsRead, problems);
   if (problems.any()) return std::nullopt;
   read_comments(lines, header, problems);
   return header;

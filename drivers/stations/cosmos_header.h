@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,37 +13,35 @@
 
 namespace framewatch::drivers {
 
-/// Where the headers have what is read of them, from 0.
-enum IntegerField {
-  kStage = 0,
-  kQuantity = 1,
-  kUnit = 2,
-  kReferenceAzimuth = 20,
-  kYear = 39,
-  kMonth = 41,
-  kDay = 42,
-  kHour = 43,
-  kMinute = 44,
-  kStationChannel = 49,
-  kAzimuth = 53,
-  kAzimuthToReference = 54,
-  kProblemFlag = 75,
-  kIntegers = 76,
+/// Where the header has what is read of it, from 0.
+enum class CosmosInteger : std::size_t {
+  stage = 0,
+  unit = 2,
+  reference_azimuth = 20,
+  year = 39,
+  month = 41,
+  day = 42,
+  hour = 43,
+  minute = 44,
+  station_channel = 49,
+  azimuth = 53,
+  azimuth_to_reference = 54,
+  problem_flag = 75,
 };
-enum RealField {
-  kMicrovoltPerCount = 21,
-  kSecond = 29,
-  kStep_s = 33,
-  kSensor_hz = 39,
-  kSensorDamping = 40,
-  kVoltPerG = 41,
-  kGain = 46,
-  kLowCorner_hz = 53,
-  kHighCorner_hz = 56,
-  kStep_ms = 61,
-  kPeak = 63,
-  kReals = 64,
+enum class CosmosReal : std::size_t {
+  microvolt_per_count = 21,
+  second = 29,
+  step_s = 33,
+  sensor_hz = 39,
+  sensor_damping = 40,
+  volt_per_g = 41,
+  gain = 46,
+  low_corner_hz = 53,
+  high_corner_hz = 56,
+  step_ms = 61,
+  peak = 63,
 };
+
 /// The header of one channel: lines of text, whole numbers, real numbers, comments.
 struct CosmosHeader {
   std::int64_t line = 0;
@@ -51,12 +50,12 @@ struct CosmosHeader {
   double unknown_integer = -999, unknown_real = -999;
   std::string seed_name;  ///< from a comment; empty when there is none
 
-  std::optional<double> integer(IntegerField field) const {
-    const double value = integers[field];
+  std::optional<double> integer(CosmosInteger field) const {
+    const double value = integers[static_cast<std::size_t>(field)];
     return value == unknown_integer || std::abs(value) > 1e9 ? std::nullopt : std::optional(value);
   }
-  std::optional<double> real(RealField field) const {
-    const double value = reals[field];
+  std::optional<double> real(CosmosReal field) const {
+    const double value = reals[static_cast<std::size_t>(field)];
     return value == unknown_real ? std::nullopt : std::optional(value);
   }
 };
@@ -69,6 +68,7 @@ std::optional<CosmosHeader> read_cosmos_header(LineReader& lines, std::string_vi
 /// What follows `mark` in the header's text, to the end of its line; empty when it is not there.
 std::string_view after(const CosmosHeader& header, std::string_view mark);
 
+bool holds(std::string_view text, std::string_view part);
 /// To the first blank.
 std::string_view first_word(std::string_view text);
 

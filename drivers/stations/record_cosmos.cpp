@@ -9,6 +9,7 @@
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
+#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_merge.h"
 #include "drivers/records/time_text.h"
@@ -20,35 +21,31 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr double kG_mps2 = 9.80665;
 constexpr double kMicro = 1e-6;
 
 constexpr int kCounts = 50;
-
-bool holds(std::string_view text, std::string_view part) {
-  return text.find(part) != std::string_view::npos;
-}
 
 /// m/s2 of one of the file's units (table 2 of the format); empty for what is no acceleration.
 std::optional<double> mps2_of(int unit, const CosmosHeader& header) {
   switch (unit) {
     case 2:
-      return kG_mps2;
+      return kStandardGravity_mps2;
     case 4:
     case 10:
       return 0.01;
     case 7:
       return 0.0254;
     case 11:
-      return 1e-3 * kG_mps2;
+      return 1e-3 * kStandardGravity_mps2;
     case 12:
-      return kMicro * kG_mps2;
+      return kMicro * kStandardGravity_mps2;
     case kCounts: {
-      const auto step = header.real(kMicrovoltPerCount), sensitivity = header.real(kVoltPerG);
-      const double gain = header.real(kGain).value_or(1);
+      const auto step = header.real(CosmosReal::microvolt_per_count),
+                 sensitivity = header.real(CosmosReal::volt_per_g);
+      const double gain = header.real(CosmosReal::gain).value_or(1);
       if (!step || !sensitivity || !(*step > 0) || !(*sensitivity > 0) || !(gain > 0))
         return std::nullopt;
-      return *step * kMicro / *sensitivity / gain * kG_mps2;
+      return *step * kMicro / *sensitivity / gain * kStandardGravity_mps2;
     }
     default:
       return std::nullopt;
@@ -68,23 +65,24 @@ std::string direction_text(const CosmosHeader& header) {
       {700, "horizontal, azimuth unknown"},
       {701, "horizontal, azimuth unknown"},
   }};
-  const auto absolute = header.integer(kAzimuth);
-  const auto value = absolute ? absolute : header.integer(kAzimuthToReference);
+  const auto absolute = header.integer(CosmosInteger::azimuth);
+  const auto value = absolute ? absolute : header.integer(CosmosInteger::azimuth_to_reference);
   if (!value) return "direction not said";
   for (const auto& [code, word] : kWords)
     if (*value == code) return word;
   if (*value < 0 || *value > 360) return "direction not said";
   if (absolute) return azimuth_text(*value);
-  const auto reference = header.integer(kReferenceAzimuth);
+  const auto reference = header.integer(CosmosInteger::reference_azimuth);
   if (!reference) return fmt::format("{:g} deg from an axis whose azimuth is not said", *value);
   return azimuth_text(std::fmod(*value + *reference, 360));
 }
 
 std::string stage_text(const CosmosHeader& header, double unit_mps2) {
-  const int stage = static_cast<int>(header.integer(kStage).value_or(-1));
+  const int stage = static_cast<int>(header.integer(CosmosInteger::stage).value_or(-1));
   if (stage == 0) return fmt::format("raw, {:.6g} m/s2 a count", unit_mps2);
   if (stage == 1) return "uncorrected";
-  const auto low_hz = header.real(kLowCorner_hz), high_hz = header.real(kHighCorner_hz);
+  const auto low_hz = header.real(CosmosReal::low_corner_hz),
+             high_hz = header.real(CosmosReal::high_corner_hz);
   if (stage != 2) return "stage of processing not said";
   if (!low_hz || !high_hz) return "corrected";
   return fmt::format("corrected, {:g} to {:g} Hz kept", *low_hz, *high_hz);
@@ -97,13 +95,13 @@ std::string place_text(const CosmosHeader& header) {
 
 std::string treatment_text(const CosmosHeader& header, double unit_mps2) {
   std::string text = stage_text(header, unit_mps2);
-  const auto flag = header.integer(kProblemFlag);
+  const auto flag = header.integer(CosmosInteger::problem_flag);
   if (flag == 1) text += "; its network mended a fault of it";
   if (flag == 2) text += "; its network says it has a fault";
   text += "; not used of the header: coordinates, event";
-  if (const auto sensor_hz = header.real(kSensor_hz); sensor_hz && *sensor_hz > 0)
+  if (const auto sensor_hz = header.real(CosmosReal::sensor_hz); sensor_hz && *sensor_hz > 0)
     text += fmt::format(", the sensor's own {:.3g} Hz (damping {:.2g})", *sensor_hz,
-                        header.real(kSensorDamping).value_or(0));
+                        header.real(CosmosReal::sensor_damping).value_or(0));
   return text;
 }
 
@@ -113,7 +111,8 @@ std::string name_of(const CosmosHeader& header) {
   if (name.empty()) name = "station";
   for (char& c : name)
     if (c == '-') c = '.';
-  return fmt::format("{}.ch{:02}", name, header.integer(kStationChannel).value_or(0));
+  return fmt::format("{}.ch{:02}", name,
+                     header.integer(CosmosInteger::station_channel).value_or(0));
 }
 
 class CosmosReader {
@@ -164,11 +163,11 @@ class CosmosReader {
 
   std::optional<Record> accel_record(std::vector<double> values, std::int64_t line,
                                      std::size_t per_line) {
-    const int unit = static_cast<int>(header_->integer(kUnit).value_or(0));
+    const int unit = static_cast<int>(header_->integer(CosmosInteger::unit).value_or(0));
     const auto unit_mps2 = mps2_of(unit, *header_);
-    const auto step_ms = header_->real(kStep_ms);
+    const auto step_ms = header_->real(CosmosReal::step_ms);
     const double step_s =
-        step_ms && *step_ms > 0 ? *step_ms / 1000 : header_->real(kStep_s).value_or(0);
+        step_ms && *step_ms > 0 ? *step_ms / 1000 : header_->real(CosmosReal::step_s).value_or(0);
     if (!unit_mps2)
       problems_.add(header_->line,
                     unit == kCounts
@@ -187,21 +186,23 @@ class CosmosReader {
     channel.start_utc_s = start_utc_s;
     channel.place = place_text(*header_);
     channel.treatment = treatment_text(*header_, *unit_mps2);
-    if (const auto peak = header_->real(kPeak); peak && unit != kCounts)
+    if (const auto peak = header_->real(CosmosReal::peak); peak && unit != kCounts)
       channel.peak_mps2 = *peak * *unit_mps2;
     return station_record(channel, values, line, per_line, problems_);
   }
 
   std::optional<double> start() {
-    const auto year = header_->integer(kYear), month = header_->integer(kMonth),
-               day = header_->integer(kDay), hour = header_->integer(kHour),
-               minute = header_->integer(kMinute);
-    const auto second = header_->real(kSecond);
+    const auto year = header_->integer(CosmosInteger::year),
+               month = header_->integer(CosmosInteger::month),
+               day = header_->integer(CosmosInteger::day),
+               hour = header_->integer(CosmosInteger::hour),
+               minute = header_->integer(CosmosInteger::minute);
+    const auto second = header_->real(CosmosReal::second);
     if (!year || !month || !day || !hour || !minute || !second) return std::nullopt;
-    const auto day_s =
-        utc_of_date(static_cast<int>(*year), static_cast<int>(*month), static_cast<int>(*day));
-    if (!day_s || *hour < 0 || *hour > 23 || *minute < 0 || *minute > 59 || !(*second >= 0) ||
-        !(*second < 61)) {
+    const auto utc_s = utc_of(
+        utc_of_date(static_cast<int>(*year), static_cast<int>(*month), static_cast<int>(*day)),
+        *hour, *minute, *second);
+    if (!utc_s) {
       problems_.add(header_->line, "COSMOS: the header's start is no time");
       return std::nullopt;
     }
@@ -213,8 +214,7 @@ class CosmosReader {
                     "it with --zone Z or, for example, --zone +09:00");
       return std::nullopt;
     }
-    return *day_s + 3600 * *hour + 60 * *minute + *second -
-           (utc ? 0.0 : 60.0 * options_.zone_min.value_or(0));
+    return *utc_s - (utc ? 0.0 : 60.0 * options_.zone_min.value_or(0));
   }
 
   const RecordOptions& options_;

@@ -8,6 +8,7 @@
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
+#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/time_text.h"
 #include "drivers/stations/station_channel.h"
@@ -16,9 +17,8 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr int kHeaderLines = 17;
-constexpr std::size_t kTitleWidth = 18;  ///< "Sampling Freq(Hz) 100Hz"
-constexpr double kGal_mps2 = 0.01;
+constexpr int kKnetHeaderLines = 17;
+constexpr std::size_t kKnetTitleWidth = 18;  ///< "Sampling Freq(Hz) 100Hz"
 /// The header's time is the trigger's; the record begins so much before it.
 constexpr double kBeforeTrigger_s = 15;
 constexpr double kAheadOfUtc_s = 9 * 3600;
@@ -62,20 +62,20 @@ class KnetReader {
       }
     }
     if (problems_.any()) return std::nullopt;
-    return station_record(channel, accel_mps2, kHeaderLines + 1, std::max<std::size_t>(1, per_line),
-                          problems_);
+    return station_record(channel, accel_mps2, kKnetHeaderLines + 1,
+                          std::max<std::size_t>(1, per_line), problems_);
   }
 
  private:
   bool read_header() {
     std::string_view line;
-    while (lines_.number() < kHeaderLines && lines_.next(line)) {
-      const std::string_view title = trimmed(line.substr(0, kTitleWidth));
+    while (lines_.number() < kKnetHeaderLines && lines_.next(line)) {
+      const std::string_view title = trimmed(line.substr(0, kKnetTitleWidth));
       const std::string_view text =
-          line.size() > kTitleWidth ? trimmed(line.substr(kTitleWidth)) : "";
+          line.size() > kKnetTitleWidth ? trimmed(line.substr(kKnetTitleWidth)) : "";
       header_.insert({std::string(title), {lines_.number(), std::string(text)}});
     }
-    if (lines_.number() < kHeaderLines && !problems_.any())
+    if (lines_.number() < kKnetHeaderLines && !problems_.any())
       problems_.add(0, "K-NET: the 17 lines of the header are not all there");
     return !problems_.any();
   }

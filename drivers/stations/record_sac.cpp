@@ -14,51 +14,45 @@
 namespace framewatch::drivers {
 namespace {
 
-/// Words of the header.
-constexpr std::size_t kStep_s = 0, kBegin_s = 5, kAzimuth = 57, kFromUp = 58, kYear = 70,
-                      kDayOfYear = 71, kHour = 72, kMinute = 73, kSecond = 74, kMillisecond = 75,
-                      kPoints = 79, kFileType = 85, kQuantity = 86, kEven = 105;
-/// Texts of the header.
-constexpr std::size_t kStation = 0, kLocation = 3, kChannel = 20, kNetwork = 21;
 constexpr int kTimeSeries = 1, kDisplacement = 6, kVelocity = 7;
 
 std::string name_of(const SacHeader& header) {
   std::string name;
-  for (const std::size_t place : {kNetwork, kStation, kLocation, kChannel}) {
+  for (const SacText place :
+       {SacText::network, SacText::station, SacText::location, SacText::channel}) {
     std::string part = header.text(place);
     for (char& c : part)
       if (c == ',' || c == '"' || c == '.') c = '_';
-    name += (place == kNetwork ? "" : ".") + part;
+    name += (place == SacText::network ? "" : ".") + part;
   }
   return name == "..." ? "station" : name;
 }
 
 std::string place_of(const SacHeader& header) {
-  const auto from_up = header.number(kFromUp), azimuth = header.number(kAzimuth);
+  const auto from_up = header.number(SacFloat::from_up_deg),
+             azimuth = header.number(SacFloat::azimuth_deg);
   if (from_up == 0) return "up";
   if (from_up == 180) return "down";
   return azimuth && from_up == 90 ? azimuth_text(*azimuth) : "direction not said";
 }
 
 std::optional<double> start_of(const SacHeader& header, FileProblems& problems) {
-  const auto year = header.integer(kYear), day = header.integer(kDayOfYear),
-             hour = header.integer(kHour), minute = header.integer(kMinute),
-             second = header.integer(kSecond);
+  const auto year = header.integer(SacInteger::year), day = header.integer(SacInteger::day_of_year),
+             hour = header.integer(SacInteger::hour), minute = header.integer(SacInteger::minute),
+             second = header.integer(SacInteger::second);
   if (!year || !day || !hour || !minute || !second) return std::nullopt;
-  const auto day_s = utc_of_day_of_year(*year, *day);
-  const int millisecond = header.integer(kMillisecond).value_or(0);
-  if (!day_s || *hour < 0 || *hour > 23 || *minute < 0 || *minute > 59 || *second < 0 ||
-      *second > 60 || std::abs(millisecond) > 999) {
+  const int millisecond = header.integer(SacInteger::millisecond).value_or(0);
+  const auto utc_s = utc_of(utc_of_day_of_year(*year, *day), *hour, *minute, *second);
+  if (!utc_s || std::abs(millisecond) > 999) {
     problems.add(0, "SAC: the header's time is none");
     return std::nullopt;
   }
-  return *day_s + 3600.0 * *hour + 60.0 * *minute + *second + 1e-3 * millisecond +
-         header.number(kBegin_s).value_or(0);
+  return *utc_s + 1e-3 * millisecond + header.number(SacFloat::begin_s).value_or(0);
 }
 
 std::optional<std::vector<double>> read_values(UnpackedFile& file, const SacHeader& header,
                                                double unit_mps2, FileProblems& problems) {
-  const auto points = static_cast<std::size_t>(header.integer(kPoints).value_or(0));
+  const auto points = static_cast<std::size_t>(header.integer(SacInteger::points).value_or(0));
   if (points > RecordBuilder::kMaxValues) {
     problems.add(0, fmt::format("a record holds at most {} values", RecordBuilder::kMaxValues));
     return std::nullopt;
@@ -94,13 +88,13 @@ std::optional<Record> read_sac(const RecordOptions& options, FileProblems& probl
     problems.add(0, file.error().empty() ? "is no SAC file of version 6 or 7" : file.error());
     return std::nullopt;
   }
-  if (header->integer(kFileType).value_or(kTimeSeries) != kTimeSeries ||
-      header->integer(kEven).value_or(1) != 1)
+  if (header->integer(SacInteger::file_type).value_or(kTimeSeries) != kTimeSeries ||
+      header->integer(SacInteger::even).value_or(1) != 1)
     problems.add(0, "SAC: a spectrum or uneven steps, no time series");
-  const int quantity = header->integer(kQuantity).value_or(0);
+  const int quantity = header->integer(SacInteger::quantity).value_or(0);
   if (quantity == kDisplacement || quantity == kVelocity)
     problems.add(0, "SAC: the header says a displacement or a velocity, no acceleration");
-  const double step_s = header->number(kStep_s).value_or(0);
+  const double step_s = header->number(SacFloat::step_s).value_or(0);
   if (step_s * RecordBuilder::kMaxRateHz < 1)
     problems.add(0, fmt::format("SAC: a step of {:g} s", step_s));
   StationChannel channel;

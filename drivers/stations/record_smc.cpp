@@ -6,6 +6,7 @@
 
 #include "drivers/base/line_reader.h"
 #include "drivers/base/number_text.h"
+#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/stations/fortran_numbers.h"
 #include "drivers/stations/station_channel.h"
@@ -14,28 +15,26 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::int64_t kTextLines = 11;
-constexpr double kGal_mps2 = 0.01;
+constexpr std::int64_t kSmcTextLines = 11;
 
 /// Where the headers have what is read of them, from 0.
-enum SmcInteger {
-  kUndefined = 0,
-  kYear = 1,
-  kDayOfYear = 2,
-  kHour = 3,
-  kMinute = 4,
-  kSecond = 5,
-  kMillisecond = 6,
-  kChannel = 9,
-  kFromUp_deg = 12,
-  kAzimuth_deg = 13,
-  kComments = 15,
-  kPoints = 16,
-  kProblem = 17,
-  kFloor = 24,
-  kIntegers = 48,
+enum class SmcInteger : std::size_t {
+  undefined = 0,
+  year = 1,
+  day_of_year = 2,
+  hour = 3,
+  minute = 4,
+  second = 5,
+  millisecond = 6,
+  channel = 9,
+  from_up_deg = 12,
+  azimuth_deg = 13,
+  comments = 15,
+  points = 16,
+  problem = 17,
+  floor = 24,
 };
-constexpr std::size_t kRate_hz = 1, kReals = 50;
+constexpr std::size_t kSmcIntegers = 48, kSmcReals = 50, kSmcRate_hz = 1;
 
 struct SmcHeader {
   std::vector<std::string> text;
@@ -43,8 +42,9 @@ struct SmcHeader {
   double rate_hz = 0;
 
   std::optional<int> integer(SmcInteger field) const {
-    const double value = integers[field];
-    if (value == integers[kUndefined] || std::abs(value) > 1e9) return std::nullopt;
+    const double value = integers[static_cast<std::size_t>(field)];
+    if (value == integers[static_cast<std::size_t>(SmcInteger::undefined)] || std::abs(value) > 1e9)
+      return std::nullopt;
     return static_cast<int>(value);
   }
 };
@@ -58,58 +58,59 @@ std::string name_of(const SmcHeader& header) {
   const std::string_view line = trimmed(header.text[2]);
   std::string name(line.substr(0, line.find_first_of(" \t,\"")));
   if (name.empty()) name = "station";
-  if (const auto channel = header.integer(kChannel)) name += fmt::format(".ch{:02}", *channel);
+  if (const auto channel = header.integer(SmcInteger::channel))
+    name += fmt::format(".ch{:02}", *channel);
   return name;
 }
 
 std::string place_text(const SmcHeader& header) {
-  const auto from_up = header.integer(kFromUp_deg), azimuth = header.integer(kAzimuth_deg);
+  const auto from_up = header.integer(SmcInteger::from_up_deg),
+             azimuth = header.integer(SmcInteger::azimuth_deg);
   std::string text = "direction not said";
   if (from_up == 0) text = "up";
   if (from_up == 180) text = "down";
   if (azimuth && from_up.value_or(90) == 90) text = azimuth_text(*azimuth);
-  if (const auto floor = header.integer(kFloor)) text += fmt::format(", floor {}", *floor);
+  if (const auto floor = header.integer(SmcInteger::floor))
+    text += fmt::format(", floor {}", *floor);
   return text;
 }
 
 std::string treatment_text(const SmcHeader& header) {
   std::string text = is_corrected(header) ? "corrected" : "uncorrected";
-  if (header.integer(kProblem) == 1) text += "; its network says it has a fault";
+  if (header.integer(SmcInteger::problem) == 1) text += "; its network says it has a fault";
   return text + "; not used of the header: coordinates, event, the sensor's own frequency";
 }
 
 std::optional<double> start_of(const SmcHeader& header, FileProblems& problems) {
-  const auto year = header.integer(kYear), day = header.integer(kDayOfYear),
-             hour = header.integer(kHour), minute = header.integer(kMinute),
-             second = header.integer(kSecond);
+  const auto year = header.integer(SmcInteger::year), day = header.integer(SmcInteger::day_of_year),
+             hour = header.integer(SmcInteger::hour), minute = header.integer(SmcInteger::minute),
+             second = header.integer(SmcInteger::second);
   if (!year || *year == 0 || !day || !hour || !minute || !second) return std::nullopt;
-  const auto day_s = utc_of_day_of_year(*year, *day);
-  const int millisecond = header.integer(kMillisecond).value_or(0);
-  if (!day_s || *hour < 0 || *hour > 23 || *minute < 0 || *minute > 59 || *second < 0 ||
-      *second > 60 || millisecond < 0 || millisecond > 999) {
-    problems.add(kTextLines + 1, "SMC: the header's start is no time");
-    return std::nullopt;
-  }
-  return *day_s + 3600.0 * *hour + 60.0 * *minute + *second + 1e-3 * millisecond;
+  const int millisecond = header.integer(SmcInteger::millisecond).value_or(0);
+  const auto utc_s =
+      utc_of(utc_of_day_of_year(*year, *day), *hour, *minute, *second + 1e-3 * millisecond);
+  if (!utc_s) problems.add(kSmcTextLines + 1, "SMC: the header's start is no time");
+  return utc_s;
 }
 
-std::optional<SmcHeader> read_header(LineReader& lines, FileProblems& problems) {
+std::optional<SmcHeader> read_smc_header(LineReader& lines, FileProblems& problems) {
   SmcHeader header;
   std::string_view line;
-  while (lines.number() < kTextLines && lines.next(line)) header.text.emplace_back(line);
-  if (lines.number() < kTextLines) {
+  while (lines.number() < kSmcTextLines && lines.next(line)) header.text.emplace_back(line);
+  if (lines.number() < kSmcTextLines) {
     if (!problems.any()) problems.add(0, "SMC: the 11 lines of text are not all there");
     return std::nullopt;
   }
-  auto integers = read_fortran_numbers(lines, {8, 10}, kIntegers, "SMC: whole numbers", problems);
+  auto integers =
+      read_fortran_numbers(lines, {8, 10}, kSmcIntegers, "SMC: whole numbers", problems);
   if (!integers) return std::nullopt;
   header.integers = std::move(*integers);
-  const auto reals = read_fortran_numbers(lines, {5, 15}, kReals, "SMC: real numbers", problems);
+  const auto reals = read_fortran_numbers(lines, {5, 15}, kSmcReals, "SMC: real numbers", problems);
   if (!reals) return std::nullopt;
-  header.rate_hz = (*reals)[kRate_hz];
+  header.rate_hz = (*reals)[kSmcRate_hz];
   if (!(header.rate_hz > 0) || header.rate_hz > RecordBuilder::kMaxRateHz)
-    problems.add(kTextLines + 7, fmt::format("SMC: {:g} samples a second", header.rate_hz));
-  const int comments = header.integer(kComments).value_or(0);
+    problems.add(kSmcTextLines + 7, fmt::format("SMC: {:g} samples a second", header.rate_hz));
+  const int comments = header.integer(SmcInteger::comments).value_or(0);
   for (int i = 0; i < comments && !problems.any(); ++i)
     if (!lines.next(line) || line.empty() || line.front() != '|')
       problems.add(lines.number(), fmt::format("SMC: {} of {} comment lines", i, comments));
@@ -120,11 +121,11 @@ std::optional<SmcHeader> read_header(LineReader& lines, FileProblems& problems) 
 
 std::optional<Record> read_smc(FileProblems& problems) {
   LineReader lines(problems);
-  const auto header = read_header(lines, problems);
+  const auto header = read_smc_header(lines, problems);
   if (!header || problems.any()) return std::nullopt;
   const auto start_utc_s = start_of(*header, problems);
-  const int points = header->integer(kPoints).value_or(0);
-  if (points < 1) problems.add(kTextLines + 3, "SMC: the header has no number of values");
+  const int points = header->integer(SmcInteger::points).value_or(0);
+  if (points < 1) problems.add(kSmcTextLines + 3, "SMC: the header has no number of values");
   if (problems.any()) return std::nullopt;
   const std::int64_t line = lines.number() + 1;
   auto values = read_fortran_numbers(lines, {8, 10}, static_cast<std::size_t>(points),

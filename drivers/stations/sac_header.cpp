@@ -12,8 +12,7 @@ namespace framewatch::drivers {
 namespace {
 
 constexpr std::size_t kWordBytes = 4, kTextBegin = 440, kTextBytes = 8;
-constexpr std::size_t kStep = 0, kVersion = 76, kPoints = 79;
-constexpr int kUndefined = -12345;
+constexpr int kSacUndefined = -12345;
 
 std::uint32_t word_at(const char* bytes, bool swapped) {
   std::uint32_t word = 0;
@@ -33,8 +32,10 @@ std::optional<SacHeader> SacHeader::read(std::string_view bytes) {
   header.bytes_ = bytes.substr(0, kSacHeaderBytes);
   for (const bool swapped : {false, true}) {
     header.swapped_ = swapped;
-    const auto version = header.integer(kVersion), points = header.integer(kPoints);
-    if ((version == 6 || version == 7) && points > 0 && header.number(kStep) > 0) return header;
+    const auto version = header.integer(SacInteger::version),
+               points = header.integer(SacInteger::points);
+    if ((version == 6 || version == 7) && points > 0 && header.number(SacFloat::step_s) > 0)
+      return header;
   }
   return std::nullopt;
 }
@@ -43,20 +44,20 @@ std::uint32_t SacHeader::word(std::size_t at) const {
   return word_at(bytes_.data() + at * kWordBytes, swapped_);
 }
 
-std::optional<double> SacHeader::number(std::size_t at) const {
-  const auto value = std::bit_cast<float>(word(at));
-  if (!std::isfinite(value) || value == static_cast<float>(kUndefined)) return std::nullopt;
+std::optional<double> SacHeader::number(SacFloat field) const {
+  const auto value = std::bit_cast<float>(word(static_cast<std::size_t>(field)));
+  if (!std::isfinite(value) || value == static_cast<float>(kSacUndefined)) return std::nullopt;
   return parse_number(fmt::format("{}", value));
 }
 
-std::optional<int> SacHeader::integer(std::size_t at) const {
-  const auto value = std::bit_cast<std::int32_t>(word(at));
-  return value == kUndefined ? std::nullopt : std::optional<int>(value);
+std::optional<int> SacHeader::integer(SacInteger field) const {
+  const auto value = std::bit_cast<std::int32_t>(word(static_cast<std::size_t>(field)));
+  return value == kSacUndefined ? std::nullopt : std::optional<int>(value);
 }
 
-std::string SacHeader::text(std::size_t place) const {
+std::string SacHeader::text(SacText field) const {
   std::string_view text(bytes_);
-  text = text.substr(kTextBegin + place * kTextBytes, kTextBytes);
+  text = text.substr(kTextBegin + static_cast<std::size_t>(field) * kTextBytes, kTextBytes);
   text = trimmed(text.substr(0, text.find('\0')));
   return std::string(text.starts_with("-12345") ? std::string_view() : text);
 }

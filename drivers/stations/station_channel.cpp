@@ -42,6 +42,14 @@ std::optional<double> utc_of_day_of_year(int year, int day) {
   return *first + 86400.0 * (day - 1);
 }
 
+std::optional<double> utc_of(std::optional<double> day_s, double hour, double minute,
+                             double second) {
+  const bool sound =
+      hour >= 0 && hour < 24 && minute >= 0 && minute < 60 && second >= 0 && second < 61;
+  if (!day_s || !sound) return std::nullopt;
+  return *day_s + 3600 * hour + 60 * minute + second;
+}
+
 std::string azimuth_text(double azimuth_deg) {
   return fmt::format("azimuth {:g} deg", azimuth_deg);
 }

@@ -34,5 +34,8 @@ std::string azimuth_text(double azimuth_deg);
 /// Seconds since 1970 at the beginning of a day in UTC; empty for a date that is none.
 std::optional<double> utc_of_date(int year, int month, int day);
 std::optional<double> utc_of_day_of_year(int year, int day);
+/// Seconds since 1970 at a time of that day; empty for one that is none.
+std::optional<double> utc_of(std::optional<double> day_s, double hour, double minute,
+                             double second);
 
 }  // namespace framewatch::drivers
