@@ -151,8 +151,6 @@ void add_convert(CommandList& commands) {
       "  framewatch convert sheet.csv --unit g --time-unit ms rec.lcmlog\n"
       "  framewatch convert elcentro_NS.dat --unit g elcentro.csv\n"
       "  framewatch convert hachi.txt --unit gal --step 0.01 hachi.lcmlog\n"
-      "  framewatch convert quake.mseed --unit 1e-6 --names base,roof quake.lcmlog\n"
-      "  framewatch convert run.mat --time t --columns acc --unit g run.lcmlog\n"
       "  framewatch convert ground.csv.gz first.csv.gz second.csv.gz top.csv.gz run.lcmlog\n"
       "  framewatch convert est.lcmlog --boxplot est.csv");
   command

@@ -83,10 +83,13 @@ struct MatFileReader::State {
   bool list(matvar_t* v, const std::string& name, int depth, std::vector<MatVariable>& out) const {
     if (v == nullptr) return true;
     if (depth > kDeepestStruct || out.size() >= kMostVariables) return false;
-    if (v->class_type == MAT_C_STRUCT && elements_of(*v) == 1) {
+    // Of a damaged struct libmatio has names and no fields.
+    const bool has_fields = v->class_type == MAT_C_STRUCT && v->data != nullptr;
+    if (has_fields && elements_of(*v) == 1) {
       char* const* const fields = Mat_VarGetStructFieldnames(v);
-      const unsigned count = Mat_VarGetNumberOfFields(v);
-      for (unsigned i = 0; fields != nullptr && i < count; ++i)
+      const std::size_t count =
+          std::min<std::size_t>(Mat_VarGetNumberOfFields(v), v->nbytes / sizeof(matvar_t*));
+      for (std::size_t i = 0; fields != nullptr && i < count; ++i)
         if (!list(Mat_VarGetStructFieldByIndex(v, i, 0), fmt::format("{}.{}", name, fields[i]),
                   depth + 1, out))
           return false;
