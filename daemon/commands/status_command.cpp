@@ -19,7 +19,7 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/config/config_problems.h"
-#include "daemon/config/sections.h"
+#include "daemon/config/sections/sections.h"
 #include "daemon/service/health.h"
 #include "daemon/service/unit_state.h"
 #include "drivers/lcm/lcm_source.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config/settings.h"
+#include "daemon/config/sections/settings.h"
 
 namespace framewatch::daemon {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "daemon/config/config_problems.h"
-#include "daemon/config/settings.h"
+#include "daemon/config/sections/settings.h"
 #include "estimator/watch/baseline.h"
 
 namespace framewatch::daemon {

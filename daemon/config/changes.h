@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config/settings.h"
+#include "daemon/config/sections/settings.h"
 #include "daemon/documents/toml_document.h"
 #include "daemon/keys/option_table.h"
 

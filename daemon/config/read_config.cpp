@@ -5,10 +5,10 @@
 
 #include <fmt/core.h>
 
-#include "daemon/config/can_reader.h"
 #include "daemon/config/config_size.h"
-#include "daemon/config/effects.h"
-#include "daemon/config/sections.h"
+#include "daemon/config/sections/can_reader.h"
+#include "daemon/config/sections/effects.h"
+#include "daemon/config/sections/sections.h"
 #include "daemon/keys/section_table.h"
 #include "daemon/keys/suggest.h"
 

@@ -22,7 +22,7 @@
 #include "daemon/simulation/scenario.h"
 #include "daemon/simulation/simulation.h"
 #include "daemon/simulation/simulation_output.h"
-#include "daemon/web/live_view.h"
+#include "daemon/web/view/live_view.h"
 #include "daemon/web/web_server.h"
 #include "daemon/web/web_socket.h"
 #include "drivers/can/can_source.h"

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/config/effects.h"
+#include "daemon/config/sections/effects.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 
 namespace framewatch::daemon {

@@ -32,9 +32,6 @@ struct EventVerdict {
 };
 EventVerdict judge(const EventReport& report, const Config& config);
 
-/// Largest drift ratio of a story's frames; NaN: of none it is known.
-double drift_ratio(const EventReport& report, const Config& config, int story);
-
 /// "event-20261124T004628Z", by the time it began; .html and .json of it are written.
 std::string event_report_name(const EventReport& report);
 

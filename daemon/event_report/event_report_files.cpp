@@ -1,6 +1,5 @@
 #include "daemon/event_report/event_report_files.h"
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <mutex>
@@ -8,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/log.h"
-#include "daemon/base/utc_time.h"
+#include "daemon/event_report/event_report_folder.h"
 #include "drivers/base/caught.h"
 #include "drivers/base/text_output.h"
 
@@ -17,25 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kBeginning = "event-";
-
-/// Names without their ending of the reports in a folder, oldest first.
-std::vector<std::string> reports_in(const std::string& directory) {
-  std::vector<std::string> out;
-  std::error_code error;
-  for (fs::directory_iterator at(directory, error), end; !error && at != end; at.increment(error)) {
-    const fs::path& path = at->path();
-    const std::string name = path.stem().string();
-    if (path.extension() == ".json" && name.starts_with(kBeginning) &&
-        read_utc_stamp(name.substr(kBeginning.size())))
-      out.push_back(name);
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
 void remove_oldest(const std::string& directory, std::size_t most) {
-  const std::vector<std::string> names = reports_in(directory);
+  const std::vector<std::string> names = event_report_names(directory);
   for (std::size_t i = 0; i + most < names.size(); ++i)
     for (const char* ending : {".html", ".json"}) {
       std::error_code ignored;

@@ -7,6 +7,7 @@
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
 #include "daemon/event_report/event_report.h"
+#include "daemon/event_report/response_words.h"
 #include "daemon/events/event_words.h"
 
 namespace framewatch::daemon {
@@ -35,17 +36,17 @@ std::string verdict_text(const EventReport& r, const Config& config, const Event
                            config.event_report->options.trigger_mps2);
 }
 
+double drift_ratio(const EventReport& r, const Config& config, int story) {
+  return peak_drift(r.shaking.peak, config.pipeline.structure, story).ratio;
+}
+
 std::string drift_section(const EventReport& r, const Config& config) {
   const EventReportSettings& s = *config.event_report;
   SvgAxis stories{""};
   SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
   std::vector<std::vector<std::string>> rows;
   for (int story = config.pipeline.structure.stories; story >= 0; --story) {
-    double peak = NAN;
-    for (std::size_t a = 0; a < r.shaking.peak_accel_mps2.size(); ++a)
-      if (config.pipeline.axes[a].story == story && !(r.shaking.peak_accel_mps2[a] <= peak) &&
-          std::isfinite(r.shaking.peak_accel_mps2[a]))
-        peak = r.shaking.peak_accel_mps2[a];
+    const double peak = peak_accel_mps2(r.shaking.peak, config.pipeline.axes, story);
     const double drift = story > 0 ? drift_ratio(r, config, story) : NAN;
     rows.push_back({story > 0 ? fmt::format("floor {}", story) : "base", number(peak, "{:.3f}"),
                     number(100 * drift, "{:.3f}")});
@@ -64,6 +65,8 @@ std::string drift_section(const EventReport& r, const Config& config) {
                      fmt::format("Of the frames of each story the one that drifted most; dotted: "
                                  "yellow from {:g} %, red from {:g} %.",
                                  100 * s.yellow_drift_ratio, 100 * s.red_drift_ratio)) +
+         "<p>Peak base shear: " + base_shear_words(r.shaking.peak, config.pipeline.structure) +
+         ".</p>\n" +
          html_table(
              {"", "peak acceleration, m/s^2", "peak drift of the story below, % of its height"},
              rows);
@@ -137,7 +140,7 @@ std::string sensors_section(const EventReport& r, const Config& config) {
   for (std::size_t a = 0; a < r.axes.size(); ++a) {
     const estimator::AxisCounters& c = r.axes[a];
     rows.push_back(
-        {html_text(config.pipeline.axes[a].name), number(r.shaking.peak_accel_mps2[a], "{:.3f}"),
+        {html_text(config.pipeline.axes[a].name), number(r.shaking.peak.accel_mps2[a], "{:.3f}"),
          fmt::format("{}", c.received), fmt::format("{}", c.missing), fmt::format("{}", c.repaired),
          fmt::format("{}", c.stuck), fmt::format("{}", c.clipped), fmt::format("{}", c.rejected)});
   }

@@ -54,7 +54,7 @@ Json sensors_json(const EventReport& r, const Config& config) {
     const estimator::AxisCounters& c = r.axes[a];
     out.push_back({{"channel", config.pipeline.axes[a].name},
                    {"story", config.pipeline.axes[a].story},
-                   {"peak_accel_mps2", json_value(r.shaking.peak_accel_mps2[a])},
+                   {"peak_accel_mps2", json_value(r.shaking.peak.accel_mps2[a])},
                    {"received", c.received},
                    {"missing", c.missing},
                    {"late", c.late},
@@ -87,7 +87,11 @@ std::string event_report_json(const EventReport& r, const Config& config) {
   out["stories"] = Json::array();
   for (int story = 1; story <= config.pipeline.structure.stories; ++story)
     out["stories"].push_back(
-        {{"story", story}, {"peak_drift_ratio", json_value(drift_ratio(r, config, story))}});
+        {{"story", story},
+         {"peak_drift_ratio",
+          json_value(peak_drift(r.shaking.peak, config.pipeline.structure, story).ratio)}});
+  out["base_shear_n"] = {{"x", json_value(r.shaking.peak.base_shear_n[0])},
+                         {"y", json_value(r.shaking.peak.base_shear_n[1])}};
   out["stiffness"] = stiffness_json(r, config);
   out["gap_nrmse"] = json_value(r.shaking.gap_nrmse);
   out["findings"] = Json::array();

@@ -27,7 +27,7 @@ void judge_drifts(const EventReport& r, const Config& config, EventVerdict& out,
                   std::vector<Reason>& reasons) {
   const EventReportSettings& s = *config.event_report;
   for (int story = 1; story <= config.pipeline.structure.stories; ++story) {
-    const double ratio = drift_ratio(r, config, story);
+    const double ratio = peak_drift(r.shaking.peak, config.pipeline.structure, story).ratio;
     if (!std::isfinite(ratio)) {
       reasons.push_back(
           {EventColor::yellow, 0,
@@ -79,16 +79,6 @@ int judge_losses(const EventReport& r, const Config& config, std::vector<Reason>
 
 const char* color_word(EventColor color) {
   return color == EventColor::red ? "red" : color == EventColor::yellow ? "yellow" : "green";
-}
-
-double drift_ratio(const EventReport& r, const Config& config, int story) {
-  const estimator::Structure& s = config.pipeline.structure;
-  double most = estimator::kNaN;
-  for (int f = 0; f < s.frames(); ++f) {
-    const double drift = r.shaking.peak_drift_m[static_cast<std::size_t>(s.dof(story, f))];
-    if (std::isfinite(drift) && !(drift <= most)) most = drift;
-  }
-  return most / s.story_height[static_cast<std::size_t>(story - 1)];
 }
 
 EventVerdict judge(const EventReport& r, const Config& config) {

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <set>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "daemon/event_report/response_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/service/health.h"
 
@@ -78,7 +78,8 @@ Answer is_changed(const Known& k) {
       k.with_baseline < k.watched
           ? fmt::format("No change found in {} of {} elements; the others have no baseline yet.",
                         k.with_baseline, k.watched)
-          : fmt::format("No. None of {} elements differs from its baseline.", k.watched);
+          : fmt::format("No. None of {} elements differs from what it was like (its baseline).",
+                        k.watched);
   if (k.observable < k.with_baseline)
     out.more.push_back({fmt::format("Now {} of them have a value: where it hardly moves, the last "
                                     "values stand.",
@@ -130,23 +131,43 @@ Answer is_believed(const Known& k, const Config& config) {
   return out;
 }
 
-/// Three digits that count: "1.73 %", "0.0421 %".
-std::string drift_words(double ratio) {
-  const double percent = 100 * ratio;
-  const int before = percent > 0 ? static_cast<int>(std::floor(std::log10(percent))) + 1 : 1;
-  return fmt::format("{:.{}f} %", percent, std::clamp(3 - before, 0, 9));
+std::string story_words(const Shake& shake, const estimator::Structure& s, int story) {
+  const estimator::PeakDrift peak = peak_drift(shake.peak, s, story);
+  if (peak.frame < 0) return fmt::format("Story {}: not known", story);
+  return fmt::format("Story {}: {} ({:.2f} mm) in frame {}", story, drift_words(peak.ratio),
+                     1e3 * peak.ratio * s.story_height[static_cast<std::size_t>(story - 1)],
+                     s.frame_name(peak.frame));
 }
 
-std::string shear_words(const Shake& shake, const Config& config) {
-  const estimator::Structure& s = config.pipeline.structure;
-  std::string out;
-  for (std::size_t d = 0; d < 2; ++d) {
-    if ((d == 0 ? s.n() : s.m()) == 0) continue;
-    out += fmt::format("{}{} along {}", out.empty() ? "" : ", ",
-                       shake.base_shear_n[d] > 0 ? force_words(shake.base_shear_n[d]) : "not known",
-                       d == 0 ? "x" : "y");
-  }
-  return out;
+std::string accel_words(const Shake& shake, const Config& config) {
+  const auto words = [](double mps2) {
+    return std::isfinite(mps2) ? fmt::format("{:.2f} m/s²", mps2) : std::string("not known");
+  };
+  double floors = estimator::kNaN;
+  for (int level = 1; level <= config.pipeline.structure.stories; ++level)
+    if (const double peak = peak_accel_mps2(shake.peak, config.pipeline.axes, level);
+        !(peak <= floors))
+      floors = peak;
+  return fmt::format("Peak acceleration of the ground {}, of the floors {}",
+                     words(peak_accel_mps2(shake.peak, config.pipeline.axes, 0)), words(floors));
+}
+
+/// Whether the report is about this shake: strong motion lies within it.
+bool is_of(const EventReportSummary& report, const Shake& shake) {
+  return report.start_us >= shake.from_us && report.start_us <= shake.to_us;
+}
+
+void name_report(const Known& k, Answer& out) {
+  if (!k.report) return;
+  const EventReportSummary& r = *k.report;
+  const bool same = k.newest != nullptr && is_of(r, *k.newest);
+  const std::string color = color_word(r.color);
+  AnswerLine line{same ? fmt::format("Judged {}: {}.", color, r.reason)
+                       : fmt::format("The last strong motion was judged {}: {}.", color, r.reason),
+                  same ? 0 : r.start_us, same ? 0 : r.end_us, r.name};
+  if (same && r.color != EventColor::green && out.state != AnswerState::bad)
+    out.state = r.color == EventColor::red ? AnswerState::bad : AnswerState::look;
+  out.more.insert(out.more.begin(), std::move(line));
 }
 
 Answer went_through(const Known& k, const Config& config) {
@@ -157,35 +178,31 @@ Answer went_through(const Known& k, const Config& config) {
                     ? "Not known yet."
                     : fmt::format("Nothing: no acceleration over {:g} m/s².", Shaking::kMoves_mps2),
                 k.followed_since_us, 0};
+    name_report(k, out);
     return out;
   }
   const Shake& shake = *k.newest;
   const bool over = shake.over || k.silent_s > kSilent_s;
   const estimator::Structure& s = config.pipeline.structure;
+  const double drift = largest_drift_ratio(shake.peak, s);
+  const std::string swayed =
+      drift > 0 ? fmt::format("a story swayed by up to {} of its height (drift ratio)",
+                              drift_words(drift))
+                : std::string("how far its stories swayed is not known");
   out.line = {
-      fmt::format("{}: peak drift ratio {}, base shear {}.", over ? "A shake" : "It is shaking",
-                  drift_words(shake.drift_ratio()), shear_words(shake, config)),
+      fmt::format("{}: {}; the force at the base (shear) was up to {}.",
+                  over ? "A shake" : "It is shaking", swayed, base_shear_words(shake.peak, s)),
       shake.from_us, over ? shake.to_us : 0};
   out.state = over ? AnswerState::good : AnswerState::look;
-  for (std::size_t i = shake.story.size(); i-- > 0;) {
-    const StoryPeak& peak = shake.story[i];
-    out.more.push_back(
-        {peak.frame < 0
-             ? fmt::format("Story {}: not known", i + 1)
-             : fmt::format("Story {}: drift ratio {} ({:.2f} mm) in frame {}", i + 1,
-                           drift_words(peak.drift_ratio),
-                           1e3 * peak.drift_ratio * s.story_height[i], s.frame_name(peak.frame)),
-         0, 0});
-  }
-  out.more.push_back({fmt::format("Peak acceleration {:.2f} m/s² of the ground, {:.2f} m/s² of a "
-                                  "floor",
-                                  shake.base_accel_mps2, shake.floor_accel_mps2),
-                      0, 0});
-  if (k.strongest != nullptr && k.strongest->drift_ratio() > kStronger * shake.drift_ratio())
-    out.more.push_back(
-        {fmt::format("The strongest so far: drift ratio {}, base shear {}.",
-                     drift_words(k.strongest->drift_ratio()), shear_words(*k.strongest, config)),
-         k.strongest->from_us, k.strongest->to_us});
+  for (int story = s.stories; story >= 1; --story)
+    out.more.push_back({story_words(shake, s, story), 0, 0});
+  out.more.push_back({accel_words(shake, config), 0, 0});
+  if (k.strongest != nullptr && largest_drift_ratio(k.strongest->peak, s) > kStronger * drift)
+    out.more.push_back({fmt::format("The strongest so far: {} of a story's height, {}.",
+                                    drift_words(largest_drift_ratio(k.strongest->peak, s)),
+                                    base_shear_words(k.strongest->peak, s)),
+                        k.strongest->from_us, k.strongest->to_us});
+  name_report(k, out);
   return out;
 }
 
@@ -221,14 +238,6 @@ Answer to_do(const Known& k) {
 }
 
 }  // namespace
-
-std::string force_words(double newton) {
-  constexpr const char* kUnits[] = {"N", "kN", "MN", "GN"};
-  double value = newton;
-  std::size_t unit = 0;
-  for (; std::abs(value) >= 999.5 && unit + 1 < std::size(kUnits); ++unit) value /= 1000;
-  return fmt::format("{:.3g} {}", value, kUnits[unit]);
-}
 
 std::array<Answer, 4> answers(const Known& known, const Config& config) {
   return {is_changed(known), is_believed(known, config), went_through(known, config), to_do(known)};

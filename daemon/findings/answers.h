@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
+#include "daemon/event_report/event_report_folder.h"
 #include "daemon/findings/finding.h"
 #include "daemon/findings/shaking.h"
 
@@ -26,7 +27,8 @@ struct Known {
   std::optional<double> residual;  ///< of the model
   const Shake* newest = nullptr;
   const Shake* strongest = nullptr;
-  std::int64_t followed_since_us = 0;  ///< sensor time since which shakes are noticed
+  std::int64_t followed_since_us = 0;        ///< sensor time since which shakes are noticed
+  std::optional<EventReportSummary> report;  ///< the newest of [event_report]
 };
 
 /// good: as it should be; look: somebody should know; bad: somebody should do something; wait: not
@@ -38,6 +40,7 @@ struct AnswerLine {
   std::string text;
   std::int64_t since_us = 0;
   std::int64_t until_us = 0;
+  std::string report = {};  ///< event report that says more, without its ending; empty: none
 };
 
 struct Answer {
@@ -50,8 +53,5 @@ struct Answer {
 /// The four questions that the page begins with, in their order: is the building changed, is what
 /// is shown to be believed, what did it just go through, what is to be done.
 std::array<Answer, 4> answers(const Known& known, const Config& config);
-
-/// "3.21 kN": a force in the unit that an engineer would write.
-std::string force_words(double newton);
 
 }  // namespace framewatch::daemon

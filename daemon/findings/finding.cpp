@@ -22,8 +22,8 @@ bool is_channel(const Config& config, const std::string& place) {
 }
 
 std::string sure_words(double errors) {
-  return errors > 100 ? "more than 100 standard errors"
-                      : fmt::format("{:.0f} standard errors", errors);
+  return errors > 100 ? "more than 100 times its uncertainty"
+                      : fmt::format("{:.0f} times its uncertainty", errors);
 }
 
 void describe_change(Finding& f, const Config& config) {
@@ -35,11 +35,22 @@ void describe_change(Finding& f, const Config& config) {
       "the finding.",
       where);
   if (!std::isfinite(f.change_ratio) || !(f.std_error > 0)) return;  // its message says it
-  f.text = fmt::format("{} ({}) {} {} of its stiffness, standard error {} ({}).", where, f.place,
+  f.text = fmt::format("{} ({}) {} {} of its stiffness, give or take {}: {}.", where, f.place,
                        f.change_ratio < 0 ? "has lost" : "has gained",
                        percent_words(std::abs(f.change_ratio), f.std_error),
                        percent_words(f.std_error, f.std_error),
                        sure_words(std::abs(f.change_ratio) / f.std_error));
+}
+
+void describe_strong_motion(Finding& f) {
+  f.kind = FindingKind::shake;
+  f.text = f.text.substr(0, f.text.find("; report ")) + ".";
+  f.advice =
+      f.severity == severity::alarm
+          ? "Have a structural engineer look at the building before it is used as before: the "
+            "report of the strong motion says where."
+          : "Have a structural engineer read the report of the strong motion: it says what to look "
+            "at.";
 }
 
 void describe_channel(Finding& f, const std::string& kind) {
@@ -86,6 +97,8 @@ Finding finding_of(const event_t& e, const Config& config) {
     f.change_ratio = e.value / 100;
     f.std_error = e.std_error / 100;
     describe_change(f, config);
+  } else if (e.kind == "strong_motion") {
+    describe_strong_motion(f);
   } else if (e.kind == "gap") {
     f.kind = FindingKind::belief;
     f.text = fmt::format("The model does not fit: {}.", e.message);

@@ -10,9 +10,9 @@
 
 namespace framewatch::daemon {
 
-/// What a finding is about: whether the building changed, whether what is shown can be believed, or
-/// the service beside it (disk, history).
-enum class FindingKind { change, belief, service };
+/// What a finding is about: whether the building changed, what it went through, whether what is
+/// shown can be believed, or the service beside it (disk, history).
+enum class FindingKind { change, shake, belief, service };
 
 /// An event that is raised and not cleared, in words for whoever looks after the building.
 struct Finding {

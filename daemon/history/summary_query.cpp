@@ -19,6 +19,26 @@ constexpr const char* kSound =
     " AND start_us BETWEEN -2000000000000000000 AND 2000000000000000000"
     " AND last_us BETWEEN -2000000000000000000 AND 2000000000000000000";
 
+constexpr const char* kSummaryRow =
+    "SELECT start_us, last_us, windows, observable, mean, std_error, min, whisker_low, q1, median,"
+    " q3, whisker_high, max, outliers, boxed FROM summary JOIN period USING (period_s, start_us)"
+    " WHERE parameter = ? AND period_s = ?";
+
+SummaryRow summary_row(SqliteStatement& s) {
+  SummaryRow r;
+  r.start_us = s.integer(0);
+  r.last_us = s.integer(1);
+  r.windows = s.integer(2);
+  r.observable = s.integer(3);
+  int column = 4;
+  for (double* value : {&r.mean, &r.std_error, &r.min, &r.whisker_low, &r.q1, &r.median, &r.q3,
+                        &r.whisker_high, &r.max})
+    *value = s.number(column++);
+  r.outliers = s.integer(column++);
+  r.boxed = s.integer(column);
+  return r;
+}
+
 }  // namespace
 
 std::string SummaryQuery::open(const std::string& directory) {
@@ -74,26 +94,20 @@ std::optional<std::int64_t> SummaryQuery::newest_us() {
 
 std::vector<SummaryRow> SummaryQuery::rows(std::int64_t parameter, std::int64_t period_s,
                                            std::int64_t from_us, std::int64_t to_us) {
-  SqliteStatement s = file_.prepare(
-      "SELECT start_us, windows, observable, mean, std_error, min, whisker_low, q1, median, q3,"
-      " whisker_high, max, outliers FROM summary JOIN period USING (period_s, start_us)"
-      " WHERE parameter = ? AND period_s = ? AND start_us >= ? AND start_us < ?"
-      " ORDER BY start_us");
+  SqliteStatement s = file_.prepare(std::string(kSummaryRow) +
+                                    " AND start_us >= ? AND start_us < ? ORDER BY start_us");
   s.bind(1, parameter).bind(2, period_s).bind(3, from_us).bind(4, to_us);
   std::vector<SummaryRow> out;
-  while (s.row()) {
-    SummaryRow r;
-    r.start_us = s.integer(0);
-    r.windows = s.integer(1);
-    r.observable = s.integer(2);
-    int column = 3;
-    for (double* value : {&r.mean, &r.std_error, &r.min, &r.whisker_low, &r.q1, &r.median, &r.q3,
-                          &r.whisker_high, &r.max})
-      *value = s.number(column++);
-    r.outliers = s.integer(column);
-    out.push_back(r);
-  }
+  while (s.row()) out.push_back(summary_row(s));
   return out;
+}
+
+std::optional<SummaryRow> SummaryQuery::newest_row(std::int64_t parameter, std::int64_t period_s) {
+  SqliteStatement s = file_.prepare(std::string(kSummaryRow) +
+                                    " AND observable > 0 ORDER BY start_us DESC LIMIT 1");
+  s.bind(1, parameter).bind(2, period_s);
+  if (!s.row()) return std::nullopt;
+  return summary_row(s);
 }
 
 std::vector<ChannelTotals> SummaryQuery::channels(std::int64_t from_us, std::int64_t to_us) {

@@ -16,9 +16,10 @@ struct SummaryParameter {
   std::string name, unit;
 };
 
-/// A row of the table `summary` (docs/history.md); NaN for a value that is missing.
+/// A row of the table `summary` (docs/history.md) with its period's windows and end of the newest
+/// of them; NaN for a value that is missing.
 struct SummaryRow {
-  std::int64_t start_us = 0, windows = 0, observable = 0, outliers = 0;
+  std::int64_t start_us = 0, last_us = 0, windows = 0, observable = 0, outliers = 0, boxed = 0;
   double mean = 0, std_error = 0, min = 0, whisker_low = 0, q1 = 0, median = 0, q3 = 0,
          whisker_high = 0, max = 0;
 };
@@ -51,6 +52,8 @@ class SummaryQuery {
   std::optional<std::int64_t> newest_us();
   std::vector<SummaryRow> rows(std::int64_t parameter, std::int64_t period_s, std::int64_t from_us,
                                std::int64_t to_us);
+  /// The newest period in which the parameter was observable.
+  std::optional<SummaryRow> newest_row(std::int64_t parameter, std::int64_t period_s);
   /// Counts of the shortest periods that start between two times.
   std::vector<ChannelTotals> channels(std::int64_t from_us, std::int64_t to_us);
   /// In order of time; the newest `most`.

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/config/settings.h"
+#include "daemon/config/sections/settings.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/estimation/gap_segments.h"
 #include "daemon/event_report/event_report_files.h"

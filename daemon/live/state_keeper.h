@@ -4,7 +4,7 @@
 #include <future>
 #include <string>
 
-#include "daemon/config/settings.h"
+#include "daemon/config/sections/settings.h"
 #include "daemon/estimation/estimation.h"
 
 namespace framewatch::daemon {

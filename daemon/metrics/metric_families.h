@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
+#include "daemon/event_report/event_report_folder.h"
 #include "daemon/metrics/page_use.h"
 
 namespace framewatch::daemon {
@@ -71,6 +73,8 @@ void add_history(MetricFamilies& out, const history_status_t& history);
 void add_actions(MetricFamilies& out, const action_status_t& actions);
 void add_reception(MetricFamilies& out, const reception_t& reception);
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
+/// report: the newest of [event_report], if there is one.
+void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report);
 void add_page_use(MetricFamilies& out, const PageUse& use);
 
 }  // namespace framewatch::daemon

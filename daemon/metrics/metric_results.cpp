@@ -184,6 +184,16 @@ void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
     out.value(count, {{"kind", of.first}, {"severity", of.second}});
 }
 
+void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report) {
+  out.gauge("event_report_color", "1 for the verdict of the newest report after strong motion.");
+  for (const EventColor color : {EventColor::green, EventColor::yellow, EventColor::red})
+    out.value(report && report->color == color ? 1 : 0, {{"color", color_word(color)}});
+  if (report)
+    out.gauge("event_report_timestamp_seconds",
+              "Sensor time at which the strong motion of the newest report ended.")
+        .value(1e-6 * static_cast<double>(report->end_us));
+}
+
 void add_page_use(MetricFamilies& out, const PageUse& use) {
   const auto number = [](std::int64_t n) { return static_cast<double>(n); };
   out.gauge("serve_viewers", "Open pages of framewatch serve.").value(use.viewers);

@@ -45,9 +45,10 @@ void Metrics::message(const std::string& channel, const void* data, std::size_t 
   }
 }
 
-std::string Metrics::text(std::int64_t now_us, const PageUse& use) const {
+std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   std::map<std::string, std::vector<std::uint8_t>> fresh;
   RaisedEvents raised;
+  std::optional<EventReportSummary> report;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto service = newest_.find("SERVICE");
@@ -56,6 +57,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) const {
       if (now_us - newest.received_us <= kFresh_us || (up && name != "ESTIMATE"))
         fresh[name] = newest.bytes;
     raised = found_here_;
+    report = reports_.look();
   }
   const auto service = drivers::decoded<service_t>(fresh["SERVICE"]);
   const auto status = drivers::decoded<status_t>(fresh["STATUS"]);
@@ -89,6 +91,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) const {
   if (actions) add_actions(out, *actions);
   if (reception) add_reception(out, *reception);
   add_events(out, raised.all());
+  if (config_.event_report) add_event_report(out, report);
   const ProcessUsage usage = process_usage();
   add_page_use(out, use);
   out.gauge("serve_resident_memory_bytes", "Memory of framewatch serve.")

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
+#include "daemon/event_report/event_report_folder.h"
 #include "daemon/events/raised_events.h"
 #include "daemon/metrics/page_use.h"
 
@@ -20,7 +21,9 @@ class Metrics {
   static constexpr std::int64_t kFresh_us = 5'000'000;
 
   /// `config` must outlive this.
-  explicit Metrics(const Config& config) : config_(config) {}
+  explicit Metrics(const Config& config)
+      : config_(config),
+        reports_(config.event_report ? config.event_report->directory : std::string()) {}
 
   /// The channels of `framewatch serve` that only the metrics need.
   std::vector<std::string> channels() const {
@@ -30,7 +33,7 @@ class Metrics {
   void message(const std::string& channel, const void* data, std::size_t size, std::int64_t now_us);
 
   /// Text format 0.0.4. use: of the page.
-  std::string text(std::int64_t now_us, const PageUse& use) const;
+  std::string text(std::int64_t now_us, const PageUse& use);
 
  private:
   struct Newest {
@@ -38,9 +41,10 @@ class Metrics {
     std::int64_t received_us = 0;
   };
   const Config& config_;
-  mutable std::mutex mutex_;              ///< guards what is below
+  std::mutex mutex_;                      ///< guards what is below
   std::map<std::string, Newest> newest_;  ///< by channel without prefix
   RaisedEvents found_here_;               ///< by `framewatch serve` without [watch]
+  NewestEventReport reports_;
 };
 
 }  // namespace framewatch::daemon

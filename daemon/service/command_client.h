@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config/settings.h"
+#include "daemon/config/sections/settings.h"
 #include "daemon/service/command_packet.h"
 
 namespace framewatch::daemon {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config/settings.h"
+#include "daemon/config/sections/settings.h"
 #include "daemon/service/command_packet.h"
 #include "drivers/base/descriptor.h"
 

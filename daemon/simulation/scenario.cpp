@@ -9,8 +9,8 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/config/effects.h"
 #include "daemon/config/read_config.h"
+#include "daemon/config/sections/effects.h"
 #include "daemon/documents/toml_document.h"
 #include "daemon/keys/section.h"
 #include "daemon/simulation/scenario_motion.h"

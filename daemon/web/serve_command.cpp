@@ -16,7 +16,7 @@
 #include "daemon/metrics/metrics.h"
 #include "daemon/service/open_lcm.h"
 #include "daemon/service/service_manager.h"
-#include "daemon/web/live_view.h"
+#include "daemon/web/view/live_view.h"
 #include "daemon/web/web_admission.h"
 #include "daemon/web/web_server.h"
 #include "daemon/web/web_socket.h"
@@ -39,7 +39,7 @@ std::optional<std::string> read_token(const std::string& path, std::string& erro
 /// Empty when they are wrong, which is printed.
 std::optional<WebSettings> web_settings(const ServeArguments& a) {
   bool good = true;
-  WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions, {}, {}};
+  WebSettings settings{a.address, a.port, {}, a.hosts, a.files, a.sessions, {}, {}, {}};
   settings.connections.viewers = a.viewers;
   settings.connections.viewers_per_address = a.viewers_per_address;
   std::string error;
@@ -69,6 +69,7 @@ int serve(const ServeArguments& a) {
   print_problems(problems_found);
   std::optional<WebSettings> settings = web_settings(a);
   if (!config || !settings) return kBadInput;
+  if (config->event_report) settings->event_reports = config->event_report->directory;
 
   catch_stop_signals();
   ServiceManager manager;
@@ -99,6 +100,11 @@ int serve(const ServeArguments& a) {
                               view.message(m.channel, m.data, m.size, m.sender, m.received_us);
                               metrics.message(m.channel, m.data, m.size, steady_clock_us());
                             });
+  if (config->history) {
+    std::vector<std::string> notes;
+    view.restore(stored_history(*config, notes), host_clock_us());
+    for (const std::string& note : notes) log(LogLevel::notice, "of what was before: " + note);
+  }
   WebServer server(*settings, view);
   const int socket = listen_on(settings->address, settings->port, error);
   if (socket < 0 || !server.start(socket, error)) {

@@ -8,18 +8,20 @@
 
 #include <atomic>
 #include <charconv>
+#include <cstring>
 #include <set>
 #include <system_error>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "daemon/base/served_file.h"
 #include "daemon/session/session_command.h"
 #include "daemon/web/connection_guard.h"
-#include "daemon/web/live_view.h"
-#include "daemon/web/served_file.h"
+#include "daemon/web/view/live_view.h"
 #include "daemon/web/web_admission.h"
 #include "daemon/web/web_answer.h"
+#include "daemon/web/web_event_reports.h"
 #include "daemon/web/web_files.h"
 #include "daemon/web/web_sessions.h"
 #include "daemon/web/web_socket.h"
@@ -30,6 +32,7 @@ namespace {
 constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
 constexpr const char* kJson = "application/json";
 constexpr const char* kSessionPath = "/session/";
+constexpr const char* kEventReportPath = "/event-report/";
 constexpr std::size_t kBlock = 32768;
 constexpr int kOtherDescriptors = 64;  // LCM, the history's files, logs
 
@@ -136,6 +139,11 @@ class WebServer::Implementation {
     return answer(guard_, c, code, content + "\n", kPlainText);
   }
 
+  MHD_Result report(MHD_Connection* c, const std::optional<WebFile>& found) {
+    if (!found) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
+    return text(c, found->content, found->type.c_str(), kReportPolicy);
+  }
+
   MHD_Result respond(MHD_Connection* c, const std::string& method, const std::string& path) {
     const WebRequest request{method,
                              path,
@@ -171,12 +179,16 @@ class WebServer::Implementation {
     if (path == "/sessions.json")
       return text(c, settings_.sessions.empty() ? "null" : sessions_json(settings_.sessions),
                   kJson);
-    if (path.starts_with(kSessionPath)) {
-      const auto found =
-          session_document(settings_.sessions, path.substr(std::string(kSessionPath).size()));
-      if (!found) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
-      return text(c, found->content, found->type.c_str(), kReportPolicy);
-    }
+    if (path == "/event-reports.json")
+      return text(
+          c, settings_.event_reports.empty() ? "null" : event_reports_json(settings_.event_reports),
+          kJson);
+    if (path.starts_with(kSessionPath))
+      return report(c,
+                    session_document(settings_.sessions, path.substr(std::strlen(kSessionPath))));
+    if (path.starts_with(kEventReportPath))
+      return report(c, event_report_document(settings_.event_reports,
+                                             path.substr(std::strlen(kEventReportPath))));
     if (path == "/metrics" && settings_.metrics)
       return text(c, settings_.metrics(guard_.use()), kMetricsType);
     if (path == "/healthz") return plain(c, MHD_HTTP_OK, "ok");

@@ -9,10 +9,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/served_file.h"
 #include "daemon/documents/json_values.h"
 #include "daemon/report/session_file.h"
 #include "daemon/session/session_log.h"
-#include "daemon/web/served_file.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -18,6 +18,7 @@ struct WebSettings {
   std::vector<std::string> hosts;  ///< further names that requests may come under
   std::string files;               ///< folder to read the page from instead of the built-in one
   std::string sessions;            ///< folder of `framewatch record`; empty: none is shown
+  std::string event_reports;       ///< folder of [event_report]; empty: none is shown
   /// Text of /metrics; empty: /metrics does not exist.
   std::function<std::string(const PageUse&)> metrics;
   ConnectionLimits connections;

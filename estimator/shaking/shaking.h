@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "estimator/motion/sample.h"
+#include "estimator/shaking/story_response.h"
 #include "estimator/watch/change_point.h"
 
 namespace framewatch::estimator {
@@ -29,10 +30,9 @@ struct ShakenStiffness {
 
 /// One strong motion, as the sensors and the windows showed it.
 struct Shaking {
-  Time start{}, end{};                     ///< first and last instant above the trigger
-  Time found{};                            ///< when it was clear that it had ended
-  std::vector<double> peak_accel_mps2;     ///< of each axis, absolute, without its mean; NaN: none
-  std::vector<double> peak_drift_m;        ///< of each frame in each story (Structure::dof)
+  Time start{}, end{};  ///< first and last instant above the trigger
+  Time found{};         ///< when it was clear that it had ended
+  PeakResponse peak;
   std::vector<ShakenStiffness> stiffness;  ///< of the stiffness half of theta
   double gap_nrmse = 0;                    ///< the largest meanwhile; NaN: not simulated
 };

@@ -1,21 +1,17 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
-#include "estimator/motion/oscillator_section.h"
 #include "estimator/setup/options.h"
 #include "estimator/shaking/shaking.h"
-#include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/watch/baseline.h"
 
 namespace framewatch::estimator {
 
 /// Notices strong motion, follows its peaks, and says at its end what the building went through.
-/// Displacements are accelerations through one oscillator section at the estimation's high-pass
-/// (docs/equations.md 8, 12). Bounded: a motion of over kLongest_s is divided.
+/// Bounded: a motion of over kLongest_s is divided.
 class ShakingWatch {
  public:
   static constexpr double kShortest_s = 0.5, kLongest_s = 900;
@@ -35,22 +31,10 @@ class ShakingWatch {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(active_, start_, last_, next_index_, motions_, before_, first_, final_, after_, during_);
-    for (std::vector<double>* of : {&accel_, &drift_}) a(*of);
-    a(gap_);
+    a(active_, start_, last_, response_, peak_, before_, first_, final_, after_, during_, gap_);
   }
 
  private:
-  /// Displacement of one axis above the corner, w^2 times.
-  struct Motion {
-    double mean = 0, x1 = 0, x2 = 0, s1 = 0, s2 = 0;
-    double settled_s = -1;  ///< since the last interruption; -1: begins
-
-    template <typename Archive>
-    void archive(Archive& a) {
-      a.finite(mean, x1, x2, s1, s2, settled_s);
-    }
-  };
   /// The newest of the windows that were put in, at most `most`, which do not overlap.
   struct Windows {
     std::size_t most = 3, count = 0;
@@ -70,24 +54,14 @@ class ShakingWatch {
   };
   void begin(Time now);
   void finish(Time now, const Baseline* baseline);
-  double follow(std::size_t axis, double accel);
-  void take_peaks();
 
-  Structure structure_;
-  std::vector<SensorAxis> axes_;
   std::size_t elements_;
-  double rate_hz_, corner_hz_;
   ShakingOptions options_;
-  OscillatorSection section_;
-  std::vector<int> axis_of_dof_, base_axes_;
-  std::vector<Motion> motions_;
-  /// Of each axis at this instant: acceleration without its mean, absolute, and displacement, m;
-  /// NaN: not settled.
-  std::vector<double> now_, moved_;
+  std::vector<std::size_t> trigger_axes_;  ///< of the base; all, where it has none
+  StoryResponse response_;
+  PeakResponse peak_;
   bool active_ = false, began_ = false;
   Time start_{}, last_{};
-  std::int64_t next_index_ = -1;
-  std::vector<double> accel_, drift_;  ///< peaks
   double gap_ = 0;
   Windows before_, first_, final_, after_;
   BaselineLearner during_;

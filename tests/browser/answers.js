@@ -72,7 +72,7 @@ async function quiet(page) {
 async function shaking(page) {
   await until(page, 'shaking: the nodes were started anew, which is over soon', () => framewatch.told.findings.length === 0);
   await until(page, 'shaking: it is not changed', () => /No\. None of \d+ elements/.test(document.getElementById('answers').innerText));
-  await until(page, 'shaking: peaks of each story', () => /It is shaking: peak drift ratio [\d.]+ %, base shear .* N along x.*Story 2: drift ratio.*Story 1: drift ratio/s.test(document.getElementById('answers').innerText));
+  await until(page, 'shaking: peaks of each story', () => /It is shaking: a story swayed by up to [\d.]+ % of its height.* N along x.*Story 2: [\d.]+ % .*Story 1: [\d.]+ % /s.test(document.getElementById('answers').innerText));
   await until(page, 'shaking: no finding is open', () => framewatch.told.findings.length === 0);
   expect(/All 10 sensors send, and the model leaves (under )?[\d.]+ % of the motion unexplained/.test(await answer(page, 1)), 'shaking: it is to be believed');
   expect(/Nothing\./.test(await answer(page, 3)), 'shaking: nothing to do');
@@ -84,7 +84,7 @@ async function shaking(page) {
 async function damaged(page) {
   await until(page, 'damaged: it is said', name => framewatch.told.findings.some(f => f.place === name), kDamaged);
   const first = await page.evaluate(() => framewatch.told.findings[0]);
-  expect(/Yes\. Story 1, frame y2 \(kx_1_y2\) has lost .* % of its stiffness, standard error .* % \(.* standard errors\)\. Since .* UTC\./.test(await answer(page, 0)), 'damaged: the first answer names element, size, error and time');
+  expect(/Yes\. Story 1, frame y2 \(kx_1_y2\) has lost .* % of its stiffness, give or take [\d.]+ %: .* times its uncertainty\. Since .* UTC\./.test(await answer(page, 0)), 'damaged: the first answer names element, size, error and time');
   await until(page, 'damaged: the number sharpens', ([e, share]) => framewatch.told.findings[0] && framewatch.told.findings[0].error < share * e, [first.error, kSharp]);
   await pause(1500);
   const [now, event] = await page.evaluate(() => [framewatch.told.findings[0], [...framewatch.alarms.values()].find(a => a.id === framewatch.told.findings[0].id)]);
@@ -146,7 +146,7 @@ async function openedLate(browser, address) {
   await until(page, 'opened late: the answers are there', () => framewatch.told && framewatch.told.answers.length === 4);
   expect(/Yes\. Story 1, frame y2/.test(await answer(page, 0)), 'opened late: what happened is said');
   expect(/No: no samples for .*What is shown is old/.test(await answer(page, 1)), 'opened late: that it is old is said');
-  expect(/A shake: peak drift ratio/.test(await answer(page, 2)), 'opened late: what it went through is said');
+  expect(/A shake: a story swayed by up to/.test(await answer(page, 2)), 'opened late: what it went through is said');
   expect(await page.evaluate(() => framewatch.opened) > 60, 'opened late: the last minutes are there');
   await until(page, 'opened late: last values with their age', () => /last value .* kN\/m .* old, of .* UTC/.test(document.getElementById('chosen').textContent));
   expect(await page.evaluate(() => plan.parameters.every((q, i) => q.kind !== 0 || building.known[i])), 'opened late: no frame is hatched');

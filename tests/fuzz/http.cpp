@@ -9,7 +9,7 @@
 
 #include "daemon/metrics/metrics.h"
 #include "daemon/report/session_file.h"
-#include "daemon/web/live_view.h"
+#include "daemon/web/view/live_view.h"
 #include "daemon/web/web_server.h"
 #include "daemon/web/web_socket.h"
 #include "tests/fuzz/example_building.h"

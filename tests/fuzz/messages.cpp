@@ -5,7 +5,7 @@
 
 #include "daemon/events/event_json.h"
 #include "daemon/history/history_overview.h"
-#include "daemon/web/page_json.h"
+#include "daemon/web/view/page_json.h"
 #include "drivers/base/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/channel_table.h"

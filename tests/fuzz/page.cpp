@@ -2,7 +2,7 @@
 #include <array>
 
 #include "daemon/metrics/metrics.h"
-#include "daemon/web/live_view.h"
+#include "daemon/web/view/live_view.h"
 #include "tests/fuzz/example_building.h"
 #include "tests/fuzz/message_sequence.h"
 #include "tests/fuzz/targets.h"

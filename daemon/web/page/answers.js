@@ -11,6 +11,19 @@ function times(line) {
   return line.until_us ? ` From ${when(line.since_us)} to ${when(line.until_us)}.` : ` Since ${when(line.since_us)}.`;
 }
 const full = line => line.text + times(line);
+function reportLink(name, text) {
+  const link = document.createElement('a');
+  link.href = `event-report/${encodeURIComponent(name)}.html`; link.textContent = text; link.target = '_blank'; link.rel = 'noopener';
+  return link;
+}
+function sayLine(node, line) {
+  const text = full(line), link = node.querySelector('a');
+  if (line.report && link && link.dataset.name === line.report && link.dataset.text === text) return;
+  if (!line.report) return say2(node, text);
+  const made = reportLink(line.report, 'Read the report');
+  Object.assign(made.dataset, {name: line.report, text});
+  node.replaceChildren(text + ' ', made);
+}
 function onAnswers(a) {
   told = window.framewatch.told = a;
   showAnswers();
@@ -26,12 +39,31 @@ function showAnswers() {
     const item = list.children[i], [question, line, more] = item.children;
     item.className = a.state;
     say2(question, a.question);
-    say2(line, full(a.line));
+    sayLine(line, a.line);
     while (more.children.length > a.more.length) more.lastChild.remove();
     while (more.children.length < a.more.length) more.append(document.createElement('li'));
-    a.more.forEach((m, k) => say2(more.children[k], full(m)));
+    a.more.forEach((m, k) => sayLine(more.children[k], m));
   });
   showFindings();
+  const newest = told.answers.flatMap(a => [a.line, ...a.more]).map(line => line.report).find(Boolean) || '';
+  if (newest !== showAnswers.report) { showAnswers.report = newest; loadEventReports(); }
+}
+// Reports that the estimator wrote after strong motion, of which the third answer names the newest.
+async function loadEventReports() {
+  const answer = await fetch('event-reports.json').catch(() => null);
+  const list = answer && answer.ok ? await answer.json() : null, table = $('event-reports');
+  $('event-reports-card').hidden = list === null; // none are written
+  table.replaceChildren();
+  $('no-event-reports').hidden = list === null || list.length > 0;
+  if (!list || !list.length) return;
+  heads(table, ['strong motion from', 'to', 'judged', 'because', '']);
+  const body = table.createTBody();
+  for (const r of list) {
+    const row = body.insertRow();
+    cell(row, when(r.start_us)); cell(row, when(r.end_us)); cell(row, r.verdict, 'verdict ' + r.verdict);
+    cell(row, r.reason, 'text');
+    row.insertCell().append(reportLink(r.name, 'report'));
+  }
 }
 function acknowledgeButton(ids, what) {
   const b = document.createElement('button');

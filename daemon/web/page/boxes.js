@@ -51,7 +51,7 @@ class Boxes {
     if (!this.index.length) return;
     const c = this.canvas, r = devicePixelRatio || 1, percent = boxMode === 'percent';
     this.left = percent ? 52 : 8;
-    c.style.minWidth = this.left + this.index.length * (percent ? 38 : 84) + 'px';
+    c.style.minWidth = this.left + this.index.length * (percent ? 50 : 84) + 'px';
     const w = c.clientWidth, h = c.clientHeight;
     if (!w || !h) return;
     if (c.width !== Math.round(w * r) || c.height !== Math.round(h * r)) { c.width = Math.round(w * r); c.height = Math.round(h * r); }
@@ -59,7 +59,8 @@ class Boxes {
     g.setTransform(r, 0, 0, r, 0, 0);
     g.clearRect(0, 0, w, h);
     g.font = '12px system-ui'; g.fillStyle = style.ink; g.textAlign = 'left';
-    g.fillText(this.title + (percent ? ', % from the baseline (without one: from the design)' : ', each on its own scale'), 4, 12);
+    const named = this.title + (percent ? ', % from the baseline (without one: from the design)' : ', each on its own scale');
+    g.fillText(g.measureText(named).width <= c.parentElement.clientWidth - 8 ? named : this.title + (percent ? ', % from the baseline' : ''), 4, 12);
     this.step = (w - this.left - 4) / this.index.length;
     const narrow = this.step < 66, bottom = h - (narrow ? 48 : 34); // then every second name is a row lower
     const shapes = this.index.map(i => this.shape(i, percent));
@@ -81,7 +82,7 @@ class Boxes {
         this.box(style, s, from + (44 + this.step) / 2, v => bottom - (v - a) / (b - a) * (bottom - top - 12), top + 12, bottom);
       }
       const doubt = !s.outliers ? '' : narrow ? `${s.outliers} out.` : `${s.outliers} outlier${s.outliers > 1 ? 's' : ''}`;
-      this.note(style, s.old ? `${span((nowUs() - s.old) / 1e6)} old` : doubt, x, h);
+      this.note(style, s.old ? span((nowUs() - s.old) / 1e6) + (narrow ? '' : ' old') : doubt, x, h);
     });
   }
   note(style, text, x, h) { const g = this.g; g.fillStyle = style.soft; g.textAlign = 'center'; g.font = '10.5px system-ui'; g.fillText(text, x, h - 5); g.font = '12px system-ui'; }

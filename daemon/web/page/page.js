@@ -49,7 +49,7 @@ const nowUs = () => newestUs() + (flows() || !lastMotion ? 0 : 1e3 * (performanc
 const whyNot = i => estimate ? reasons[estimate.reason[i]] || 'no value' : 'no value yet';
 function elementText(i) {
   const q = plan.parameters[i], out = [`${q.name}: ${place(q)}`, meaning[q.kind]], v = known[i], f = findingOf(q.name);
-  if (f) out.push(`${f.ratio < 0 ? 'lost' : 'gained'} ${percent(f.ratio, f.error).slice(1)} of its stiffness, standard error ${percent(f.error, f.error).slice(1)}, since ${when(f.since_us)}`);
+  if (f) out.push(`${f.ratio < 0 ? 'lost' : 'gained'} ${percent(f.ratio, f.error).slice(1)} of its stiffness, give or take ${percent(f.error, f.error).slice(1)}, since ${when(f.since_us)}`);
   if (v) out.push(`${isNow(i) ? 'newest window' : 'last value'} ${withError(v.value, v.error, q.unit)} (one standard error)` + (isNow(i) ? '' : `, ${span((nowUs() - v.us) / 1e6)} old, of ${when(v.us)}`));
   if (!isNow(i) && flows()) out.push(`now no value: ${whyNot(i)}`);
   if (reference(i)) out.push(`${baseline[i] ? 'baseline' : 'design'} ${plain(reference(i), q.unit)}`);
@@ -324,7 +324,7 @@ function zoneButton() { $('zone').textContent = zone === 'UTC' ? 'Times: UTC' : 
 $('zone').onclick = () => {
   zone = zone === 'UTC' ? 'local' : 'UTC';
   localStorage.setItem('zone', zone);
-  zoneButton(); showAnswers(); showAlarms();
+  zoneButton(); showAnswers(); showAlarms(); loadEventReports();
   for (const s of Object.values(strips)) { s.make(); s.fresh = true; }
 };
 zoneButton();

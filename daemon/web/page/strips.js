@@ -12,6 +12,12 @@ class Ring {
   }
 }
 const kPause_s = 3; // longer: the line is broken
+// A value that stands alone has no line: summaries of minutes, of before the server was started.
+function alone(plot, series) {
+  const v = plot.data[series], out = [];
+  for (let i = 0; i < v.length; ++i) if (v[i] !== null && (i === 0 || v[i - 1] === null) && (i + 1 === v.length || v[i + 1] === null)) out.push(i);
+  return out.length ? out : null;
+}
 class Strip {
   constructor(parent, title, why, series, seconds, rate) {
     this.box = document.createElement('div');
@@ -29,7 +35,7 @@ class Strip {
       title: this.title, width: Math.max(200, this.box.clientWidth || 400), height: 150, legend: {show: this.series.length > 1, live: false},
       cursor: {drag: {x: false, y: false}}, scales: {x: {time: false}, y: {range: (u, a, b) => a === null || b === null ? [0, 1] : uPlot.rangeNum(a, b, 0.12, true)}},
       axes: [{...axis, size: 26, space: 84, incrs: [1, 2, 5, 10, 15, 30, 60, 120, 300], values: (u, v) => v.map(x => clock(x * 1e6))}, {...axis, size: 56, values: (u, v, i, room, step) => v.map(x => x.toFixed(Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)))))}],
-      series: [{}, ...this.series.map(s => ({label: s.name, stroke: style[s.color], width: s.width || 1.4, dash: s.dash, points: {show: false}, spanGaps: false}))],
+      series: [{}, ...this.series.map(s => ({label: s.name, stroke: style[s.color], width: s.width || 1.4, dash: s.dash, points: {show: false, size: 5, filter: alone}, spanGaps: false}))],
       bands: this.series.some(s => s.band) ? [{series: [3, 2], fill: style.blue + '33'}] : [],
     }, [[], ...this.series.map(() => [])], this.box);
     this.box.querySelector('.u-title').title = this.why;

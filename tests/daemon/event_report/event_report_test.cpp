@@ -10,6 +10,7 @@
 #include "daemon/config/config.h"
 #include "daemon/event_report/event_report.h"
 #include "daemon/event_report/event_report_files.h"
+#include "daemon/events/event_json.h"
 #include "daemon/events/event_words.h"
 #include "estimator/numeric/nan.h"
 #include "tests/support/recorded_table_test.h"
@@ -32,8 +33,8 @@ class EventReportTest : public testing::Test {
     shaking.start = estimator::from_microseconds(1'795'481'188'000'000);
     shaking.end = shaking.start + std::chrono::seconds(15);
     shaking.found = shaking.end + std::chrono::seconds(20);
-    shaking.peak_accel_mps2.assign(config_->pipeline.axes.size(), 1.5);
-    shaking.peak_drift_m.assign(static_cast<std::size_t>(s.degrees_of_freedom()), 0.001);
+    shaking.peak.accel_mps2.assign(config_->pipeline.axes.size(), 1.5);
+    shaking.peak.drift_m.assign(static_cast<std::size_t>(s.degrees_of_freedom()), 0.001);
     estimator::ShakenStiffness k;
     k.before = {1000, 5, 3};
     k.during = k.after = k.before;
@@ -58,13 +59,15 @@ TEST_F(EventReportTest, IsGreenBelowEveryThreshold) {
   EXPECT_EQ(m.kind, "strong_motion");
   EXPECT_EQ(m.segment, "event-20261124T004628Z.html");
   EXPECT_NE(m.message.find(m.segment), std::string::npos);
+  const auto told = nlohmann::json::parse(event_json(m, "the table"));
+  EXPECT_EQ(told["segment"], m.segment);  // what the webhook posts and the command reads
 }
 
 TEST_F(EventReportTest, IsYellowOrRedByDrift) {
-  report_.shaking.peak_drift_m[0] = 0.006;  // of 1 m
+  report_.shaking.peak.drift_m[0] = 0.006;  // of 1 m
   EXPECT_EQ(verdict().color, EventColor::yellow);
   EXPECT_NE(verdict().reasons.front().find("story 1 drifted by 0.60 %"), std::string::npos);
-  report_.shaking.peak_drift_m.back() = 0.02;
+  report_.shaking.peak.drift_m.back() = 0.02;
   EXPECT_EQ(verdict().color, EventColor::red);
   EXPECT_NE(verdict().reasons.front().find("story 2 drifted by 2.00 %"), std::string::npos);
   EXPECT_EQ(event_of(report_, *config_).severity, severity::alarm);
@@ -85,7 +88,7 @@ TEST_F(EventReportTest, IsYellowOrRedByALossThatIsCertain) {
 }
 
 TEST_F(EventReportTest, IsNotGreenWhenADriftIsNotKnown) {
-  for (double& drift : report_.shaking.peak_drift_m) drift = estimator::kNaN;
+  for (double& drift : report_.shaking.peak.drift_m) drift = estimator::kNaN;
   EXPECT_EQ(verdict().color, EventColor::yellow);
   EXPECT_NE(verdict().reasons.front().find("not known"), std::string::npos);
 }
@@ -97,7 +100,8 @@ TEST_F(EventReportTest, SaysWhenNoStiffnessCouldBeCompared) {
 }
 
 TEST_F(EventReportTest, PageAndJsonSayTheSame) {
-  report_.shaking.peak_drift_m[0] = 0.006;
+  report_.shaking.peak.drift_m[0] = 0.006;
+  report_.shaking.peak.base_shear_n = {1234, estimator::kNaN};
   event_t finding{};
   finding.message = "<script>";
   report_.findings = {finding};
@@ -108,6 +112,9 @@ TEST_F(EventReportTest, PageAndJsonSayTheSame) {
   EXPECT_EQ(json["schema"], "framewatch.event_report/1");
   EXPECT_EQ(json["verdict"], "yellow");
   EXPECT_NEAR(json["stories"][0]["peak_drift_ratio"].get<double>(), 0.006, 1e-12);
+  EXPECT_NEAR(json["base_shear_n"]["x"].get<double>(), 1234, 1e-9);
+  EXPECT_TRUE(json["base_shear_n"]["y"].is_null());
+  EXPECT_NE(html.find("Peak base shear: 1.23 kN along x, not known along y."), std::string::npos);
   EXPECT_EQ(json["stiffness"][0]["before_from"], "windows_before");
   EXPECT_EQ(json["sensors"].size(), config_->pipeline.axes.size());
 }

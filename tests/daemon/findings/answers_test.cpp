@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/event_report/response_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/findings/model_fit.h"
 #include "tests/support/config_fixture.h"
@@ -47,7 +48,7 @@ class AnswersTest : public ::testing::Test {
 };
 
 TEST_F(AnswersTest, AQuietWholeBuildingNeedsNothing) {
-  EXPECT_EQ(said(0), "No. None of 4 elements differs from its baseline.");
+  EXPECT_EQ(said(0), "No. None of 4 elements differs from what it was like (its baseline).");
   EXPECT_EQ(said(1),
             "Yes. All 6 sensors send, and the model leaves 3.1 % of the motion unexplained.");
   EXPECT_EQ(said(2), "Nothing: no acceleration over 0.05 m/s².");
@@ -67,8 +68,8 @@ TEST_F(AnswersTest, AChangeHasTheNumberOfItsEventAndTheOrderOfTheQuestions) {
   EXPECT_EQ(changed.state, AnswerState::bad);
   EXPECT_EQ(changed.line.since_us, 1'700'000'000'000'000);
   EXPECT_EQ(changed.line.text,
-            "Yes. Story 1, frame y2 (kx_1_y2) has lost 14.8 % of its stiffness, standard error "
-            "0.4 % (36 standard errors).");
+            "Yes. Story 1, frame y2 (kx_1_y2) has lost 14.8 % of its stiffness, give or take "
+            "0.4 %: 36 times its uncertainty.");
   EXPECT_NE(said(3).find("structural engineer look at story 1, frame y2"), std::string::npos);
   EXPECT_EQ(answer(3).state, AnswerState::bad);
 }
@@ -117,18 +118,52 @@ TEST_F(AnswersTest, AShakeIsSaidByStoryWithItsBaseShear) {
   shake.from_us = 1'000'000;
   shake.to_us = 9'000'000;
   shake.over = true;
-  shake.base_shear_n = {1234, 56};
-  shake.base_accel_mps2 = 1.2;
-  shake.floor_accel_mps2 = 3.4;
-  shake.story = {{0.0021, 1, 4'000'000}};
+  shake.peak = {config_.pipeline.axes.size(), 4};
+  shake.peak.base_shear_n = {1234, 56};
+  shake.peak.accel_mps2 = {1.2, 0.1, 3.1, 3.4, 0.2, 0.2};
+  shake.peak.drift_m = {0.0011, 0.0021, 0, 0};
   known_.newest = known_.strongest = &shake;
   EXPECT_EQ(
       said(2),
-      "A shake: peak drift ratio 0.210 %, base shear 1.23 kN along x, 56 N along y. | Story 1: "
-      "drift ratio 0.210 % (2.10 mm) in frame y2 | Peak acceleration 1.20 m/s² of the ground, "
-      "3.40 m/s² of a floor");
+      "A shake: a story swayed by up to 0.210 % of its height (drift ratio); the force at the base "
+      "(shear) was up to 1.23 kN along x, 56 N along y. | Story 1: 0.210 % (2.10 mm) in frame y2 | "
+      "Peak acceleration of the ground 1.20 m/s², of the floors 3.40 m/s²");
   EXPECT_EQ(answer(2).line.since_us, 1'000'000);
   EXPECT_EQ(answer(2).line.until_us, 9'000'000);
+  shake.peak = {config_.pipeline.axes.size(), 4};
+  EXPECT_EQ(said(2).substr(0, 74),
+            "A shake: how far its stories swayed is not known; the force at the base (s");
+}
+
+TEST_F(AnswersTest, AShakeIsJudgedByItsReport) {
+  Shake shake;
+  shake.from_us = 1'000'000;
+  shake.to_us = 9'000'000;
+  shake.over = true;
+  shake.peak = {config_.pipeline.axes.size(), 4};
+  known_.newest = known_.strongest = &shake;
+  known_.report = {"event-20261124T000000Z", EventColor::red, "story 1 drifted by 2 %", 2'000'000,
+                   8'000'000};
+  EXPECT_EQ(answer(2).state, AnswerState::bad);
+  EXPECT_EQ(answer(2).more.front().text, "Judged red: story 1 drifted by 2 %.");
+  EXPECT_EQ(answer(2).more.front().report, "event-20261124T000000Z");
+  known_.report->color = EventColor::green;
+  EXPECT_EQ(answer(2).state, AnswerState::good);
+  known_.newest = known_.strongest = nullptr;  // the page's server was started anew
+  EXPECT_EQ(answer(2).more.front().text,
+            "The last strong motion was judged green: story 1 drifted by 2 %.");
+  EXPECT_EQ(answer(2).more.front().since_us, 2'000'000);
+  EXPECT_EQ(answer(2).more.front().report, "event-20261124T000000Z");
+}
+
+TEST_F(AnswersTest, StrongMotionThatIsNotGreenIsToBeLookedAt) {
+  event_t e = event_of("strong_motion", "story 1", severity::alarm);
+  e.message = "after strong motion: red, story 1 drifted by 2 %; report event-x.html";
+  find(e);
+  EXPECT_EQ(known_.findings[0].text, "after strong motion: red, story 1 drifted by 2 %.");
+  EXPECT_NE(said(3).find("structural engineer look at the building"), std::string::npos);
+  EXPECT_EQ(said(0).substr(0, 3), "No.");
+  EXPECT_EQ(said(1).substr(0, 4), "Yes.");
 }
 
 TEST(FindingWords, ForcesAndPercentsAreAsAnEngineerWritesThem) {

@@ -255,6 +255,25 @@ TEST(RaisedEvents, FollowWhatIsRaisedChangedAndCleared) {
   EXPECT_EQ(back.all()[1].id, 3);
 }
 
+TEST(Metrics, HaveTheVerdictOfTheNewestReportAfterStrongMotion) {
+  const test::TemporaryDirectory directory;
+  Config config{};
+  EXPECT_EQ(Metrics(config).text(0, {}).find("event_report"), std::string::npos);
+  config.event_report.emplace();
+  config.event_report->directory = directory.path("");
+  Metrics metrics(config);
+  const std::string none = metrics.text(0, {});
+  expect_line(none, "framewatch_event_report_color{color=\"red\"} 0");
+  EXPECT_EQ(none.find("event_report_timestamp"), std::string::npos);
+  test::write_file(
+      directory.path("event-20261124T000000Z.json"),
+      R"({"verdict": "red", "reasons": ["why"], "start_us": 5000000, "end_us": 9000000})");
+  const std::string red = metrics.text(0, {});
+  expect_line(red, "framewatch_event_report_color{color=\"red\"} 1");
+  expect_line(red, "framewatch_event_report_color{color=\"green\"} 0");
+  expect_line(red, "framewatch_event_report_timestamp_seconds 9");
+}
+
 TEST(DurationCounts, PutsEveryDurationWhereItBelongs) {
   DurationCounts counts;
   for (const double s : {0.0, 1e-5, 1.1e-5, 0.02, 1.0, 1.5, 1e9}) counts.add(s);

@@ -1,4 +1,4 @@
-#include "daemon/web/live_view.h"
+#include "daemon/web/view/live_view.h"
 
 #include <atomic>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "daemon/web/page_history.h"
+#include "daemon/web/view/page_history.h"
 
 #include <cmath>
 #include <string>

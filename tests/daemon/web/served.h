@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/web/live_view.h"
+#include "daemon/web/view/live_view.h"
 #include "daemon/web/web_server.h"
 #include "daemon/web/web_socket.h"
 #include "drivers/base/encoded.h"

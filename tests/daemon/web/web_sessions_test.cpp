@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "daemon/base/served_file.h"
 #include "daemon/report/session_file.h"
-#include "daemon/web/served_file.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {

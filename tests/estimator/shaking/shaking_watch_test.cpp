@@ -79,9 +79,22 @@ TEST_F(ShakingTest, IsToldOnceWithItsTimesAndPeaks) {
   EXPECT_NEAR(1e-6 * static_cast<double>(to_microseconds(s.end)), 30, 1);
   const double accel = 0.01 * std::pow(2 * std::numbers::pi * kMotion_hz, 2);
   for (int a = 0; a < 3; ++a)
-    EXPECT_NEAR(s.peak_accel_mps2[static_cast<std::size_t>(a)] / ((a + 1) * accel), 1, 0.05) << a;
-  for (const double drift : s.peak_drift_m) EXPECT_NEAR(drift / 0.01, 1, kDriftError);
+    EXPECT_NEAR(s.peak.accel_mps2[static_cast<std::size_t>(a)] / ((a + 1) * accel), 1, 0.05) << a;
+  for (const double drift : s.peak.drift_m) EXPECT_NEAR(drift / 0.01, 1, kDriftError);
+  EXPECT_NEAR(s.peak.base_shear_n[0] / (40 * (2 + 3) * accel), 1, 0.05);
+  EXPECT_TRUE(std::isnan(s.peak.base_shear_n[1]));  // no frames
   EXPECT_TRUE(std::isnan(s.gap_nrmse));
+}
+
+TEST_F(ShakingTest, AnInterruptionKeepsWhereASensorRests) {
+  ShakingWatch w = watch();
+  for (int i = 0; i < 6000; ++i) {
+    SampleSet set = at(i);
+    if (i > 2450 && i < 2460) set.accel[2] = kNaN;  // it begins again in full motion
+    (void)w.push(set, nullptr);
+  }
+  const double accel = 0.01 * std::pow(2 * std::numbers::pi * kMotion_hz, 2);
+  EXPECT_NEAR(w.ended().peak.accel_mps2[2] / (3 * accel), 1, 0.05);
 }
 
 TEST_F(ShakingTest, AFailedSensorHasNoPeakAndNoDrift) {
@@ -91,9 +104,9 @@ TEST_F(ShakingTest, AFailedSensorHasNoPeakAndNoDrift) {
     set.accel[2] = kNaN;
     (void)w.push(set, nullptr);
   }
-  EXPECT_TRUE(std::isnan(w.ended().peak_accel_mps2[2]));
-  EXPECT_TRUE(std::isnan(w.ended().peak_drift_m[1]));
-  EXPECT_GT(w.ended().peak_drift_m[0], 0);
+  EXPECT_TRUE(std::isnan(w.ended().peak.accel_mps2[2]));
+  EXPECT_TRUE(std::isnan(w.ended().peak.drift_m[1]));
+  EXPECT_GT(w.ended().peak.drift_m[0], 0);
 }
 
 TEST_F(ShakingTest, AKnockIsNone) {
@@ -157,8 +170,8 @@ TEST_F(ShakingTest, GoesOnFromItsState) {
       ASSERT_EQ(part.push(at(i), nullptr), ended) << i;
     }
     ASSERT_TRUE(ended);
-    EXPECT_EQ(second.ended().peak_drift_m, whole.ended().peak_drift_m);
-    EXPECT_EQ(second.ended().peak_accel_mps2, whole.ended().peak_accel_mps2);
+    EXPECT_EQ(second.ended().peak.drift_m, whole.ended().peak.drift_m);
+    EXPECT_EQ(second.ended().peak.accel_mps2, whole.ended().peak.accel_mps2);
     EXPECT_EQ(second.ended().stiffness[0].after.value, whole.ended().stiffness[0].after.value);
   }
 }

@@ -1,0 +1,72 @@
+#include "daemon/base/served_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "drivers/base/descriptor.h"
+
+namespace framewatch::daemon {
+namespace {
+
+bool is_plain_name(const std::string& name) {
+  return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos &&
+         name.find('\0') == std::string::npos;
+}
+
+bool is_servable(const struct stat& file) {
+  return S_ISREG(file.st_mode) && file.st_size >= 0 &&
+         static_cast<std::uint64_t>(file.st_size) <= kMostServedBytes;
+}
+
+/// Opens the folder of the last name; false when it is none, or a link.
+bool open_parent(const std::string& folder, const std::vector<std::string>& names,
+                 drivers::Descriptor& parent) {
+  if (names.empty() || !std::all_of(names.begin(), names.end(), is_plain_name)) return false;
+  constexpr int kFolder = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
+  parent.reset(::open(folder.c_str(), kFolder));
+  for (std::size_t i = 0; i + 1 < names.size() && parent.get() >= 0; ++i)
+    parent.reset(::openat(parent.get(), names[i].c_str(), kFolder | O_NOFOLLOW));
+  return parent.get() >= 0;
+}
+
+/// A device is not even opened: that alone may do something.
+bool is_servable_in(const drivers::Descriptor& parent, const std::string& name) {
+  struct stat file {};
+  return ::fstatat(parent.get(), name.c_str(), &file, AT_SYMLINK_NOFOLLOW) == 0 &&
+         is_servable(file);
+}
+
+}  // namespace
+
+std::optional<std::string> read_served_file(const std::string& folder,
+                                            const std::vector<std::string>& names) {
+  drivers::Descriptor parent;
+  if (!open_parent(folder, names, parent) || !is_servable_in(parent, names.back()))
+    return std::nullopt;
+  const drivers::Descriptor file(
+      ::openat(parent.get(), names.back().c_str(),
+               O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  struct stat now {};
+  if (file.get() < 0 || ::fstat(file.get(), &now) != 0 || !is_servable(now)) return std::nullopt;
+  std::string text(static_cast<std::size_t>(now.st_size), '\0');
+  std::size_t read = 0;
+  while (read < text.size()) {
+    const ssize_t got = ::read(file.get(), text.data() + read, text.size() - read);
+    if (got < 0) return std::nullopt;
+    if (got == 0) break;
+    read += static_cast<std::size_t>(got);
+  }
+  text.resize(read);
+  return text;
+}
+
+bool is_served_file(const std::string& folder, const std::vector<std::string>& names) {
+  drivers::Descriptor parent;
+  return open_parent(folder, names, parent) && is_servable_in(parent, names.back());
+}
+
+}  // namespace framewatch::daemon

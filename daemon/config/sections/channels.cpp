@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/config/sections/sections.h"
+#include "daemon/keys/section.h"
+#include "daemon/keys/suggest.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using Channels = std::vector<ConfigSection>;
+
+/// Stands for a frame that does not exist; find_problems() skips its place.
+constexpr int kNoFrame = -2;
+
+std::string list_of_frames(const estimator::Structure& s) {
+  std::string list;
+  for (int f = 0; f < s.frames(); ++f) list += (f ? ", " : "") + s.frame_name(f);
+  return list;
+}
+
+int frame_of(ConfigSection& section, const StructureReading& reading) {
+  const estimator::Structure& s = reading.structure;
+  const std::string name = section.text("frame");
+  std::vector<std::string> names;
+  for (int f = 0; f < s.frames(); ++f) {
+    names.push_back(s.frame_name(f));
+    if (names.back() == name) return f;
+  }
+  const std::string meant = nearest(name, names);
+  section.problem("frame",
+                  fmt::format("no frame is named \"{}\"{}; the frames are {}", name,
+                              meant.empty() ? "" : fmt::format(", did you mean \"{}\"?", meant),
+                              list_of_frames(s)));
+  return kNoFrame;
+}
+
+/// Story, frame and direction, and the rules between them.
+void read_place(ConfigSection& section, const StructureReading& reading,
+                estimator::SensorAxis& axis) {
+  const bool names_frame = section.value("frame") != nullptr;
+  if (section.good("story")) axis.story = section.integer("story");
+  if (section.good("story") && axis.story > 0 && !names_frame)
+    section.problem("frame", "is missing: above the base a channel rides on a frame");
+  if (section.good("story") && axis.story == 0 && !names_frame && !section.value("direction"))
+    section.problem("direction", "is missing: a base channel says direction = \"x\" or \"y\"");
+  if (section.given("direction"))
+    axis.direction =
+        section.text("direction") == "y" ? estimator::Direction::y : estimator::Direction::x;
+  if (!names_frame) return;
+  axis.frame =
+      section.given("frame") && reading.frames_known ? frame_of(section, reading) : kNoFrame;
+  if (axis.frame == kNoFrame) return;
+  const estimator::Direction along = reading.structure.direction(axis.frame);
+  if (section.given("direction") && axis.direction != along)
+    section.problem("direction", fmt::format("frame {} moves along {}", section.text("frame"),
+                                             along == estimator::Direction::x ? "x" : "y"));
+  axis.direction = along;
+}
+
+AxisSource read_source(ConfigSection& channel, const std::string& label,
+                       std::vector<TextProblem>& problems) {
+  if (!channel.given("source")) return {};
+  const TomlValue* table = channel.value("source");
+  if (table->find("can") || table->find("dbc_signal")) {
+    ConfigSection section("channel.source.can", label + ".source", table, {}, problems);
+    AxisSource source;
+    if (!section.good("can") || !section.good("dbc_signal")) return source;
+    section.read_into(source);
+    return source;
+  }
+  ConfigSection section("channel.source", label + ".source", table, {}, problems);
+  AxisSource source;
+  section.read_into(source);
+  if (source.lcm_channel.empty() || source.lcm_channel.size() > 63)
+    section.problem("lcm", "an LCM channel's name has 1 to 63 characters");
+  if (!section.good("node") || !section.good("axis") || !section.good("lcm"))
+    source.sensor_node = -1;
+  return source;
+}
+
+std::string label_of(const TomlValue& table) {
+  const TomlEntry* name = table.find("name");
+  const bool named = name && name->value.kind == TomlKind::text && !name->value.text.empty();
+  return named ? fmt::format("channel '{}'", name->value.text) : "channel";
+}
+
+void read_channel(const TomlValue& table, const StructureReading& reading, Config& config,
+                  Channels& channels, std::vector<TextProblem>& problems) {
+  const std::string label = label_of(table);
+  ConfigSection section("channel", label, &table, {}, problems);
+  estimator::SensorAxis axis;
+  section.read_into(axis);
+  if (section.given("name"))
+    if (const std::string rule = problem_of_name(axis.name); !rule.empty())
+      section.problem("name", rule);
+  read_place(section, reading, axis);
+  config.pipeline.axes.push_back(axis);
+  config.sources.push_back(read_source(section, label, problems));
+  channels.push_back(std::move(section));
+}
+
+/// Cross channels are names: known once all channels are.
+void find_cross_channels(Config& config, Channels& channels) {
+  std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!channels[i].given("cross_channel")) continue;
+    const std::string name = channels[i].text("cross_channel");
+    std::vector<std::string> names;
+    for (std::size_t b = 0; b < axes.size(); ++b) {
+      names.push_back(axes[b].name);
+      if (axes[b].name == name) axes[i].cross = static_cast<int>(b);
+    }
+    if (axes[i].cross >= 0) continue;
+    const std::string meant = nearest(name, names);
+    channels[i].problem(
+        "cross_channel",
+        fmt::format("no channel is named \"{}\"{}", name,
+                    meant.empty() ? "" : fmt::format(", did you mean \"{}\"?", meant)));
+  }
+}
+
+void check_sources(const Config& config, Channels& channels) {
+  std::map<std::tuple<std::string, int, int>, std::string> taken;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const AxisSource& s = config.sources[i];
+    if (s.sensor_node < 0) continue;
+    const auto [at, fresh] = taken.emplace(std::tuple(s.lcm_channel, s.sensor_node, s.axis),
+                                           config.pipeline.axes[i].name);
+    if (!fresh)
+      channels[i].problem(
+          "source", fmt::format("axis {} of node {} on {} is the source of channel '{}' already",
+                                "xyz"[s.axis], s.sensor_node, s.lcm_channel, at->second));
+  }
+}
+
+/// Reports the problems that find_problems() has, at the lines of their channels, without those
+/// that were reported already.
+void check_against_structure(const StructureReading& reading, const Config& config,
+                             TextPlace where_missing, Channels& channels,
+                             std::vector<TextProblem>& problems) {
+  const std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
+  const bool places_known = reading.stories_known && reading.frames_known;
+  const auto unplaced = [&](const ConfigSection& channel) {
+    return !channel.good("story") || !channel.good("frame") || !channel.good("direction");
+  };
+  for (const estimator::Problem& p : find_problems(reading.structure, axes)) {
+    if (p.index < 0) {
+      if (places_known) problems.push_back({where_missing, p.message});
+      continue;
+    }
+    ConfigSection& channel = channels[static_cast<std::size_t>(p.index)];
+    const bool about_place = p.field.empty() || p.field == "story" || p.field == "frame";
+    if (about_place && (!places_known || unplaced(channel))) continue;
+    if (p.field == "story" && !reading.stories_known) continue;
+    if (!p.field.empty() && !channel.good(p.field)) continue;
+    const std::size_t rule = p.message.find("': ");
+    channel.problem(p.field, p.message.substr(rule == std::string::npos ? 0 : rule + 3));
+  }
+}
+
+}  // namespace
+
+void read_channels(const TomlValue& document, const StructureReading& reading, Config& config,
+                   std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("channel");
+  TextPlace where{1, 1};
+  Channels channels;
+  if (entry) {
+    where = entry->place;
+    if (entry->value.kind != TomlKind::array) {
+      problems.push_back({where, "channel: write [[channel]] above each one"});
+      return;
+    }
+    for (const TomlValue& table : entry->value.items)
+      read_channel(table, reading, config, channels, problems);
+  }
+  find_cross_channels(config, channels);
+  check_sources(config, channels);
+  check_against_structure(reading, config, where, channels, problems);
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,14 @@
+#include "daemon/config/sections/sections.h"
+#include "daemon/keys/section.h"
+
+namespace framewatch::daemon {
+
+CommandSettings read_commands(const TomlValue& document, std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("commands");
+  ConfigSection section("commands", "commands", entry ? &entry->value : nullptr, {1, 1}, problems);
+  CommandSettings out;
+  section.read_into(out);
+  return out;
+}
+
+}  // namespace framewatch::daemon

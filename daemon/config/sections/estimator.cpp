@@ -1,0 +1,38 @@
+#include <fmt/core.h>
+
+#include "daemon/config/sections/sections.h"
+#include "daemon/keys/section.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kLongestOther = 20;
+
+}  // namespace
+
+estimator::EstimatorOptions read_estimator(const TomlValue& document,
+                                           std::vector<TextProblem>& problems) {
+  const TomlEntry* entry = document.find("estimator");
+  ConfigSection section("estimator", "estimator", entry ? &entry->value : nullptr, {1, 1},
+                        problems);
+  estimator::EstimatorOptions o;
+  if (section.text("variant") == "paper") section.use_paper_defaults();
+  section.read_into(o);
+  if (section.good("rate_hz") && section.good("high_pass_hz") && o.high_pass_hz >= o.rate_hz / 2)
+    section.problem("high_pass_hz",
+                    fmt::format("must be below half the sampling rate, {:g} Hz", o.rate_hz / 2));
+  constexpr double kLeastRows = 40;
+  if (section.good("rate_hz") && section.good("window_s") && o.window_s * o.rate_hz < kLeastRows)
+    section.problem("window_s", fmt::format("must hold at least {:g} samples: >= {:g} s at {:g} Hz",
+                                            kLeastRows, kLeastRows / o.rate_hz, o.rate_hz));
+  if (section.good("window_s") && section.good("other_windows_s"))
+    for (const double other_s : o.other_windows_s)
+      if (other_s > kLongestOther * o.window_s)
+        section.problem("other_windows_s",
+                        fmt::format("{:g} s is over {:g} times window_s", other_s, kLongestOther));
+  if (section.good("window_s") && section.good("hop_s") && o.hop_s > o.window_s)
+    section.problem("hop_s", fmt::format("must not be longer than the window, {:g} s", o.window_s));
+  return o;
+}
+
+}  // namespace framewatch::daemon

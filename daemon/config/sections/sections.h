@@ -1,0 +1,51 @@
+#pragma once
+
+// The sections of a configuration, each read by a source of its own: structure.cpp, design.cpp,
+// channels.cpp, estimator.cpp, lcm.cpp, commands.cpp, watch.cpp, gap.cpp, history.cpp,
+// event_report.cpp, actions.cpp.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/config/sections/settings.h"
+#include "daemon/documents/toml_document.h"
+
+namespace framewatch::daemon {
+
+/// [structure] and [structure.design] as far as they could be read.
+struct StructureReading {
+  estimator::Structure structure;
+  Eigen::VectorXd design;  ///< theta order; empty when the file has none
+  bool stories_known = false;
+  bool frames_known = false;
+};
+
+StructureReading read_structure(const TomlValue& document, std::vector<TextProblem>& problems);
+
+/// Design parameters in theta order, of a structure without problems; empty when the file has none.
+Eigen::VectorXd read_design(const TomlValue* design, const estimator::Structure& structure,
+                            bool shape_known, std::vector<TextProblem>& problems);
+
+/// Rule that a frame or channel name breaks; empty when it is good.
+std::string problem_of_name(const std::string& name);
+
+/// Every [[channel]] into config.pipeline.axes and config.sources.
+void read_channels(const TomlValue& document, const StructureReading& structure, Config& config,
+                   std::vector<TextProblem>& problems);
+
+estimator::EstimatorOptions read_estimator(const TomlValue& document,
+                                           std::vector<TextProblem>& problems);
+LcmSettings read_lcm(const TomlValue& document, std::vector<TextProblem>& problems);
+CommandSettings read_commands(const TomlValue& document, std::vector<TextProblem>& problems);
+std::optional<WatchSettings> read_watch(const TomlValue& document,
+                                        std::vector<TextProblem>& problems);
+std::optional<GapSettings> read_gap(const TomlValue& document, std::vector<TextProblem>& problems);
+std::optional<HistorySettings> read_history(const TomlValue& document,
+                                            std::vector<TextProblem>& problems);
+std::optional<EventReportSettings> read_event_report(const TomlValue& document,
+                                                     std::vector<TextProblem>& problems);
+std::optional<ActionSettings> read_actions(const TomlValue& document,
+                                           std::vector<TextProblem>& problems);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,48 @@
+#include "daemon/web/view/page_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/documents/json_values.h"
+#include "estimator/structure/parameter_table.h"
+
+namespace framewatch::daemon {
+
+std::string building_json(const Config& config, double rate_hz) {
+  const estimator::Structure& s = config.pipeline.structure;
+  const estimator::ParameterTable table(s);
+  Json parameters = Json::array();
+  const Eigen::VectorXd& design = config.pipeline.design;
+  for (int p = 0; p < table.size(); ++p)
+    parameters.push_back({{"name", table[p].name},
+                          {"unit", table[p].unit},
+                          {"kind", static_cast<int>(table[p].kind)},
+                          {"story", table[p].story},
+                          {"frame", table[p].frame},
+                          {"panel", table[p].panel},
+                          {"design", design.size() > p ? Json(design[p]) : Json(nullptr)}});
+  Json axes = Json::array();
+  for (const estimator::SensorAxis& a : config.pipeline.axes)
+    axes.push_back({{"name", a.name},
+                    {"story", a.story},
+                    {"direction", a.direction == estimator::Direction::x ? "x" : "y"},
+                    {"frame", a.frame}});
+  const estimator::EstimatorOptions& o = config.pipeline.options;
+  return json_line({{"name", s.name},
+                    {"stories", s.stories},
+                    {"frames_x", s.frames_x},
+                    {"frames_y", s.frames_y},
+                    {"span_x_m", s.span_x},
+                    {"span_y_m", s.span_y},
+                    {"story_height_m", s.story_height},
+                    {"rigid", s.floor == estimator::FloorModel::rigid},
+                    {"parameters", parameters},
+                    {"axes", axes},
+                    {"rate_hz", rate_hz},
+                    {"window_s", o.window_s},
+                    {"high_pass_hz", o.high_pass_hz},
+                    {"watch", config.watch.has_value()},
+                    {"version", FRAMEWATCH_VERSION},
+                    {"config_sha256", config.sha256}});
+}
+
+}  // namespace framewatch::daemon

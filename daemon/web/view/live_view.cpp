@@ -1,0 +1,339 @@
+#include "daemon/web/view/live_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include <framewatch/acknowledged_t.hpp>
+#include <framewatch/can_status_t.hpp>
+#include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/service_t.hpp>
+#include <framewatch/session_status_t.hpp>
+#include <framewatch/status_t.hpp>
+
+#include "daemon/estimation/estimate_channels.h"
+#include "daemon/estimation/wanted_axes.h"
+#include "daemon/events/acknowledge_messages.h"
+#include "daemon/live/heard_channels.h"
+#include "daemon/web/view/page_json.h"
+#include "drivers/base/encoded.h"
+#include "drivers/lcm/accel_codec.h"
+#include "drivers/lcm/message_check.h"
+#include "estimator/structure/parameter_table.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr std::size_t kRing = 256;  // 10 s of events
+constexpr int kFlushesPerBoxplot = 5;
+constexpr int kFlushesPerSecond = 20;
+constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
+
+std::span<const std::uint8_t> bytes(const void* data, std::size_t size) {
+  return {static_cast<const std::uint8_t*>(data), size};
+}
+
+std::vector<std::string> parameter_names(const Config& config) {
+  const estimator::ParameterTable table(config.pipeline.structure);
+  std::vector<std::string> out;
+  for (int p = 0; p < table.size(); ++p) out.push_back(table[p].name);
+  return out;
+}
+
+}  // namespace
+
+LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give give)
+    : config_(config),
+      publish_(std::move(publish)),
+      estimate_channels_(estimate_channels(config)),
+      motion_(config.pipeline.options.rate_hz),
+      acquisition_(config.pipeline.axes, config.pipeline.options,
+                   [this](const estimator::SampleSet& set) { instant(set); }),
+      intake_(
+          wanted_axes(config),
+          [this](const estimator::AccelSample& sample) { acquisition_.push(sample); },
+          intake_settings(config)),
+      shaking_(config.pipeline),
+      reports_(config.event_report ? config.event_report->directory : std::string()),
+      ring_(kRing),
+      history_(config.pipeline),
+      commands_(std::move(give), [this](const PageCommand& command, const std::string& problem) {
+        push("refused", refused_json(command.id, problem));
+      }) {
+  estimate_channels_.resize(1 + config.pipeline.options.other_windows_s.size());
+}
+
+void LiveView::restore(const StoredHistory& stored, std::int64_t now_us) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    history_.restore(stored.estimates);
+    alarms_.restore(stored.events);
+  }
+  if (stored.samples.empty()) return;
+  constexpr std::int64_t kFlush_us = 1'000'000 / kFlushesPerSecond;
+  const std::int64_t last_us = to_microseconds(stored.samples.back().time);
+  std::int64_t flush =
+      std::numeric_limits<std::int64_t>::min();  // before the first one, which is 1
+  for (const estimator::AccelSample& sample : stored.samples) {
+    acquisition_.push(sample);
+    const std::int64_t at = (to_microseconds(sample.time) - last_us) / kFlush_us;
+    if (at <= flush) continue;
+    flush = at;
+    if (const std::string rows = motion_.take(); !rows.empty()) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      history_.motion(rows, flush, kFlushesPerSecond);
+    }
+  }
+  // A clock that does not count from 1970 does not say how long ago that was.
+  motion_at_ =
+      last_us > kYear2000_us ? -std::max<std::int64_t>(0, now_us - last_us) / kFlush_us : 0;
+}
+
+std::vector<std::string> LiveView::channels() const {
+  std::vector<std::string> out = sample_channels(config_);
+  for (const char* name : {"PARAMETERS", "STATUS", "EVENT", "GAP", "CAN", "SESSION", "SERVICE",
+                           "ACKNOWLEDGED", "WATCH"})
+    out.push_back(config_.lcm.prefix + name);
+  out.insert(out.end(), estimate_channels_.begin(), estimate_channels_.end());
+  return out;
+}
+
+void LiveView::push(const std::string& name, const std::string& data) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ring_.push(name, data);
+}
+
+/// The caller holds the mutex.
+void LiveView::push_alarms(const std::vector<std::string>& alarms) {
+  for (const std::string& alarm : alarms) ring_.push("alarm", alarm);
+}
+
+/// Pushes an event that a viewer who joins later gets at once.
+void LiveView::keep(const std::string& name, std::string json) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ring_.push(name, json);
+  kept_[name] = std::move(json);
+}
+
+void LiveView::message(const std::string& channel, const void* data, std::size_t size,
+                       const drivers::LcmSender& sender, std::int64_t received_us) {
+  const std::string& prefix = config_.lcm.prefix;
+  if (!channel.starts_with(prefix)) {
+    (void)intake_.message(channel, data, size, sender, received_us);
+    return;
+  }
+  const std::string name = channel.substr(prefix.size());
+  if (name == "PARAMETERS") {
+    parameters(data, size);
+  } else if (name.starts_with("ESTIMATE")) {
+    estimate(channel, data, size);
+  } else if (name == "STATUS") {
+    if (const auto s = drivers::decoded<status_t>(bytes(data, size))) {
+      same_config_ = s->config_sha256 == config_.sha256;
+      keep("status", status_json(*s, config_.sha256));
+    }
+  } else if (name == "WATCH") {
+    if (auto w = drivers::decoded<watch_t>(bytes(data, size))) told_watch_ = std::move(*w);
+  } else if (name == "SESSION") {
+    if (const auto s = drivers::decoded<session_status_t>(bytes(data, size)))
+      keep("session", session_status_json(*s));
+  } else if (name == "CAN") {
+    if (const auto s = drivers::decoded<can_status_t>(bytes(data, size))) keep("can", can_json(*s));
+  } else if (name == "GAP") {
+    if (const auto gap = drivers::decoded<gap_t>(bytes(data, size))) keep("gap", gap_json(*gap));
+  } else {
+    alarms_message(name, data, size);
+  }
+}
+
+void LiveView::alarms_message(const std::string& name, const void* data, std::size_t size) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (name == "EVENT") {
+    if (const auto e = drivers::decoded<event_t>(bytes(data, size)))
+      push_alarms({alarms_.note(*e)});
+  } else if (name == "SERVICE") {
+    if (const auto s = drivers::decoded<service_t>(bytes(data, size)))
+      push_alarms(alarms_.still_raised(*s));
+  } else if (name == "ACKNOWLEDGED") {
+    if (auto a = drivers::decoded<acknowledged_t>(bytes(data, size)))
+      push_alarms(alarms_.acknowledged(std::move(*a)));
+  }
+}
+
+void LiveView::parameters(const void* data, std::size_t size) {
+  const auto table = drivers::decoded<parameter_table_t>(bytes(data, size));
+  if (!table || table->name == parameters_) return;
+  parameters_ = table->name;
+  watch_.reset();
+  // An estimator of another building's configuration is shown, not watched.
+  if (parameters_ == parameter_names(config_))
+    watch_.emplace(config_, std::max<std::int64_t>(1, table->time_us));
+}
+
+void LiveView::estimate(const std::string& channel, const void* data, std::size_t size) {
+  const auto at = std::find(estimate_channels_.begin(), estimate_channels_.end(), channel);
+  if (at == estimate_channels_.end()) return;
+  auto found = drivers::decoded<window_estimate_t>(bytes(data, size));
+  // Arithmetic on the times of others stays exact.
+  if (!found || found->window_end_us > drivers::kLatestTime_us ||
+      found->window_end_us < -drivers::kLatestTime_us)
+    return;
+  const auto window = static_cast<int>(at - estimate_channels_.begin());
+  look_for_changes(window, *found);
+  if (window != 0) return;
+  new_estimate_ = true;
+  estimate_at_ = flushes_;
+  fit_.push(*found);
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    history_.estimate(*found);
+  }
+  newest_ = std::move(*found);
+}
+
+void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
+  if (!watch_) return;
+  bool renew = false;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::swap(renew, renew_);
+  }
+  if (renew) watch_->renew();
+  for (const event_t& e : watch_->observe(window, estimate))
+    if (!config_.watch)  // else the estimator publishes its own
+      publish_(e.time_us, config_.lcm.prefix + "EVENT", drivers::encoded(e));
+}
+
+void LiveView::instant(const estimator::SampleSet& set) {
+  motion_at_ = flushes_;
+  motion_.push(set);
+  shaking_.push(set);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  history_.instant(set);
+}
+
+std::vector<double> LiveView::baseline() const {
+  if (told_watch_ && told_watch_->baseline.size() == parameters_.size())
+    return told_watch_->baseline;
+  return watch_ && !config_.watch ? watch_->baseline() : std::vector<double>{};
+}
+
+bool LiveView::watched(std::size_t parameter) const {
+  if (told_watch_ && parameter < told_watch_->watched.size())
+    return told_watch_->watched[parameter] != 0;
+  return watch_ && watch_->watched(parameter);
+}
+
+double LiveView::seconds_since(std::int64_t flush) const {
+  return static_cast<double>(flushes_ - flush) / kFlushesPerSecond;
+}
+
+/// The caller holds the mutex.
+Known LiveView::known() const {
+  Known out;
+  out.findings = alarms_.findings(config_);
+  if (const auto misfit = fit_.finding()) out.findings.push_back(*misfit);
+  const std::vector<double> baseline = this->baseline();
+  for (std::size_t p = 0; p < parameters_.size(); ++p) {
+    if (!watched(p)) continue;
+    ++out.watched;
+    out.with_baseline += p < baseline.size() && std::isfinite(baseline[p]) ? 1 : 0;
+    out.observable += newest_ && p < newest_->reason.size() && newest_->reason[p] == 0 ? 1 : 0;
+  }
+  out.samples = shaking_.first_us() != 0;
+  out.silent_s = seconds_since(motion_at_);
+  out.estimates = newest_.has_value();
+  out.estimates_silent_s = seconds_since(estimate_at_);
+  out.same_config = same_config_;
+  out.residual = fit_.residual();
+  out.newest = shaking_.newest();
+  out.strongest = shaking_.strongest();
+  out.followed_since_us = shaking_.first_us();
+  out.report = reports_.newest();
+  return out;
+}
+
+/// An event that a viewer who joins later gets at once, if it differs from the one before. The
+/// caller holds the mutex.
+void LiveView::push_if_new(const std::string& name, const std::string& json) {
+  if (json != kept_[name]) ring_.push(name, json);
+  kept_[name] = json;
+}
+
+void LiveView::flush() {
+  ++flushes_;
+  if (const std::string rows = motion_.take(); !rows.empty()) {
+    push("motion", rows);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    history_.motion(rows, flushes_, kFlushesPerSecond);
+  }
+  if (flushes_ % kFlushesPerSecond == 0) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    silent_s_ = seconds_since(motion_at_);
+    (void)reports_.look();
+    push_if_new("baseline", baseline_json(baseline()));
+    push_if_new("answers", answers_json(known(), config_));
+    push_if_new("last", history_.last_json());
+    ring_.push("alive", "{}");
+  }
+  if (!newest_) return;
+  if (std::exchange(new_estimate_, false)) push("estimate", estimate_json(*newest_));
+  if (flushes_ % kFlushesPerBoxplot != 0) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (const std::string boxes = history_.boxes_json(); !boxes.empty()) push_if_new("boxes", boxes);
+}
+
+std::string LiveView::history_json() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return history_.json(silent_s_);
+}
+
+std::string LiveView::building_json() const {
+  return daemon::building_json(config_, config_.pipeline.options.rate_hz / motion_.stride());
+}
+
+EventRing::Cursor LiveView::join() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::string first = "retry: 1000\n\n";
+  for (const char* name :
+       {"status", "baseline", "last", "boxes", "answers", "session", "can", "gap"})
+    if (const std::string& json = kept_[name]; !json.empty()) first += EventRing::text(name, json);
+  for (const std::string& alarm : alarms_.all()) first += EventRing::text("alarm", alarm);
+  return ring_.join(std::move(first));
+}
+
+std::size_t LiveView::read(EventRing::Cursor& cursor, char* buffer, std::size_t size) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return ring_.read(cursor, buffer, size);
+}
+
+std::optional<std::int64_t> LiveView::acknowledge(std::int64_t id, const std::string& viewer) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const event_t* event = alarms_.find(id);
+  if (event == nullptr) return std::nullopt;
+  const bool found_here = !config_.watch && event->kind == "stiffness_change";
+  if (!alarms_.kept_elsewhere() || found_here) {
+    push_alarms({alarms_.acknowledge(id)});
+    return 0;
+  }
+  const acknowledge_t request = acknowledge_request(id, viewer, "");
+  if (!commands_.add({"run", {"ACKNOWLEDGE", drivers::encoded(request)}, request.request}))
+    return std::nullopt;
+  return request.request;
+}
+
+bool LiveView::renew_baseline() {
+  if (config_.watch) return false;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  renew_ = true;
+  return true;
+}
+
+bool LiveView::tell_recorder(const session_command_t& command) {
+  return commands_.add({"record", {"SESSION_COMMAND", drivers::encoded(command)}, command.id});
+}
+
+}  // namespace framewatch::daemon

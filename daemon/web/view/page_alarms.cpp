@@ -1,0 +1,123 @@
+#include "daemon/web/view/page_alarms.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "daemon/events/event_words.h"
+#include "daemon/web/view/page_json.h"
+#include "estimator/numeric/nan.h"
+
+namespace framewatch::daemon {
+
+void PageAlarms::restore(const std::vector<event_t>& events) {
+  for (const event_t& e : events) (void)note(e);
+  for (const auto& [id, event] : events_)
+    if (event.state != event_state::cleared) restored_.insert(id);
+}
+
+std::string PageAlarms::note(const event_t& e) {
+  events_[e.id] = e;
+  restored_.erase(e.id);
+  if (e.state == event_state::cleared) acknowledged_here_.erase(e.id);
+  if (events_.size() > kMost) {
+    // A raised one would be brought back by the next service_t.
+    auto gone = std::find_if(events_.begin(), events_.end(), [](const auto& known) {
+      return known.second.state == event_state::cleared;
+    });
+    if (gone == events_.end()) gone = events_.begin();
+    acknowledged_here_.erase(gone->first);
+    events_.erase(gone);
+  }
+  return json(e);
+}
+
+std::vector<std::string> PageAlarms::still_raised(const service_t& s) {
+  std::vector<std::string> out;
+  for (const std::int64_t id : std::exchange(restored_, {}))
+    if (std::find(s.event_id.begin(), s.event_id.end(), id) == s.event_id.end()) {
+      event_t e = events_.at(id);
+      e.state = event_state::cleared;
+      e.time_us = s.time_us;
+      out.push_back(note(e));
+    }
+  for (std::size_t i = 0; i < s.event_id.size(); ++i) {
+    const auto known = events_.find(s.event_id[i]);
+    if (known != events_.end() && (known->second.state != event_state::cleared ||
+                                   known->second.since_us == s.event_since_us[i]))
+      continue;
+    event_t e{};
+    e.id = s.event_id[i];
+    e.time_us = e.since_us = s.event_since_us[i];
+    e.state = event_state::raised;
+    e.severity = s.event_severity[i];
+    e.kind = s.event_kind[i];
+    e.place = s.event_place[i];
+    e.value = e.std_error = estimator::kNaN;
+    e.message = s.event_message[i];
+    out.push_back(note(e));
+  }
+  return out;
+}
+
+std::vector<std::string> PageAlarms::acknowledged(acknowledged_t news) {
+  if (acknowledged_ && acknowledged_->id == news.id && acknowledged_->since_us == news.since_us)
+    return {};
+  std::set<std::int64_t> touched(news.id.begin(), news.id.end());
+  if (acknowledged_) touched.insert(acknowledged_->id.begin(), acknowledged_->id.end());
+  acknowledged_ = std::move(news);
+  std::vector<std::string> out;
+  for (const std::int64_t id : touched)
+    if (const event_t* event = find(id)) out.push_back(json(*event));
+  return out;
+}
+
+std::string PageAlarms::acknowledge(std::int64_t id) {
+  acknowledged_here_.insert(id);
+  return json(events_.at(id));
+}
+
+const event_t* PageAlarms::find(std::int64_t id) const {
+  const auto found = events_.find(id);
+  return found == events_.end() ? nullptr : &found->second;
+}
+
+std::vector<std::string> PageAlarms::all() const {
+  std::vector<std::string> out;
+  for (const auto& [id, event] : events_) out.push_back(json(event));
+  return out;
+}
+
+std::optional<Acknowledgement> PageAlarms::acknowledgement(const event_t& e) const {
+  if (e.state == event_state::cleared) return std::nullopt;
+  if (acknowledged_) {
+    const std::vector<std::int64_t>& ids = acknowledged_->id;
+    if (const auto found = std::find(ids.begin(), ids.end(), e.id); found != ids.end()) {
+      const auto at = static_cast<std::size_t>(found - ids.begin());
+      return Acknowledgement{0, acknowledged_->who[at], acknowledged_->comment[at]};
+    }
+  }
+  return acknowledged_here_.contains(e.id) ? std::optional(Acknowledgement{}) : std::nullopt;
+}
+
+std::string PageAlarms::json(const event_t& e) const {
+  const std::optional<Acknowledgement> by = acknowledgement(e);
+  return alarm_json(e, by.has_value(), by.value_or(Acknowledgement{}));
+}
+
+std::vector<Finding> PageAlarms::findings(const Config& config) const {
+  std::vector<Finding> out;
+  for (const auto& [id, event] : events_) {
+    if (event.state == event_state::cleared) continue;
+    out.push_back(finding_of(event, config));
+    if (const auto by = acknowledgement(event)) {
+      out.back().acknowledged = true;
+      out.back().who = by->who;
+    }
+  }
+  std::stable_sort(out.begin(), out.end(), [](const Finding& a, const Finding& b) {
+    return a.severity != b.severity ? a.severity > b.severity : a.since_us < b.since_us;
+  });
+  return out;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <framewatch/acknowledged_t.hpp>
+#include <framewatch/event_t.hpp>
+#include <framewatch/service_t.hpp>
+
+#include "daemon/events/acknowledgement.h"
+#include "daemon/findings/finding.h"
+
+namespace framewatch::daemon {
+
+/// The events that the page lists, and who acknowledged them. What changes comes back as JSON for
+/// the viewers.
+class PageAlarms {
+ public:
+  static constexpr std::size_t kMost = 1000;  ///< beyond, a cleared one is forgotten
+
+  /// Events that were stored before the page's server began, in order of time. Those that are
+  /// raised are so until `framewatch run` says which still are.
+  void restore(const std::vector<event_t>& events);
+  /// News of an event.
+  std::string note(const event_t& event);
+  /// Events in the report of `framewatch run` that were raised before the page listened.
+  std::vector<std::string> still_raised(const service_t& service);
+  /// What `framewatch run` says is acknowledged; the events whose acknowledgement changed.
+  std::vector<std::string> acknowledged(acknowledged_t news);
+  /// An event that only the page knows is acknowledged.
+  std::string acknowledge(std::int64_t id);
+
+  /// Null when there is no such event.
+  const event_t* find(std::int64_t id) const;
+  /// Whether `framewatch run` keeps acknowledgements.
+  bool kept_elsewhere() const { return acknowledged_.has_value(); }
+  /// Every event.
+  std::vector<std::string> all() const;
+  /// What is raised and not cleared, by severity and then by age.
+  std::vector<Finding> findings(const Config& config) const;
+
+ private:
+  /// Empty: nobody acknowledged it.
+  std::optional<Acknowledgement> acknowledgement(const event_t& event) const;
+  std::string json(const event_t& event) const;
+
+  std::map<std::int64_t, event_t> events_;
+  std::set<std::int64_t> restored_;             ///< raised, of which nothing was heard since
+  std::set<std::int64_t> acknowledged_here_;    ///< where `framewatch run` does not keep it
+  std::optional<acknowledged_t> acknowledged_;  ///< the newest from `framewatch run`
+};
+
+}  // namespace framewatch::daemon

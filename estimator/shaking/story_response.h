@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "estimator/motion/oscillator_section.h"
+#include "estimator/motion/sample_merger.h"
+#include "estimator/numeric/nan.h"
+#include "estimator/setup/options.h"
+#include "estimator/structure/sensors.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch::estimator {
+
+/// The motion of the stories at one instant after the other. Displacements are accelerations less
+/// their mean through one oscillator section at the estimation's high-pass (docs/equations.md 8,
+/// 12); they are known two of its periods after the sensor's last interruption.
+class StoryResponse {
+ public:
+  StoryResponse(const Structure& structure, const std::vector<SensorAxis>& axes,
+                const EstimatorOptions& estimation);
+
+  /// One calibrated instant.
+  void push(const SampleSet& set);
+
+  /// Of each axis: without its mean, m/s^2; NaN: none.
+  const std::vector<double>& accel_mps2() const { return accel_; }
+  /// Of each frame in each story (Structure::dof), m, positive toward +x or +y; NaN: not known.
+  const std::vector<double>& drift_m() const { return drift_; }
+  /// Along x and y: minus the floors' masses times their accelerations, N; NaN: not known.
+  const std::array<double, 2>& base_shear_n() const { return base_shear_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(next_index_, motions_);
+  }
+
+ private:
+  /// Displacement of one axis above the corner, w^2 times.
+  struct Motion {
+    double mean = 0, x1 = 0, x2 = 0, s1 = 0, s2 = 0;
+    double seen = 0;     ///< instants in the mean
+    double settled = 0;  ///< instants since the last interruption
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a.finite(mean, x1, x2, s1, s2, settled);
+      a.within(seen, 0, Archive::kMostCount);
+    }
+  };
+  void follow(std::size_t axis, double accel);
+  double base_displacement(Direction direction) const;
+  void find_story_motion();
+
+  Structure structure_;
+  std::vector<SensorAxis> axes_;
+  OscillatorSection section_;
+  double over_w2_;                ///< s^2
+  double mean_step_;              ///< of the mean's filter
+  double settling_;               ///< instants
+  std::vector<int> axis_of_dof_;  ///< -1: none
+  std::int64_t next_index_ = -1;
+  std::vector<Motion> motions_;
+  std::vector<double> accel_, moved_;  ///< by axis; moved_: displacement, m
+  std::vector<double> drift_;
+  std::array<double, 2> base_shear_{kNaN, kNaN};
+};
+
+/// The largest of it in a time, absolute; NaN: never known.
+struct PeakResponse {
+  std::vector<double> accel_mps2;                  ///< of each axis
+  std::vector<double> drift_m;                     ///< of each frame in each story (Structure::dof)
+  std::array<double, 2> base_shear_n{kNaN, kNaN};  ///< along x and y
+
+  PeakResponse() = default;
+  PeakResponse(std::size_t axes, std::size_t degrees_of_freedom)
+      : accel_mps2(axes, kNaN), drift_m(degrees_of_freedom, kNaN) {}
+  void take(const StoryResponse& response);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(accel_mps2, drift_m, base_shear_n);
+  }
+};
+
+/// Story drift over story height, of the frame that drifted most.
+struct PeakDrift {
+  double ratio = kNaN;
+  int frame = -1;  ///< -1: of none it is known
+};
+/// story: from 1.
+PeakDrift peak_drift(const PeakResponse& peak, const Structure& structure, int story);
+/// Of all stories; 0 where none is known.
+double largest_drift_ratio(const PeakResponse& peak, const Structure& structure);
+/// Of the axes at a level, 0: the base; NaN: of none it is known.
+double peak_accel_mps2(const PeakResponse& peak, const std::vector<SensorAxis>& axes, int level);
+
+}  // namespace framewatch::estimator
