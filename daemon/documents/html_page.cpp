@@ -1,5 +1,7 @@
 #include "daemon/documents/html_page.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 
 #include "daemon/documents/svg_style.h"
@@ -35,13 +37,47 @@ constexpr const char* kStyle =
     "figure{break-inside:auto;margin:.6em 0}figure>div{zoom:.68}.plot{break-inside:avoid}"
     "figcaption{break-before:avoid}p{orphans:3;widows:3}"
     ".wide{overflow:visible}table{font-size:7.5pt;margin:.5em 0}th,td{padding:.2em .4em}"
-    "tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit}}";
+    ".wide,tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit}}";
+
+}  // namespace
+
+namespace {
+
+constexpr std::size_t kMostColumns = 16;  // that words are looked for in
+
+bool is_number(const std::string& cell) {
+  return !cell.empty() && std::string("0123456789+-.").find(cell[0]) != std::string::npos;
+}
+
+/// "w2 w5": the columns after the first that hold words alone.
+std::string columns_of_words(std::size_t columns,
+                             const std::vector<std::vector<std::string>>& rows) {
+  std::string out;
+  for (std::size_t c = 1; c < std::min(columns, kMostColumns); ++c)
+    if (!rows.empty() && std::none_of(rows.begin(), rows.end(), [c](const auto& row) {
+          return c < row.size() && is_number(row[c]);
+        }))
+      out += (out.empty() ? "w" : " w") + std::to_string(c + 1);
+  return out;
+}
+
+/// Left-aligned and broken into lines: what columns_of_words() names.
+std::string style_of_words() {
+  std::string out;
+  for (std::size_t c = 2; c <= kMostColumns; ++c) {
+    const std::string n = std::to_string(c);
+    out += (out.empty() ? ".w" : ",.w") + n + " th:nth-child(" + n + "),.w" + n + " td:nth-child(" +
+           n + ")";
+  }
+  return out + "{text-align:left;white-space:normal}";
+}
 
 }  // namespace
 
 std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<div class=\"wide\"><table><thead><tr>";
+  std::string out = "<div class=\"wide\"><table class=\"" + columns_of_words(head.size(), rows) +
+                    "\"><thead><tr>";
   for (const std::string& cell : head) out += "<th>" + cell + "</th>";
   out += "</tr></thead><tbody>\n";
   for (const auto& row : rows) {
@@ -61,7 +97,7 @@ std::string html_figure(const std::vector<std::string>& plots, const std::string
 std::string html_page(const std::string& title, const std::string& body) {
   return "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
          "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>" +
-         html_text(title) + "</title>\n<style>" + kStyle + svg_style() +
+         html_text(title) + "</title>\n<style>" + kStyle + style_of_words() + svg_style() +
          "</style></head>\n<body>\n" + body + "</body></html>\n";
 }
 

@@ -7,7 +7,8 @@
 
 namespace framewatch::daemon {
 
-/// A table; cells are HTML. The first column is text, the others numbers, right-aligned.
+/// A table; cells are HTML. Columns that hold a number are right-aligned, the first one and those
+/// of words left.
 std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<std::string>>& rows);
 

@@ -5,6 +5,7 @@
 
 #include "daemon/base/utc_time.h"
 #include "daemon/documents/html_page.h"
+#include "daemon/documents/number_words.h"
 #include "daemon/documents/svg_plot.h"
 #include "daemon/event_report/event_report.h"
 #include "daemon/event_report/response_words.h"
@@ -19,6 +20,18 @@ std::string number(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
+const char* advice(EventColor color) {
+  switch (color) {
+    case EventColor::red:
+      return "Have a structural engineer look at the building before it is used as before.";
+    case EventColor::yellow:
+      return "Have a structural engineer read this report.";
+    case EventColor::green:
+      break;
+  }
+  return "Nothing needs to be done.";
+}
+
 std::string verdict_text(const EventReport& r, const Config& config, const EventVerdict& verdict) {
   std::string word = color_word(verdict.color);
   word[0] = static_cast<char>(word[0] - 'a' + 'A');
@@ -28,6 +41,7 @@ std::string verdict_text(const EventReport& r, const Config& config, const Event
   for (std::size_t i = 1; i < verdict.reasons.size(); ++i)
     rest += "<li>" + html_text(verdict.reasons[i]) + "</li>\n";
   if (!rest.empty()) out += "<ul>\n" + rest + "</ul>\n";
+  out += "<p>" + std::string(advice(verdict.color)) + "</p>\n";
   const double length =
       1e-6 * static_cast<double>(to_microseconds(r.shaking.end) - to_microseconds(r.shaking.start));
   return out + fmt::format("<h1>{}: strong motion of {}</h1>\n<p>{:.1f} s above {:g} m/s^2.</p>\n",
@@ -81,8 +95,7 @@ std::string stiffness_section(const EventReport& r, const Config& config) {
   for (int p = 0; p < table.elements(); ++p) {
     const estimator::ShakenStiffness& k = r.shaking.stiffness[static_cast<std::size_t>(p)];
     const auto mean = [](const estimator::WindowMean& m) {
-      return m.count > 0 ? fmt::format("{:.5g} +- {:.2g}", 1e-3 * m.value, 1e-3 * m.std_error)
-                         : std::string("-");
+      return m.count > 0 ? with_error(1e-3 * m.value, 1e-3 * m.std_error) : std::string("-");
     };
     std::string from = k.before_from == estimator::BeforeFrom::baseline         ? "baseline"
                        : k.before_from == estimator::BeforeFrom::windows_before ? "measured"
@@ -90,12 +103,10 @@ std::string stiffness_section(const EventReport& r, const Config& config) {
                                                                                 : "-";
     any_first = any_first || k.before_from == estimator::BeforeFrom::first_windows;
     any_last = any_last || (k.after.count > 0 && !k.free);
-    rows.push_back(
-        {html_text(table[p].name), table[p].panel < 0 ? "kN/m" : "kN/(rad*m)", mean(k.before), from,
-         mean(k.during), mean(k.after), k.free ? "free vibration" : "last windows",
-         k.known()
-             ? fmt::format("{:+.1f} +- {:.1f}", 100 * k.ratio(), std::max(0.1, 100 * k.std_error()))
-             : "-"});
+    rows.push_back({html_text(table[p].name), table[p].panel < 0 ? "kN/m" : "kN/(rad*m)",
+                    mean(k.before), from, mean(k.during), mean(k.after),
+                    k.free ? "free vibration" : "last windows",
+                    k.known() ? change_with_error(k.ratio(), k.std_error()) : "-"});
     if (!k.known() || names.categories.size() == kMostBars) continue;
     names.categories.push_back(table[p].name);
     bars.x.push_back(static_cast<double>(names.categories.size()));

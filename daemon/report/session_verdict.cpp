@@ -5,6 +5,7 @@
 
 #include "daemon/base/utc_time.h"
 #include "daemon/documents/html_page.h"
+#include "daemon/documents/number_words.h"
 #include "daemon/documents/svg_plot.h"
 #include "daemon/events/event_words.h"
 #include "daemon/report/session_report.h"
@@ -172,13 +173,11 @@ std::string change_table(const SessionReport& r) {
   for (const ElementChange& c : r.changes) {
     const auto [factor, unit] = paper_unit(r.estimates.table.kind[c.parameter]);
     const auto mean = [factor = factor](const estimator::WindowMean& m) {
-      return m.count > 0 ? fmt::format("{:.4g} +- {:.2g}", factor * m.value, factor * m.std_error)
-                         : std::string("-");
+      return m.count > 0 ? with_error(factor * m.value, factor * m.std_error) : std::string("-");
     };
     rows.push_back({html_text(element_words(r.estimates.table, c.parameter)),
                     html_text(r.estimates.table.name[c.parameter]), unit, mean(c.before),
-                    mean(c.after),
-                    fmt::format("{:+.1f} +- {:.1f}", 100 * c.ratio, error_percent(c)),
+                    mean(c.after), change_with_error(c.ratio, 0.01 * error_percent(c)),
                     fmt::format("{:.1f}", session_seconds(r, c.since_us))});
   }
   return rows.empty() ? ""

@@ -155,10 +155,44 @@ async function openedLate(browser, address) {
   return page;
 }
 
+async function strongMotionIsOver(page) {
+  const motion = shake(scenario('calm', {motion: t => t.replace('peak_mps2 = 2.0', 'peak_mps2 = 0.0005')}));
+  await until(page, 'strong motion: its report is named', () => framewatch.told.answers[2].more.some(m => m.report));
+  await until(page, 'strong motion: judged, with a link', () => /Judged (yellow|red): .*Read the report/s.test(document.querySelectorAll('#answers > li')[2].innerText));
+  await until(page, 'strong motion: the report is in the list', () => /(yellow|red)/.test(document.getElementById('event-reports').innerText));
+  const [report] = await Promise.all([page.context().waitForEvent('page'), page.click('#answers a')]);
+  await report.waitForLoadState();
+  expect(/^(Yellow|Red): /.test(await report.innerText('body')), 'strong motion: the report begins with the verdict');
+  await report.screenshot({path: 'event-report.png', fullPage: true});
+  await report.pdf({path: 'event-report.pdf', format: 'A4'});
+  await report.close();
+  expect((await page.textContent('#findings')).includes('After strong motion'), 'strong motion: a finding');
+  await shot(page, 'strong-motion');
+  await stop(motion);
+}
+
+async function startedAnew(browser, serve, options) {
+  await stop(serve);
+  const page = await open(browser, await addressOf(start(...options)));
+  await until(page, 'started anew: the answers are there', () => framewatch.told && framewatch.told.answers.length === 4);
+  await until(page, 'started anew: how old all is', () => /^no samples for \d+ s$/.test(document.getElementById('state').textContent));
+  expect(/Yes\. Story 1, frame y2/.test(await answer(page, 0)), 'started anew: what happened is said');
+  expect(/Read the report/.test(await answer(page, 2)), 'started anew: the report is named');
+  expect(await page.evaluate(() => framewatch.opened) > 0, 'started anew: the last minutes are there');
+  await until(page, 'started anew: last values with their age', () => /last value .* kN\/m .* old, of .* UTC/.test(document.getElementById('chosen').textContent));
+  expect(await page.evaluate(() => plan.parameters.every((q, i) => q.kind !== 0 || building.known[i])), 'started anew: no frame is hatched');
+  await shot(page, 'started-anew');
+}
+
+const addressOf = serve => new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+
 async function main() {
-  start('run', config, '--url', url, '--quiet');
-  const serve = start('serve', config, '--url', url, '--port', '0', '--sessions', path.join(work, 'none'), '--quiet');
-  const address = await new Promise(done => serve.stdout.once('data', d => done(String(d).trim())));
+  const own = path.join(work, 'building.toml');
+  fs.writeFileSync(own, fs.readFileSync(config, 'utf8') + '\n[history]\ndirectory = "history"\n\n[event_report]\ndirectory = "events"\n');
+  start('run', own, '--url', url, '--quiet');
+  const served = ['serve', own, '--url', url, '--port', '0', '--sessions', path.join(work, 'none'), '--quiet'];
+  const serve = start(...served);
+  const address = await addressOf(serve);
   const browser = await chromium.launch({executablePath: browserPath, args: ['--no-sandbox']});
   const page = await open(browser, address);
   await until(page, 'waits for samples', () => document.getElementById('state').textContent === 'waiting for samples');
@@ -184,7 +218,12 @@ async function main() {
   expect(await late.inputValue('#element') !== before, 'arrow keys choose a box');
   await late.click('#zone');
   expect((await late.textContent('#zone')) === 'Times: local' && !/UTC/.test(await late.textContent('#answers')), 'times as this device has them');
+  await late.click('#zone');
+  await strongMotionIsOver(page);
   expect(said.length === 0, 'nothing on the console ' + said.join('; '));
+  await page.close();
+  await late.close();
+  await startedAnew(browser, serve, served);
   await browser.close();
 }
 

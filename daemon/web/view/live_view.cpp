@@ -279,7 +279,6 @@ void LiveView::flush() {
     push_if_new("last", history_.last_json());
     ring_.push("alive", "{}");
   }
-  if (!newest_) return;
   if (std::exchange(new_estimate_, false)) push("estimate", estimate_json(*newest_));
   if (flushes_ % kFlushesPerBoxplot != 0) return;
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -45,6 +45,7 @@ class StoredHistoryTest : public testing::Test {
       names.story.push_back(table[p].story);
     }
     names.parameters = table.size();
+    names.design.assign(names.name.size(), 1000.0);
     const auto tell = [&](const char* channel, const auto& message) {
       history.message(config_.lcm.prefix + channel, drivers::encoded(message));
     };
@@ -62,6 +63,8 @@ class StoredHistoryTest : public testing::Test {
       e.reason.assign(names.name.size(), 0);
       if (i >= kRate_hz * kSeen_s) e.reason[0] = 2;
       e.parameters = names.parameters;
+      e.snr.assign(names.name.size(), 1);
+      e.prior_share = e.noise_share = e.snr;
       tell("ESTIMATE", e);
     }
     event_t event{};
