@@ -93,7 +93,7 @@ function start(json) {
   const bar = document.createElement('canvas');
   bar.id = 'bar'; bar.width = 160; bar.height = 14; bar.style.width = '160px'; bar.setAttribute('aria-hidden', 'true');
   const text = t => { const s = document.createElement('span'); s.textContent = t; return s; };
-  $('scale').replaceChildren(text('−15 %, softer'), bar, text('+15 %, stiffer than the baseline; paler: the last value; hatched: never had one'));
+  $('scale').replaceChildren(text('−15 %, softer'), bar, text('+15 %, stiffer than the baseline (without one: than the design); paler: the last value; hatched: never had one'));
   applyTheme();
   boxButton();
   fetch('history.json').then(r => r.ok ? r.json() : null).catch(() => null).then(before).finally(listen);
