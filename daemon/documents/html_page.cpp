@@ -37,47 +37,56 @@ constexpr const char* kStyle =
     "figure{break-inside:auto;margin:.6em 0}figure>div{zoom:.68}.plot{break-inside:avoid}"
     "figcaption{break-before:avoid}p{orphans:3;widows:3}"
     ".wide{overflow:visible}table{font-size:7.5pt;margin:.5em 0}th,td{padding:.2em .4em}"
-    ".wide,tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit}}";
+    ".short,tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit}}";
 
 }  // namespace
 
 namespace {
 
+constexpr std::size_t kShortTable = 10;   // rows; it stays on one page of paper
+constexpr std::size_t kLongWords = 40;    // characters
 constexpr std::size_t kMostColumns = 16;  // that words are looked for in
 
 bool is_number(const std::string& cell) {
   return !cell.empty() && std::string("0123456789+-.").find(cell[0]) != std::string::npos;
 }
 
-/// "w2 w5": the columns after the first that hold words alone.
+/// "w2 w5 l5": the columns after the first that hold words alone, and which of them long ones.
 std::string columns_of_words(std::size_t columns,
                              const std::vector<std::vector<std::string>>& rows) {
   std::string out;
-  for (std::size_t c = 1; c < std::min(columns, kMostColumns); ++c)
-    if (!rows.empty() && std::none_of(rows.begin(), rows.end(), [c](const auto& row) {
-          return c < row.size() && is_number(row[c]);
-        }))
-      out += (out.empty() ? "w" : " w") + std::to_string(c + 1);
+  for (std::size_t c = 1; c < std::min(columns, kMostColumns); ++c) {
+    std::size_t longest = 0;
+    bool words = !rows.empty();
+    for (const auto& row : rows) {
+      if (c >= row.size()) continue;
+      words = words && !is_number(row[c]);
+      longest = std::max(longest, row[c].size());
+    }
+    const std::string n = std::to_string(c + 1);
+    if (words) out += " w" + n + (longest > kLongWords ? " l" + n : "");
+  }
   return out;
 }
 
-/// Left-aligned and broken into lines: what columns_of_words() names.
+/// Left-aligned, long ones broken into lines: what columns_of_words() names.
 std::string style_of_words() {
-  std::string out;
+  std::string left, broken;
   for (std::size_t c = 2; c <= kMostColumns; ++c) {
-    const std::string n = std::to_string(c);
-    out += (out.empty() ? ".w" : ",.w") + n + " th:nth-child(" + n + "),.w" + n + " td:nth-child(" +
-           n + ")";
+    const std::string n = std::to_string(c), comma = left.empty() ? "" : ",";
+    left += comma + ".w" + n + " th:nth-child(" + n + "),.w" + n + " td:nth-child(" + n + ")";
+    broken += comma + ".l" + n + " td:nth-child(" + n + ")";
   }
-  return out + "{text-align:left;white-space:normal}";
+  return left + "{text-align:left}" + broken + "{white-space:normal}";
 }
 
 }  // namespace
 
 std::string html_table(const std::vector<std::string>& head,
                        const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<div class=\"wide\"><table class=\"" + columns_of_words(head.size(), rows) +
-                    "\"><thead><tr>";
+  std::string out = "<div class=\"wide\"><table class=\"" +
+                    std::string(rows.size() <= kShortTable ? "short" : "long") +
+                    columns_of_words(head.size(), rows) + "\"><thead><tr>";
   for (const std::string& cell : head) out += "<th>" + cell + "</th>";
   out += "</tr></thead><tbody>\n";
   for (const auto& row : rows) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "daemon/history/raw_history_reader.h"
 #include "daemon/history/summary_query.h"

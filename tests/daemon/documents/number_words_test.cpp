@@ -22,7 +22,7 @@ TEST(NumberWords, AChangeIsSaidInTenthsOfAPercent) {
 TEST(HtmlTable, AColumnOfWordsIsLeftAligned) {
   const std::string table =
       html_table({"element", "what", "size"}, {{"a", "it changed", "-3"}, {"b", "gone", "-"}});
-  EXPECT_NE(table.find("<table class=\"w2\">"), std::string::npos) << table;
+  EXPECT_NE(table.find("<table class=\"short w2\">"), std::string::npos) << table;
 }
 
 }  // namespace number_words_test
