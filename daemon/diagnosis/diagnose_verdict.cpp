@@ -1,6 +1,7 @@
 #include "daemon/diagnosis/diagnose_verdict.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/core.h>
 
@@ -8,6 +9,38 @@
 
 namespace framewatch::daemon {
 namespace {
+
+/// What an effect does, for people who do not know its name; in the order of EffectKind.
+constexpr std::array kPlainNames = {
+    "a stiffness that changes with the deformation",
+    "a stiffness that differs between the two directions",
+    "yielding at a sharp limit",
+    "gradual yielding",
+    "yielding with slip about zero",
+    "dry friction",
+    "a damping that grows with speed",
+    "a stop on one side",
+    "play between two stops",
+    "the pull of the weight on the leaning building",
+    "a mass that was not counted",
+    "a mass on a spring of its own",
+    "rocking of the foundation",
+    "bending of the whole frame",
+    "another spring",
+    "another damper",
+    "a sudden loss of stiffness",
+    "a slow change of stiffness",
+    "a floor that gives way in its plane",
+    "a force that nobody measures",
+    "a sensor of another scale",
+    "a sensor turned round",
+    "a sensor mounted askew",
+    "a sensor that is late",
+    "a sensor beyond its range",
+    "a sensor whose zero moves",
+    "two sensors exchanged",
+};
+static_assert(kPlainNames.size() == static_cast<std::size_t>(estimator::EffectKind::swapped) + 1);
 
 double mean_floor(const std::vector<estimator::Gap>& gaps, std::size_t from) {
   double sum = 0;
@@ -30,8 +63,9 @@ std::string with_capital(std::string text) {
 std::string effect_words(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
   std::string name(name_of(f.chosen.kind));
   std::replace(name.begin(), name.end(), '_', ' ');
-  return fmt::format("{}{} at {}", f.approximate ? "something like " : "", name,
-                     place_text(f.chosen.place, o.plant.structure, o.plant.axes));
+  return fmt::format("{}{} at {} ({})", f.approximate ? "something like " : "", name,
+                     place_text(f.chosen.place, o.plant.structure, o.plant.axes),
+                     kPlainNames[static_cast<std::size_t>(f.chosen.kind)]);
 }
 
 std::string confidence_words(const estimator::FoundEffect& f) {

@@ -15,7 +15,7 @@ std::string verdict_sentence(const DiagnoseOutput& output);
 /// after, beside its floor.
 std::string gap_sentence(const DiagnoseOutput& output);
 
-/// "something like bouc wen at story 1, frame y1".
+/// "something like bouc wen at story 1, frame y1 (gradual yielding)".
 std::string effect_words(const DiagnoseOutput& output, const estimator::FoundEffect& effect);
 
 /// How sure its name is.

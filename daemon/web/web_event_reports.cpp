@@ -12,7 +12,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostReports = 200;
+constexpr std::size_t kMostReports = 50;
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 
 namespace framewatch::daemon {
 
-/// The newest 200 reports of [event_report] in a folder, newest first: [{"name", "verdict",
+/// The newest 50 reports of [event_report] in a folder, newest first: [{"name", "verdict",
 /// "reason", "start_us", "end_us"}], JSON.
 std::string event_reports_json(const std::string& folder);
 

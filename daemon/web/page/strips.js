@@ -35,7 +35,7 @@ class Strip {
       title: this.title, width: Math.max(200, this.box.clientWidth || 400), height: 150, legend: {show: this.series.length > 1, live: false},
       cursor: {drag: {x: false, y: false}}, scales: {x: {time: false}, y: {range: (u, a, b) => a === null || b === null ? [0, 1] : uPlot.rangeNum(a, b, 0.12, true)}},
       axes: [{...axis, size: 26, space: 84, incrs: [1, 2, 5, 10, 15, 30, 60, 120, 300], values: (u, v) => v.map(x => clock(x * 1e6))}, {...axis, size: 56, values: (u, v, i, room, step) => v.map(x => x.toFixed(Math.min(6, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)))))}],
-      series: [{}, ...this.series.map(s => ({label: s.name, stroke: style[s.color], width: s.width || 1.4, dash: s.dash, points: {show: false, size: 5, filter: alone}, spanGaps: false}))],
+      series: [{}, ...this.series.map(s => ({label: s.name, stroke: style[s.color], width: s.width || 1.4, dash: s.dash, points: this.least > 0.1 ? {show: false, size: 5, filter: alone} : {show: false}, spanGaps: false}))],
       bands: this.series.some(s => s.band) ? [{series: [3, 2], fill: style.blue + '33'}] : [],
     }, [[], ...this.series.map(() => [])], this.box);
     this.box.querySelector('.u-title').title = this.why;

@@ -84,8 +84,10 @@ std::vector<window_estimate_t> stored_estimates(SummaryQuery& store, const Confi
 
 void read_samples(const Config& config, std::int64_t newest_us, StoredHistory& out,
                   std::vector<std::string>& notes) {
-  const std::int64_t from_us = newest_us - static_cast<std::int64_t>(1e6 * PageHistory::kMost_s);
   const std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
+  const double rate_hz = config.pipeline.options.rate_hz * static_cast<double>(axes.size());
+  const double most_s = std::min(PageHistory::kMost_s, StoredHistory::kMostSamples / rate_hz);
+  const std::int64_t from_us = newest_us - static_cast<std::int64_t>(1e6 * most_s);
   std::vector<int> axis_of;  // by the log's channel; -1: of another configuration
   const RawVisitor visitor{
       [&](const std::vector<std::string>& names, double) {
@@ -95,7 +97,8 @@ void read_samples(const Config& config, std::int64_t newest_us, StoredHistory& o
             if (axes[a].name == names[i]) axis_of[i] = static_cast<int>(a);
       },
       [&](const RawCount& c) {
-        if (c.count == drivers::kNoCount || axis_of[c.channel] < 0) return;
+        const bool full = out.samples.size() >= 2 * StoredHistory::kMostSamples;
+        if (full || c.count == drivers::kNoCount || axis_of[c.channel] < 0) return;
         out.samples.push_back({estimator::from_microseconds(c.time_us), axis_of[c.channel],
                                c.count * c.resolution_mps2});
       }};

@@ -16,6 +16,7 @@ namespace framewatch::daemon {
 /// started anew.
 struct StoredHistory {
   static constexpr std::size_t kMostEvents = 200;
+  static constexpr std::size_t kMostSamples = 2'000'000;  ///< of many sensors fewer minutes
 
   /// Of every period of the last minutes, and of older ones that have the newest value of a
   /// parameter: its means as the estimate of a window that ends with it, in order of time.

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <framewatch/accel_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 
@@ -129,6 +130,22 @@ TEST_F(StoredHistoryTest, APageThatWasStartedAnewHasWhatWasBefore) {
   EXPECT_NE(answers[2]["line"]["text"].get<std::string>().find("A shake"), std::string::npos)
       << answers[2];
   EXPECT_NE(seen.find("it changed"), std::string::npos);
+}
+
+TEST_F(StoredHistoryTest, SensorsWhoseClockBeganAnewAreSeen) {
+  LiveView page = view();
+  restore(page);
+  accel_t sample{};
+  for (int i = 0; i < 20 * kRate_hz; ++i) {
+    sample.time_us = i * kSecond_us / kRate_hz;
+    sample.sequence = i;
+    for (sample.node = 0; sample.node < 10; ++sample.node) {
+      const std::vector<std::uint8_t> bytes = drivers::encoded(sample);
+      page.message("ACCEL", bytes.data(), bytes.size());
+    }
+    if (i % 5 == 0) page.flush();
+  }
+  EXPECT_LT(json::parse(page.history_json())["silent_s"].get<double>(), 2);
 }
 
 TEST_F(StoredHistoryTest, PeaksAreThoseOfTheStoredMotion) {
