@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "drivers/base/file_problems.h"
-#include "drivers/base/unpacked_file.h"
+#include "drivers/base/gzip_input.h"
 
 namespace framewatch::drivers {
 
@@ -32,7 +32,7 @@ class LineReader {
   bool fail(const std::string& message);
 
   FileProblems& problems_;
-  UnpackedFile file_;
+  GzipInput file_;
   std::string buffer_;
   std::size_t begin_ = 0;
   std::int64_t number_ = 0;

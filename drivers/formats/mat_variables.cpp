@@ -116,13 +116,13 @@ MatFileReader::MatFileReader(FileProblems& problems) : state_(std::make_unique<S
   }
   std::string head(kMatHeaderBytes, '\0');
   if (state_->input.read(head.data(), std::ssize(head), 0) != std::ssize(head) ||
-      !is_mat_signature(head)) {
+      mat_level(head) == MatLevel::none) {
     problems.add(0, head.starts_with("\x1f\x8b")
                         ? "a MATLAB file is compressed in itself: unpack it first (gunzip)"
                         : "is no MATLAB file of level 5 or 7.3 (save it with -v7)");
     return;
   }
-  const bool is_hdf5 = head[124] == '\2' || head[125] == '\2';
+  const bool is_hdf5 = mat_level(head) == MatLevel::level_7_3;
   const auto count = is_hdf5 ? 0 : count_in_level_5(state_->input, head[126] == 'M');
   if (!count) {
     problems.add(0, "is damaged or cut off, or unpacks to too much");

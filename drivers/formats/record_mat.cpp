@@ -5,6 +5,9 @@
 
 #include <fmt/core.h>
 
+#include "drivers/base/input_file.h"
+#include "drivers/base/trial_process.h"
+#include "drivers/formats/mat_signature.h"
 #include "drivers/formats/mat_variables.h"
 #include "drivers/formats/record_formats.h"
 #include "drivers/formats/table_header.h"
@@ -204,9 +207,7 @@ void check_seconds(const std::string& title, Record& record, FileProblems& probl
       fmt::format("{} is taken as seconds: {:g} Hz", show_text(title), record.rate_hz));
 }
 
-}  // namespace
-
-std::optional<Record> read_mat(const RecordOptions& options, FileProblems& problems) {
+std::optional<Record> read_mat_table(const RecordOptions& options, FileProblems& problems) {
   MatFileReader file(problems);
   auto variables = file.variables(problems);
   if (!variables) return std::nullopt;
@@ -244,6 +245,38 @@ std::optional<Record> read_mat(const RecordOptions& options, FileProblems& probl
     check_seconds(columns[*chosen->time].title, *record, problems);
   if (problems.any()) return std::nullopt;
   return record;
+}
+
+bool is_hdf5_mat(InputFile& file) {
+  std::string head(kMatHeaderBytes, '\0');
+  return file.is_open() && file.read(head.data(), std::ssize(head), 0) == std::ssize(head) &&
+         mat_level(head) == MatLevel::level_7_3;
+}
+
+/// More than ten times what a good file takes.
+constexpr int kHdf5Least_s = 5, kHdf5BytesPerSecond = 2'000'000;
+
+/// libhdf5 does not survive every damaged file: one in some hundreds ends it, or never ends.
+bool hdf5_survives(const RecordOptions& options, const std::string& path, std::int64_t bytes) {
+  const auto attempt = [&] {
+    std::vector<Problem> unsaid;
+    FileProblems problems(path, unsaid);
+    (void)read_mat_table(options, problems);
+  };
+  const auto more_s = static_cast<int>(std::min<std::int64_t>(bytes / kHdf5BytesPerSecond, 3600));
+  return survives_apart(attempt, kHdf5Least_s + more_s);
+}
+
+}  // namespace
+
+std::optional<Record> read_mat(const RecordOptions& options, FileProblems& problems) {
+  InputFile file(problems.path());
+  if (is_hdf5_mat(file) && !hdf5_survives(options, problems.path(), file.size())) {
+    problems.add(0,
+                 "is damaged in a way that the library for such files (libhdf5) does not survive");
+    return std::nullopt;
+  }
+  return read_mat_table(options, problems);
 }
 
 }  // namespace framewatch::drivers

@@ -9,8 +9,8 @@
 
 #include <fmt/core.h>
 
+#include "drivers/base/gzip_input.h"
 #include "drivers/base/number_text.h"
-#include "drivers/base/unpacked_file.h"
 #include "drivers/formats/mat_signature.h"
 #include "drivers/stations/sac_header.h"
 
@@ -44,7 +44,7 @@ bool is_universal_file(std::string_view head) {
 }
 
 std::string bytes_of(FileProblems& problems) {
-  UnpackedFile file(problems.path());
+  GzipInput file(problems.path());
   std::string head(kSacHeaderBytes, '\0');
   const std::int64_t got = file.read(head.data(), std::ssize(head));
   if (!file.error().empty()) problems.add(0, file.error());
@@ -56,7 +56,7 @@ std::string bytes_of(FileProblems& problems) {
 
 std::optional<RecordFormat> format_by_signature(FileProblems& problems) {
   const std::string head = bytes_of(problems);
-  if (is_mat_signature(head)) return RecordFormat::mat;
+  if (mat_level(head) != MatLevel::none) return RecordFormat::mat;
   if (is_sac_header(head)) return RecordFormat::sac;
   if (head.size() >= 48 && MS_ISVALIDHEADER(head.data())) return RecordFormat::mseed;
   std::string what;

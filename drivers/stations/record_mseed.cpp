@@ -13,7 +13,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/unpacked_file.h"
+#include "drivers/base/gzip_input.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_merge.h"
 #include "drivers/stations/seed_trace.h"
@@ -122,7 +122,7 @@ class SeedRecords {
   }
 
   FileProblems& problems_;
-  UnpackedFile file_;
+  GzipInput file_;
   std::string buffer_;
   std::size_t at_ = 0;
   std::int64_t read_ = 0;

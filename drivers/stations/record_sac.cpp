@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/unpacked_file.h"
+#include "drivers/base/gzip_input.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/stations/sac_header.h"
 #include "drivers/stations/station_channel.h"
@@ -50,7 +50,7 @@ std::optional<double> start_of(const SacHeader& header, FileProblems& problems) 
   return *utc_s + 1e-3 * millisecond + header.number(SacFloat::begin_s).value_or(0);
 }
 
-std::optional<std::vector<double>> read_values(UnpackedFile& file, const SacHeader& header,
+std::optional<std::vector<double>> read_values(GzipInput& file, const SacHeader& header,
                                                double unit_mps2, FileProblems& problems) {
   const auto points = static_cast<std::size_t>(header.integer(SacInteger::points).value_or(0));
   if (points > RecordBuilder::kMaxValues) {
@@ -80,7 +80,7 @@ std::optional<std::vector<double>> read_values(UnpackedFile& file, const SacHead
 }  // namespace
 
 std::optional<Record> read_sac(const RecordOptions& options, FileProblems& problems) {
-  UnpackedFile file(problems.path());
+  GzipInput file(problems.path());
   std::string bytes(kSacHeaderBytes, '\0');
   const std::int64_t got = file.read(bytes.data(), std::ssize(bytes));
   const auto header = got == std::ssize(bytes) ? SacHeader::read(bytes) : std::nullopt;

@@ -8,13 +8,13 @@ struct gzFile_s;
 namespace framewatch::drivers {
 
 /// The bytes of a file, plain or gzip, from its beginning on.
-class UnpackedFile {
+class GzipInput {
  public:
-  UnpackedFile() = default;
-  explicit UnpackedFile(const std::string& path) { (void)open(path); }
-  ~UnpackedFile();
-  UnpackedFile(const UnpackedFile&) = delete;
-  UnpackedFile& operator=(const UnpackedFile&) = delete;
+  GzipInput() = default;
+  explicit GzipInput(const std::string& path) { (void)open(path); }
+  ~GzipInput();
+  GzipInput(const GzipInput&) = delete;
+  GzipInput& operator=(const GzipInput&) = delete;
 
   /// Once. False, with error(), when it cannot be opened.
   [[nodiscard]] bool open(const std::string& path);

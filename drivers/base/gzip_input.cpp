@@ -1,4 +1,4 @@
-#include "drivers/base/unpacked_file.h"
+#include "drivers/base/gzip_input.h"
 
 #include <zlib.h>
 
@@ -18,11 +18,11 @@ constexpr std::int64_t kMostOfGzread = std::int64_t{1} << 20;
 
 }  // namespace
 
-UnpackedFile::~UnpackedFile() {
+GzipInput::~GzipInput() {
   if (file_ != nullptr) gzclose(file_);
 }
 
-bool UnpackedFile::open(const std::string& path) {
+bool GzipInput::open(const std::string& path) {
   InputFile input;
   if (!input.open(path)) {
     error_ = "cannot be opened: " + input.error();
@@ -34,7 +34,7 @@ bool UnpackedFile::open(const std::string& path) {
   return file_ != nullptr;
 }
 
-std::int64_t UnpackedFile::read(void* to, std::int64_t bytes) {
+std::int64_t GzipInput::read(void* to, std::int64_t bytes) {
   std::int64_t done = 0;
   while (file_ != nullptr && error_.empty() && done < bytes) {
     errno = 0;
