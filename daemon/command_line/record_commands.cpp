@@ -126,6 +126,7 @@ void add_report(CommandList& commands) {
           ->add_option("--raw", arguments.raw,
                        "raw samples: LCM event logs and record files, in order of time")
           ->type_name("FILE"));
+  add_record_options(command, arguments.record);
   command->add_option("--title", arguments.title, "of the page");
   command->add_option("--test", arguments.test, "name of the test");
   command->add_option("--operator", arguments.operator_name, "who made it");

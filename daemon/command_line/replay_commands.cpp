@@ -134,6 +134,7 @@ void add_refine(CommandList& commands) {
                            ->add_option("LOG", arguments.inputs,
                                         "LCM event logs and record files (CSV), in order of time")
                            ->required());
+  add_record_options(command, arguments.record);
   command->add_option("--from", arguments.from_s, "seconds after the first sample")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
+#include "daemon/init/read_answers.h"
 #include "drivers/base/number_text.h"
 
 namespace framewatch::daemon {

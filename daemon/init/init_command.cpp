@@ -16,6 +16,7 @@
 #include "daemon/config/config_problems.h"
 #include "daemon/init/building_toml.h"
 #include "daemon/init/dialogue.h"
+#include "daemon/init/read_answers.h"
 #include "drivers/base/input_file.h"
 #include "drivers/base/standard_streams.h"
 #include "drivers/base/text_output.h"

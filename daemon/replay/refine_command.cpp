@@ -100,6 +100,7 @@ int refine(const RefineArguments& a) {
     return kBadInput;
   }
   ReplaySurvey survey(*config, false);
+  survey.declare(a.record);
   for (const std::string& path : a.inputs) survey.add(path);
   survey.finish();
   for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", printable_lines(note));

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/documents/record_file_arguments.h"
+
 namespace framewatch::daemon {
 
 struct RefineArguments {
@@ -12,6 +14,7 @@ struct RefineArguments {
   double to_s = -1;                 ///< since the first sample; negative: one window after from_s
   bool prior = true;
   bool json = false;
+  RecordFileArguments record = {};  ///< what record files do not say themselves
 };
 
 /// framewatch refine. Exit code: 0 refined, 1 not (status says why), 2 bad usage or input.

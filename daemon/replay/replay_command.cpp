@@ -61,9 +61,6 @@ std::vector<std::string> argument_problems(const ReplayArguments& a) {
   if (a.json && writes_standard_output(a))
     found.push_back("--json: standard output is taken by an output that is named -");
   if (!(a.span.to_s > a.span.from_s)) found.push_back("--to: must be later than --from");
-  std::vector<drivers::Problem> undeclared;
-  (void)record_options(a.record, undeclared);
-  for (const drivers::Problem& p : undeclared) found.push_back(p.where + ": " + p.message);
   if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog")))
     found.push_back("--boxplot: is for --out with .csv or .mat; a log always has them");
   return found;

@@ -42,12 +42,16 @@ void ReplaySurvey::fault(std::string message) {
 }
 
 void ReplaySurvey::declare(const RecordFileArguments& arguments) {
-  std::vector<drivers::Problem> told_before;
-  record_options_ = record_options(arguments, told_before);
+  std::vector<drivers::Problem> found;
+  record_options_ = record_options(arguments, found);
   declared_ = arguments.any();
+  misdeclared_ = !found.empty();
+  for (const drivers::Problem& p : found)
+    problems_.push_back(fmt::format("{}: {}", p.where, p.message));
 }
 
 void ReplaySurvey::add(const std::string& path) {
+  if (misdeclared_) return;
   if (const std::string why = drivers::why_no_file(path); !why.empty()) {
     problems_.push_back(fmt::format("{}: {}", path, why));
     return;
@@ -291,9 +295,9 @@ void ReplaySurvey::finish() {
     problems_.push_back("--from, --to: no sample of the input lies there");
   const bool only_logs = std::none_of(inputs_.begin(), inputs_.end(),
                                       [](const ReplayInput& input) { return input.is_record; });
-  if (only_logs && declared_)
-    problems_.push_back("--unit, --step and the like are for record files: a log says them itself");
   if (!only_logs || !problems_.empty()) return;
+  if (declared_)
+    problems_.push_back("--unit, --step and the like are for record files: a log says them itself");
   std::string names;
   for (const std::string& name : intake().binding().unbound())
     names += (names.empty() ? "" : ", ") + name;

@@ -40,7 +40,7 @@ class ReplaySurvey {
   /// salvage: damaged, undecodable and infinite input is noted and left out instead of refused.
   ReplaySurvey(const Config& config, bool salvage, ReplaySpan span = {});
 
-  /// What record files do not say themselves.
+  /// What record files do not say themselves. Nothing is read when it cannot be understood.
   void declare(const RecordFileArguments& arguments);
 
   /// From now on every sample is passed to `estimation` too, which must outlive the calls of add().
@@ -102,7 +102,7 @@ class ReplaySurvey {
   const Config& config_;
   bool salvage_;
   drivers::RecordOptions record_options_;
-  bool declared_ = false;
+  bool declared_ = false, misdeclared_ = false;
   ReplaySpan span_;
   bool spanned_;
   bool goes_on_ = false;

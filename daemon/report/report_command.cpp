@@ -41,6 +41,8 @@ std::string write_report(SessionReport r,
 int report(const ReportArguments& a) {
   if (!a.raw.empty() && a.config.empty())
     return refuse("report", "--raw needs --config, which says what the channels are");
+  if (a.raw.empty() && a.record.any())
+    return refuse("report", "--unit, --step and the like are for the record files of --raw");
   const std::string path = out_path(a);
   std::vector<std::string> inputs = a.raw;
   inputs.insert(inputs.end(), {a.estimates, a.config});
@@ -76,7 +78,7 @@ int report(const ReportArguments& a) {
     complain(a.config + ": describes another building than " + a.estimates);
   if (good && !a.raw.empty()) {
     std::vector<std::string> raw_problems;
-    r.motion = read_session_motion(*r.config, a.raw, raw_problems);
+    r.motion = read_session_motion(*r.config, a.raw, raw_problems, a.record);
     for (const std::string& p : raw_problems) complain(p);
   }
   if (!good || !estimates) return kBadInput;

@@ -13,6 +13,7 @@ struct ReportArguments {
   std::string out;               ///< empty: beside the log, .html
   std::string config;            ///< needed with raw
   std::vector<std::string> raw;  ///< logs and record files, in order of time
+  RecordFileArguments record;    ///< what such record files do not say themselves
   std::string title, test, operator_name, notes;
   std::string session;  ///< session.json of `framewatch record`; empty: none
   bool quiet = false;

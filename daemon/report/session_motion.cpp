@@ -105,8 +105,10 @@ Eigen::Index SessionMotion::row_at(std::int64_t time_us) const {
 
 std::optional<SessionMotion> read_session_motion(const Config& config,
                                                  const std::vector<std::string>& paths,
-                                                 std::vector<std::string>& problems) {
+                                                 std::vector<std::string>& problems,
+                                                 const RecordFileArguments& declared) {
   ReplaySurvey survey(config, true);
+  survey.declare(declared);
   for (const std::string& path : paths) survey.add(path);
   survey.finish();
   problems = survey.problems();

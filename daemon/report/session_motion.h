@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "daemon/config/config.h"
+#include "daemon/documents/record_file_arguments.h"
 
 namespace framewatch::daemon {
 
@@ -25,11 +26,12 @@ struct SessionMotion {
 };
 
 /// Reads raw samples (logs and record files, in order of time) as the estimator would see them.
-/// Damaged parts are left out and noted. Empty, with the problems, when they do not fit the
-/// configuration.
+/// Damaged parts are left out and noted. `declared`: what record files do not say themselves.
+/// Empty, with the problems, when they do not fit the configuration.
 std::optional<SessionMotion> read_session_motion(const Config& config,
                                                  const std::vector<std::string>& paths,
-                                                 std::vector<std::string>& problems);
+                                                 std::vector<std::string>& problems,
+                                                 const RecordFileArguments& declared = {});
 
 /// quiet: nothing moves; forced: the base moves; free: the base rests and the building still moves.
 enum class StageKind { quiet, forced, free };

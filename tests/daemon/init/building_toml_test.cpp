@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/init/draft.h"
+#include "daemon/init/read_answers.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/support/config_fixture.h"
 

@@ -138,6 +138,13 @@ TEST_F(NewUsersWay, WhatTheRecordDoesNotSayIsGivenToReplayToo) {
       << said.out;
   EXPECT_EQ(shell("$F replay building.toml logger.csv").status, 2);
   EXPECT_EQ(shell("$F replay building.toml logger.csv --unit g --out estimates.lcmlog").status, 0);
+  EXPECT_EQ(shell("$F report estimates.lcmlog --config building.toml --raw logger.csv").status, 2);
+  EXPECT_EQ(
+      shell("$F report estimates.lcmlog --config building.toml --raw logger.csv --unit g").status,
+      0);
+  EXPECT_EQ(shell("$F refine building.toml logger.csv --unit g --from 20").status, 0);
+  EXPECT_EQ(shell("$F replay building.toml logger.csv --unit furlong").err,
+            "--unit: 'furlong' is not g, mg, gal or mps2, nor a number of m/s^2\n");
   const test::ShellResult log = shell(
       "$F convert logger.csv --unit g --config building.toml l.lcmlog; "
       "$F replay building.toml l.lcmlog --unit g");
