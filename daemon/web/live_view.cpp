@@ -249,7 +249,8 @@ void LiveView::flush() {
     ring_.push("alive", "{}");
   }
   if (!newest_) return;
-  if (std::exchange(new_estimate_, false)) push("estimate", estimate_json(*newest_));
+  if (std::exchange(new_estimate_, false))
+    push("estimate", estimate_json(*newest_, config_.pipeline.options.min_snr));
   if (flushes_ % kFlushesPerBoxplot != 0) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (const std::string boxes = history_.boxes_json(); !boxes.empty()) push_if_new("boxes", boxes);
