@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "drivers/base/bytes_read.h"
 #include "drivers/base/input_file.h"
 #include "drivers/base/unpack_limit.h"
 
@@ -51,8 +52,10 @@ bool LineReader::fill() {
   const std::size_t kept = buffer_.size();
   buffer_.resize(kept + kReadBytes);
   errno = 0;
+  const z_off_t before = gzoffset(file_);
   const int got = gzread(file_, buffer_.data() + kept, kReadBytes);
   buffer_.resize(kept + static_cast<std::size_t>(std::max(got, 0)));
+  count_bytes_read(gzoffset(file_) - before);
   unpacked_bytes_ += std::max(got, 0);
   if (gzdirect(file_) == 0 && unpacked_bytes_ > unpack_limit(packed_bytes_))
     return fail(over_unpack_limit(packed_bytes_));
