@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include <fmt/core.h>
 
+#include "drivers/base/bytes_read.h"
 #include "drivers/base/caught.h"
 
 namespace framewatch::daemon {
@@ -46,6 +48,32 @@ void ProgressLine::operator()(const std::string& what, double share) {
   const std::lock_guard lock(mutex_);
   what_ = what;
   share_ = std::min(share, 1.0);
+  followed_ = nullptr;
+}
+
+void ProgressLine::follow(const std::string& what, std::function<double()> share) {
+  if (!is_on()) return;
+  const std::lock_guard lock(mutex_);
+  what_ = what;
+  share_ = 0;
+  followed_ = std::move(share);
+  start_ = Clock::now();
+}
+
+void ProgressLine::follow_reading(const std::string& what, const std::vector<std::string>& paths,
+                                  int times) {
+  std::int64_t bytes = 0;
+  bool known = true;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    known = known && !error && !path.ends_with(".zst");
+    if (!error) bytes += static_cast<std::int64_t>(size);
+  }
+  const double all = known ? static_cast<double>(times * bytes) : 0;
+  follow(what, [all, before = drivers::bytes_read()] {
+    return all > 0 ? static_cast<double>(drivers::bytes_read() - before) / all : 0;
+  });
 }
 
 void ProgressLine::part_begins() {
@@ -70,6 +98,7 @@ void ProgressLine::draw(const std::stop_token& stop) {
   const auto stopped = [&] { return stop.stop_requested(); };
   for (auto pause = kFirst; !wake_.wait_for(lock, stop, pause, stopped); pause = kBetween) {
     if (what_.empty()) continue;
+    if (followed_) share_ = std::min(followed_(), 1.0);
     const std::string line = "\r\033[K" + text();
     shown_ = true;
     (void)std::fputs(line.c_str(), stderr);

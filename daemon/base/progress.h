@@ -3,10 +3,12 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 namespace framewatch::daemon {
 
@@ -26,6 +28,11 @@ class ProgressLine {
   bool is_on() const { return drawing_.joinable(); }
   /// share: of the whole that is done, 0..1; 0: not known, and nothing is said of the time left.
   void operator()(const std::string& what, double share);
+  /// From now on the share is asked for whenever the line is drawn, by its thread.
+  void follow(const std::string& what, std::function<double()> share);
+  /// How much of these files this process has read, each `times` over. A zstd file does not say how
+  /// much is in it, and nothing is said of the time left.
+  void follow_reading(const std::string& what, const std::vector<std::string>& paths, int times);
   /// From now on shares are of another whole, which begins now.
   void part_begins();
   double elapsed_s() const;  ///< of the part
@@ -40,6 +47,7 @@ class ProgressLine {
   std::condition_variable_any wake_;
   std::string what_;
   double share_ = 0;
+  std::function<double()> followed_;
   Clock::time_point start_ = Clock::now();
   bool shown_ = false;
   std::jthread drawing_;

@@ -163,13 +163,17 @@ std::string fish_quoted(const std::string& text) {
 std::string fish_script(const std::vector<CommandEntry>& commands) {
   std::string out =
       "# Completion of framewatch for fish: made by `framewatch completion fish`.\n"
+      "function __framewatch_command_is\n"
+      "  set -l words (commandline -opc)\n"
+      "  test (count $words) -gt 1; and test $words[2] = $argv[1]\n"
+      "end\n"
       "complete -c framewatch -n __fish_use_subcommand -f -l help -d 'the commands'\n"
       "complete -c framewatch -n __fish_use_subcommand -f -l version -d 'its version'\n";
   for (const CommandEntry& command : commands) {
     out += fmt::format("complete -c framewatch -n __fish_use_subcommand -f -a {} -d {}\n",
                        command.name, fish_quoted(command.purpose));
     const std::string begin =
-        fmt::format("complete -c framewatch -n '__fish_seen_subcommand_from {}'", command.name);
+        fmt::format("complete -c framewatch -n '__framewatch_command_is {}'", command.name);
     out += begin + " -f -l help -d 'how it is used'\n";
     for (const OptionEntry& option : command.options) {
       const std::string words =

@@ -22,7 +22,7 @@ void add_demo(CommandList& commands) {
       ->type_name("INTERFACE");
   command->footer(
       "After 20 s one frame loses 15 % of its stiffness; the page says which, how much, how sure.\n"
-      "Example: framewatch demo --seconds 60 --report demo.html");
+      "Example: framewatch demo --seconds 40 --report demo.html");
   CLI::Option* report = command->add_option("--report", arguments.report,
                                             "page to write about it at the end (demo.html)");
   report->expected(0, 1)->type_name("[FILE]");
@@ -76,7 +76,7 @@ void add_serve(CommandList& commands) {
       "address that others can reach needs a token of your own, in a file.\n"
       "Examples:\n"
       "  framewatch serve configs/table_two_story.toml\n"
-      "  framewatch serve b.toml --address 192.168.1.7 --token-file /etc/framewatch/token");
+      "  framewatch serve b.toml --address 192.168.1.7 --token-file token");
   add_config(commands, command, arguments.config);
   add_url(command, arguments.url);
   command->add_option("--address", arguments.address, "IP address to listen on")
@@ -133,7 +133,8 @@ void add_acknowledge(CommandList& commands) {
       "Exit status: 0 acknowledged, 1 no such event is raised, 2 no answer, or bad usage or\n"
       "configuration. It takes the right to tell the daemon: its user, or the group of its "
       "socket.\n"
-      "Example: framewatch acknowledge 3 --comment 'a loose sensor, fixed tomorrow'");
+      "Example: framewatch acknowledge 3 building.toml --comment \"a loose sensor, fixed "
+      "tomorrow\"");
   command->add_option("EVENT", arguments.event, "number of the event, or all")->required();
   add_installed_config(command, arguments.config);
   command->add_option("--comment", arguments.comment, "what is known of it");

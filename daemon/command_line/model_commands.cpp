@@ -106,7 +106,7 @@ void add_reproduce(CommandList& commands) {
       "stand in.\n"
       "Cases: table1, table2b, table2c, table2d, noise, denoise, table-test.\n"
       "Exit status: 0 written and every promise kept, 1 one not kept, 2 bad usage.\n"
-      "Example: framewatch reproduce --case table1 --out /tmp/paper");
+      "Example: framewatch reproduce --case table1 --out paper");
   command->add_option("--out", arguments.out, "folder for what is written")
       ->required()
       ->type_name("DIR");
@@ -130,8 +130,9 @@ void add_diagnose(CommandList& commands) {
       "a\n"
       "gap remains, 2 bad usage, configuration or input.\n"
       "Examples:\n"
-      "  framewatch diagnose building.toml --train monday.csv --holdout tuesday.csv --out d\n"
-      "  framewatch diagnose building.toml --event 1795291200000000 --out d");
+      "  framewatch diagnose building.toml --train monday.csv --holdout tuesday.csv --out "
+      "diagnosis\n"
+      "  framewatch diagnose building.toml --event 1795292291750000 --out d");
   add_config(commands, command, arguments.config);
   commands.reads_files(
       command->add_option("--train", arguments.train, "record files and LCM event logs")

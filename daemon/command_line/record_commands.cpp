@@ -54,9 +54,9 @@ void add_record(CommandList& commands) {
       "--standby it waits for the live page, or for --send from another terminal.\n"
       "Exit status: 0 recorded and reported, 1 not everything, 2 bad usage or configuration.\n"
       "Examples:\n"
-      "  framewatch record table.toml --test \"El Centro 30 %\" --operator me --seconds 60\n"
-      "  framewatch record table.toml --test sweep --trigger 0.2 --pre-trigger 5 --seconds 60\n"
-      "  framewatch record table.toml --standby --out /data/sessions\n"
+      "  framewatch record table.toml --test \"El Centro 30 %\" --operator me --seconds 20\n"
+      "  framewatch record table.toml --test sweep --trigger 0.2 --pre-trigger 5 --seconds 20\n"
+      "  framewatch record table.toml --standby --out sessions\n"
       "  framewatch record table.toml --send start --test sweep");
   add_config(commands, command, arguments.config);
   add_url(command, arguments.url);

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/log.h"
+#include "daemon/base/progress.h"
 #include "daemon/config/config.h"
 #include "daemon/estimates/estimates_csv.h"
 #include "daemon/simulation/simulation_output.h"
@@ -30,6 +31,7 @@ using drivers::Record;
 using Problems = std::vector<Problem>;
 
 constexpr double kRateTolerance = 0.02;
+constexpr std::size_t kProgressRows = 1 << 14;
 constexpr std::int64_t kMaxStartUs = 4'000'000'000'000'000;
 
 bool is_csv(const std::string& path) {
@@ -195,13 +197,18 @@ std::string no_choice(const drivers::LogContents& contents, const std::string& a
   return "say with --channel which to convert; " + channels;
 }
 
-void write_csv(const std::string& out, const Record& record, Problems& problems) {
+void write_csv(const std::string& out, const Record& record, ProgressLine& progress,
+               Problems& problems) {
+  progress.part_begins();
   drivers::RecordCsvWriter file;
   bool good = file.open(out, record.names);
   std::vector<double> row(record.names.size());
   for (std::size_t i = 0; good && i < record.time_s.size(); ++i) {
     for (std::size_t c = 0; c < row.size(); ++c) row[c] = record.accel_mps2[c][i];
     good = file.write(record.time_s[i], row);
+    if (i % kProgressRows == 0)
+      progress("writing " + out,
+               static_cast<double>(i) / static_cast<double>(record.time_s.size()));
   }
   if (!good || !file.close()) problems.push_back({out, file.error()});
 }
@@ -231,7 +238,7 @@ void denoise(Record& record, Problems& problems) {
                                      denoising.norm_ratio));
 }
 
-void convert_log(const ConvertArguments& a, Problems& problems) {
+void convert_log(const ConvertArguments& a, ProgressLine& progress, Problems& problems) {
   const std::string& in = a.inputs[0];
   if (a.inputs.size() > 1) problems.push_back({in, "an event log is converted alone"});
   if (!is_csv(a.out)) problems.push_back({a.out, "an event log is converted to .csv or .csv.gz"});
@@ -240,6 +247,7 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
                         "--config, --start-us and what says how a record is to be read are for "
                         "records, not for event logs"});
   if (!problems.empty()) return;
+  progress.follow_reading("looking what is in " + in, a.inputs, 1);
   const auto contents = drivers::log_contents(in, problems);
   if (!contents) return;
   const std::string accel = chosen(contents->accel, a.channel);
@@ -252,10 +260,12 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
   if (!estimates.empty()) {
     if (a.denoise) problems.push_back({"--denoise", "is for accelerations; this log has none"});
     if (!problems.empty()) return;
+    progress.follow_reading("converting " + in, a.inputs, 2);
     write_estimates_csv(in, estimates, a.boxplot, a.out, problems);
     return;
   }
   if (a.boxplot) problems.push_back({"--boxplot", "is for estimates; this log has none"});
+  progress.follow_reading("reading " + in, a.inputs, 1);
   auto record = drivers::read_accel_log(in, accel, problems);
   Problems impossible;  // a log cannot be mended by hand: it is converted, and told
   if (record) look_at(*record, in, {}, impossible);
@@ -264,10 +274,10 @@ void convert_log(const ConvertArguments& a, Problems& problems) {
   if (record && a.denoise) denoise(*record, problems);
   if (!record || !problems.empty()) return;
   report(*record);
-  write_csv(a.out, *record, problems);
+  write_csv(a.out, *record, progress, problems);
 }
 
-void convert_records(const ConvertArguments& a, Problems& problems) {
+void convert_records(const ConvertArguments& a, ProgressLine& progress, Problems& problems) {
   if (a.boxplot) problems.push_back({"--boxplot", "is for event logs of estimates"});
   if (!problems.empty()) return;
   std::optional<Config> config;
@@ -277,6 +287,8 @@ void convert_records(const ConvertArguments& a, Problems& problems) {
     for (const ConfigProblem& p : found) problems.push_back({p.where, p.message});
   }
   bool devices = false;
+  progress.follow_reading(a.inputs.size() == 1 ? "reading " + a.inputs[0] : "reading the records",
+                          a.inputs, 1);
   auto record = read_merged(a, config, devices, problems);
   if (!record) return;
   auto where = numbered(*record, devices, a.channel);
@@ -286,10 +298,13 @@ void convert_records(const ConvertArguments& a, Problems& problems) {
   report(*record);
   if (is_csv(a.out)) {
     for (double& time : record->time_s) time += static_cast<double>(a.start_us) / 1e6;
-    write_csv(a.out, *record, problems);
+    write_csv(a.out, *record, progress, problems);
     return;
   }
-  const std::string error = drivers::write_accel_log(a.out, *record, where, a.start_us);
+  progress.part_begins();
+  const std::string error =
+      drivers::write_accel_log(a.out, *record, where, a.start_us,
+                               [&](double share) { progress("writing " + a.out, share); });
   if (!error.empty()) problems.push_back({a.out, error});
 }
 
@@ -299,10 +314,11 @@ int convert(const ConvertArguments& arguments) {
   Problems problems;
   check_arguments(arguments, problems);
   if (problems.empty()) {
+    ProgressLine progress("convert", false);
     if (std::any_of(arguments.inputs.begin(), arguments.inputs.end(), is_log))
-      convert_log(arguments, problems);
+      convert_log(arguments, progress, problems);
     else
-      convert_records(arguments, problems);
+      convert_records(arguments, progress, problems);
   }
   for (const Problem& problem : problems)
     log(LogLevel::error, fmt::format("{}: {}", problem.where, problem.message));

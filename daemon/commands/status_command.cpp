@@ -20,6 +20,7 @@
 #include "daemon/config/config.h"
 #include "daemon/config/config_problems.h"
 #include "daemon/config/sections/sections.h"
+#include "daemon/findings/finding.h"
 #include "daemon/service/health.h"
 #include "daemon/service/unit_state.h"
 #include "drivers/lcm/lcm_source.h"
@@ -165,17 +166,18 @@ void print_reception(const Heard& h) {
   if (!dropped.empty()) line("dropped", fmt::format("{}", fmt::join(dropped, ", ")));
 }
 
-void print_known(const Heard& h, std::int64_t now_us) {
+void print_known(const Heard& h, const Config& config, std::int64_t now_us) {
   const service_t& s = *h.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i) {
     const auto at = acknowledgement_of(h, s.event_id[i]);
     if (!at) continue;
     const acknowledged_t& a = *h.acknowledged;
     const std::string comment = a.comment[*at].empty() ? "" : ": " + a.comment[*at];
-    line("known", fmt::format("{} {}: {} (event {}, acknowledged {} ago by {}{})", s.event_kind[i],
-                              s.event_place[i], s.event_message[i], s.event_id[i],
-                              span_text(1e-6 * static_cast<double>(now_us - a.since_us[*at])),
-                              a.who[*at], comment));
+    line("known",
+         fmt::format("{} ({}, event {}, acknowledged {} ago by {}{})",
+                     finding_of(raised_event(s, i), config).text, s.event_kind[i], s.event_id[i],
+                     span_text(1e-6 * static_cast<double>(now_us - a.since_us[*at])), a.who[*at],
+                     comment));
   }
 }
 
@@ -204,7 +206,7 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   print_can(h);
   print_history(h);
   print_actions(h);
-  print_known(h, now_us);
+  print_known(h, config, now_us);
   for (const std::string& sentence : odd) line("odd", sentence);
 }
 
@@ -323,7 +325,8 @@ int status_command(const StatusArguments& a) {
   }
   const std::int64_t now_us = host_clock_us();
   if (wrong) config->sha256 = heard.service->config_sha256;  // what is wrong is said once
-  std::vector<std::string> odd = oddities(heard, *config, now_us);
+  const auto words = [&](const event_t& e) { return finding_of(e, *config).text; };
+  std::vector<std::string> odd = oddities(heard, *config, now_us, words);
   if (wrong)
     odd.push_back(
         fmt::format("its configuration file is wrong now, it goes on with what it had "

@@ -7,8 +7,9 @@
 
 namespace framewatch::daemon {
 
-EstimateSeries::EstimateSeries(const estimator::ParameterTable& table, bool with_errors)
-    : with_errors_(with_errors) {
+EstimateSeries::EstimateSeries(const estimator::ParameterTable& table, bool with_errors,
+                               double min_snr)
+    : with_errors_(with_errors), min_snr_(min_snr) {
   for (int i = 0; i < table.size(); ++i)
     parameters_.push_back({table[i].name, table[i].unit, table[i].kind, {}, {}, {}});
 }
@@ -22,7 +23,8 @@ void EstimateSeries::add(const estimator::WindowEstimate& estimate) {
     series.value.push_back(observable ? estimate.value[i] : kNone);
     if (with_errors_)
       series.std_error.push_back(static_cast<float>(observable ? estimate.std_error[i] : kNone));
-    ++series.reasons.at(static_cast<std::size_t>(estimate.reason[i]));
+    const int reason = told_reason(static_cast<int>(estimate.reason[i]), estimate.snr[i], min_snr_);
+    ++series.reasons.at(static_cast<std::size_t>(reason));
   }
 }
 

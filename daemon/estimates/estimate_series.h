@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "daemon/estimates/estimate_table.h"
 #include "estimator/identify/estimate/estimate.h"
+#include "estimator/setup/options.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
@@ -14,17 +16,18 @@ namespace framewatch::daemon {
 /// The main window's estimates of a whole replay, parameter by parameter.
 class EstimateSeries {
  public:
-  /// with_errors: keeps standard errors too.
-  EstimateSeries(const estimator::ParameterTable& table, bool with_errors);
+  /// with_errors: keeps standard errors too. min_snr: estimator.min_snr.
+  EstimateSeries(const estimator::ParameterTable& table, bool with_errors,
+                 double min_snr = estimator::EstimatorOptions{}.min_snr);
 
   void add(const estimator::WindowEstimate& estimate);
 
   struct Series {
     std::string name, unit;
     estimator::ParameterKind kind;
-    std::vector<double> value;              ///< per window, SI; NaN where it is not observable
-    std::vector<float> std_error;           ///< likewise
-    std::array<std::int64_t, 6> reasons{};  ///< windows by Observability
+    std::vector<double> value;     ///< per window, SI; NaN where it is not observable
+    std::vector<float> std_error;  ///< likewise
+    std::array<std::int64_t, kReasons> reasons{};  ///< windows by told_reason()
   };
   const std::vector<Series>& parameters() const { return parameters_; }
   const std::vector<std::int64_t>& end_us() const { return end_us_; }
@@ -46,6 +49,7 @@ class EstimateSeries {
 
  private:
   bool with_errors_;
+  double min_snr_;
   std::vector<Series> parameters_;
   std::vector<std::int64_t> end_us_;
 };

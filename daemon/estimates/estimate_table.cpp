@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "estimator/setup/options.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
@@ -17,6 +18,8 @@ bool is_stiffness(int kind) {
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.5g}", value) : std::string("-");
 }
+
+const double kMinSnr = estimator::EstimatorOptions{}.min_snr;  // of the demo, which sets none
 
 bool has_value(const window_estimate_t& e, std::size_t i) {
   return i < e.value.size() && i < e.reason.size() && e.reason[i] == 0 && std::isfinite(e.value[i]);
@@ -38,6 +41,8 @@ const char* reason_word(int reason) {
       return "plan symmetric";
     case 5:
       return "channel lost";
+    case kTooUncertain:
+      return "too uncertain";
     default:
       return "?";
   }
@@ -80,8 +85,10 @@ std::vector<std::string> estimate_table(const parameter_table_t& table, const wi
         known ? number(unit * e.value[i]) : "-",
         known ? fmt::format("{:+.2f}", 100 * (e.value[i] / truth[i] - 1)) : "-",
         known && i < e.std_error.size() ? fmt::format("{:.2g}", unit * e.std_error[i]) : "-",
-        i < e.reason.size() ? reason_word(e.reason[i]) : "-", quartile(e.q1), quartile(e.median),
-        quartile(e.q3)));
+        i < e.reason.size() && i < e.snr.size()
+            ? reason_word(told_reason(e.reason[i], static_cast<double>(e.snr[i]), kMinSnr))
+            : "-",
+        quartile(e.q1), quartile(e.median), quartile(e.q3)));
   }
   return lines;
 }

@@ -31,7 +31,18 @@ std::vector<std::string> estimate_table(const framewatch::parameter_table_t& tab
                                         const framewatch::window_estimate_t& estimate,
                                         const std::vector<double>& truth);
 
-/// "ok", "warming up", "quiet", "floor too stiff", "plan symmetric", "channel lost".
+/// The reasons of window_estimate_t, and one more that follows from them: its element moves enough,
+/// but what the window says of it is too uncertain: it contradicts the other channels, or cannot be
+/// told from another element.
+inline constexpr int kTooUncertain = 6, kReasons = 7;
+
+/// reason of a parameter that has so much regressor energy (snr); min_snr: estimator.min_snr.
+constexpr int told_reason(int reason, double snr, double min_snr) {
+  return reason == 2 && snr > min_snr ? kTooUncertain : reason;
+}
+
+/// "ok", "warming up", "quiet", "floor too stiff", "plan symmetric", "channel lost", "too
+/// uncertain".
 const char* reason_word(int reason);
 
 }  // namespace framewatch::daemon

@@ -8,9 +8,11 @@
 
 #include <fmt/core.h>
 
+#include "daemon/estimates/estimate_table.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/numeric/nan.h"
+#include "estimator/setup/options.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -78,12 +80,13 @@ class Reader {
       const bool known = e->reason[p] == 0 && std::isfinite(e->value[p]);
       session_.value[p].push_back(known ? e->value[p] : estimator::kNaN);
       session_.std_error[p].push_back(known ? e->std_error[p] : estimator::kNaN);
-      session_.reason[p].push_back(static_cast<std::uint8_t>(
-          std::clamp<std::int32_t>(e->reason[p], 0, SessionEstimates::kReasons - 1)));
+      const int reason = told_reason(e->reason[p], static_cast<double>(e->snr[p]), min_snr_);
+      session_.reason[p].push_back(static_cast<std::uint8_t>(std::clamp(reason, 0, kReasons - 1)));
     }
   }
 
   SessionEstimates& session_;
+  const double min_snr_ = estimator::EstimatorOptions{}.min_snr;  // the log does not say it
   std::string channel_;
   bool has_table_ = false;
   std::size_t notes_ = 0;

@@ -18,13 +18,11 @@ namespace framewatch::daemon {
 /// The estimates of one session, of the main window only. Parameters in the order of the
 /// table, windows in the order of the log.
 struct SessionEstimates {
-  static constexpr std::size_t kReasons = 6;  ///< values of Observability
-
   parameter_table_t table{};  ///< the first one: its design is the one the estimator began with
   std::vector<std::int64_t> start_us, end_us;  ///< sensor time
   std::vector<double> residual_ratio;
   std::vector<std::vector<double>> value, std_error;  ///< [parameter][window], SI; NaN: none
-  std::vector<std::vector<std::uint8_t>> reason;      ///< [parameter][window]: Observability
+  std::vector<std::vector<std::uint8_t>> reason;      ///< [parameter][window]: told_reason()
   std::optional<status_t> status;                     ///< the last one
   std::vector<event_t> events;
   std::vector<std::string> notes;  ///< damage that was left out, for the person

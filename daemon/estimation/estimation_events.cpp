@@ -8,6 +8,7 @@
 
 #include "daemon/base/utc_time.h"
 #include "daemon/config/gap_model.h"
+#include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
 
 namespace framewatch::daemon {
@@ -28,8 +29,9 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
   m.unit = "%";
   m.message = alarm.state == estimator::AlarmState::cleared
                   ? fmt::format("{} is at its baseline again", name)
-                  : fmt::format("{} is {:.1f} % (+-{:.1f} %) {} its baseline since {}", name,
-                                std::abs(change), error, change < 0 ? "below" : "above",
+                  : fmt::format("{}, since {}",
+                                change_sentence(table[alarm.parameter], alarm.change.ratio,
+                                                alarm.change.std_error),
                                 sensor_time_text(m.since_us));
   return m;
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -21,25 +22,17 @@ bool is_channel(const Config& config, const std::string& place) {
   return std::any_of(axes.begin(), axes.end(), [&](const auto& a) { return a.name == place; });
 }
 
-std::string sure_words(double errors) {
-  return errors > 100 ? "more than 100 times its uncertainty"
-                      : fmt::format("{:.0f} times its uncertainty", errors);
-}
-
 void describe_change(Finding& f, const Config& config) {
-  const std::string where = place_words(config, f.place);
+  const estimator::ParameterTable table(config.pipeline.structure);
+  const auto at = table.find(f.place);
   f.kind = FindingKind::change;
   f.advice = fmt::format(
       "Have a structural engineer look at {} before the building is used as before; then "
       "acknowledge "
       "the finding.",
-      where);
-  if (!std::isfinite(f.change_ratio) || !(f.std_error > 0)) return;  // its message says it
-  f.text = fmt::format("{} ({}) {} {} of its stiffness, give or take {}: {}.", where, f.place,
-                       f.change_ratio < 0 ? "has lost" : "has gained",
-                       percent_words(std::abs(f.change_ratio), f.std_error),
-                       percent_words(f.std_error, f.std_error),
-                       sure_words(std::abs(f.change_ratio) / f.std_error));
+      at ? place_words(table[*at]) : f.place);
+  if (!at || !std::isfinite(f.change_ratio) || !(f.std_error > 0)) return;  // its message says it
+  f.text = change_sentence(table[*at], f.change_ratio, f.std_error) + ".";
 }
 
 void describe_strong_motion(Finding& f) {
@@ -67,24 +60,6 @@ void describe_channel(Finding& f, const std::string& kind) {
 }
 
 }  // namespace
-
-std::string place_words(const Config& config, const std::string& parameter) {
-  const estimator::Structure& s = config.pipeline.structure;
-  const estimator::ParameterTable table(s);
-  const auto at = table.find(parameter);
-  if (!at) return parameter;
-  const estimator::Parameter& p = table[*at];
-  return p.frame >= 0
-             ? fmt::format("story {}, frame {}", p.story, s.frame_name(p.frame))
-             : fmt::format("floor {}, panel {}", p.story, p.name.substr(p.name.rfind('_') + 1));
-}
-
-std::string percent_words(double ratio, double std_error) {
-  const double error = 100 * std::abs(std_error);
-  const int digits =
-      error > 0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(error))), 0, 2) : 1;
-  return fmt::format("{:.{}f} %", 100 * ratio, digits);
-}
 
 Finding finding_of(const event_t& e, const Config& config) {
   Finding f;

@@ -31,10 +31,6 @@ struct Finding {
   std::string who;  ///< acknowledged it, where that is known
 };
 
-/// "story 1, frame y2", "floor 2, panel x1y1"; the name itself when it is no parameter's.
-std::string place_words(const Config& config, const std::string& parameter);
-/// "0.83 %", "15 %": with as many digits as an error of that size deserves.
-std::string percent_words(double ratio, double std_error);
 /// Of an event that is raised or changed.
 Finding finding_of(const event_t& event, const Config& config);
 

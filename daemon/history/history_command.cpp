@@ -7,6 +7,7 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
+#include "daemon/base/progress.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/history/history_files.h"
 #include "daemon/history/history_overview.h"
@@ -28,13 +29,24 @@ void print_events(const HistoryRequest& r, SummaryQuery& summaries) {
   for (const auto& [time_us, text] : lines) fmt::print("{}\n", printable(text));
 }
 
+std::vector<NamedSummaries> read_summaries(const HistoryRequest& r, SummaryQuery& summaries) {
+  std::vector<NamedSummaries> out;
+  ProgressLine progress("history", false);
+  for (const SummaryParameter& p : r.parameters) {
+    progress("reading " + printable(p.name),
+             static_cast<double>(out.size()) / static_cast<double>(r.parameters.size()));
+    out.push_back({p, summaries.rows(p.id, r.period_s, r.from_us, r.to_us)});
+  }
+  return out;
+}
+
 void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries,
                     std::vector<std::string>& problems) {
-  std::vector<NamedSummaries> found;
-  for (const SummaryParameter& p : r.parameters)
-    found.push_back({p, summaries.rows(p.id, r.period_s, r.from_us, r.to_us)});
+  const std::vector<NamedSummaries> found = read_summaries(r, summaries);
   if (!summaries.problem().empty()) return;  // what was read is not all
   if (!a.out.empty()) {
+    ProgressLine progress("history", false);
+    progress("writing " + a.out, 0);
     if (const std::string why = write_summaries(a.out, r.period_s, found); !why.empty())
       problems.push_back(why);
     return;

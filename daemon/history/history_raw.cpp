@@ -1,6 +1,7 @@
 #include "daemon/history/history_raw.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -8,13 +9,17 @@
 #include <fmt/core.h>
 
 #include "daemon/base/printable.h"
+#include "daemon/base/progress.h"
 #include "daemon/history/raw_export.h"
 #include "daemon/history/raw_history_reader.h"
 #include "daemon/simulation/simulation_output.h"
+#include "drivers/base/standard_streams.h"
 #include "drivers/lcm/count_block.h"
 
 namespace framewatch::daemon {
 namespace {
+
+constexpr std::int64_t kProgressSamples = 1 << 14;
 
 class RawJob {
  public:
@@ -23,6 +28,7 @@ class RawJob {
       : a_(arguments), request_(request), problems_(problems) {}
 
   void run() {
+    (*progress_)("looking what there is", 0);
     const std::vector<RawLog> logs =
         raw_logs_between(request_.directory, request_.from_us, request_.to_us);
     // What is in them first: an export has all of its channels from the start.
@@ -57,6 +63,8 @@ class RawJob {
     const auto out =
         raw_export(a_.raw, channels, rate_hz, resolution_mps2, {a_.network, a_.station}, why);
     if (!out) return fails();
+    expected_ = samples;
+    progress_->part_begins();
     write_raw(logs, names, *out);
   }
 
@@ -76,7 +84,7 @@ class RawJob {
   void write_raw(const std::vector<RawLog>& logs, const std::vector<std::string>& names,
                  RawExport& out) {
     std::vector<std::optional<std::size_t>> place;  // by the log's channel
-    std::int64_t samples = 0, beyond = 0;
+    std::int64_t seen = 0, samples = 0, beyond = 0;
     bool good = true;
     std::vector<std::string> notes;
     std::string why;
@@ -88,6 +96,9 @@ class RawJob {
               place[i] = static_cast<std::size_t>(at - names.begin());
         },
         [&](const RawCount& c) {
+          if (++seen % kProgressSamples == 0)
+            (*progress_)("writing " + a_.raw,
+                         static_cast<double>(seen) / static_cast<double>(expected_));
           if (!good || !place[c.channel]) return;
           ++samples;
           beyond += c.count == drivers::kMostCount || c.count == -drivers::kMostCount;
@@ -102,15 +113,19 @@ class RawJob {
       problem(read ? fmt::format("{}: {}", a_.raw, out.error()) : why);
       return;
     }
-    fmt::print("{}: {} samples of {} channels\n", a_.raw, samples, names.size());
-    if (beyond > 0) fmt::print("{} of them are beyond what was stored\n", beyond);
-    for (const std::string& note : notes) fmt::print("{}\n", printable_lines(note));
-    for (const std::string& note : out.notes()) fmt::print("{}\n", printable_lines(note));
+    progress_.reset();
+    std::FILE* const where = a_.raw == drivers::kStandardOutput ? stderr : stdout;
+    fmt::print(where, "{}: {} samples of {} channels\n", a_.raw, samples, names.size());
+    if (beyond > 0) fmt::print(where, "{} of them are beyond what was stored\n", beyond);
+    for (const std::string& note : notes) fmt::print(where, "{}\n", printable_lines(note));
+    for (const std::string& note : out.notes()) fmt::print(where, "{}\n", printable_lines(note));
   }
 
   const HistoryArguments& a_;
   const HistoryRequest& request_;
   std::vector<std::string>& problems_;
+  std::int64_t expected_ = 0;  ///< samples of every channel
+  std::optional<ProgressLine> progress_{std::in_place, "history", false};
 };
 
 }  // namespace

@@ -24,6 +24,7 @@
 #include "daemon/service/open_lcm.h"
 #include "daemon/service/service_manager.h"
 #include "daemon/service/start_count.h"
+#include "drivers/base/cut_off_file.h"
 #include "drivers/base/input_file.h"
 
 namespace framewatch::daemon {
@@ -90,6 +91,10 @@ int run(const RunArguments& a) {
   if (!lcm) return stop_requested() ? 0 : refuse("run", error);
 
   drivers::CanLogWriter can_log;
+  if (const std::string kept = a.can_log.empty() ? "" : drivers::keep_cut_off(a.can_log);
+      !kept.empty())
+    log(LogLevel::warning,
+        fmt::format("a run that was cut off left frames behind: they are in {}", kept));
   if (!a.can_log.empty() && !can_log.open(a.can_log))
     return refuse("run", a.can_log + ": " + can_log.error());
   drivers::CanLogWriter* const recorder = a.can_log.empty() ? nullptr : &can_log;

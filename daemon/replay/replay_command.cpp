@@ -126,7 +126,8 @@ class ReplayRun {
             watched_parameters(estimator::ParameterTable(config.pipeline.structure),
                                config.watch ? config.watch->options : estimator::WatchOptions{}),
             std::numeric_limits<double>::infinity()),
-        series_(estimator::ParameterTable(config.pipeline.structure), expectations_.has_value()),
+        series_(estimator::ParameterTable(config.pipeline.structure), expectations_.has_value(),
+                config.pipeline.options.min_snr),
         estimation_(config, sink(), [this](const estimator::WindowEstimate& e) {
           series_.add(e);
           learner_.push(e);

@@ -14,7 +14,7 @@ namespace {
 
 /// Why a parameter was seldom or never observable: the most frequent reasons.
 std::string reasons(const EstimateSeries::Series& series) {
-  std::array<int, 5> order{1, 2, 3, 4, 5};
+  std::array<int, 6> order{1, 2, 3, 4, 5, kTooUncertain};
   const auto count = [&](int reason) { return series.reasons[static_cast<std::size_t>(reason)]; };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return count(a) > count(b); });
   std::string text;

@@ -7,6 +7,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
+#include "daemon/base/progress.h"
 #include "drivers/base/standard_streams.h"
 #include "drivers/base/text_output.h"
 #include "estimator/structure/parameter_table.h"
@@ -71,12 +72,15 @@ int report(const ReportArguments& a) {
     r.session = read_session_file(a.session, error);
     if (!r.session) complain(a.session + ": " + error);
   }
+  ProgressLine progress("report", a.quiet);
+  progress.follow_reading("reading " + a.estimates, {a.estimates}, 1);
   std::vector<drivers::Problem> problems;
   auto estimates = read_session_estimates(a.estimates, problems);
   for (const drivers::Problem& p : problems) complain(p.where + ": " + p.message);
   if (estimates && r.config && !fits(*r.config, *estimates))
     complain(a.config + ": describes another building than " + a.estimates);
   if (good && !a.raw.empty()) {
+    progress.follow_reading("reading the raw samples", a.raw, 1);
     std::vector<std::string> raw_problems;
     r.motion = read_session_motion(*r.config, a.raw, raw_problems, a.record);
     for (const std::string& p : raw_problems) complain(p);
@@ -86,6 +90,7 @@ int report(const ReportArguments& a) {
   std::vector<std::pair<std::string, std::string>> files{{"estimates", a.estimates}};
   if (!a.config.empty()) files.push_back({"configuration", a.config});
   for (const std::string& raw : a.raw) files.push_back({"raw samples", raw});
+  progress("making the page", 0);
   const std::string problem = write_report(std::move(r), files, path);
   if (!problem.empty()) return refuse("report", problem);
   if (!a.quiet && path != drivers::kStandardOutput) fmt::print("{}\n", path);

@@ -21,7 +21,7 @@ std::string percent(double ratio, const char* format = "{:.1f}") {
 
 /// Why a parameter had no value, the most frequent reason: "quiet".
 std::string without(const SessionReport& r, std::size_t p, WindowRange windows) {
-  std::array<std::size_t, SessionEstimates::kReasons> counts{};
+  std::array<std::size_t, kReasons> counts{};
   for (std::size_t w = windows.from; w < windows.to; ++w) ++counts[r.estimates.reason[p][w]];
   const auto worst = std::max_element(counts.begin() + 1, counts.end());
   return *worst == 0 ? "" : reason_word(static_cast<int>(worst - counts.begin()));

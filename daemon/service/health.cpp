@@ -12,6 +12,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/events/event_words.h"
 #include "drivers/lcm/message_check.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -213,13 +214,27 @@ std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t e
   return static_cast<std::size_t>(at - ids.begin());
 }
 
-std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us) {
+event_t raised_event(const service_t& s, std::size_t at) {
+  event_t e{};
+  e.id = s.event_id[at];
+  e.time_us = e.since_us = s.event_since_us[at];
+  e.state = event_state::raised;
+  e.severity = s.event_severity[at];
+  e.kind = s.event_kind[at];
+  e.place = s.event_place[at];
+  e.value = e.std_error = estimator::kNaN;
+  e.message = s.event_message[at];
+  return e;
+}
+
+std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us,
+                                  const std::function<std::string(const event_t&)>& words) {
   std::vector<std::string> out;
   const service_t& s = *heard.service;
   for (std::size_t i = 0; i < s.event_id.size(); ++i)
     if (s.event_severity[i] >= severity::warning && !acknowledgement_of(heard, s.event_id[i]))
-      out.push_back(fmt::format("{} {}: {} (event {})", s.event_kind[i], s.event_place[i],
-                                s.event_message[i], s.event_id[i]));
+      out.push_back(fmt::format("{} ({}, event {})", words(raised_event(s, i)), s.event_kind[i],
+                                s.event_id[i]));
   of_samples(heard, now_us, out);
   of_punctuality(heard, out);
   if (heard.can) of_can(*heard.can, out);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <framewatch/acknowledged_t.hpp>
 #include <framewatch/action_status_t.hpp>
 #include <framewatch/can_status_t.hpp>
+#include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/reception_t.hpp>
@@ -49,9 +51,13 @@ class Heard {
 /// Index of the event in heard.acknowledged; empty when it is not acknowledged.
 std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t event_id);
 
+/// The event at that place of heard.service, as far as it says: raised, without numbers.
+event_t raised_event(const service_t& service, std::size_t at);
+
 /// Every problem that is not acknowledged, one sentence each; empty when the daemon is healthy.
-/// Requires heard.service. now_us: host clock.
-std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us);
+/// Requires heard.service. now_us: host clock. words: of an event, a sentence for people.
+std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us,
+                                  const std::function<std::string(const event_t&)>& words);
 
 /// Time since the newest sample; without one, since the start.
 double silent_s(const service_t& service, std::int64_t now_us);

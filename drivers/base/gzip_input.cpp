@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "drivers/base/bytes_read.h"
 #include "drivers/base/input_file.h"
 #include "drivers/base/unpack_limit.h"
 
@@ -39,7 +40,9 @@ std::int64_t GzipInput::read(void* to, std::int64_t bytes) {
   while (file_ != nullptr && error_.empty() && done < bytes) {
     errno = 0;
     const std::int64_t wanted = std::min(bytes - done, kMostOfGzread);
+    const z_off_t before = gzoffset(file_);
     const int got = gzread(file_, static_cast<char*>(to) + done, static_cast<unsigned int>(wanted));
+    count_bytes_read(gzoffset(file_) - before);
     done += std::max(got, 0);
     unpacked_bytes_ += std::max(got, 0);
     if (gzdirect(file_) == 0 && unpacked_bytes_ > unpack_limit(packed_bytes_)) {

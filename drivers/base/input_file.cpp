@@ -12,6 +12,8 @@
 
 #include <fmt/core.h>
 
+#include "drivers/base/bytes_read.h"
+
 namespace framewatch::drivers {
 namespace {
 
@@ -85,6 +87,7 @@ std::int64_t InputFile::read(void* to, std::int64_t bytes, std::int64_t offset) 
     if (got == 0) break;
     done += got;
   }
+  count_bytes_read(done);
   return done;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,9 +14,11 @@ namespace framewatch::drivers {
 
 /// Writes a record as an LCM event log of accel_t, with the channel_table_t before the first
 /// instant and every second. Sensor time, which is also the events' time, is start_us + time_s;
-/// `addresses` is parallel to the record's names. Empty on success, else what went wrong.
+/// `addresses` is parallel to the record's names; `progress` hears the share that is written. Empty
+/// on success, else what went wrong.
 std::string write_accel_log(const std::string& path, const Record& record,
-                            const std::vector<AxisAddress>& addresses, std::int64_t start_us);
+                            const std::vector<AxisAddress>& addresses, std::int64_t start_us,
+                            const std::function<void(double)>& progress = {});
 
 /// What an event log holds, by the types its channels' first messages have.
 struct LogContents {

@@ -20,7 +20,8 @@ bool write_all(LcmLogWriter& log, std::int64_t time_us, const std::vector<Messag
 }  // namespace
 
 std::string write_accel_log(const std::string& path, const Record& record,
-                            const std::vector<AxisAddress>& addresses, std::int64_t start_us) {
+                            const std::vector<AxisAddress>& addresses, std::int64_t start_us,
+                            const std::function<void(double)>& progress) {
   AccelMessages messages(record.names, addresses, record.rate_hz);
   LcmLogWriter log;
   if (!log.open(path)) return log.error();
@@ -31,6 +32,7 @@ std::string write_accel_log(const std::string& path, const Record& record,
     if (time_us >= next_table_us) {
       if (!write_all(log, time_us, messages.tables(time_us))) return log.error();
       next_table_us = time_us + kTablePeriodUs;
+      if (progress) progress(static_cast<double>(i) / static_cast<double>(record.time_s.size()));
     }
     for (std::size_t c = 0; c < values.size(); ++c) values[c] = record.accel_mps2[c][i];
     if (!write_all(log, time_us, messages.samples(time_us, values))) return log.error();

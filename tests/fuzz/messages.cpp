@@ -24,7 +24,7 @@ void require_json(const std::string& text) {
 
 void show(const auto&) {}
 void show(const window_estimate_t& estimate) {
-  require_json(daemon::estimate_json(estimate));
+  require_json(daemon::estimate_json(estimate, 10));
   require_json(daemon::boxes_json(estimate));
 }
 void show(const status_t& status) {

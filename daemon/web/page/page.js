@@ -1,7 +1,7 @@
 'use strict';
 // Ties the stream of events to what is drawn. All numbers shown come from the events.
 const $ = id => document.getElementById(id);
-const reasons = ['', 'first window not complete', 'moves too little', 'floor too stiff', 'plan symmetric', 'sensor lost'];
+const reasons = ['', 'first window not complete', 'moves too little', 'floor too stiff', 'plan symmetric', 'sensor lost', 'moves, but too uncertain'];
 const kSilence_ms = 1500;
 let plan, building, boxPlots = [], strips = {}, boxes, estimate, baseline = [], status, chosen = 0;
 let lastMotion = 0, lastAlive = 0, lastRow = null, frames = [], known = [];

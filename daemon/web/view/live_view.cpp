@@ -279,7 +279,8 @@ void LiveView::flush() {
     push_if_new("last", history_.last_json());
     ring_.push("alive", "{}");
   }
-  if (std::exchange(new_estimate_, false)) push("estimate", estimate_json(*newest_));
+  if (std::exchange(new_estimate_, false))
+    push("estimate", estimate_json(*newest_, config_.pipeline.options.min_snr));
   if (flushes_ % kFlushesPerBoxplot != 0) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (const std::string boxes = history_.boxes_json(); !boxes.empty()) push_if_new("boxes", boxes);

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "daemon/events/event_words.h"
+#include "daemon/service/health.h"
 #include "daemon/web/view/page_json.h"
-#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 
@@ -45,16 +45,7 @@ std::vector<std::string> PageAlarms::still_raised(const service_t& s) {
     if (known != events_.end() && (known->second.state != event_state::cleared ||
                                    known->second.since_us == s.event_since_us[i]))
       continue;
-    event_t e{};
-    e.id = s.event_id[i];
-    e.time_us = e.since_us = s.event_since_us[i];
-    e.state = event_state::raised;
-    e.severity = s.event_severity[i];
-    e.kind = s.event_kind[i];
-    e.place = s.event_place[i];
-    e.value = e.std_error = estimator::kNaN;
-    e.message = s.event_message[i];
-    out.push_back(note(e));
+    out.push_back(note(raised_event(s, i)));
   }
   return out;
 }

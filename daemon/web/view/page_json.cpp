@@ -1,19 +1,25 @@
 #include "daemon/web/view/page_json.h"
 
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "daemon/documents/json_values.h"
+#include "daemon/estimates/estimate_table.h"
 
 namespace framewatch::daemon {
 
-std::string estimate_json(const window_estimate_t& e) {
+std::string estimate_json(const window_estimate_t& e, double min_snr) {
+  std::vector<int> reason(e.reason.begin(), e.reason.end());
+  for (std::size_t p = 0; p < std::min(reason.size(), e.snr.size()); ++p)
+    reason[p] = told_reason(reason[p], static_cast<double>(e.snr[p]), min_snr);
   return fmt::format(R"({{"start_us":{},"end_us":{},"sequence":{},"status":{},"rows":{},)"
                      R"("residual":{},"value":{},"error":{},"reason":{},"snr":{}}})",
                      e.window_start_us, e.window_end_us, e.sequence, e.status, e.rows,
                      json_value_text(e.residual_ratio), json_list(e.value),
-                     json_list(e.std_error, "{:.4g}"), json_list(e.reason),
+                     json_list(e.std_error, "{:.4g}"), json_list(reason),
                      json_list(e.snr, "{:.3g}"));
 }
 

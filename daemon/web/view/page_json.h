@@ -19,7 +19,7 @@
 // Values that are not finite are null.
 namespace framewatch::daemon {
 
-std::string estimate_json(const window_estimate_t& estimate);
+std::string estimate_json(const window_estimate_t& estimate, double min_snr);
 std::string boxes_json(const window_estimate_t& estimate);
 std::string baseline_json(const std::vector<double>& baseline);
 /// config_sha256: of the page, to say whether the estimator runs with the same one.

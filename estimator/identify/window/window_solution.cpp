@@ -64,7 +64,9 @@ void WindowSolution::solve(const WindowParts& sums, const RegressorFilter& rows,
       trust.regularise && trust.noise_known ? std::min(noise_level_, 1.0) : 0.0;
   noise_.update(rows, sums, compensation);
   for (std::size_t f = 0; f < warm_.size(); ++f)
-    warm_[f] = (*sums.instants)[f] >= warm_share_ * sums.rows;
+    warm_[f] = (*sums.instants)[f] >= warm_share_ * sums.rows ? kWarm
+               : (*sums.instants)[f] > 0                      ? kFilling
+                                                              : kRowless;
   const double prior_scale = trust.regularise && options_.prior ? noise_level_ : 0.0;
   for (std::size_t u = 0; u < prior_.size(); ++u) prior_[u] = prior_scale * unknowns_[u].prior;
   solver_.factor(sums, prior_, noise_);
@@ -108,6 +110,15 @@ bool WindowSolution::place_known(int unknown) const {
   return true;
 }
 
+/// Whether nothing can be said of the floor's elements because a motion around it is not known:
+/// without it no equation of the floor is left.
+bool WindowSolution::rowless(int floor) const {
+  if (!solved_ || warm_[static_cast<std::size_t>(floor)] != kRowless) return false;
+  const int levels = layout_.next(floor) > 0 ? 3 : 2;
+  const auto first = known_.begin() + floor * layout_.frames();
+  return std::any_of(first, first + levels * layout_.frames(), [](auto k) { return k == 0; });
+}
+
 void WindowSolution::see(const std::vector<std::uint8_t>& known) {
   if (known == known_) return;
   known_ = known;
@@ -146,10 +157,10 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     const int floor = u / layout_.own();
     const bool warm = solved_ && errors_known_ && situation.tuned && this->warm(floor) &&
                       (situation.errors_of == nullptr || situation.errors_of->warm(floor));
-    e.reason[p] = place_known_[i] == 0 ? Observability::channel_lost
-                  : !warm              ? Observability::warming_up
-                  : published(u)       ? Observability::observable
-                                       : Observability::quiet;
+    e.reason[p] = place_known_[i] == 0 || rowless(floor) ? Observability::channel_lost
+                  : !warm                                ? Observability::warming_up
+                  : published(u)                         ? Observability::observable
+                                                         : Observability::quiet;
     const bool observable = e.reason[p] == Observability::observable;
     any = any || observable;
     any_frame = any_frame || (observable && unknowns_[i].kind == ParameterKind::frame_stiffness);

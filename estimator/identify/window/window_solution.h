@@ -60,7 +60,7 @@ class WindowSolution {
   /// Whether the window's motion shows the unknown above the sensors' noise.
   bool shown(int unknown) const;
   /// Whether the floor's rows fill enough of the window.
-  bool warm(int floor) const { return warm_[static_cast<std::size_t>(floor)] != 0; }
+  bool warm(int floor) const { return warm_[static_cast<std::size_t>(floor)] == kWarm; }
 
   /// What the decision on a parameter depends on besides the numbers.
   struct Situation {
@@ -91,6 +91,7 @@ class WindowSolution {
     double error_limit;  ///< relative standard error above which it is not published
   };
   bool place_known(int unknown) const;
+  bool rowless(int floor) const;
   void see(const std::vector<std::uint8_t>& known);
   bool published(int unknown) const;
   bool looks_symmetric(const WindowEstimate& estimate) const;
@@ -105,7 +106,9 @@ class WindowSolution {
   StorySolver solver_;
   BatchMeans errors_;
   std::vector<double> prior_;
-  std::vector<std::uint8_t> warm_;         ///< floors whose rows fill most of the window
+  /// Of every floor: kWarm when its rows fill most of the window, kRowless when it has none there.
+  static constexpr std::uint8_t kFilling = 0, kWarm = 1, kRowless = 2;
+  std::vector<std::uint8_t> warm_;
   std::vector<std::uint8_t> known_;        ///< Situation::known when last seen
   std::vector<std::uint8_t> place_known_;  ///< of every unknown: all motion it needs
   bool errors_known_ = false;

@@ -1,5 +1,6 @@
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -107,6 +108,23 @@ TEST_F(Streams, InterruptedWorkLeavesNothingAndSaysSo) {
   EXPECT_FALSE(std::filesystem::exists(directory_.path("x.csv.partial")));
   EXPECT_FALSE(std::filesystem::exists(directory_.path("x.csv")));
   EXPECT_NE(read("said").find("x.csv.partial is removed"), std::string::npos) << read("said");
+}
+
+TEST_F(Streams, FramesOfARunThatWasCutOffAreKept) {
+  if (const char* reason = std::getenv("FRAMEWATCH_NO_MULTICAST")) GTEST_SKIP() << reason;
+  test::write_file(directory_.path("frames.partial"), "(1.0) can0 123#00\n");
+  test::Child run({"/bin/sh", "-c",
+                   "cd " + directory_.path("") +
+                       " && exec " FRAMEWATCH_PROGRAM
+                       " run table_two_story.toml --can-log frames 2>said"});
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (read("said").find("10 channels on") == std::string::npos &&
+         std::chrono::steady_clock::now() < until)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(run.stop(SIGINT), 0);
+  EXPECT_NE(read("said").find("they are in frames.cut-off-1"), std::string::npos) << read("said");
+  EXPECT_EQ(read("frames.cut-off-1"), "(1.0) can0 123#00\n");
+  EXPECT_EQ(read("frames"), "");
 }
 
 /// On a terminal of script(1).

@@ -129,7 +129,8 @@ TEST_F(Usage, CompletionAndManualHaveEveryCommandAndOption) {
     for (const std::string& option : listed(command, "Options:")) {
       EXPECT_NE(options.find(option), std::string::npos) << command << " " << option;
       EXPECT_NE(zsh.find(option + "["), std::string::npos) << command << " " << option;
-      EXPECT_NE(fish.find("from " + command + "' -"), std::string::npos) << command;
+      EXPECT_NE(fish.find("'__framewatch_command_is " + command + "' -"), std::string::npos)
+          << command;
       EXPECT_NE(fish.find(" -l " + option.substr(2) + " "), std::string::npos) << option;
       if (option == "--help") continue;
       std::string escaped;

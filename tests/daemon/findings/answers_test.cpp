@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/event_report/response_words.h"
+#include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/findings/model_fit.h"
 #include "tests/support/config_fixture.h"

@@ -229,6 +229,8 @@ TEST_F(HistoryCommand, RawSamplesAsCsvAreARecord) {
   const std::string csv = test::read_file(a.raw);
   EXPECT_EQ(csv.substr(0, csv.find('\n')), "time_s,base-x,F1-Y1,F1-Y2,F1-X1,F1-X2");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 201);
+  a.raw = "-";
+  EXPECT_EQ(run(a).out, csv) << "notes are no data";
 }
 
 TEST_F(HistoryCommand, RawSamplesAsMiniseedGiveBackEveryCount) {

@@ -63,7 +63,8 @@ Heard well(const Config& config) {
 
 /// The one thing that is odd.
 std::string odd(const Heard& heard, const Config& config, std::int64_t now_us = kNow_us) {
-  const std::vector<std::string> found = oddities(heard, config, now_us);
+  const std::vector<std::string> found =
+      oddities(heard, config, now_us, [](const event_t& e) { return e.message; });
   return found.size() == 1 ? found.front() : std::to_string(found.size()) + " oddities";
 }
 
@@ -146,14 +147,15 @@ TEST(Health, SaysWhatIsOdd) {
   EXPECT_EQ(odd(h, config), "CAN bus can1 is bus-off");
   h = well(config);
   h.service->event_id = {1, 2};
+  h.service->event_since_us = {1, 2};
   h.service->event_severity = {0, 2};
   h.service->event_kind = {"gap", "stiffness_change"};
   h.service->event_place = {"F1", "kx_1_y1"};
   h.service->event_message = {"agree", "is less"};
-  EXPECT_EQ(odd(h, config), "stiffness_change kx_1_y1: is less (event 2)");
+  EXPECT_EQ(odd(h, config), "is less (stiffness_change, event 2)");
   h.acknowledged.emplace();
   h.acknowledged->id = {1};
-  EXPECT_EQ(odd(h, config), "stiffness_change kx_1_y1: is less (event 2)");
+  EXPECT_EQ(odd(h, config), "is less (stiffness_change, event 2)");
   h.acknowledged->id = {1, 2};
   EXPECT_EQ(odd(h, config), "0 oddities");
 }

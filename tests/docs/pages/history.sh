@@ -11,3 +11,8 @@ before() {
   kill -INT $!
   wait
 }
+expected='
+^2026-11-21T17:00:00Z  kx_1_y1 +3[34][0-9]+
+^quake.lcmlog: 600[0-9][0-9] samples of 10 channels
+^kx_1_y1 +3[34][0-9]+
+'

@@ -8,3 +8,6 @@ before() {
     ln -s "$data/$floor/(Northridge)"*.csv.gz "$floor/RUN.csv.gz"
   done
 }
+expected='
+kx_1
+'

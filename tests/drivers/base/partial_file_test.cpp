@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/base/cut_off_file.h"
 #include "drivers/base/durable_file.h"
 #include "drivers/base/text_output.h"
 #include "drivers/base/zstd_file.h"
@@ -80,6 +81,25 @@ TEST(PartialFile, OneThatAKilledProgramLeftIsMadeAnew) {
   EXPECT_EQ(test::read_file(directory.path("other name")),
             "left behind, and longer than what comes");
   EXPECT_EQ(directory.names(), (Names{"other name", "x"}));
+}
+
+TEST(PartialFile, OneThatAKilledProgramLeftCanBeKept) {
+  const test::TemporaryDirectory directory;
+  const std::string path = directory.path("x");
+  EXPECT_EQ(keep_cut_off(path), "");
+  for (const std::string name : {"x.cut-off-1", "x.cut-off-2"}) {
+    test::write_file(directory.path("x.partial"), name);
+    EXPECT_EQ(keep_cut_off(path), directory.path(name));
+  }
+  PartialFile file;
+  ASSERT_TRUE(file.open(path)) << file.error();
+  ASSERT_TRUE(write_to(file, "being written"));
+  EXPECT_EQ(keep_cut_off(path), "");
+  ASSERT_TRUE(file.commit()) << file.error();
+  EXPECT_EQ(directory.names(), (Names{"x", "x.cut-off-1", "x.cut-off-2"}));
+  EXPECT_EQ(test::read_file(directory.path("x.cut-off-1")), "x.cut-off-1");
+  fs::create_symlink("elsewhere", directory.path("x.partial"));
+  EXPECT_EQ(keep_cut_off(path), "");
 }
 
 TEST(PartialFile, OneThatIsBeingWrittenIsLeftAlone) {

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/events/event_words.h"
+#include "daemon/findings/finding.h"
 #include "estimator/numeric/nan.h"
 #include "tests/support/config_fixture.h"
 
@@ -90,7 +91,9 @@ TEST_F(PageWatchTest, NamesTheFrameThatDroppedAndWhenItIsBack) {
   }
   EXPECT_EQ(events.front().state, event_state::raised);
   EXPECT_EQ(events.front().severity, severity::alarm);
-  EXPECT_NE(events.front().message.find(" below its baseline since "), std::string::npos);
+  EXPECT_NE(events.front().message.find(" of its stiffness, standard error "), std::string::npos);
+  const std::string found = finding_of(events.front(), config_).text;
+  EXPECT_EQ(events.front().message.substr(0, found.size() + 8), found + ", since ");
   EXPECT_EQ(events.back().state, event_state::cleared);
   EXPECT_EQ(events.back().message, table()[kDropped].name + " is at its baseline again");
   EXPECT_NEAR(newest_value, -kDrop_ratio, 0.03);

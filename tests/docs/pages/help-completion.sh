@@ -1,0 +1,4 @@
+before() { mkdir -p ~/.config/fish/completions; }
+expected='
+== .*help-completion.md
+'

@@ -1,0 +1,14 @@
+. "$here/table.sh"
+before() {
+  link_configs
+  shake_live 200
+  sleep 1
+}
+expected='
+recording sessions/.*_El-Centro-30 for 20 s
+^sessions/.*_El-Centro-30/report.html
+triggered by base-[xy]
+^sessions/.*_sweep/report.html
+: start, says
+^sessions/.*_sweep/report.html
+'
