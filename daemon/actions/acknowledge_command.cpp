@@ -12,7 +12,7 @@
 
 #include "daemon/base/printable.h"
 #include "daemon/config/config.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/events/acknowledge_messages.h"
 #include "daemon/service/command_client.h"
 #include "drivers/base/encoded.h"

@@ -14,7 +14,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
 #include "daemon/config/config.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/events/event_json.h"
 #include "daemon/events/event_words.h"
 

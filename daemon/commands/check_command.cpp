@@ -9,8 +9,8 @@
 #include "daemon/base/terminal_colour.h"
 #include "daemon/commands/check_report.h"
 #include "daemon/commands/effects_markdown.h"
-#include "daemon/config/config_problems.h"
 #include "daemon/config/read_config.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/keys/options_markdown.h"
 #include "daemon/simulation/scenario.h"
 

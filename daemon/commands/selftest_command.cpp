@@ -7,7 +7,7 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/terminal_colour.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 
 namespace framewatch::daemon {
 namespace {

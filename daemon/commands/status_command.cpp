@@ -18,7 +18,7 @@
 #include "daemon/base/terminal_colour.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/sections.h"
 #include "daemon/findings/finding.h"
 #include "daemon/service/health.h"

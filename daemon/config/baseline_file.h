@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/settings.h"
 #include "estimator/watch/baseline.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/lab/demo_files.h"
 
 namespace framewatch::daemon {

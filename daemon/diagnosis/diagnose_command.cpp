@@ -14,7 +14,7 @@
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/base/workers.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/diagnosis/diagnose_json.h"
 #include "daemon/diagnosis/diagnose_model.h"
 #include "daemon/diagnosis/diagnose_output.h"

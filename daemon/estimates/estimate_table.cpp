@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "estimator/numeric/nan.h"
 #include "estimator/setup/options.h"
 #include "estimator/structure/parameter_table.h"
 
@@ -20,6 +21,11 @@ std::string number(double value) {
 }
 
 const double kMinSnr = estimator::EstimatorOptions{}.min_snr;  // of the demo, which sets none
+
+/// NaN in an estimate that does not say it.
+double snr_of(const window_estimate_t& e, std::size_t i) {
+  return i < e.snr.size() ? static_cast<double>(e.snr[i]) : estimator::kNaN;
+}
 
 bool has_value(const window_estimate_t& e, std::size_t i) {
   return i < e.value.size() && i < e.reason.size() && e.reason[i] == 0 && std::isfinite(e.value[i]);
@@ -85,9 +91,7 @@ std::vector<std::string> estimate_table(const parameter_table_t& table, const wi
         known ? number(unit * e.value[i]) : "-",
         known ? fmt::format("{:+.2f}", 100 * (e.value[i] / truth[i] - 1)) : "-",
         known && i < e.std_error.size() ? fmt::format("{:.2g}", unit * e.std_error[i]) : "-",
-        i < e.reason.size() && i < e.snr.size()
-            ? reason_word(told_reason(e.reason[i], static_cast<double>(e.snr[i]), kMinSnr))
-            : "-",
+        i < e.reason.size() ? reason_word(told_reason(e.reason[i], snr_of(e, i), kMinSnr)) : "-",
         quartile(e.q1), quartile(e.median), quartile(e.q3)));
   }
   return lines;

@@ -13,7 +13,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
 #include "daemon/config/config.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/init/building_toml.h"
 #include "daemon/init/dialogue.h"
 #include "daemon/init/read_answers.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "daemon/config/changes.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/settings.h"
 #include "daemon/documents/toml_document.h"
 #include "daemon/live/service_report.h"

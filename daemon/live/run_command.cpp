@@ -16,7 +16,7 @@
 #include "daemon/base/reload_signal.h"
 #include "daemon/base/stop_signal.h"
 #include "daemon/config/config.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/estimation/state_file.h"
 #include "daemon/live/heard_channels.h"
 #include "daemon/live/housekeeping.h"

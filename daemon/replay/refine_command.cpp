@@ -9,7 +9,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/documents/json_values.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/estimation/segment_collector.h"

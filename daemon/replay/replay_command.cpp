@@ -17,7 +17,7 @@
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/config/baseline_file.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/estimates/estimate_output.h"
 #include "daemon/estimation/state_file.h"
 #include "daemon/event_report/event_report_files.h"

@@ -22,7 +22,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/log.h"
 #include "daemon/base/stop_signal.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/live/heard_channels.h"
 #include "daemon/session/recorder.h"
 #include "daemon/session/session_command.h"

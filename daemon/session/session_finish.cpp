@@ -10,7 +10,7 @@
 #include "daemon/base/exit_code.h"
 #include "daemon/base/printable.h"
 #include "daemon/config/config.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/estimates/session_estimates.h"
 #include "daemon/replay/repair_command.h"
 #include "daemon/replay/replay_command.h"

@@ -8,7 +8,7 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/progress.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/simulation/can_output.h"
 #include "daemon/simulation/scenario.h"
 #include "daemon/simulation/simulation.h"

@@ -12,7 +12,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/log.h"
 #include "daemon/base/stop_signal.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/metrics/metrics.h"
 #include "daemon/service/open_lcm.h"
 #include "daemon/service/service_manager.h"

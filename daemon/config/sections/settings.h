@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/keys/action_options.h"
 #include "daemon/keys/channel_options.h"
 #include "daemon/keys/command_options.h"

@@ -12,7 +12,7 @@
 #include <framewatch/status_t.hpp>
 
 #include "daemon/config/config.h"
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/events/event_words.h"
 #include "daemon/replay/replay_command.h"

@@ -15,7 +15,7 @@
 #include <framewatch/channel_table_t.hpp>
 #include <framewatch/event_t.hpp>
 
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 #include "daemon/live/live_estimation.h"
 #include "drivers/base/encoded.h"
 #include "drivers/lcm/accel_codec.h"

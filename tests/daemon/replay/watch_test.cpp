@@ -83,7 +83,7 @@ TEST_F(WatchedTable, SaysWhichElementHowMuchHowSureAndSinceWhen) {
   EXPECT_GT(first.time_us, 1e6 * kChange_s);
   EXPECT_LT(first.time_us, 1e6 * (kChange_s + kSoon_s));
   EXPECT_NEAR(1e-6 * static_cast<double>(first.since_us), kChange_s, kSoon_s);
-  EXPECT_NE(first.message.find("kx_1_y1 is "), std::string::npos);
+  EXPECT_NE(first.message.find("(kx_1_y1) has lost "), std::string::npos);
   for (const framewatch::event_t& e : all) EXPECT_EQ(e.place, "kx_1_y1") << e.message;
   const framewatch::event_t& last = all.back();
   EXPECT_NEAR(last.value, 100 * (kFactor - 1), 3);

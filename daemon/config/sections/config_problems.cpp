@@ -1,4 +1,4 @@
-#include "daemon/config/config_problems.h"
+#include "daemon/config/sections/config_problems.h"
 
 #include <algorithm>
 #include <utility>
