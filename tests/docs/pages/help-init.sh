@@ -1,6 +1,13 @@
-# Three floors that move along x, in m/s^2; nobody is there to be asked.
+# A base and three floors along x and y, in m/s^2; nobody is there to be asked.
 before() {
-  awk 'BEGIN { print "time_s,acc0,F1-X,F2-X,F3-X"; for (i = 0; i < 500; ++i) printf "%.2f,%.6f,%.6f,%.6f,%.6f\n", 0.01 * i, sin(0.2 * i), sin(0.3 * i), sin(0.4 * i), sin(0.5 * i) }' >shaken.csv
+  awk 'BEGIN {
+    print "time_s,acc0,base-y,F1-X,F1-Y,F2-X,F2-Y,F3-X,F3-Y"
+    for (i = 0; i < 500; ++i) {
+      printf "%.2f", 0.01 * i
+      for (k = 2; k < 10; ++k) printf ",%.6f", sin(0.1 * k * i)
+      print ""
+    }
+  }' >shaken.csv
 }
 expected='
 building.toml
