@@ -11,10 +11,29 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kMostBays = 20;
+constexpr std::size_t kMostDecimals = 3;  ///< that anybody types: 18000,20000 are two masses
+
+bool may_be_decimal_comma(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  const auto is_digit = [&](std::size_t at) {
+    return at < text.size() && text[at] >= '0' && text[at] <= '9';
+  };
+  std::size_t decimals = 0;
+  while (comma != std::string_view::npos && is_digit(comma + 1 + decimals)) ++decimals;
+  return decimals > 0 && decimals <= kMostDecimals && comma > 0 && is_digit(comma - 1) &&
+         text.find(',', comma + 1) == std::string_view::npos &&
+         text.find('.') == std::string_view::npos;
+}
 
 }  // namespace
 
+std::string why_no_quantity(std::string_view text, const std::string& rule) {
+  if (!may_be_decimal_comma(text)) return rule;
+  return "a comma between two digits can be read in two ways: write 3.5, or 3, 5 with a blank";
+}
+
 std::optional<Quantity> parse_quantity(std::string_view text) {
+  if (may_be_decimal_comma(text)) return std::nullopt;
   Quantity out;
   std::string_view rest = drivers::trimmed(text);
   for (;;) {

@@ -15,8 +15,11 @@ struct Quantity {
   std::string unit;  ///< without blanks; empty: none
 };
 
-/// Positive numbers between commas, then perhaps a unit. Empty for anything else.
+/// Positive numbers between commas, then perhaps a unit. Empty for anything else, and for "3,5",
+/// which can be one number or two.
 std::optional<Quantity> parse_quantity(std::string_view text);
+/// `rule`, or what helps where a comma can be read in two ways: "3,5".
+std::string why_no_quantity(std::string_view text, const std::string& rule);
 
 /// "6" or "6, 5, 6": the first for all of `count`, or one each. Empty: neither.
 std::optional<std::vector<double>> spread(const std::vector<double>& values, std::size_t count);

@@ -52,7 +52,10 @@ class ChannelPlacing {
  private:
   void open(const std::string& option, const std::string& ask, const std::string& problem,
             std::optional<Place> at = {}) {
-    reading_.open.push_back({option, ask, "", problem, at});
+    reading_.open.push_back({option, ask, "", problem, at, ""});
+  }
+  void refuse(const std::string& answer, const std::string& why) {
+    reading_.open.push_back({"channel", "", "", printable(answer) + ": " + why, {}, answer});
   }
 
   void take_named() {
@@ -65,30 +68,27 @@ class ChannelPlacing {
           std::find_if(columns_.begin(), columns_.end(), [&](const ChannelColumn& c) {
             return equals != std::string::npos && c.name == text.substr(0, equals);
           });
-      const std::string shown = printable(text);
       if (equals == std::string::npos)
-        open("channel", "", shown + ": write NAME=PLACE, such as acc3=2:y1");
+        refuse(text, "write NAME=PLACE, such as acc3=2:y1");
       else if (column == columns_.end())
-        open("channel", "", shown + ": there is no such column; there are " + names_left());
+        refuse(text, "there is no such column; there are " + names_left());
       else if (!place)
-        open("channel", "",
-             shown + ": no place of this building; places are " +
-                 place_option(structure_, places_.front()) + " (" +
-                 place_text(structure_, places_.front()) + ") to " +
-                 place_option(structure_, places_.back()));
+        refuse(text, "no place of this building; places are " +
+                         place_option(structure_, places_.front()) + " (" +
+                         place_text(structure_, places_.front()) + ") to " +
+                         place_option(structure_, places_.back()));
       else
-        put(*place, static_cast<std::size_t>(column - columns_.begin()), shown);
+        put(*place, static_cast<std::size_t>(column - columns_.begin()), text);
     }
   }
 
-  void put(const Place& place, std::size_t column, const std::string& shown) {
+  void put(const Place& place, std::size_t column, const std::string& text) {
     const auto at = std::find(places_.begin(), places_.end(), place) - places_.begin();
     std::optional<std::size_t>& there = column_of_place_[static_cast<std::size_t>(at)];
     if (there)
-      open("channel", "",
-           fmt::format("{}: {} is there already", shown, printable(columns_[*there].name)));
+      refuse(text, printable(columns_[*there].name) + " is there already");
     else if (is_used(column))
-      open("channel", "", shown + ": the column has a place already");
+      refuse(text, "the column has a place already");
     else
       there = column;
   }

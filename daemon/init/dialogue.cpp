@@ -82,7 +82,10 @@ class Dialogue {
     if (!question.problem.empty()) {
       terminal_.say(
           fmt::format("  That does not do: {}\n", printable_lines(first_lines(question.problem))));
-      forget(question.option);
+      if (question.answer.empty())
+        forget(question.option);
+      else
+        std::erase(answers_.channels, question.answer);
       return;
     }
     const auto before = before_.find(question.option);

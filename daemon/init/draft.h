@@ -52,6 +52,7 @@ struct OpenQuestion {
   std::string initial;         ///< what an empty answer means; empty: it must be answered
   std::string problem;         ///< why the answer does not serve; empty: there is none yet
   std::optional<Place> place;  ///< of a channel: which column is there?
+  std::string answer = {};     ///< of a channel: the one that does not serve
 };
 
 /// An answer as the summary shows it.

@@ -135,7 +135,7 @@ std::string take_lengths(const std::string& text, int count, bool count_known,
                          std::vector<double>& out) {
   const auto quantity = parse_quantity(text);
   if (!quantity || (!quantity->unit.empty() && quantity->unit != "m"))
-    return "lengths in m, between commas: 3.5 or 4.2, 3.5, 3.5";
+    return why_no_quantity(text, "lengths in m, between commas: 3.5 or 4.2, 3.5, 3.5");
   if (!count_known) return "";
   const auto values = spread(quantity->values, static_cast<std::size_t>(count));
   if (!values)
@@ -189,7 +189,9 @@ void settle_masses(Draft& d) {
 
 std::string take_mass(const std::string& text, Draft& d, ColumnCache&) {
   auto quantity = parse_quantity(text);
-  if (!quantity) return "kg of each floor (one or a list), or a density: 18000, 18 t, 500 kg/m2";
+  if (!quantity)
+    return why_no_quantity(
+        text, "kg of each floor (one or a list), or a density: 18000, 18 t, 500 kg/m2");
   if (quantity->unit == "kg/m^2") quantity->unit = "kg/m2";
   if (quantity->unit.empty()) quantity->unit = "kg";
   if (quantity->unit != "kg" && quantity->unit != "t" && quantity->unit != "kg/m2")
@@ -211,7 +213,8 @@ std::string take_area(const std::string& text, Draft& d, ColumnCache&) {
   const auto quantity = parse_quantity(text);
   const bool unit =
       quantity && (quantity->unit.empty() || quantity->unit == "m2" || quantity->unit == "m^2");
-  if (!quantity || !unit || quantity->values.size() != 1) return "one number, in m^2";
+  if (!quantity || !unit || quantity->values.size() != 1)
+    return why_no_quantity(text, "one number, in m^2");
   d.area_m2 = quantity->values.front();
   if (!d.mass.empty()) settle_masses(d);
   return "";
@@ -221,7 +224,7 @@ std::string take_rate(const std::string& text, Draft& d, ColumnCache&) {
   const auto quantity = parse_quantity(text);
   if (!quantity || quantity->values.size() != 1 ||
       (!quantity->unit.empty() && quantity->unit != "Hz"))
-    return "samples a second, such as 100";
+    return why_no_quantity(text, "samples a second, such as 100");
   d.plan.rate_hz = quantity->values.front();
   return "";
 }

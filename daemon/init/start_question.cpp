@@ -92,7 +92,7 @@ std::string take_start(const std::string& text, BuildingDraft& d, ColumnCache&) 
     known = quantity->unit == "Hz" || quantity->unit == "s";
     for (const auto& [unit, npm] : kStiffness) known = known || quantity->unit == unit;
   }
-  if (!known) return kForms;
+  if (!known) return why_no_quantity(text, kForms);
   if (text == "none") {
     d.plan.stiffness_from = "none: the filters find their frequencies from the data";
     return "";

@@ -49,10 +49,7 @@ RecordFormat format_of_numbers(std::int64_t first_line, std::size_t width, FileP
 RecordFormat format_of_network(std::string_view first_line) {
   if (holds(first_line, "(Format v")) return RecordFormat::cosmos;
   if (first_line.starts_with("Origin Time")) return RecordFormat::knet;
-  const std::string_view title = trimmed(first_line);
-  const bool smc =
-      title.starts_with("1 UNCORRECTED ACCEL") || title.starts_with("2 CORRECTED ACCEL");
-  return smc ? RecordFormat::smc : RecordFormat::detect;
+  return is_smc_title(first_line) ? RecordFormat::smc : RecordFormat::detect;
 }
 
 RecordFormat detect(const RecordOptions& options, FileProblems& problems) {

@@ -223,6 +223,13 @@ std::optional<Record> read_mat_table(const RecordOptions& options, FileProblems&
     names.push_back(channel.name);
     used.push_back(channel.column);
   }
+  // A title may stand for a column with its unit cut off: only here it is known which are meant.
+  for (const std::size_t c : used)
+    if (columns[c].samples != columns[used.front()].samples)
+      problems.add(0, fmt::format("{} has {} samples, {} has {}", show_text(columns[c].title),
+                                  columns[c].samples, show_text(columns[used.front()].title),
+                                  columns[used.front()].samples));
+  if (problems.any()) return std::nullopt;
   for (const std::size_t c : used)
     if (!file.load(*columns[c].variable, problems)) return std::nullopt;
   RecordBuilder builder(names, problems);
@@ -253,29 +260,35 @@ bool is_hdf5_mat(InputFile& file) {
          mat_level(head) == MatLevel::level_7_3;
 }
 
-/// More than ten times what a good file takes.
-constexpr int kHdf5Least_s = 5, kHdf5BytesPerSecond = 2'000'000;
+/// More than ten times what a good file takes, also one of constants that packs to nothing.
+constexpr int kHdf5Least_s = 20, kHdf5BytesPerSecond = 2'000'000;
 
 /// libhdf5 does not survive every damaged file: one in some hundreds ends it, or never ends.
-bool hdf5_survives(const RecordOptions& options, const std::string& path, std::int64_t bytes) {
+Trial hdf5_trial(const RecordOptions& options, const std::string& path, std::int64_t bytes) {
   const auto attempt = [&] {
     std::vector<Problem> unsaid;
     FileProblems problems(path, unsaid);
     (void)read_mat_table(options, problems);
   };
   const auto more_s = static_cast<int>(std::min<std::int64_t>(bytes / kHdf5BytesPerSecond, 3600));
-  return survives_apart(attempt, kHdf5Least_s + more_s);
+  return try_apart(attempt, kHdf5Least_s + more_s);
 }
 
 }  // namespace
 
 std::optional<Record> read_mat(const RecordOptions& options, FileProblems& problems) {
   InputFile file(problems.path());
-  if (is_hdf5_mat(file) && !hdf5_survives(options, problems.path(), file.size())) {
-    problems.add(0,
-                 "is damaged in a way that the library for such files (libhdf5) does not survive");
-    return std::nullopt;
+  if (is_hdf5_mat(file)) {
+    const Trial trial = hdf5_trial(options, problems.path(), file.size());
+    if (trial == Trial::crashed)
+      problems.add(
+          0, "is damaged in a way that the library for such files (libhdf5) does not survive");
+    if (trial == Trial::too_long)
+      problems.add(0, "takes the library for such files (libhdf5) longer than a sound one would");
+    if (trial == Trial::not_begun)
+      problems.add(0, "is first read in a process of its own, and none can be begun");
   }
+  if (problems.any()) return std::nullopt;
   return read_mat_table(options, problems);
 }
 

@@ -57,8 +57,8 @@ std::string bytes_of(FileProblems& problems) {
 std::optional<RecordFormat> format_by_signature(FileProblems& problems) {
   const std::string head = bytes_of(problems);
   if (mat_level(head) != MatLevel::none) return RecordFormat::mat;
-  if (is_sac_header(head)) return RecordFormat::sac;
   if (head.size() >= 48 && MS_ISVALIDHEADER(head.data())) return RecordFormat::mseed;
+  if (is_sac_header(head)) return RecordFormat::sac;
   std::string what;
   for (const KnownUnread& known : kUnread)
     if (head.starts_with(known.begins)) what = known.what;

@@ -24,11 +24,17 @@ std::size_t take_number(std::string_view& text) {
 }  // namespace
 
 std::optional<FortranFormat> find_fortran_format(std::string_view text) {
-  const std::size_t begin = text.rfind('(');
+  text.remove_prefix(std::min(text.size(), text.find("ormat")));
+  const std::size_t begin = text.find('(');
   if (begin == std::string_view::npos) return std::nullopt;
   text.remove_prefix(begin + 1);
   FortranFormat format;
   format.per_line = take_number(text);
+  if (text.starts_with('P') || text.starts_with('p')) {  // a factor of scale, of what is written
+    text.remove_prefix(1);
+    text.remove_prefix(text.starts_with(',') ? 1 : 0);
+    format.per_line = take_number(text);
+  }
   if (text.empty() || std::string_view("IFEGifeg").find(text.front()) == std::string_view::npos)
     return std::nullopt;
   text.remove_prefix(1);

@@ -16,7 +16,7 @@ struct FortranFormat {
   std::size_t width = 0;  ///< characters
 };
 
-/// The first such format in a text, "Format=(8F10.3)"; empty when there is none.
+/// The format in a text, "Format=(8F10.3)"; empty when there is none.
 std::optional<FortranFormat> find_fortran_format(std::string_view text);
 
 /// Reads so many numbers from the lines that follow. Empty, with a problem that names `what`, when

@@ -150,7 +150,7 @@ class CosmosReader {
                                     show_text(line)));
       return std::nullopt;
     }
-    const bool is_accel = holds(line, "accel");
+    const bool is_accel = holds(line, "accel") || holds(line, "Accel") || holds(line, "ACCEL");
     auto values = read_fortran_numbers(lines_, *format, static_cast<std::size_t>(*count),
                                        "COSMOS values", problems_);
     if (!values) return std::nullopt;
@@ -208,13 +208,16 @@ class CosmosReader {
     }
     const std::string_view said = after(*header_, "start time:");
     const bool utc = holds(said, "UTC") || holds(said, "GMT");
+    if (utc && options_.zone_min)
+      problems_.add(header_->line,
+                    "COSMOS: the header says its zone itself: --zone does not apply");
     if (!utc && !options_.zone_min) {
       problems_.add(header_->line,
                     "COSMOS: the header does not say the zone of its start: declare "
                     "it with --zone Z or, for example, --zone +09:00");
       return std::nullopt;
     }
-    return *utc_s - (utc ? 0.0 : 60.0 * options_.zone_min.value_or(0));
+    return *utc_s - 60.0 * options_.zone_min.value_or(0);
   }
 
   const RecordOptions& options_;

@@ -101,6 +101,12 @@ std::optional<SmcHeader> read_smc_header(LineReader& lines, FileProblems& proble
     if (!problems.any()) problems.add(0, "SMC: the 11 lines of text are not all there");
     return std::nullopt;
   }
+  if (!is_smc_title(header.text[0])) {
+    problems.add(1, fmt::format("SMC: {} is neither 1 UNCORRECTED ACCELEROGRAM nor 2 CORRECTED "
+                                "ACCELEROGRAM",
+                                show_text(header.text[0])));
+    return std::nullopt;
+  }
   auto integers =
       read_fortran_numbers(lines, {8, 10}, kSmcIntegers, "SMC: whole numbers", problems);
   if (!integers) return std::nullopt;
@@ -118,6 +124,11 @@ std::optional<SmcHeader> read_smc_header(LineReader& lines, FileProblems& proble
 }
 
 }  // namespace
+
+bool is_smc_title(std::string_view first_line) {
+  const std::string_view title = trimmed(first_line);
+  return title.starts_with("1 UNCORRECTED ACCEL") || title.starts_with("2 CORRECTED ACCEL");
+}
 
 std::optional<Record> read_smc(FileProblems& problems) {
   LineReader lines(problems);

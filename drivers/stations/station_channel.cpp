@@ -31,14 +31,16 @@ std::string start_text(double utc_s) {
 }  // namespace
 
 std::optional<double> utc_of_date(int year, int month, int day) {
-  if (month < 1 || day < 1) return std::nullopt;
+  if (year < 1 || year > 9999 || month < 1 || month > 12 || day < 1 || day > 31)
+    return std::nullopt;
   return seconds_of({std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                      std::chrono::day(static_cast<unsigned>(day))});
 }
 
 std::optional<double> utc_of_day_of_year(int year, int day) {
   const auto first = utc_of_date(year, 1, 1);
-  if (!first || day < 1 || day > 366) return std::nullopt;
+  const int days = std::chrono::year(year).is_leap() ? 366 : 365;
+  if (!first || day < 1 || day > days) return std::nullopt;
   return *first + 86400.0 * (day - 1);
 }
 
@@ -57,6 +59,10 @@ std::string azimuth_text(double azimuth_deg) {
 std::optional<Record> station_record(const StationChannel& channel,
                                      const std::vector<double>& accel_mps2, std::int64_t line,
                                      std::size_t per_line, FileProblems& problems) {
+  check_names({channel.name}, 0, problems);
+  if (channel.start_utc_s && !(std::abs(*channel.start_utc_s) < RecordBuilder::kMaxTimeS))
+    problems.add(0, fmt::format("it begins at {:g} s", *channel.start_utc_s));
+  if (problems.any()) return std::nullopt;
   RecordBuilder builder({channel.name}, problems);
   builder.expect(1 / channel.step_s, 0);
   double peak_mps2 = 0;

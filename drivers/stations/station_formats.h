@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "drivers/base/file_problems.h"
 #include "drivers/records/record.h"
@@ -15,6 +16,8 @@ namespace framewatch::drivers {
 std::optional<Record> read_mseed(const RecordOptions& options, FileProblems& problems);
 /// Of the options only the zone, where the file does not say it.
 std::optional<Record> read_cosmos(const RecordOptions& options, FileProblems& problems);
+/// Whether a file of that first line is an accelerogram; others hold velocities, displacements.
+bool is_smc_title(std::string_view first_line);
 std::optional<Record> read_smc(FileProblems& problems);
 std::optional<Record> read_knet(FileProblems& problems);
 /// One channel; `unit_mps2` is of one of the file's, since few files say theirs as they should.

@@ -114,6 +114,33 @@ TEST(InitDialogue, ColumnsThatSayNoPlaceAreAskedFor) {
   EXPECT_EQ(changed->channels[2].column.name, "acc1");
 }
 
+TEST(InitDialogue, AWrongChannelTakesNoOtherWithIt) {
+  const test::TemporaryDirectory directory;
+  const std::string record = directory.path("r.csv");
+  test::write_file(record, "time_s,a,b\n0,0,0\n0.005,0,0\n");
+  InitAnswers answers;
+  answers.by_option = {{"record", record}, {"live", "none"},    {"building", "b"},
+                       {"stories", "1"},   {"directions", "x"}, {"bays", "0x0"},
+                       {"heights", "3"},   {"mass", "900"},     {"start", "none"}};
+  answers.channels = {"bad=9:z", "b=1:y1"};
+  Person person;
+  const auto plan = person.answer({"a", ""}, answers);
+  ASSERT_TRUE(plan) << person.said;
+  EXPECT_EQ(plan->channels[0].column.name, "a");
+  EXPECT_EQ(plan->channels[1].column.name, "b");
+}
+
+TEST(InitDialogue, ACommaThatCanBeReadInTwoWaysIsAsked) {
+  Person person;
+  InitAnswers answers;
+  answers.by_option = {{"live", "lcm"}, {"building", "b"}, {"stories", "2"},  {"directions", "x"},
+                       {"bays", "0x0"}, {"mass", "900"},   {"start", "none"}, {"rate", "100"}};
+  const auto plan = person.answer({"3,5", "3, 5", ""}, answers);
+  ASSERT_TRUE(plan) << person.said;
+  EXPECT_NE(person.said.find("can be read in two ways"), std::string::npos) << person.said;
+  EXPECT_EQ(plan->structure.story_height, (std::vector<double>{3, 5}));
+}
+
 TEST(InitDialogue, ARecordThatDoesNotSayItsUnitIsAskedForIt) {
   const test::TemporaryDirectory directory;
   const std::string record = directory.path("r.csv");

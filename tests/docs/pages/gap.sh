@@ -51,8 +51,9 @@ END
   framewatch convert record.csv --config building.toml --start-us 1795292200000000 record.lcmlog
   framewatch run building.toml &
   sleep 1
-  lcm-logplayer --speed=10 record.lcmlog >/dev/null
-  until ls segments/*.lcmlog; do sleep 0.5; done
+  lcm-logplayer --speed=5 record.lcmlog >/dev/null
+  for _ in {1..60}; do ls segments/*.lcmlog && return; sleep 1; done
+  return 1
 }
 channel() { # channel NAME NODE PLACE
   cat >>building.toml <<END

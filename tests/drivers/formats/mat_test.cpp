@@ -264,6 +264,15 @@ TEST_F(Mat, ASizeThatTheFileCannotHoldIsRefusedBeforeMemoryIsTaken) {
   EXPECT_FALSE(read());
 }
 
+TEST_F(Mat, ColumnsThatAreMeantWithoutTheirUnitMustBeAsLongAsTheTimes) {
+  std::vector<double> time_ms = times();
+  for (double& time : time_ms) time *= 1000;
+  test::MatWriter(path_).add_column("time_ms", time_ms).add_column("a", {1, 2, 3});
+  options_.time_column = "time";
+  options_.columns = {"a"};
+  expect_said(read(), "\"a\" has 3 samples, \"time_ms\" has 500");
+}
+
 TEST_F(Mat, AFileThatWantsOthersOpenedIsRefused) {
   const auto made = [&](const auto& add) {
     std::remove(path_.c_str());

@@ -212,6 +212,20 @@ TEST_F(Miniseed, DamageIsToldWithItsPlace) {
   EXPECT_FALSE(record);
 }
 
+TEST_F(Miniseed, SamplesThatLookLikeAnotherFormatsHeaderAreSamples) {
+  for (const int byte_order : {0, 1}) {
+    test::SeedSpan quiet = span(0, 100);
+    quiet.encoding = DE_INT32;
+    quiet.byte_order = byte_order;
+    quiet.values.assign(200, 0);
+    quiet.values[60] = 6;  // where SAC has its version
+    quiet.values[63] = 5;  // and its number of samples
+    const auto record = read(miniseed(quiet));
+    ASSERT_TRUE(record) << said(record);
+    EXPECT_EQ(record->names, std::vector<std::string>{"XX.TEST.01.HN1"});
+  }
+}
+
 TEST_F(Miniseed, GzipIsReadAsItIs) {
   test::write_file(path_, miniseed(span(0, 3000)));
   ASSERT_EQ(std::system(("gzip " + path_).c_str()), 0);

@@ -1,5 +1,6 @@
 // Records as networks of strong-motion stations publish them.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <numeric>
@@ -38,7 +39,7 @@ class StationFile : public testing::Test {
     SCOPED_TRACE(rule);
     EXPECT_FALSE(read(text, options));
     ASSERT_FALSE(problems_.empty());
-    if (line >= 0) {
+    if (line >= 0) {  // -1: wherever that is
       EXPECT_EQ(problems_[0].where, line > 0 ? fmt::format("{}:{}", path_, line) : path_);
     }
     EXPECT_NE(problems_[0].message.find(rule), std::string::npos) << problems_[0].message;
@@ -100,6 +101,13 @@ TEST_F(StationFile, OfCosmosMayHoldCountsOrSeveralQuantitiesAndChannels) {
   EXPECT_TRUE(said("velocity and displacement in the file are left out"));
 }
 
+TEST_F(StationFile, OfCosmosMayBeWrittenInOtherLettersAndFormats) {
+  const auto r = read(replaced(replaced(cosmos(), "4 acceleration", "4 Acceleration"),
+                               "Format=(3F9.3)", "Format=(1P,3F9.3) (free)"));
+  ASSERT_TRUE(r) << problems_[0].message;
+  EXPECT_DOUBLE_EQ(r->accel_mps2[0][3], -0.025);
+}
+
 TEST_F(StationFile, OfCosmosWithAPeakThatIsNotItsValuesSaysSo) {
   const auto r = read(replaced(cosmos(), "-9999.001    -999", "-5000.001    -999"));
   ASSERT_TRUE(r);
@@ -112,7 +120,7 @@ TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
   expect_refused(replaced(good, "100 Integer", "10 Integer"), 6, "76 at least");
   expect_refused(replaced(good, "(5F15.6)", "(free)"), 17, "a format such as");
   expect_refused(replaced(good, "    2018", "    20x8"), 10, "no finite number");
-  expect_refused(good.substr(0, 600), -1, "");
+  expect_refused(good.substr(0, 600), -1, "nteger-header values: ");
   expect_refused(replaced(good, "4 acceleration", "5 acceleration"), 42, "4 of 5 numbers");
   expect_refused(replaced(good, "4 acceleration", "0 acceleration"), 40, "number and format");
   expect_refused(replaced(good, "-200.000-9999", "-200.000-99x9"), 41, "finite");
@@ -121,8 +129,12 @@ TEST_F(StationFile, OfCosmosThatIsDamagedIsRefused) {
   CosmosChannel raw{1, 50};
   expect_refused(replaced(cosmos(raw), "         1.2553", "    -999.000000"), 1, "volts per g");
   expect_refused(good + good, 0, "appears twice");
+  expect_refused(replaced(good, "      11", "     257"), 1, "no time");
+  expect_refused(replaced(good, "    2018", "   67554"), 1, "no time");
+  expect_refused(replaced(good, "8040.HNE", "8040.H,E"), 0, "no commas");
   RecordOptions zone;
   zone.zone_min = -540;
+  expect_refused(good, 1, "--zone does not apply", zone);
   const auto r = read(replaced(good, "06.332 UTC", "06.332    "), zone);
   ASSERT_TRUE(r);
   EXPECT_NEAR(r->time_s[0], kStart_utc_s + 0.332 + 9 * 3600, 1e-6);
@@ -150,6 +162,11 @@ TEST_F(StationFile, OfSmcThatIsDamagedIsRefused) {
   expect_refused(smc({{16, "-1"}}), 14, "number of values");
   expect_refused(smc({{15, "2"}}), 29, "1 of 2 comment lines");
   expect_refused(smc({{2, "400"}}), 12, "no time");
+  expect_refused(smc({{1, "1995"}, {2, "366"}}), 12, "no time");
+  RecordOptions forced;
+  forced.format = RecordFormat::smc;
+  expect_refused(replaced(smc(), "2 CORRECTED ACCELEROGRAM", ""), 1, "neither", forced);
+  expect_refused(replaced(smc(), "2 CORRECTED ACCELEROGRAM", "3 VELOCITY"), 1, "neither", forced);
   expect_refused(replaced(smc(), "0.2000000E+03", "0.0000000E+00"), 18, "samples a second");
   expect_refused(replaced(smc(), " .4000E+01", " .4zzzE+01"), 29, "no finite number");
 }
@@ -211,6 +228,7 @@ TEST_F(StationFile, OfSacThatIsDamagedOrNoAccelerationIsRefused) {
   refused(sac(false, {{85, 2}}), "spectrum");
   refused(sac(false, {{105, 0}}), "uneven");
   refused(sac(false, {{71, 0}}), "time is none");
+  refused(sac(false, {{5, std::bit_cast<int>(1e20F)}}), "it begins at 1e+20 s");
   refused(sac(false, {{79, 1 << 30}}), "at most");
 }
 
