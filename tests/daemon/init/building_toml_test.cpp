@@ -73,7 +73,7 @@ TEST(BuildingToml, OneDirectionOnly) {
   const Config two = config_of({{"live", "lcm"},
                                 {"directions", "x"},
                                 {"bays", "0x2"},
-                                {"span-y", "4,6"},
+                                {"span-y", "4, 6"},
                                 {"stories", "2"},
                                 {"heights", "3"},
                                 {"mass", "10000"}});

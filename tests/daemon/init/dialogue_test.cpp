@@ -133,8 +133,9 @@ TEST(InitDialogue, AWrongChannelTakesNoOtherWithIt) {
 TEST(InitDialogue, ACommaThatCanBeReadInTwoWaysIsAsked) {
   Person person;
   InitAnswers answers;
-  answers.by_option = {{"live", "lcm"}, {"building", "b"}, {"stories", "2"},  {"directions", "x"},
-                       {"bays", "0x0"}, {"mass", "900"},   {"start", "none"}, {"rate", "100"}};
+  answers.by_option = {{"record", "none"}, {"live", "lcm"},     {"building", "b"},
+                       {"stories", "2"},   {"directions", "x"}, {"bays", "0x0"},
+                       {"mass", "900"},    {"start", "none"},   {"rate", "100"}};
   const auto plan = person.answer({"3,5", "3, 5", ""}, answers);
   ASSERT_TRUE(plan) << person.said;
   EXPECT_NE(person.said.find("can be read in two ways"), std::string::npos) << person.said;
