@@ -1,11 +1,14 @@
 #include "daemon/documents/json_text.h"
 
+#include <limits>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "daemon/documents/html_text.h"
+#include "daemon/documents/json_values.h"
 
 namespace framewatch::daemon {
 namespace json_text_test {
@@ -18,6 +21,11 @@ TEST(JsonText, IsJsonWhateverTheBytesAre) {
   for (const char c : text) EXPECT_GE(static_cast<unsigned char>(c), 0x20);
   EXPECT_EQ(json_text("\"\\é"), "\"\\\"\\\\é\"");
   EXPECT_EQ(json_text("\x7f\xc2\x9b\xff"), "\"\\u007f\\u009b\\ufffd\"");
+}
+
+TEST(JsonList, HasNoNumberThatIsInfiniteOnceItIsRounded) {
+  const double most = std::numeric_limits<double>::max();
+  EXPECT_EQ(json_list(std::vector{1.25, most, -most, 1e300}, "{:.4g}"), "[1.25,null,null,1e+300]");
 }
 
 TEST(HtmlText, NothingOpensATagOrEndsAnAttribute) {
