@@ -6,7 +6,9 @@
 #include <Eigen/Core>
 
 #include "estimator/setup/options.h"
+#include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
+#include "estimator/structure/story_groups.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
@@ -16,8 +18,14 @@ struct PipelineConfig {
   Structure structure;
   std::vector<SensorAxis> axes;
   EstimatorOptions options;
-  /// Design parameters, theta order, SI; empty when the drawings say nothing.
+  /// Design parameters of every story, SI, in the order of ParameterTable(structure); empty when
+  /// the drawings say nothing.
   Eigen::VectorXd design;
+  BendingStiffness bending_nmprad{};  ///< of the design
+
+  StoryGroups groups() const { return story_groups(structure, axes); }
+  /// What is identified.
+  ParameterTable parameters() const { return ParameterTable(structure, groups(), bending_nmprad); }
 };
 
 std::vector<std::string> problems(const PipelineConfig& config);

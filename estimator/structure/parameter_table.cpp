@@ -16,7 +16,9 @@ ParameterTable::ParameterTable(const Structure& s)
       for (int i = first; i < first + count; ++i) {
         const std::string place = panel ? panel_name(s, i) : s.frame_name(i);
         parameters_.push_back({std::string(prefix) + "_" + std::to_string(story) + "_" + place,
-                               kind, story, panel ? -1 : i, panel ? i : -1, unit});
+                               kind, story, panel ? -1 : i, panel ? i : -1, unit, story,
+                               panel ? std::vector<int>{} : std::vector<int>{i},
+                               panel ? Direction::x : s.direction(i)});
       }
     }
   };
@@ -26,9 +28,51 @@ ParameterTable::ParameterTable(const Structure& s)
   add_group("cx", ParameterKind::frame_damping, 0, n_, "N*s/m");
   add_group("cy", ParameterKind::frame_damping, n_, m_, "N*s/m");
   add_group("Gc", ParameterKind::panel_damping, 0, panels_, "N*s/(rad*m)");
+  elements_ = size() / 2;
+}
+
+ParameterTable::ParameterTable(const Structure& s, const StoryGroups& groups,
+                               const BendingStiffness& bending)
+    : ParameterTable(s) {
+  if (groups.every_story) return;
+  parameters_.clear();
+  group_of_.assign(static_cast<std::size_t>(s.degrees_of_freedom()), -1);
+  for (const bool damping : {false, true}) {
+    for (const StoryGroup& g : groups.groups) {
+      const bool one_frame = g.frames.size() == 1;
+      const bool one_story = g.first == g.last;
+      std::string name = damping ? "c" : "k";
+      name += g.direction == Direction::x ? "x_" : "y_";
+      name += std::to_string(g.first);
+      if (!one_story) name += "to" + std::to_string(g.last);
+      if (!g.whole_direction || (one_frame && one_story)) {
+        for (std::size_t i = 0; i < g.frames.size(); ++i)
+          name += (i == 0 ? "_" : "+") + s.frame_name(g.frames[i]);
+      }
+      parameters_.push_back(
+          {name, damping ? ParameterKind::frame_damping : ParameterKind::frame_stiffness, g.first,
+           one_frame ? g.frames[0] : -1, -1, damping ? "N*s/m" : "N/m", g.last, g.frames,
+           g.direction});
+      for (int story = g.first; story <= g.last && !damping; ++story)
+        for (const int f : g.frames)
+          group_of_[static_cast<std::size_t>(s.dof(story, f))] = size() - 1;
+    }
+    if (!damping) elements_ = size();
+  }
+  for (const Direction direction : {Direction::x, Direction::y}) {
+    const bool x = direction == Direction::x;
+    if (!(bending[x ? 0 : 1] > 0)) continue;
+    std::vector<int> frames;
+    for (int f = 0; f < s.frames(); ++f)
+      if (s.direction(f) == direction) frames.push_back(f);
+    parameters_.push_back({x ? "krx" : "kry", ParameterKind::bending_stiffness, 1,
+                           frames.size() == 1 ? frames[0] : -1, -1, "N*m/rad", s.stories, frames,
+                           direction});
+  }
 }
 
 int ParameterTable::frame_stiffness(int story, int frame) const {
+  if (grouped()) return group_of_[static_cast<std::size_t>((story - 1) * (n_ + m_) + frame)];
   if (frame < n_) return (story - 1) * n_ + frame;
   return stories_ * n_ + (story - 1) * m_ + (frame - n_);
 }
@@ -51,6 +95,7 @@ double design_tolerance(ParameterKind kind) {
     case ParameterKind::frame_damping:
       return 0.3;
     case ParameterKind::panel_damping:
+    case ParameterKind::bending_stiffness:
       return 0.5;
   }
   return 0.1;

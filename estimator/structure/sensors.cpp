@@ -16,7 +16,7 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
   std::vector<Problem> found;
   std::set<std::string> names;
   std::map<std::tuple<int, int>, std::string> places;
-  std::set<Direction> base;
+  std::set<Direction> base, above;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const SensorAxis& a = axes[i];
     const auto add = [&](const char* field, const std::string& rule) {
@@ -52,24 +52,29 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
                        std::to_string(s.stories) + " do");
       continue;
     }
-    if (a.frame >= s.frames() || (a.story > 0 && a.frame < 0)) {
+    if (a.frame >= s.frames() || (a.story > 0 && a.frame < 0 && !a.plan)) {
       add("frame", "its frame does not exist");
       continue;
     }
+    const Direction along = a.frame >= 0 ? s.direction(a.frame) : a.direction;
+    (a.story == 0 ? base : above).insert(along);
+    if (a.plan) {
+      if ((along == Direction::x ? s.n() : s.m()) == 0)
+        add("direction", std::string("the building has no frame parallel to ") +
+                             (along == Direction::x ? "x" : "y"));
+      continue;
+    }
     const int place = a.frame >= 0 ? a.frame : (a.direction == Direction::x ? -1 : -2);
-    if (a.story == 0) base.insert(a.frame >= 0 ? s.direction(a.frame) : a.direction);
     const auto [at, fresh] = places.emplace(std::tuple(a.story, place), a.name);
     if (!fresh) add("", "sits where channel '" + at->second + "' sits already");
   }
   const auto missing = [&](const std::string& what) {
     found.push_back({"", -1, "channels: no " + what});
   };
-  if (s.n() > 0 && !base.contains(Direction::x)) missing("base channel (story = 0) in direction x");
-  if (s.m() > 0 && !base.contains(Direction::y)) missing("base channel (story = 0) in direction y");
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f)
-      if (!places.contains(std::tuple(story, f)))
-        missing("channel on story " + std::to_string(story) + ", frame '" + s.frame_name(f) + "'");
+  for (const auto& [direction, name] : {std::pair(Direction::x, "x"), std::pair(Direction::y, "y")})
+    if (above.contains(direction) && !base.contains(direction))
+      missing(std::string("base channel (story = 0) in direction ") + name);
+  if (above.empty()) missing("channel above the base");
   return found;
 }
 

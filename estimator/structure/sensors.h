@@ -1,11 +1,19 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
+
+/// Where in plan an axis that rides on no frame sits, and where it points.
+struct PlanPlace {
+  double x_m = 0;        ///< from the first y-parallel frame
+  double y_m = 0;        ///< from the first x-parallel frame
+  double angle_rad = 0;  ///< of its positive axis, counter-clockwise from +x
+};
 
 /// One accelerometer axis and where it sits. Its corrected value, m/s^2, absolute, positive toward
 /// +x or +y, is polarity * (scale * raw - offset), freed from gravity and from the other horizontal
@@ -15,6 +23,7 @@ struct SensorAxis {
   int story = 0;                       ///< 0 = base
   Direction direction = Direction::x;  ///< of the measured motion
   int frame = -1;                      ///< frame it rides on; -1 for a base axis of the whole plan
+  std::optional<PlanPlace> plan = {};  ///< instead of a frame; direction is then the nearer one
   double scale = 1.0;
   double offset = 0.0;         ///< m/s^2, subtracted after scaling
   double polarity = 1.0;       ///< +1 or -1
@@ -26,9 +35,10 @@ struct SensorAxis {
   double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0 = unknown
 };
 
-/// Every way in which the sensors do not fit the structure: two axes in one place, a frame or story
-/// that does not exist, a direction with frames and no base axis, a place without a sensor.
-/// A problem's index is that of the axis.
+/// Every way in which the sensors do not fit the structure: two axes on one frame, a frame or story
+/// that does not exist, a direction that is measured above the base and not there, no axis above
+/// the base. A problem's index is that of the axis. Which places are left without a sensor is no
+/// problem: StoryGroups says what such a layout shows.
 std::vector<Problem> find_problems(const Structure& structure, const std::vector<SensorAxis>& axes);
 /// Their messages.
 std::vector<std::string> problems(const Structure& structure, const std::vector<SensorAxis>& axes);
