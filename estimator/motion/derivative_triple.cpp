@@ -23,14 +23,16 @@ Eigen::VectorXd constrained_fit(const Eigen::MatrixXd& x, const Eigen::VectorXd&
 }
 
 /// Taps c_-L..c_L (newest first) of sum c_k e^(-i w k) = (i w)^order e^(i w advance), relative
-/// error, with the first order + 1 moments exact, so that behaviour at rest is.
-std::vector<double> derivative_taps(int order, double advance) {
+/// error, held: over what a first-order hold takes off, with the first order + 1 moments exact, so
+/// that behaviour at rest is.
+std::vector<double> derivative_taps(int order, double advance, bool held = false) {
   constexpr int kLength = 2 * kHalfLength + 1;
   Eigen::MatrixXd x(2 * kGridPoints, kLength);
   Eigen::VectorXd y(2 * kGridPoints);
   for (int i = 0; i < kGridPoints; ++i) {
     const double w = M_PI / 2 * (i + 0.5) / kGridPoints;
-    const double scale = std::pow(w, -order);
+    const double hold = held ? std::pow(std::sin(w / 2) / (w / 2), 2) : 1;
+    const double scale = hold * std::pow(w, -order);
     const double phase = w * advance + order * M_PI / 2;
     for (int k = -kHalfLength; k <= kHalfLength; ++k) {
       x(2 * i, k + kHalfLength) = scale * std::cos(w * k);
@@ -68,6 +70,17 @@ DerivativeTriple matched_triple(double rate_hz, double advance) {
   for (double& tap : triple.first) tap *= rate_hz;
   for (double& tap : triple.second) tap *= rate_hz * rate_hz;
   for (std::vector<double>* taps : {&triple.value, &triple.first, &triple.second})
+    *taps = with_numerator(*taps);
+  return triple;
+}
+
+DerivativeTriple held_triple(double rate_hz, double advance) {
+  DerivativeTriple triple = matched_triple(rate_hz, advance);
+  triple.held_first = derivative_taps(1, advance, true);
+  triple.held_second = derivative_taps(2, advance, true);
+  for (double& tap : triple.held_first) tap *= rate_hz;
+  for (double& tap : triple.held_second) tap *= rate_hz * rate_hz;
+  for (std::vector<double>* taps : {&triple.held_first, &triple.held_second})
     *taps = with_numerator(*taps);
   return triple;
 }

@@ -11,6 +11,11 @@ struct DerivativeTriple {
   std::vector<double> first;
   std::vector<double> second;
   double delay = 0;
+  /// As first and second, for the input of a simulation that takes it as linear between samples:
+  /// what that takes off, sinc^2 of half the frequency, is put on. Empty where nobody asks for
+  /// them.
+  std::vector<double> held_first = {};
+  std::vector<double> held_second = {};
   int length() const { return static_cast<int>(value.size()); }
 };
 
@@ -20,6 +25,9 @@ struct DerivativeTriple {
 /// half a sample either way; it undoes a sensor's known delay. Source: docs/equations.md,
 /// derivative triple.
 DerivativeTriple matched_triple(double rate_hz, double advance = 0);
+
+/// matched_triple() with held_first and held_second.
+DerivativeTriple held_triple(double rate_hz, double advance = 0);
 
 /// What the trapezoidal rule implies, times the same numerator: p'' = integrand, p' and p its first
 /// and second trapezoidal integrals. The paper's integration.

@@ -19,7 +19,8 @@ DriftControlledIntegrator::DriftControlledIntegrator(const std::vector<Derivativ
       high_pass_(high_pass),
       axes_(triples.size()),
       length_(static_cast<std::size_t>(triples.front().length())) {
-  for (std::vector<double>* state : {&x1_, &x2_, &y1_, &y2_, &value_, &first_, &second_})
+  for (std::vector<double>* state :
+       {&x1_, &x2_, &y1_, &y2_, &value_, &first_, &second_, &held_first_, &held_second_})
     state->resize(axes_);
   ring_.resize(axes_ * 2 * length_);
   filled_.resize(axes_);
@@ -42,7 +43,7 @@ void DriftControlledIntegrator::push_axis(std::size_t axis, double accel) {
   if (!std::isfinite(accel)) {
     filled_[axis] = 0;
     ring[newest_] = ring[newest_ + length_] = 0;
-    value_[axis] = first_[axis] = second_[axis] = 0;
+    value_[axis] = first_[axis] = second_[axis] = held_first_[axis] = held_second_[axis] = 0;
     return;
   }
   if (filled_[axis] == 0) {
@@ -71,6 +72,14 @@ void DriftControlledIntegrator::push_axis(std::size_t axis, double accel) {
   value_[axis] = ready ? p0 : 0;
   first_[axis] = ready ? p1 : 0;
   second_[axis] = ready ? p2 : 0;
+  if (triple.held_second.empty()) return;
+  double h1 = 0, h2 = 0;
+  for (std::size_t k = 0; k < length_; ++k) {
+    h1 += triple.held_first[k] * recent[k];
+    h2 += triple.held_second[k] * recent[k];
+  }
+  held_first_[axis] = ready ? h1 : 0;
+  held_second_[axis] = ready ? h2 : 0;
 }
 
 }  // namespace framewatch::estimator

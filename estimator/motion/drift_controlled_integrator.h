@@ -39,12 +39,15 @@ class DriftControlledIntegrator {
   double value(int axis) const { return value_[index(axis)]; }
   double first(int axis) const { return first_[index(axis)]; }
   double second(int axis) const { return second_[index(axis)]; }
+  /// DerivativeTriple::held_first and held_second, where the triples have them.
+  double held_first(int axis) const { return held_first_[index(axis)]; }
+  double held_second(int axis) const { return held_second_[index(axis)]; }
 
   template <typename Archive>
   void archive(Archive& a) {
     a.within(newest_, 0, static_cast<double>(length_ - 1));
     a.each_within(filled_, 0, static_cast<double>(length_));
-    a.finite(x1_, x2_, y1_, y2_, ring_, value_, first_, second_);
+    a.finite(x1_, x2_, y1_, y2_, ring_, value_, first_, second_, held_first_, held_second_);
   }
 
  private:
@@ -59,7 +62,7 @@ class DriftControlledIntegrator {
   std::vector<double> x1_, x2_, y1_, y2_;
   std::vector<int> filled_;   ///< samples since the axis (re)started, saturating
   std::vector<double> ring_;  ///< axes x 2 length, mirrored, newest first from newest_
-  std::vector<double> value_, first_, second_;
+  std::vector<double> value_, first_, second_, held_first_, held_second_;
 };
 
 }  // namespace framewatch::estimator
