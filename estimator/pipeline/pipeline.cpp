@@ -11,7 +11,7 @@ namespace framewatch::estimator {
 class Pipeline::Implementation {
  public:
   Implementation(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants)
-      : table_(config.structure),
+      : table_(config.parameters()),
         acquisition_(config.axes, config.options, [this](const SampleSet& set) { estimate(set); }),
         estimator_(config, table_),
         sink_(std::move(sink)),

@@ -2,20 +2,9 @@
 
 #include <cmath>
 
+#include "estimator/structure/story_groups.h"
+
 namespace framewatch::estimator {
-namespace {
-
-/// Position of a frame across its direction, m.
-double line_position(const Structure& s, int frame) {
-  const std::vector<double>& spans = frame < s.n() ? s.span_y : s.span_x;
-  const int line = frame < s.n() ? frame : frame - s.n();
-  double at = 0;
-  for (int i = 0; i < line; ++i) at += spans[static_cast<std::size_t>(i)];
-  return at;
-}
-
-}  // namespace
-
 Deformations::Deformations(const Structure& s, const FloorLayout& layout,
                            const std::vector<SensorAxis>& axes)
     : layout_(&layout) {

@@ -5,37 +5,26 @@
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
+#include "estimator/identify/elements/motion_source.h"
 #include "estimator/motion/drift_controlled_integrator.h"
 #include "estimator/structure/sensors.h"
 
 namespace framewatch::estimator {
 
-/// Motion of the whole building at one instant as the regressor rows need it, floor by floor:
+/// Turns filtered axis motion into element deformations, floor by floor:
 /// [p of the frames, p' of the frames, p of the panels, p' of the panels] as element deformations
 /// (absolute motion of the upper end minus the lower, panels sheared), then mass times p'' of the
-/// frames, absolute. stride() values per floor; the first own() of them follow FloorLayout.
-struct DeformationSet {
-  std::vector<double> values;
-  /// One flag per (floor 0..N, frame): its motion is known. Floor 0 is the base.
-  std::vector<std::uint8_t> known;
-
-  template <typename Archive>
-  void archive(Archive& a) {
-    a.finite(values);
-    a.each_within(known, 0, 1);
-  }
-};
-
-/// Turns filtered axis motion into element deformations.
-class Deformations {
+/// frames, absolute. stride() values per floor; the first own() of them follow FloorLayout. Flags:
+/// one per (floor 0..N, frame), its motion is known; floor 0 is the base.
+class Deformations : public MotionSource {
  public:
   Deformations(const Structure& structure, const FloorLayout& layout,
                const std::vector<SensorAxis>& axes);
 
   int stride() const { return layout_->own() + layout_->frames(); }
   int floors() const { return layout_->floors(); }
-  void compute(const DriftControlledIntegrator& motion, DeformationSet& set) const;
-  DeformationSet make_set() const;
+  void compute(const DriftControlledIntegrator& motion, DeformationSet& set) const override;
+  DeformationSet make_set() const override;
 
   /// An axis' share in the motion of a place.
   struct Weighted {

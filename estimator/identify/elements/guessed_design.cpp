@@ -62,7 +62,8 @@ void retuned_design(const FloorLayout& layout, const ParameterTable& table,
   const double frame_stiffness = median(ParameterKind::frame_stiffness, 1);
   const double frame_damping = median(ParameterKind::frame_damping, 1);
   const double unseen[] = {frame_stiffness, median(ParameterKind::panel_stiffness, frame_stiffness),
-                           frame_damping, median(ParameterKind::panel_damping, frame_damping)};
+                           frame_damping, median(ParameterKind::panel_damping, frame_damping),
+                           median(ParameterKind::bending_stiffness, 1)};
   for (int p = 0; p < table.size(); ++p) {
     const double factor = work.factor[static_cast<std::size_t>(p)];
     out[p] = design[p] * (factor > 0 ? factor : unseen[static_cast<int>(table[p].kind)]);

@@ -19,20 +19,12 @@ double sign(int row, int column) {
   return ((z ^ (z >> 31)) & 1) != 0 ? 1.0 : -1.0;
 }
 
-double tolerance(const FloorLayout& layout, int position) {
-  const int frames = layout.frames();
-  if (position < frames) return design_tolerance(ParameterKind::frame_stiffness);
-  if (position < 2 * frames) return design_tolerance(ParameterKind::frame_damping);
-  return design_tolerance(position < 2 * frames + layout.panels() ? ParameterKind::panel_stiffness
-                                                                  : ParameterKind::panel_damping);
-}
-
 }  // namespace
 
 PerturbedDesigns::PerturbedDesigns(const FloorLayout& layout) : own_(layout.own()) {
   for (int u = 0; u < layout.unknowns(); ++u)
     for (int c = 0; c < kCount; ++c)
-      error_.push_back(kUniform * tolerance(layout, u % own_) * sign(u, c));
+      error_.push_back(kUniform * design_tolerance(layout.kind(u % own_)) * sign(u, c));
 }
 
 }  // namespace framewatch::estimator

@@ -26,7 +26,7 @@ SlidingGram::SlidingGram(const FloorLayout& layout, int blocks, int block_rows,
                          const std::vector<int>& spans)
     : shape_(layout),
       floors_(layout.floors()),
-      frames_(layout.frames()),
+      most_rows_(layout.most_rows()),
       blocks_(blocks),
       block_rows_(block_rows),
       held_blocks_(blocks) {
@@ -42,7 +42,7 @@ SlidingGram::SlidingGram(const FloorLayout& layout, int blocks, int block_rows,
   suffixes_.assign(shape_.size * static_cast<std::size_t>(std::max(block_rows - 1, 0)), 0.0);
   for (int f = 0; f < floors_; ++f) {
     row_offset_.push_back(instant_rows_);
-    instant_rows_ += static_cast<std::size_t>(layout.frames() * padded(layout.front(f)));
+    instant_rows_ += static_cast<std::size_t>(layout.most_rows() * padded(layout.front(f)));
   }
   const auto rows = static_cast<std::size_t>(block_rows);
   const auto floors = static_cast<std::size_t>(floors_);
@@ -117,7 +117,7 @@ WindowParts SlidingGram::span(int i) {
           zero_.data(), span.blocks * block_rows_, &instants_};
 }
 
-void SlidingGram::push(const RegressorFilter& entering) {
+void SlidingGram::push(const RowFilter& entering) {
   const int j = static_cast<int>(pushed_ % block_rows_) + 1;
   int* count = counts(pushed_ / block_rows_);
   if (j == 1) std::fill(count, count + floors_, 0);
@@ -136,7 +136,7 @@ void SlidingGram::push(const RegressorFilter& entering) {
   ++pushed_;
 }
 
-bool SlidingGram::maintain(const RegressorFilter* delayed) {
+bool SlidingGram::maintain(const RowFilter* delayed) {
   const int j = static_cast<int>((pushed_ - 1) % block_rows_) + 1;
   if (j < block_rows_) build_suffix(j);
   if (delayed != nullptr) store_delayed(*delayed, j);
@@ -162,7 +162,7 @@ void SlidingGram::build_suffix(int j) {
   }
 }
 
-void SlidingGram::store_delayed(const RegressorFilter& delayed, int j) {
+void SlidingGram::store_delayed(const RowFilter& delayed, int j) {
   const auto stored = static_cast<std::size_t>(forward_ ? block_rows_ - j : j - 1);
   std::copy(delayed.data(), delayed.data() + instant_rows_,
             stored_rows_.begin() + static_cast<std::ptrdiff_t>(stored * instant_rows_));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/regressors/row_filter.h"
 
 namespace framewatch::estimator {
 
@@ -54,10 +54,10 @@ class SlidingGram {
   int lag() const { return (blocks_ - 2) * block_rows_; }
 
   /// Adds one instant; the window's sum is then that of window().
-  void push(const RegressorFilter& entering);
+  void push(const RowFilter& entering);
   /// Prepares the next instant, once the sum has been used. delayed: the delayed filter at the
   /// instant lag() before the one pushed, or null while there is none. True when a block closed.
-  bool maintain(const RegressorFilter* delayed);
+  bool maintain(const RowFilter* delayed);
 
   bool full() const { return pushed_ >= static_cast<std::int64_t>(blocks_) * block_rows_; }
   /// After push(): maintain() will close a block.
@@ -104,7 +104,7 @@ class SlidingGram {
     a.within(pushed_, 0, a.kMostCount);
     a.finite(current_, middle_, next_middle_, blocks_ring_, suffixes_, stored_rows_);
     a(spans_, forward_);
-    a.each_within(stored_counts_, 0, frames_);
+    a.each_within(stored_counts_, 0, most_rows_);
     a.each_within(middle_instants_, 0, a.kMostCount);
     a.each_within(counts_, 0, block_rows_);
     oldest_ = zero_.data();
@@ -113,7 +113,7 @@ class SlidingGram {
  private:
   double* suffix(int slot) { return &suffixes_[static_cast<std::size_t>(slot - 1) * shape_.size]; }
   void build_suffix(int j);
-  void store_delayed(const RegressorFilter& delayed, int j);
+  void store_delayed(const RowFilter& delayed, int j);
   void count_instants(std::int64_t first, std::int64_t last, std::vector<int>& instants);
   /// Adds the part-th of `parts` slices of the completed blocks first..last - 1 to a sum.
   void add_slice(std::int64_t first, std::int64_t last, int part, int parts,
@@ -125,7 +125,7 @@ class SlidingGram {
   }
 
   GramShape shape_;
-  int floors_, frames_;
+  int floors_, most_rows_;
   int blocks_, block_rows_;
   int held_blocks_;  ///< of the longest window
   std::int64_t pushed_ = 0;

@@ -7,19 +7,15 @@
 namespace framewatch::estimator {
 
 RegressorFilter::RegressorFilter(RegressorTuning& tuning, const FloorLayout& layout, int settle)
-    : tuning_(&tuning), layout_(&layout), settle_(settle) {
+    : RowFilter(layout), tuning_(&tuning), layout_(&layout), settle_(settle) {
   floor_.resize(static_cast<std::size_t>(layout.floors()));
-  std::size_t at = 0;
   for (int floor = 0; floor < layout.floors(); ++floor) {
-    offset_.push_back(at);
     const auto size = static_cast<std::size_t>(layout.frames() * padded(layout.front(floor)));
-    at += size;
     Floor& f = floor_[static_cast<std::size_t>(floor)];
     f.some_known = tuning.rows(floor);
     f.s1.resize(size);
     f.s2.resize(size);
   }
-  rows_.assign(at, 0.0);
   signal_.assign(static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1)), 0.0);
   response_.assign(static_cast<std::size_t>(layout.frames()), 0.0);
   changed_.reserve(static_cast<std::size_t>(layout.floors()));

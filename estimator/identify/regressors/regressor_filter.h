@@ -4,51 +4,45 @@
 #include <vector>
 
 #include "estimator/identify/regressors/regressor_tuning.h"
+#include "estimator/identify/regressors/row_filter.h"
 
 namespace framewatch::estimator {
 
 /// Forms the regression's rows of every floor from p, p' and p'' of the element deformations: each
 /// row passes its oscillator section (docs/equations.md (12), the last part of the drift-controlled
-/// integrator) and is weighted, (13). A pure function of the deformation sets since the start: two
-/// filters given the same sets make the same rows to the bit, so the rows that leave the window are
-/// formed again instead of stored.
-class RegressorFilter {
+/// integrator) and is weighted, (13).
+class RegressorFilter : public RowFilter {
  public:
   /// settle: instants a floor's filters run before its rows count, after a start or when another
-  /// set of motions is known. The tuning must outlive the filter. Allocates when constructed, never
-  /// after.
+  /// set of motions is known. The tuning must outlive the filter.
   RegressorFilter(RegressorTuning& tuning, const FloorLayout& layout, int settle);
 
-  /// Back to the state of a new filter, with the tuning as it is now.
-  void reset(int settle);
-  void push(const DeformationSet& set);
+  void reset(int settle) override;
+  void push(const DeformationSet& set) override;
 
-  /// rows x padded(front) of a floor at the last push; count() is 0 while it settles.
-  const double* rows(int floor) const { return &rows_[offset_[static_cast<std::size_t>(floor)]]; }
-  int count(int floor) const {
+  int count(int floor) const override {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
     return f.settling > 0 ? 0 : f.rows->rows;
   }
-  const FloorRows& floor_rows(int floor) const {
+  const FloorRows& floor_rows(int floor) const override {
     return *floor_[static_cast<std::size_t>(floor)].rows;
   }
-  /// Doubles of all floors' rows, and where a floor's begin.
-  std::size_t size() const { return rows_.size(); }
-  std::size_t offset(int floor) const { return offset_[static_cast<std::size_t>(floor)]; }
-  const double* data() const { return rows_.data(); }
 
-  /// Where floor_rows() comes from: 1 the tuning, 2 what some known motions leave, 0 neither.
-  std::uint8_t origin_of(int floor, const FloorRows* rows) const {
+  std::uint8_t origin_of(int floor, const FloorRows* rows) const override {
     if (rows == nullptr) return 0;
     if (rows == &tuning_->rows(floor)) return 1;
     return rows == &floor_[static_cast<std::size_t>(floor)].some_known ? 2 : 0;
   }
-  const FloorRows* floor_rows_from(int floor, std::uint8_t origin) const {
+  const FloorRows* floor_rows_from(int floor, std::uint8_t origin) const override {
     if (origin == 1) return &tuning_->rows(floor);
     return origin == 2 ? &floor_[static_cast<std::size_t>(floor)].some_known : nullptr;
   }
+  void save(StateWriter& state) override { members(state); }
+  void load(StateReader& state) override { members(state); }
+
+ private:
   template <typename Archive>
-  void archive(Archive& a) {
+  void members(Archive& a) {
     a.within(settle_, 0, a.kMostCount);
     a.each_within(known_, 0, 1);
     a.finite(rows_);
@@ -63,7 +57,6 @@ class RegressorFilter {
     }
   }
 
- private:
   struct Floor {
     const FloorRows* rows = nullptr;  ///< the tuning's, or those below
     FloorRows some_known;
@@ -80,8 +73,6 @@ class RegressorFilter {
   std::vector<std::uint8_t> known_;
   std::vector<int> changed_;
   std::vector<Floor> floor_;
-  std::vector<std::size_t> offset_;
-  std::vector<double> rows_;
   std::vector<double> signal_, response_;
 };
 

@@ -16,7 +16,7 @@ NoiseCompensation::NoiseCompensation(const FloorLayout& layout, double share)
   }
 }
 
-void NoiseCompensation::update(const RegressorFilter& rows, const WindowParts& sums, double level) {
+void NoiseCompensation::update(const RowFilter& rows, const WindowParts& sums, double level) {
   std::fill(energy_.begin(), energy_.end(), 0.0);
   residual_ = 0;
   level_ = level;

@@ -5,7 +5,7 @@
 
 #include "estimator/identify/elements/floor_layout.h"
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/regressors/row_filter.h"
 
 namespace framewatch::estimator {
 
@@ -18,7 +18,7 @@ class NoiseCompensation {
   explicit NoiseCompensation(const FloorLayout& layout, double share = kCompensatedShare);
 
   /// level: variance of the noise that is there, divided by what the tuning assumes.
-  void update(const RegressorFilter& rows, const WindowParts& sums, double level);
+  void update(const RowFilter& rows, const WindowParts& sums, double level);
 
   /// Values times scale.
   struct Part {
@@ -47,7 +47,7 @@ class NoiseCompensation {
 
   /// rows: the filter that formed the rows.
   template <typename Archive>
-  void archive(Archive& a, const RegressorFilter& rows) {
+  void archive(Archive& a, const RowFilter& rows) {
     for (std::size_t f = 0; f < floor_.size(); ++f) {
       std::uint8_t origin = rows.origin_of(static_cast<int>(f), floor_[f].rows);
       a(origin);

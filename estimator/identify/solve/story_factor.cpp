@@ -22,7 +22,7 @@ InverseDiagonal::InverseDiagonal(const FloorLayout& layout)
     : layout_(layout), columns_(padded(layout.own())) {
   const auto size = static_cast<std::size_t>(layout.own() * columns_);
   for (std::vector<double>* work : {&inverse_, &coupled_, &middle_}) work->assign(size, 0.0);
-  transposed_.assign(static_cast<std::size_t>(2 * layout.frames() * columns_), 0.0);
+  transposed_.assign(static_cast<std::size_t>(layout.shared() * columns_), 0.0);
 }
 
 void InverseDiagonal::step(const StoryFactor& factor, int floor, double* diagonal) {

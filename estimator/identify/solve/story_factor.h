@@ -15,8 +15,7 @@ class StoryFactor {
  public:
   explicit StoryFactor(const FloorLayout& layout)
       : layout_(layout),
-        stride_(static_cast<std::size_t>(layout.own() *
-                                         padded(layout.own() + 2 * layout.frames() + 1))),
+        stride_(static_cast<std::size_t>(layout.own() * padded(layout.most_front()))),
         values_(stride_ * static_cast<std::size_t>(layout.floors()), 0.0) {}
 
   void swap(StoryFactor& other) { values_.swap(other.values_); }

@@ -13,7 +13,7 @@ constexpr double kSmallestPivot = 1e-13;
 }  // namespace
 
 StorySolver::StorySolver(const FloorLayout& layout) : layout_(layout), factor_(layout) {
-  const int stride = padded(layout.own() + 2 * layout.frames() + 1);
+  const int stride = padded(layout.most_front());
   for (std::vector<double>& front : front_)
     front.assign(static_cast<std::size_t>(stride * stride), 0.0);
   pivot_floor_.assign(static_cast<std::size_t>(layout.own()), 0.0);
@@ -33,7 +33,7 @@ void StorySolver::gather_information(const WindowParts& sums, int floor) {
     const auto unknown = static_cast<std::size_t>(floor * own + i);
     if (i + 1 == shape.front)
       response_energy_ += sum;
-    else if (i < own && !(floor > 0 && i < 2 * layout_.frames()))
+    else if (i < own && !(floor > 0 && i < layout_.shared()))
       information_[unknown] = sum;
     else if (i < own)
       information_[unknown] += sum;
@@ -46,7 +46,7 @@ void StorySolver::gather_information(const WindowParts& sums, int floor) {
 void StorySolver::factor(const WindowParts& sums, const std::vector<double>& prior,
                          const NoiseCompensation& noise) {
   const int own = layout_.own();
-  const int passed = 2 * layout_.frames();
+  const int passed = layout_.shared();
   response_energy_ = 0;
   double prior_energy = 0;
   for (int floor = 0; floor < layout_.floors(); ++floor) {

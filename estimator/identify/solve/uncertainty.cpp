@@ -28,7 +28,7 @@ BatchMeans::BatchMeans(const FloorLayout& layout, double compensation)
        {&solution_, &score_scale_, &prior_, &inverse_diagonal_, &new_error_, &new_share_,
         &new_noise_share_, &std_error_, &prior_share_, &noise_share_})
     v->assign(unknowns, 0.0);
-  const auto front = static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1));
+  const auto front = static_cast<std::size_t>(padded(layout.most_front()));
   score_.assign(front, 0.0);
   x_.assign(front, 0.0);
 }

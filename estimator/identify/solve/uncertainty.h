@@ -64,7 +64,7 @@ class BatchMeans {
 
   /// rows, sums: those of the pass under way, if any.
   template <typename Archive, typename Sums>
-  void archive(Archive& a, const RegressorFilter& rows, const Sums& sums) {
+  void archive(Archive& a, const RowFilter& rows, const Sums& sums) {
     a.within(next_step_, 0, steps());
     a(factor_, inverse_, noise_level_, columns_values_, solution_, score_scale_);
     a(prior_, inverse_diagonal_, new_error_, new_share_, new_noise_share_);

@@ -50,8 +50,8 @@ LongWindow::LongWindow(const Structure& structure, const FloorLayout& layout,
       whole_instants_(static_cast<std::size_t>(floors_), 0) {
   estimate_.window = window;
   fit_.assign(static_cast<std::size_t>(layout.unknowns()), 1.0);
-  x_.assign(static_cast<std::size_t>(layout.own() + 2 * layout.frames() + 1), 0.0);
-  known_.reserve(static_cast<std::size_t>((floors_ + 1) * layout.frames()));
+  x_.assign(static_cast<std::size_t>(layout.most_front()), 0.0);
+  known_.reserve(static_cast<std::size_t>(layout.places()));
 }
 
 void LongWindow::retuned() {

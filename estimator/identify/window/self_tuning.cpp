@@ -23,12 +23,13 @@ SelfTuning::SelfTuning(const FloorLayout& layout, const ParameterTable& table,
       standby_(std::move(standby)),
       blocks_(blocks),
       fill_(fill),
-      floors_per_instant_(std::max(kLeastFloors, (layout.floors() + blocks - 1) / blocks)),
+      parts_per_instant_(
+          layout.grouped() ? 1 : std::max(kLeastFloors, (layout.floors() + blocks - 1) / blocks)),
       noise_known_(noise_known),
       noise_(standby_->tuning().noise_density()),
       work_(table.size()),
       next_theta0_(Eigen::VectorXd::Zero(table.size())) {
-  const double front = layout.own() + 2.0 * layout.frames() + 1;
+  const double front = layout.most_front();
   catch_up_per_instant_ = static_cast<int>(std::clamp<double>(
       kCatchUpWork / (layout.floors() * front * front), kLeastCatchUp, kMostCatchUp));
 }
@@ -50,8 +51,17 @@ void SelfTuning::begin_check(const TunedRegression& active, const std::vector<do
   noise_differs_ =
       noise_measured_ && (!noise_known_ || noise.differs(noise_, active.tuning().noise_density()));
   phase_ = Phase::checking;
-  next_floor_ = 0;
+  next_part_ = 0;
   detuning_ = 0;
+}
+
+void SelfTuning::begin_axes(const TunedRegression& active,
+                            const std::vector<std::uint8_t>& present) {
+  standby_->tuning().set_axes(present);
+  standby_->tuning().set_theta0(active.tuning().theta0(), active.tuning().noise_density());
+  noise_measured_ = noise_known_;
+  phase_ = Phase::tuning;
+  next_part_ = 0;
 }
 
 bool SelfTuning::step(std::unique_ptr<TunedRegression>& active, const MotionRing& ring) {
@@ -62,7 +72,7 @@ bool SelfTuning::step(std::unique_ptr<TunedRegression>& active, const MotionRing
       check_floors(*active);
       break;
     case Phase::tuning:
-      tune_floors(ring);
+      tune_parts(ring);
       break;
     case Phase::catching_up:
       if (!catch_up(*active, ring)) break;
@@ -76,9 +86,9 @@ bool SelfTuning::step(std::unique_ptr<TunedRegression>& active, const MotionRing
 }
 
 void SelfTuning::check_floors(TunedRegression& active) {
-  for (int i = 0; i < floors_per_instant_ && next_floor_ < layout_.floors(); ++i)
-    detuning_ = std::max(detuning_, active.tuning().detuning(next_floor_++, next_theta0_));
-  if (next_floor_ < layout_.floors()) return;
+  for (int i = 0; i < parts_per_instant_ && next_part_ < layout_.floors(); ++i)
+    detuning_ = std::max(detuning_, active.tuning().detuning(next_part_++, next_theta0_));
+  if (next_part_ < layout_.floors()) return;
   phase_ = Phase::idle;
   if ((detuning_ <= kDetuned && !noise_differs_) || passes_ >= kMostPasses) {
     tuned_ = true;
@@ -87,14 +97,17 @@ void SelfTuning::check_floors(TunedRegression& active) {
   }
   if (!tuned_) ++passes_;
   phase_ = Phase::tuning;
-  next_floor_ = 0;
-  standby_->set_theta0(next_theta0_, noise_measured_ ? noise_ : active.tuning().noise_density());
+  next_part_ = 0;
+  if (standby_->tuning().axes() != active.tuning().axes())
+    standby_->tuning().set_axes(active.tuning().axes());
+  standby_->tuning().set_theta0(next_theta0_,
+                                noise_measured_ ? noise_ : active.tuning().noise_density());
 }
 
-void SelfTuning::tune_floors(const MotionRing& ring) {
-  for (int i = 0; i < floors_per_instant_ && next_floor_ < layout_.floors(); ++i)
-    standby_->tune(next_floor_++);
-  if (next_floor_ < layout_.floors()) return;
+void SelfTuning::tune_parts(const MotionRing& ring) {
+  for (int i = 0; i < parts_per_instant_ && next_part_ < standby_->tuning().parts(); ++i)
+    standby_->tuning().tune(next_part_++);
+  if (next_part_ < standby_->tuning().parts()) return;
   const std::int64_t back = standby_->warm_up() + fill_;
   standby_->start(std::max(ring.begin(), ring.end() - back));
   phase_ = Phase::catching_up;

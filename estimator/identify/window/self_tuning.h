@@ -28,6 +28,7 @@ class SelfTuning {
 
   /// The input was interrupted: a re-tuning under way is abandoned.
   void restart() { phase_ = Phase::idle; }
+  bool idle() const { return phase_ == Phase::idle; }
   /// Once per completed pass of batch means: whether the filters should be checked now. Every time
   /// until they were found right, then once a window.
   bool due();
@@ -37,6 +38,8 @@ class SelfTuning {
   void begin_check(const TunedRegression& active, const std::vector<double>& ratio,
                    const std::vector<double>& std_error, const std::vector<std::uint8_t>& shown,
                    const AxisNoise& noise);
+  /// Begins a tuning to other axes, with the parameters as they are.
+  void begin_axes(const TunedRegression& active, const std::vector<std::uint8_t>& present);
   /// One instant's share of the work. True when `active` was exchanged for the newly tuned
   /// regression; before() is then the former one.
   bool step(std::unique_ptr<TunedRegression>& active, const MotionRing& ring);
@@ -52,8 +55,7 @@ class SelfTuning {
   void archive(Archive& a) {
     a(*standby_, tuned_, noise_known_, noise_measured_, noise_differs_);
     a.within(phase_, 0, static_cast<double>(Phase::catching_up));
-    a.within(next_floor_, 0, layout_.floors());
-    for (int* number : {&passes_, &since_check_}) a.within(*number, 0, a.kMostCount);
+    for (int* number : {&next_part_, &passes_, &since_check_}) a.within(*number, 0, a.kMostCount);
     a.within(retunes_, 0, a.kMostCount);
     a.finite(detuning_, noise_, next_theta0_);
   }
@@ -61,16 +63,16 @@ class SelfTuning {
  private:
   enum class Phase { idle, checking, tuning, catching_up };
   void check_floors(TunedRegression& active);
-  void tune_floors(const MotionRing& ring);
+  void tune_parts(const MotionRing& ring);
   bool catch_up(const TunedRegression& active, const MotionRing& ring);
 
   FloorLayout layout_;
   ParameterTable table_;
   std::unique_ptr<TunedRegression> standby_;
-  int blocks_, fill_, floors_per_instant_, catch_up_per_instant_;
+  int blocks_, fill_, parts_per_instant_, catch_up_per_instant_;
   Phase phase_ = Phase::idle;
   bool tuned_ = false;
-  int next_floor_ = 0, passes_ = 0, since_check_ = 0;
+  int next_part_ = 0, passes_ = 0, since_check_ = 0;
   double detuning_ = 0;
   bool noise_known_;
   bool noise_measured_ = false;  ///< noise_ is known of every axis

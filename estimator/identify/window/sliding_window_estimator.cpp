@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/groups/axis_motion.h"
+#include "estimator/identify/groups/group_tuning.h"
+#include "estimator/identify/groups/reduced_building.h"
+#include "estimator/identify/regressors/regressor_tuning.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -12,19 +17,22 @@ constexpr int kBlocks = BatchMeans::kBlocks;  // per window
 constexpr int kFewestBlocks = 4;              // of another window
 /// Of the main window: blocks without rows would make standard errors too small.
 constexpr double kWarm = 0.9;
+/// A channel that is away for less is waited for; for longer, its floor becomes an inner one.
+constexpr double kAxesSteady_s = 2;
 
-DerivativeTriple triple_of(const EstimatorOptions& o, double advance) {
+DerivativeTriple triple_of(const EstimatorOptions& o, bool grouped, double advance) {
+  if (grouped) return held_triple(o.rate_hz, advance);
   return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz)
                                      : matched_triple(o.rate_hz, advance);
 }
 
 /// Acquisition subtracts whole samples of a delay from the stamps; the triple undoes the rest.
-std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o,
+std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o, bool grouped,
                                          const std::vector<SensorAxis>& axes) {
   std::vector<DerivativeTriple> triples;
   for (const SensorAxis& axis : axes) {
     const double samples = axis.delay * o.rate_hz;
-    triples.push_back(triple_of(o, samples - std::round(samples)));
+    triples.push_back(triple_of(o, grouped, samples - std::round(samples)));
   }
   return triples;
 }
@@ -42,8 +50,10 @@ std::vector<int> blocks_of(const std::vector<double>& windows_s, double rate_hz,
 }
 
 /// Instants that the slowest possible row filter needs to settle: no corner is below the high-pass.
-int longest_settle(const EstimatorOptions& o) {
-  const double slowest_s = 3 / (std::min(o.filter_damping, 0.7) * 2 * M_PI * o.high_pass_hz);
+int longest_settle(const EstimatorOptions& o, bool grouped) {
+  const double slowest_s = grouped
+                               ? GroupTuning::kLongestSettle_s
+                               : 3 / (std::min(o.filter_damping, 0.7) * 2 * M_PI * o.high_pass_hz);
   return rows_of(std::max(o.settle_s, slowest_s), o.rate_hz) + 1;
 }
 
@@ -51,6 +61,12 @@ int longest_window(int block_rows, const std::vector<int>& other_blocks) {
   int longest = kBlocks;
   for (const int blocks : other_blocks) longest = std::max(longest, blocks);
   return longest * block_rows;
+}
+
+std::unique_ptr<MotionSource> motion_source(const Structure& structure, const FloorLayout& layout,
+                                            const std::vector<SensorAxis>& axes) {
+  if (layout.grouped()) return std::make_unique<AxisMotion>(static_cast<int>(axes.size()));
+  return std::make_unique<Deformations>(structure, layout, axes);
 }
 
 SensorClock::duration duration_of(double rows, double rate_hz) {
@@ -61,51 +77,58 @@ SensorClock::duration duration_of(double rows, double rate_hz) {
 
 SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
                                                const ParameterTable& table)
-    : structure_(config.structure),
-      axes_(config.axes),
-      options_(config.options),
-      matched_(options_.variant == Variant::matched),
+    : config_(config),
+      options_(config_.options),
+      matched_(options_.variant == Variant::matched || table.grouped()),
       table_(table),
-      layout_(structure_, table_),
-      deformations_(structure_, layout_, axes_),
-      triple_(triple_of(options_, 0)),
+      layout_(config_.structure, table_, config_.axes),
+      motion_source_(motion_source(config_.structure, layout_, config_.axes)),
+      triple_(triple_of(options_, layout_.grouped(), 0)),
       high_pass_(options_.high_pass_hz, options_.rate_hz),
       blocks_(kBlocks),
       block_rows_(std::max(2, rows_of(options_.window_s / kBlocks, options_.rate_hz))),
       hop_rows_(rows_of(options_.hop_s, options_.rate_hz)),
       settle_rows_(rows_of(options_.settle_s, options_.rate_hz)),
       other_blocks_(blocks_of(options_.other_windows_s, options_.rate_hz, block_rows_)),
-      integrator_(triples_of(options_, axes_), high_pass_),
-      noise_(axes_, options_.rate_hz),
-      ring_(deformations_,
-            SelfTuning::ring_rows(longest_settle(options_) +
+      integrator_(triples_of(options_, layout_.grouped(), config_.axes), high_pass_),
+      noise_(config_.axes, options_.rate_hz),
+      ring_(*motion_source_,
+            SelfTuning::ring_rows(longest_settle(options_, layout_.grouped()) +
                                   longest_window(block_rows_, other_blocks_) + triple_.length())),
-      main_(structure_, layout_, table_, options_, kCompensatedShare, kWarm),
-      others_(structure_, layout_, table_, options_, other_blocks_, block_rows_),
+      main_(config_.structure, layout_, table_, options_, kCompensatedShare, kWarm),
+      others_(config_.structure, layout_, table_, options_, other_blocks_, block_rows_),
       estimate_(static_cast<std::size_t>(table_.size())) {
   steps_per_instant_ = (main_.error_steps() + block_rows_ - 2) / (block_rows_ - 1);
   boxplots_.reserve(estimate_.value.size());  // copies would not keep what they reserve
   for (std::size_t p = 0; p < estimate_.value.size(); ++p)
     boxplots_.emplace_back(options_.boxplot_windows);
+  seen_axes_.assign(layout_.grouped() ? config_.axes.size() : 0, 1);
   shown_.assign(static_cast<std::size_t>(layout_.unknowns()), 0);
-  active_ = make_regression(config.design.size() > 0 ? config.design
-                                                     : guessed_design(structure_, table_));
+  active_ = make_regression();
   if (options_.self_tune && matched_)
-    self_tuning_ =
-        std::make_unique<SelfTuning>(layout_, table_, make_regression(active_->tuning().theta0()),
-                                     kBlocks, triple_.length(), noise_.configured());
+    self_tuning_ = std::make_unique<SelfTuning>(layout_, table_, make_regression(), kBlocks,
+                                                triple_.length(), noise_.configured());
   if (options_.long_window_s > 0)
-    long_ = std::make_unique<LongWindow>(structure_, layout_, table_, options_, block_rows_,
+    long_ = std::make_unique<LongWindow>(config_.structure, layout_, table_, options_, block_rows_,
                                          static_cast<int>(other_blocks_.size()) + 1,
                                          noise_.configured());
 }
 
-std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
-    const Eigen::VectorXd& design) const {
-  const RegressorTuning tuning(structure_, layout_, deformations_, options_, triple_, high_pass_,
-                               design);
-  return std::make_unique<TunedRegression>(tuning, layout_, blocks_, block_rows_, other_blocks_,
-                                           settle_rows_);
+std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression() const {
+  const Structure& structure = config_.structure;
+  const Eigen::VectorXd design = config_.design.size() > 0
+                                     ? config_.design
+                                     : guessed_design(structure, ParameterTable(structure));
+  std::unique_ptr<RowTuning> tuning;
+  if (layout_.grouped())
+    tuning = std::make_unique<GroupTuning>(
+        config_, table_, layout_, GroupDesign{design, config_.bending_nmprad}, triple_, high_pass_);
+  else
+    tuning = std::make_unique<RegressorTuning>(structure, layout_,
+                                               static_cast<const Deformations&>(*motion_source_),
+                                               options_, triple_, high_pass_, design);
+  return std::make_unique<TunedRegression>(std::move(tuning), layout_, blocks_, block_rows_,
+                                           other_blocks_, settle_rows_);
 }
 
 std::vector<int> SlidingWindowEstimator::other_window_rows() const {
@@ -145,7 +168,8 @@ const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
 
   integrator_.push(set.accel);
   noise_.push(set.accel);
-  deformations_.compute(integrator_, ring_.push());
+  motion_source_->compute(integrator_, ring_.push());
+  if (layout_.grouped()) follow_axes(ring_.at(ring_.end() - 1).known);
   active_->advance(ring_);
   ++since_hop_;
   const bool due = since_hop_ >= hop_rows_;
@@ -159,6 +183,20 @@ const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
   if (given) fill_estimate(window_end);
   if (self_tuning_ && self_tuning_->step(active_, ring_)) regression_exchanged();
   return given ? &estimate_ : nullptr;
+}
+
+void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known) {
+  if (known != seen_axes_) {
+    seen_axes_ = known;
+    axes_steady_rows_ = 0;
+    return;
+  }
+  if (self_tuning_ == nullptr || known == active_->tuning().axes() || !self_tuning_->idle()) return;
+  if (++axes_steady_rows_ < options_.rate_hz * kAxesSteady_s ||
+      !shows_groups(config_.structure, config_.axes, known))
+    return;
+  axes_steady_rows_ = 0;
+  self_tuning_->begin_axes(*active_, known);
 }
 
 void SlidingWindowEstimator::advance_errors(Time window_end) {

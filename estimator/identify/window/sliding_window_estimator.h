@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "estimator/identify/elements/motion_source.h"
 #include "estimator/identify/estimate/boxplot.h"
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/noise/axis_noise.h"
@@ -51,6 +52,8 @@ class SlidingWindowEstimator {
     others_.archive(a, *active_);
     archive_long(a);
     a(boxplots_, estimate_);
+    a.each_within(seen_axes_, 0, 1);
+    a.within(axes_steady_rows_, 0, a.kMostCount);
     a.within(expected_index_, -1, a.kMostCount);
     a.within(since_hop_, 0, hop_rows_);
     a.within(interruptions_, 0, a.kMostCount);
@@ -84,20 +87,22 @@ class SlidingWindowEstimator {
   void advance_errors(Time window_end);
   void check_tuning();
   void advance_long();
+  /// Of groups: a channel that is gone makes its floor an inner one, one that is back a measured
+  /// one.
+  void follow_axes(const std::vector<std::uint8_t>& known);
   void regression_exchanged();
   /// The filters are right, as far as is known.
   bool tuned() const { return self_tuning_ == nullptr || self_tuning_->tuned(); }
-  std::unique_ptr<TunedRegression> make_regression(const Eigen::VectorXd& design) const;
+  std::unique_ptr<TunedRegression> make_regression() const;
   WindowSolution::Trust trust() const { return {matched_ && tuned(), noise_known()}; }
   void fill_estimate(Time end);
 
-  Structure structure_;
-  std::vector<SensorAxis> axes_;
+  PipelineConfig config_;
   EstimatorOptions options_;
   bool matched_;  ///< the variant
   ParameterTable table_;
   FloorLayout layout_;
-  Deformations deformations_;
+  std::unique_ptr<MotionSource> motion_source_;
   DerivativeTriple triple_;
   HighPass high_pass_;
   int blocks_, block_rows_, hop_rows_, settle_rows_;
@@ -116,7 +121,9 @@ class SlidingWindowEstimator {
   WindowEstimate estimate_;
   const WindowEstimate* other_ = nullptr;
   std::int64_t expected_index_ = -1, since_hop_ = 0, interruptions_ = 0;
-  bool sane_ = true;  ///< the newest block of sums; not kept: looked at again
+  std::vector<std::uint8_t> seen_axes_;  ///< of the last instants, of groups
+  int axes_steady_rows_ = 0;             ///< instants for which they have been these
+  bool sane_ = true;                     ///< the newest block of sums; not kept: looked at again
 };
 
 }  // namespace framewatch::estimator

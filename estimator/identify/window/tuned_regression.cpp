@@ -1,50 +1,51 @@
 #include "estimator/identify/window/tuned_regression.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace framewatch::estimator {
 
-MotionRing::MotionRing(const Deformations& deformations, int capacity)
-    : sets_(static_cast<std::size_t>(capacity), deformations.make_set()) {}
+MotionRing::MotionRing(const MotionSource& source, int capacity)
+    : sets_(static_cast<std::size_t>(capacity), source.make_set()) {}
 
-TunedRegression::TunedRegression(const RegressorTuning& tuning, const FloorLayout& layout,
+TunedRegression::TunedRegression(std::unique_ptr<RowTuning> tuning, const FloorLayout& layout,
                                  int blocks, int block_rows, const std::vector<int>& spans,
                                  int least_settle)
-    : tuning_(tuning),
+    : tuning_(std::move(tuning)),
       layout_(layout),
       least_settle_(least_settle),
-      entering_(tuning_, layout_, tuning_.settle_rows(least_settle)),
-      delayed_(tuning_, layout_, tuning_.settle_rows(least_settle)),
+      entering_(tuning_->make_filter(tuning_->settle_rows(least_settle))),
+      delayed_(tuning_->make_filter(tuning_->settle_rows(least_settle))),
       sums_(layout_, blocks, block_rows, spans) {}
 
 void TunedRegression::start(std::int64_t instant) {
   next_ = delayed_next_ = instant;
   counting_ = false;
-  const int settle = tuning_.settle_rows(least_settle_);
-  entering_.reset(settle);
-  delayed_.reset(settle);
+  const int settle = tuning_->settle_rows(least_settle_);
+  entering_->reset(settle);
+  delayed_->reset(settle);
   sums_.reset();
 }
 
 void TunedRegression::advance(const MotionRing& ring) {
-  entering_.push(ring.at(next_++));
+  entering_->push(ring.at(next_++));
   for (int floor = 0; floor < layout_.floors() && !counting_; ++floor)
-    counting_ = entering_.count(floor) > 0;
+    counting_ = entering_->count(floor) > 0;
   if (!counting_) {
     counted_from_ = next_;
     return;
   }
-  sums_.push(entering_);
+  sums_.push(*entering_);
 }
 
 bool TunedRegression::finish(const MotionRing& ring) {
   const std::int64_t delayed_instant = next_ - 1 - sums_.lag();
   bool delayed_counts = false;
   if (delayed_instant >= delayed_next_) {
-    delayed_.push(ring.at(delayed_next_++));
+    delayed_->push(ring.at(delayed_next_++));
     delayed_counts = delayed_next_ > counted_from_;
   }
-  return counting_ && sums_.maintain(delayed_counts ? &delayed_ : nullptr);
+  return counting_ && sums_.maintain(delayed_counts ? delayed_.get() : nullptr);
 }
 
 }  // namespace framewatch::estimator

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <vector>
 
+#include "estimator/identify/elements/motion_source.h"
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/regressor_filter.h"
-#include "estimator/identify/regressors/regressor_tuning.h"
+#include "estimator/identify/regressors/row_filter.h"
+#include "estimator/identify/regressors/row_tuning.h"
 #include "estimator/identify/solve/story_solver.h"
 #include "estimator/identify/solve/uncertainty.h"
 
@@ -13,7 +16,7 @@ namespace framewatch::estimator {
 /// A ring of the last deformation sets, addressed by instant.
 class MotionRing {
  public:
-  MotionRing(const Deformations& deformations, int capacity);
+  MotionRing(const MotionSource& source, int capacity);
   void reset() { next_ = 0; }
   /// The slot for the next instant; counts as pushed.
   DeformationSet& push() { return slot(next_++); }
@@ -43,22 +46,15 @@ class MotionRing {
 /// after.
 class TunedRegression {
  public:
-  /// blocks, block_rows, spans: see SlidingGram. least_settle: see RegressorTuning::settle_rows.
-  TunedRegression(const RegressorTuning& tuning, const FloorLayout& layout, int blocks,
+  /// blocks, block_rows, spans: see SlidingGram. least_settle: see RowTuning::settle_rows.
+  TunedRegression(std::unique_ptr<RowTuning> tuning, const FloorLayout& layout, int blocks,
                   int block_rows, const std::vector<int>& spans, int least_settle);
-
-  /// Other parameters to tune the filters to. Every floor must be tuned, and start() called, before
-  /// the regression is used again.
-  void set_theta0(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density) {
-    tuning_.set_theta0(theta0, noise_density);
-  }
-  void tune(int floor) { tuning_.tune(floor); }
 
   /// Starts anew at an instant of the ring, with the tuning as it is now.
   void start(std::int64_t instant);
   std::int64_t next() const { return next_; }
   /// Instants from the start to the first full window of every length.
-  int warm_up() const { return tuning_.settle_rows(least_settle_) + sums_.longest_rows(); }
+  int warm_up() const { return tuning_->settle_rows(least_settle_) + sums_.longest_rows(); }
 
   /// Adds instant next(); the window's sum is ready for the solver until finish().
   void advance(const MotionRing& ring);
@@ -68,23 +64,25 @@ class TunedRegression {
   bool finish(const MotionRing& ring);
 
   bool full() const { return counting_ && sums_.full(); }
-  const RegressorTuning& tuning() const { return tuning_; }
-  RegressorTuning& tuning() { return tuning_; }
+  const RowTuning& tuning() const { return *tuning_; }
+  /// After other parameters every part must be tuned, and start() called, before the regression is
+  /// used again.
+  RowTuning& tuning() { return *tuning_; }
   SlidingGram& sums() { return sums_; }
-  const RegressorFilter& rows() const { return entering_; }
+  const RowFilter& rows() const { return *entering_; }
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(tuning_, entering_, delayed_, sums_, counting_);
+    a(*tuning_, *entering_, *delayed_, sums_, counting_);
     for (std::int64_t* number : {&next_, &delayed_next_, &counted_from_})
       a.within(*number, 0, a.kMostCount);
   }
 
  private:
-  RegressorTuning tuning_;
+  std::unique_ptr<RowTuning> tuning_;
   FloorLayout layout_;
   int least_settle_;
-  RegressorFilter entering_, delayed_;
+  std::unique_ptr<RowFilter> entering_, delayed_;
   SlidingGram sums_;
   std::int64_t next_ = 0, delayed_next_ = 0, counted_from_ = 0;
   bool counting_ = false;

@@ -30,15 +30,18 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       solver_(layout),
       errors_(layout, compensation),
       prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
+      same_as_(layout.grouped() ? static_cast<std::size_t>(layout.unknowns()) : 0, 0),
       warm_(static_cast<std::size_t>(layout.floors()), 0),
-      known_(static_cast<std::size_t>((layout.floors() + 1) * layout.frames()), 0),
+      known_(static_cast<std::size_t>(layout.places()), 0),
       place_known_(static_cast<std::size_t>(layout.unknowns()), 0) {
   for (int u = 0; u < layout.unknowns(); ++u) {
     const int parameter = layout.parameter(u / layout.own(), u % layout.own());
     const ParameterKind kind = table[parameter].kind;
-    const double limit = kind == ParameterKind::frame_stiffness   ? options.max_error_k
-                         : kind == ParameterKind::panel_stiffness ? options.max_error_g
-                                                                  : options.max_error_c;
+    const double limit =
+        kind == ParameterKind::frame_stiffness ? options.max_error_k
+        : kind == ParameterKind::panel_stiffness || kind == ParameterKind::bending_stiffness
+            ? options.max_error_g
+            : options.max_error_c;
     const double tolerance = design_tolerance(kind);
     unknowns_.push_back({parameter, kind, kInflation / (tolerance * tolerance), limit});
   }
@@ -52,7 +55,7 @@ void WindowSolution::restart() {
   noise_scale_ = noise_level_ = residual_energy_ = 0;
 }
 
-void WindowSolution::solve(const WindowParts& sums, const RegressorFilter& rows, const Trust& trust,
+void WindowSolution::solve(const WindowParts& sums, const RowFilter& rows, const Trust& trust,
                            bool closes_block) {
   if (fresh_) {
     fresh_ = false;
@@ -67,6 +70,7 @@ void WindowSolution::solve(const WindowParts& sums, const RegressorFilter& rows,
     warm_[f] = (*sums.instants)[f] >= warm_share_ * sums.rows ? kWarm
                : (*sums.instants)[f] > 0                      ? kFilling
                                                               : kRowless;
+  if (layout_.grouped()) same_as_ = rows.floor_rows(0).same_as;
   const double prior_scale = trust.regularise && options_.prior ? noise_level_ : 0.0;
   for (std::size_t u = 0; u < prior_.size(); ++u) prior_[u] = prior_scale * unknowns_[u].prior;
   solver_.factor(sums, prior_, noise_);
@@ -97,6 +101,7 @@ bool WindowSolution::published(int unknown) const {
 }
 
 bool WindowSolution::place_known(int unknown) const {
+  if (layout_.grouped()) return true;  // its floor becomes an inner one
   const int frames = layout_.frames();
   const int floor = unknown / layout_.own();
   const int position = unknown % layout_.own();
@@ -114,6 +119,8 @@ bool WindowSolution::place_known(int unknown) const {
 /// without it no equation of the floor is left.
 bool WindowSolution::rowless(int floor) const {
   if (!solved_ || warm_[static_cast<std::size_t>(floor)] != kRowless) return false;
+  if (layout_.grouped())
+    return std::any_of(known_.begin(), known_.end(), [](auto k) { return k == 0; });
   const int levels = layout_.next(floor) > 0 ? 3 : 2;
   const auto first = known_.begin() + floor * layout_.frames();
   return std::any_of(first, first + levels * layout_.frames(), [](auto k) { return k == 0; });
@@ -150,10 +157,12 @@ bool WindowSolution::looks_symmetric(const WindowEstimate& estimate) const {
 void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
   see(*situation.known);
   bool any = false, any_frame = false, warming = true;
-  for (int u = 0; u < layout_.unknowns(); ++u) {
+  for (int own = 0; own < layout_.unknowns(); ++own) {
+    const int u = same_as_.empty() ? own : same_as_[static_cast<std::size_t>(own)];
     const auto i = static_cast<std::size_t>(u);
-    const auto p = static_cast<std::size_t>(unknowns_[i].parameter);
-    const double theta0 = (*situation.theta0)[unknowns_[i].parameter];
+    const int parameter = unknowns_[static_cast<std::size_t>(own)].parameter;
+    const auto p = static_cast<std::size_t>(parameter);
+    const double theta0 = (*situation.theta0)[parameter];
     const int floor = u / layout_.own();
     const bool warm = solved_ && errors_known_ && situation.tuned && this->warm(floor) &&
                       (situation.errors_of == nullptr || situation.errors_of->warm(floor));
@@ -175,7 +184,7 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     e.prior_share[p] = shares ? std::clamp(errors_.prior_share()[i], 0.0, 1.0) : 0;
     e.noise_share[p] = shares ? std::clamp(errors_.noise_share()[i], 0.0, 1.0) : 0;
   }
-  if (any_frame && layout_.panels() > 0) {
+  if (any_frame && layout_.panels() > 0 && !layout_.grouped()) {
     const Observability why =
         looks_symmetric(e) ? Observability::symmetric_plan : Observability::floor_too_stiff;
     for (const Unknown& unknown : unknowns_) {

@@ -7,7 +7,7 @@
 
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/regressors/row_filter.h"
 #include "estimator/identify/solve/noise_compensation.h"
 #include "estimator/identify/solve/story_solver.h"
 #include "estimator/identify/solve/uncertainty.h"
@@ -36,8 +36,7 @@ class WindowSolution {
   };
   /// The level of the noise is that of the last solution that closed a block: a window's numbers do
   /// not depend on how often windows are asked for.
-  void solve(const WindowParts& sums, const RegressorFilter& rows, const Trust& trust,
-             bool closes_block);
+  void solve(const WindowParts& sums, const RowFilter& rows, const Trust& trust, bool closes_block);
 
   /// A pass of standard errors, spread over instants (BatchMeans). fit: the solution that fits
   /// BatchMeans::kBlocks blocks, this one or another.
@@ -75,9 +74,10 @@ class WindowSolution {
 
   /// rows, sums: of the active regression.
   template <typename Archive, typename Sums>
-  void archive(Archive& a, const RegressorFilter& rows, const Sums& sums) {
+  void archive(Archive& a, const RowFilter& rows, const Sums& sums) {
     noise_.archive(a, rows);
     errors_.archive(a, rows, sums);
+    a.each_within(same_as_, 0, layout_.unknowns() - 1.0);
     a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_,
       overcompensated_);
     a.finite(residual_energy_, noise_scale_, noise_level_);
@@ -106,6 +106,7 @@ class WindowSolution {
   StorySolver solver_;
   BatchMeans errors_;
   std::vector<double> prior_;
+  std::vector<int> same_as_;  ///< FloorRows::same_as of a building of groups
   /// Of every floor: kWarm when its rows fill most of the window, kRowless when it has none there.
   static constexpr std::uint8_t kFilling = 0, kWarm = 1, kRowless = 2;
   std::vector<std::uint8_t> warm_;

@@ -1,0 +1,87 @@
+#include "estimator/identify/groups/floor_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/numeric/nan.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kForgottenStart = 4.6;  // to a hundredth
+
+using Matrix = Eigen::Map<const Eigen::MatrixXd>;
+
+}  // namespace
+
+FloorMotion::FloorMotion(const PipelineConfig& config)
+    : config_(config),
+      table_(config.parameters()),
+      design_{config.design.size() > 0
+                  ? config.design
+                  : guessed_design(config.structure, ParameterTable(config.structure)),
+              config.bending_nmprad},
+      designed_(group_parameters(config.structure, table_, design_)) {
+  tune(designed_, std::vector<std::uint8_t>(config.axes.size(), 1));
+}
+
+void FloorMotion::tune(const Eigen::VectorXd& theta, const std::vector<std::uint8_t>& present) {
+  present_ = present;
+  building_ = reduced_building(config_.structure, config_.axes, table_, design_, present, true);
+  equations_ = group_equations(building_, theta.cwiseQuotient(designed_), config_.options.rate_hz);
+  double settle_s = 0;
+  for (const InnerChain& chain : equations_.chains)
+    settle_s = std::max(settle_s, kForgottenStart / chain.slowest_radps);
+  settle_rows_ = static_cast<int>(std::ceil(settle_s * config_.options.rate_hz));
+  frames_ = Eigen::VectorXd::Constant(building_.frames.rows(), kNaN);
+  expected_index_ = -1;
+  restart();
+}
+
+void FloorMotion::restart() {
+  inner_.clear();
+  for (const InnerChain& chain : equations_.chains)
+    inner_.push_back({Eigen::VectorXd::Zero(2 * chain.modes), Eigen::VectorXd::Zero(chain.modes),
+                      Eigen::VectorXd::Zero(2 * chain.modes)});
+}
+
+const Eigen::VectorXd& FloorMotion::push(const SampleSet& set) {
+  if (set.index != expected_index_) restart();
+  expected_index_ = set.index + 1;
+  measured_.setZero(building_.measured);
+  for (std::size_t a = 0; a < present_.size(); ++a)
+    if (present_[a] != 0)
+      measured_ += building_.from_axes.col(static_cast<Eigen::Index>(a)) * set.accel[a];
+  if (building_.rows() == 0 || !measured_.allFinite()) {
+    restart();
+    frames_.setConstant(kNaN);
+    return frames_;
+  }
+  frames_ = equations_.frames * measured_;
+  for (std::size_t i = 0; i < inner_.size(); ++i) {
+    const InnerChain& chain = equations_.chains[i];
+    Inner& inner = inner_[i];
+    const Eigen::Index m = chain.modes;
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(m);  // by the ends' accelerations
+    for (std::size_t e = 0; e < chain.ends.size(); ++e)
+      force += Eigen::Map<const Eigen::VectorXd>(
+                   &chain.from_second[e * static_cast<std::size_t>(m)], m) *
+               measured_[chain.ends[e]];
+    const Matrix transition(chain.transition_columns.data(), 2 * m, 4 * m);
+    inner.next = transition.leftCols(2 * m) * inner.state +
+                 transition.middleCols(2 * m, m) * inner.input_before +
+                 transition.rightCols(m) * force;
+    inner.state.swap(inner.next);
+    inner.input_before = force;
+    const Eigen::VectorXd accel =
+        force -
+        Eigen::Map<const Eigen::VectorXd>(chain.stiffness.data(), m)
+            .cwiseProduct(inner.state.head(m) / InnerChain::kScale_radps) -
+        Matrix(chain.damping.data(), m, m) * inner.state.tail(m);
+    frames_ += chain.frames * accel;
+  }
+  return frames_;
+}
+
+}  // namespace framewatch::estimator

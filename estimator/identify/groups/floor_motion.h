@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/groups/group_equations.h"
+#include "estimator/identify/groups/reduced_building.h"
+#include "estimator/motion/sample.h"
+#include "estimator/setup/pipeline_config.h"
+
+namespace framewatch::estimator {
+
+/// The motion of every frame on every floor, of a building with sensors on some: inner floors are
+/// simulated from the measured ones above and below them, as in the estimation (virtual sensors).
+/// Damping between the ends and inner floors that is not proportional to stiffness is left out of
+/// the modes.
+class FloorMotion {
+ public:
+  explicit FloorMotion(const PipelineConfig& config);
+
+  /// theta: the identified parameters, order of config.parameters(), SI. present: axes that are
+  /// used. Begins anew. Not bounded in time, and allocates.
+  void tune(const Eigen::VectorXd& theta, const std::vector<std::uint8_t>& present);
+
+  /// One calibrated instant. Absolute accelerations of the frames at the base, then at every floor
+  /// (ReducedBuilding::frames), m/s^2; NaN while an axis that is used has no value.
+  const Eigen::VectorXd& push(const SampleSet& set);
+
+  /// Instants until the start is forgotten.
+  int settle_rows() const { return settle_rows_; }
+
+ private:
+  void restart();
+
+  PipelineConfig config_;
+  ParameterTable table_;
+  GroupDesign design_;
+  Eigen::VectorXd designed_;
+  ReducedBuilding building_;
+  GroupEquations equations_;
+  struct Inner {
+    Eigen::VectorXd state, input_before, next;
+  };
+  std::vector<Inner> inner_;
+  std::vector<std::uint8_t> present_;
+  std::int64_t expected_index_ = -1;
+  int settle_rows_ = 0;
+  Eigen::VectorXd measured_, frames_;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,232 @@
+#include "estimator/identify/groups/group_equations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "estimator/numeric/eigenvalues.h"
+#include "estimator/numeric/solve.h"
+
+namespace framewatch::estimator {
+namespace {
+
+/// Modes above are taken as rigid: the derivative filters end here.
+constexpr double kHighestMode_hz = 20;
+constexpr int kFewestModes = 3;  // of an inner set, for each pair of its ends
+
+std::vector<double> by_columns(const Eigen::MatrixXd& m) {
+  return {m.data(), m.data() + m.size()};
+}
+
+std::vector<double> by_rows(const Eigen::MatrixXd& m) {
+  std::vector<double> out;
+  for (Eigen::Index i = 0; i < m.rows(); ++i)
+    for (Eigen::Index j = 0; j < m.cols(); ++j) out.push_back(m(i, j));
+  return out;
+}
+
+Eigen::MatrixXd columns_of(const Eigen::MatrixXd& m, const std::vector<int>& which) {
+  Eigen::MatrixXd out(m.rows(), static_cast<Eigen::Index>(which.size()));
+  for (std::size_t i = 0; i < which.size(); ++i)
+    out.col(static_cast<Eigen::Index>(i)) = m.col(which[i]);
+  return out;
+}
+
+Eigen::MatrixXd rows_of(const Eigen::MatrixXd& m, const std::vector<int>& which) {
+  return columns_of(m.transpose(), which).transpose();
+}
+
+std::vector<int> not_zero_rows(const Eigen::MatrixXd& m) {
+  std::vector<int> out;
+  for (Eigen::Index i = 0; i < m.rows(); ++i)
+    if (!m.row(i).isZero(0)) out.push_back(static_cast<int>(i));
+  return out;
+}
+
+/// Modes of one inner set with its ends held.
+struct SetModes {
+  int first, size;        ///< its coordinates, behind the measured ones
+  Eigen::MatrixXd shape;  ///< size x modes, of unit mass
+  Eigen::VectorXd w2;     ///< (rad/s)^2
+};
+
+class Builder {
+ public:
+  Builder(const ReducedBuilding& building, const Eigen::VectorXd& x, double rate_hz)
+      : b_(building),
+        x_(x),
+        rate_hz_(rate_hz),
+        stiffness_(b_.constant_stiffness),
+        damping_(b_.constant_damping) {
+    for (std::size_t p = 0; p < b_.parts.size(); ++p)
+      (b_.damping[p] != 0 ? damping_ : stiffness_) +=
+          x_[static_cast<Eigen::Index>(p)] * b_.parts[p];
+    condense();
+    project();
+  }
+
+  GroupEquations equations() {
+    GroupEquations out;
+    out.rows = b_.rows();
+    out.frequency_hz = frequency_hz_;
+    for (std::size_t p = 0; p < b_.parts.size(); ++p) {
+      const Eigen::MatrixXd whole =
+          x_[static_cast<Eigen::Index>(p)] * rows(at_ends_.transpose() * b_.parts[p] * at_ends_);
+      StaticPart part{static_cast<int>(p),
+                      b_.damping[p] != 0,
+                      not_zero_rows(whole),
+                      not_zero_rows(whole.transpose()),
+                      {}};
+      if (part.rows.empty()) continue;
+      part.matrix = by_columns(rows_of(columns_of(whole, part.columns), part.rows));
+      out.parts.push_back(std::move(part));
+    }
+    out.by_value = rows(at_ends_.transpose() * b_.constant_stiffness * at_ends_);
+    out.by_first = rows(at_ends_.transpose() * b_.constant_damping * at_ends_);
+    out.by_second = rows(mass_);
+    out.projection = projection_;
+    out.frames = b_.frames * at_ends_;
+    for (const SetModes& set : sets_) out.chains.push_back(chain(set));
+    return out;
+  }
+
+ private:
+  /// Projected rows of a matrix that acts on all measured coordinates.
+  Eigen::MatrixXd rows(const Eigen::MatrixXd& on_measured) const {
+    return projection_ * on_measured.bottomRows(b_.rows());
+  }
+
+  /// Static shapes under motion of the ends, and the modes of every set.
+  void condense() {
+    at_ends_ = Eigen::MatrixXd::Zero(b_.size(), b_.measured);
+    at_ends_.topRows(b_.measured).setIdentity();
+    for (std::size_t i = 0; i + 1 < b_.sets.size(); ++i) {
+      const int first = b_.sets[i], size = b_.sets[i + 1] - first;
+      const Eigen::MatrixXd k = stiffness_.block(first, first, size, size);
+      at_ends_.middleRows(first, size) =
+          -Cholesky(k).solve(Eigen::MatrixXd(stiffness_.block(first, 0, size, b_.measured)));
+      const RealEigen eigen = generalized_eigen(b_.mass.block(first, first, size, size), k);
+      const int ends = static_cast<int>(
+          not_zero_rows(stiffness_.block(first, 0, size, b_.measured).transpose()).size());
+      const int least = kFewestModes * std::max(1, (ends + 1) / 2);
+      SetModes set{first, size, Eigen::MatrixXd(size, size), Eigen::VectorXd(size)};
+      Eigen::Index modes = 0;
+      for (Eigen::Index m = size - 1; m >= 0; --m) {  // 1 / w^2, ascending
+        const double over_w2 = eigen.values[m];
+        const bool low = over_w2 * std::pow(2 * M_PI * kHighestMode_hz, 2) > 1;
+        if (!(over_w2 > 1e-12 * eigen.values[size - 1]) || (!low && modes >= least)) break;
+        set.w2[modes] = 1 / over_w2;
+        set.shape.col(modes++) = eigen.vectors.col(m) / std::sqrt(over_w2);
+      }
+      set.shape.conservativeResize(Eigen::NoChange, modes);
+      set.w2.conservativeResize(modes);
+      if (modes > 0) sets_.push_back(std::move(set));
+    }
+    mass_ = at_ends_.transpose() * b_.mass * at_ends_;
+  }
+
+  /// Each floor's own modes while its neighbours are held, as rows.
+  void project() {
+    const Eigen::MatrixXd k = at_ends_.transpose() * stiffness_ * at_ends_;
+    projection_ = Eigen::MatrixXd::Zero(b_.rows(), b_.rows());
+    for (std::size_t f = 0; f + 1 < b_.floors.size(); ++f) {
+      const int first = b_.floors[f], size = b_.floors[f + 1] - first;
+      const RealEigen modes = generalized_eigen(k.block(first, first, size, size),
+                                                mass_.block(first, first, size, size));
+      const int row = first - b_.inputs;
+      projection_.block(row, row, size, size) = modes.vectors.transpose();
+      for (int i = 0; i < size; ++i)
+        frequency_hz_.push_back(std::sqrt(std::max(modes.values[i], 0.0)) / (2 * M_PI));
+    }
+  }
+
+  InnerChain chain(const SetModes& set) const {
+    InnerChain out;
+    const Eigen::Index modes = set.shape.cols();
+    out.modes = static_cast<int>(modes);
+    Eigen::MatrixXd shapes = Eigen::MatrixXd::Zero(b_.size(), modes);
+    shapes.middleRows(set.first, set.size) = set.shape;
+    out.stiffness = by_columns(set.w2);
+    out.frames = b_.frames * shapes;
+    const Eigen::MatrixXd inertia = at_ends_.transpose() * b_.mass * shapes;
+    const Eigen::MatrixXd friction = at_ends_.transpose() * damping_ * shapes;
+    const Eigen::MatrixXd damping = shapes.transpose() * damping_ * shapes;
+    const auto coupled = stiffness_.block(set.first, 0, set.size, b_.measured).cwiseAbs() +
+                         b_.mass.block(set.first, 0, set.size, b_.measured).cwiseAbs();
+    out.ends = not_zero_rows(Eigen::MatrixXd(coupled).transpose());
+    out.rows = rows_at(out.ends);
+    out.from_second = by_columns(-rows_of(inertia, out.ends).transpose());
+    out.from_first = by_columns(-rows_of(friction, out.ends).transpose());
+    out.damping = by_columns(damping);
+    const Eigen::MatrixXd row_inertia = rows_of(rows(inertia), out.rows);
+    const Eigen::MatrixXd row_friction = rows_of(rows(friction), out.rows);
+    out.inertia = by_columns(row_inertia);
+    out.friction = by_columns(row_friction);
+    Eigen::MatrixXd read(row_inertia.rows(), 3 * modes);
+    read << row_inertia * set.w2.asDiagonal() / InnerChain::kScale_radps,
+        row_inertia * damping - row_friction, -row_inertia;
+    out.read_out = by_rows(read);
+    discretise(set.w2, damping, out);
+    for (std::size_t p = 0; p < b_.parts.size(); ++p) {
+      const Eigen::MatrixXd force = x_[static_cast<Eigen::Index>(p)] * b_.parts[p] * shapes;
+      if (force.isZero(0)) continue;
+      Eigen::MatrixXd on_modes(modes, modes + static_cast<Eigen::Index>(out.ends.size()));
+      on_modes << shapes.transpose() * force,
+          rows_of(at_ends_.transpose() * force, out.ends).transpose();
+      out.forces.push_back({static_cast<int>(p), b_.damping[p] != 0, by_columns(on_modes),
+                            by_columns(rows_of(rows(at_ends_.transpose() * force), out.rows))});
+    }
+    return out;
+  }
+
+  /// All rows of the floors that these measured coordinates belong to.
+  std::vector<int> rows_at(const std::vector<int>& ends) const {
+    std::vector<int> out;
+    for (std::size_t f = 0; f + 1 < b_.floors.size(); ++f)
+      if (std::any_of(ends.begin(), ends.end(),
+                      [&](int e) { return e >= b_.floors[f] && e < b_.floors[f + 1]; }))
+        for (int i = b_.floors[f]; i < b_.floors[f + 1]; ++i) out.push_back(i - b_.inputs);
+    return out;
+  }
+
+  void discretise(const Eigen::VectorXd& w2, const Eigen::MatrixXd& damping,
+                  InnerChain& out) const {
+    const Eigen::Index m = w2.size();
+    const double step = 1 / rate_hz_, scale = InnerChain::kScale_radps;
+    Eigen::MatrixXd a = Eigen::MatrixXd::Zero(4 * m, 4 * m);
+    a.block(0, m, m, m).diagonal().setConstant(scale * step);
+    a.block(m, 0, m, m).diagonal() = -w2 * step / scale;
+    a.block(m, m, m, m) = -damping * step;
+    out.slowest_radps = std::numeric_limits<double>::infinity();
+    for (const auto& value : general_eigenvalues(a.topLeftCorner(2 * m, 2 * m)))
+      out.slowest_radps = std::min(out.slowest_radps, -value.real() / step);
+    a.block(m, 2 * m, m, m).diagonal().setConstant(step);
+    a.block(2 * m, 3 * m, m, m).setIdentity();
+    const Eigen::MatrixXd e = matrix_exponential(a);
+    Eigen::MatrixXd transition(2 * m, 4 * m);
+    transition << e.topLeftCorner(2 * m, 2 * m),
+        e.block(0, 2 * m, 2 * m, m) - e.block(0, 3 * m, 2 * m, m), e.block(0, 3 * m, 2 * m, m);
+    out.transition = by_rows(transition);
+    out.transition_columns = by_columns(transition);
+  }
+
+  const ReducedBuilding& b_;
+  const Eigen::VectorXd& x_;
+  double rate_hz_;
+  Eigen::MatrixXd stiffness_, damping_;
+  Eigen::MatrixXd at_ends_;     ///< all coordinates by measured ones, static
+  Eigen::MatrixXd mass_;        ///< of the measured ones, with what they carry
+  Eigen::MatrixXd projection_;  ///< rows by equations of the measured floors
+  std::vector<double> frequency_hz_;
+  std::vector<SetModes> sets_;
+};
+
+}  // namespace
+
+GroupEquations group_equations(const ReducedBuilding& building, const Eigen::VectorXd& x,
+                               double rate_hz) {
+  if (building.rows() == 0) return {};
+  return Builder(building, x, rate_hz).equations();
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/elements/floor_layout.h"
+#include "estimator/identify/elements/perturbed_designs.h"
+#include "estimator/identify/groups/group_chain.h"
+#include "estimator/identify/groups/group_equations.h"
+#include "estimator/identify/groups/reduced_building.h"
+#include "estimator/identify/regressors/row_tuning.h"
+#include "estimator/motion/derivative_triple.h"
+#include "estimator/motion/drift_controlled_integrator.h"
+#include "estimator/setup/pipeline_config.h"
+
+namespace framewatch::estimator {
+
+/// The rows' oscillator sections; every weight is 1.
+FloorRows group_rows(const EstimatorOptions& options, const GroupDesign& design,
+                     const GroupEquations& equations, int unknowns);
+
+/// Rows of groups of stories between measured floors. Part 0 of tuning makes the equations, the
+/// others push a unit impulse of each axis through them: what sensor noise adds to the sums, (14)
+/// to (16) without algebra.
+class GroupTuning : public RowTuning {
+ public:
+  /// config: of groups; must outlive the object, as layout. triple: held_triple.
+  GroupTuning(const PipelineConfig& config, const ParameterTable& table, const FloorLayout& layout,
+              const GroupDesign& design, const DerivativeTriple& triple, const HighPass& high_pass);
+
+  void set_theta0(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density) override;
+  int parts() const override;
+  void tune(int part) override;
+
+  const FloorRows& rows(int) const override { return rows_; }
+  const Eigen::VectorXd& theta0() const override { return theta0_; }
+  const std::vector<double>& noise_density() const override { return noise_density_; }
+  int settle_rows(int least) const override;
+  /// How far theta is from theta0, where rows are a linearisation.
+  double detuning(int floor, const Eigen::VectorXd& theta) override;
+  const std::vector<std::uint8_t>& axes() const override { return present_; }
+  void set_axes(const std::vector<std::uint8_t>& present) override;
+  std::unique_ptr<RowFilter> make_filter(int settle) override;
+  void save(StateWriter& state) override { members(state); }
+  void load(StateReader& state) override { members(state); }
+
+  /// No mode between measured floors is waited for longer.
+  static constexpr double kLongestSettle_s = 20;
+
+  const FloorLayout& layout() const { return *layout_; }
+  const ReducedBuilding& building() const { return building_; }
+  const GroupEquations& equations() const { return equations_; }
+
+ private:
+  template <typename Archive>
+  void members(Archive& a) {
+    a.finite(theta0_, noise_density_);
+    a.each_within(present_, 0, 1);
+    a.within(tuned_parts_, 0, a.kMostCount);
+    if constexpr (Archive::kReading) restore();
+  }
+  /// Everything that follows from the parameters, as far as it had been tuned.
+  void restore();
+  void form();
+  void push_impulse(int from, int to);
+  void finish_noise();
+  int impulse_rows() const;
+  int parts_per_axis() const;
+
+  const PipelineConfig* config_;
+  const FloorLayout* layout_;
+  ParameterTable table_;
+  GroupDesign design_;
+  Eigen::VectorXd designed_, theta0_;
+  std::vector<double> noise_density_;
+  std::vector<std::uint8_t> present_;
+  PerturbedDesigns perturbed_;
+  std::vector<std::vector<double>> impulse_;  ///< of every AxisMotion::Signal
+  ReducedBuilding building_;
+  GroupEquations equations_;
+  FloorRows rows_;
+  int tuned_parts_ = 0;
+
+  // Of the noise that is being summed.
+  GroupChain chain_;
+  FloorRows plain_;              ///< rows_ with every weight 1
+  std::vector<double> moments_;  ///< rows x front x front
+  std::vector<double> motion_, step_;
+};
+
+/// The rows that enter, or those that leave.
+class GroupFilter : public RowFilter {
+ public:
+  GroupFilter(GroupTuning& tuning, int settle);
+
+  void reset(int settle) override;
+  void push(const DeformationSet& set) override;
+  int count(int) const override { return settling_ > 0 ? 0 : tuning_->rows(0).rows; }
+  const FloorRows& floor_rows(int) const override { return tuning_->rows(0); }
+  std::uint8_t origin_of(int, const FloorRows* rows) const override { return rows != nullptr; }
+  const FloorRows* floor_rows_from(int, std::uint8_t origin) const override {
+    return origin != 0 ? &tuning_->rows(0) : nullptr;
+  }
+  void save(StateWriter& state) override { members(state); }
+  void load(StateReader& state) override { members(state); }
+
+ private:
+  template <typename Archive>
+  void members(Archive& a) {
+    a.within(settle_, 0, a.kMostCount);
+    a.within(settling_, 0, a.kMostCount);
+    a.finite(rows_);
+    if constexpr (Archive::kReading) start();
+    a(chain_);
+  }
+  void start();
+
+  GroupTuning* tuning_;
+  int settle_, settling_ = 0;
+  GroupChain chain_;
+  std::vector<double> motion_;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,280 @@
+#include "estimator/identify/groups/layout_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+
+#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/groups/group_equations.h"
+#include "estimator/identify/groups/group_tuning.h"
+#include "estimator/identify/groups/reduced_building.h"
+#include "estimator/numeric/nan.h"
+#include "estimator/numeric/solve.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+
+constexpr double kHighest_hz = 25, kStep_hz = 0.04, kGroundHighPass_hz = 0.25;
+constexpr double kDetected = 4;  // standard errors of a difference
+
+/// One-sided density of the base's acceleration, (m/s^2)^2/Hz, at the frequencies.
+std::vector<double> ground_density(const ExpectedShaking& shaking,
+                                   const std::vector<double>& frequencies_hz) {
+  const double wg = 2 * M_PI * shaking.ground_frequency_hz, wc = 2 * M_PI * kGroundHighPass_hz;
+  std::vector<double> out;
+  double sum = 0;
+  for (const double hz : frequencies_hz) {
+    const Complex s(0, 2 * M_PI * hz);
+    const Complex resonance = 2 * shaking.ground_damping_ratio * wg * s + wg * wg;
+    const Complex gain = resonance / (s * s + resonance) * s * s / (s * s + 1.2 * wc * s + wc * wc);
+    out.push_back(std::norm(gain));
+    sum += out.back() * kStep_hz;
+  }
+  for (double& density : out) density *= shaking.rms_mps2 * shaking.rms_mps2 / sum;
+  return out;
+}
+
+class Prediction {
+ public:
+  Prediction(const PipelineConfig& config, const std::vector<double>& noise_density,
+             const ExpectedShaking& shaking, const DesignTolerance& tolerance)
+      : config_(config),
+        table_(config.parameters()),
+        tolerance_(tolerance),
+        design_{config.design.size() > 0
+                    ? config.design
+                    : guessed_design(config.structure, ParameterTable(config.structure)),
+                config.bending_nmprad} {
+    const std::vector<std::uint8_t> all(config.axes.size(), 1);
+    building_ = reduced_building(config.structure, config.axes, table_, design_, all);
+    const ReducedBuilding stories = reduced_building(
+        config.structure, config.axes, ParameterTable(config.structure), design_, all, true);
+    const Eigen::VectorXd one = Eigen::VectorXd::Ones(table_.size());
+    const GroupEquations equations = group_equations(building_, one, config.options.rate_hz);
+    rows_ = group_rows(config.options, design_, equations, table_.size());
+    projection_ = equations.projection;
+    collect(stories);
+    sum(noise_density, shaking);
+  }
+
+  LayoutPrediction result() const {
+    const auto parameters = static_cast<std::size_t>(table_.size());
+    const auto dofs = static_cast<std::size_t>(config_.structure.degrees_of_freedom());
+    LayoutPrediction out{std::vector<double>(parameters, kNaN),
+                         std::vector<double>(parameters, kNaN),
+                         std::vector<double>(dofs, std::numeric_limits<double>::infinity())};
+    const Index p = table_.size();
+    if (building_.rows() == 0) return out;
+    const Ldlt factor(information_);
+    if (!factor.good() || !factor.positive()) return out;
+    const MatrixXd inverse = factor.solve(MatrixXd(MatrixXd::Identity(p, p)));
+    const double samples = config_.options.window_s * config_.options.rate_hz;
+    const MatrixXd covariance = inverse * scores_ * inverse / samples;
+    const MatrixXd sensitivity = inverse * mismatch_;
+    for (Index i = 0; i < p; ++i)
+      out.window_error[static_cast<std::size_t>(i)] = std::sqrt(covariance(i, i));
+    add_design_error(sensitivity, out);
+    for (std::size_t dof = 0; dof < dofs; ++dof)
+      for (Index i = 0; i < table_.elements(); ++i)
+        out.smallest_loss[dof] =
+            std::min(out.smallest_loss[dof], kDetected * std::sqrt(2.0) *
+                                                 out.window_error[static_cast<std::size_t>(i)] /
+                                                 std::abs(sensitivity(i, static_cast<Index>(dof))));
+    return out;
+  }
+
+ private:
+  /// Stories' stiffness and floors' masses as sums of w w'.
+  void collect(const ReducedBuilding& stories) {
+    const Structure& s = config_.structure;
+    const ParameterTable all(s);
+    const Index dofs = s.degrees_of_freedom();
+    springs_ = MatrixXd::Zero(building_.size(), dofs);
+    masses_ = MatrixXd::Zero(building_.size(), dofs);
+    of_group_.assign(static_cast<std::size_t>(dofs), -1);
+    rate_.resize(dofs);
+    for (int story = 1; story <= s.stories; ++story)
+      for (int f = 0; f < s.frames(); ++f) {
+        const Index dof = s.dof(story, f);
+        const int k = all.frame_stiffness(story, f);
+        const MatrixXd& part = stories.parts[static_cast<std::size_t>(k)];
+        Index largest = 0;
+        part.diagonal().maxCoeff(&largest);
+        springs_.col(dof) = part.col(largest) / std::sqrt(part(largest, largest));
+        masses_.col(dof) = std::sqrt(s.frame_mass(story, f)) *
+                           building_.frames.row(Index(story) * s.frames() + f).transpose();
+        of_group_[static_cast<std::size_t>(dof)] = table_.frame_stiffness(story, f);
+        rate_[dof] = design_.theta[all.frame_damping(story, f)] / design_.theta[k];
+      }
+  }
+
+  void sum(const std::vector<double>& noise_density, const ExpectedShaking& shaking) {
+    std::vector<double> frequencies;
+    for (double hz = kStep_hz; hz < kHighest_hz; hz += kStep_hz) frequencies.push_back(hz);
+    const std::vector<double> ground = ground_density(shaking, frequencies);
+    const Index p = table_.size();
+    information_ = scores_ = MatrixXd::Zero(p, p);
+    mismatch_ =
+        MatrixXd::Zero(p, config_.structure.degrees_of_freedom() + config_.structure.stories);
+    if (building_.rows() == 0) return;
+    MatrixXd noise = MatrixXd::Zero(building_.measured, building_.measured);
+    for (std::size_t a = 0; a < noise_density.size(); ++a) {
+      const Eigen::VectorXd from = building_.from_axes.col(static_cast<Index>(a));
+      noise += noise_density[a] * noise_density[a] * from * from.transpose();
+    }
+    weigh(frequencies, noise);
+    for (std::size_t i = 0; i < frequencies.size(); ++i) add(frequencies[i], ground[i], noise);
+  }
+
+  /// Rows filtered and projected, of the residual: rows x measured.
+  struct AtFrequency {
+    MatrixXcd motion;    ///< all coordinates by the measured ones
+    MatrixXcd residual;  ///< rows x measured
+    Eigen::VectorXcd filter;
+  };
+
+  AtFrequency at(double hz) const {
+    AtFrequency out;
+    const Complex s(0, 2 * M_PI * hz);
+    const auto& b = building_;
+    MatrixXd k = b.constant_stiffness, c = b.constant_damping;
+    for (std::size_t p = 0; p < b.parts.size(); ++p) (b.damping[p] != 0 ? c : k) += b.parts[p];
+    const MatrixXcd dynamic =
+        k.cast<Complex>() + s * c.cast<Complex>() + s * s * b.mass.cast<Complex>();
+    const Index inner = b.size() - b.measured;
+    out.motion = MatrixXcd::Zero(b.size(), b.measured);
+    out.motion.topRows(b.measured).setIdentity();
+    if (inner > 0)
+      out.motion.bottomRows(inner) =
+          -ComplexLu(dynamic.bottomRightCorner(inner, inner))
+               .solve(MatrixXcd(dynamic.bottomLeftCorner(inner, b.measured)));
+    const double wh = 2 * M_PI * config_.options.high_pass_hz;
+    const Complex high_pass = s * s / (s * s + std::sqrt(2.0) * wh * s + wh * wh);
+    out.filter.resize(b.rows());
+    for (Index r = 0; r < b.rows(); ++r) {
+      const double w = 2 * M_PI * rows_.frequency_hz[static_cast<std::size_t>(r)];
+      out.filter[r] = high_pass / (s * s + 2 * config_.options.filter_damping * w * s + w * w);
+    }
+    out.residual = rows(out, out.motion.transpose() * dynamic * out.motion);
+    return out;
+  }
+
+  MatrixXcd rows(const AtFrequency& f, const MatrixXcd& on_measured) const {
+    MatrixXcd out = projection_ * on_measured.bottomRows(building_.rows());
+    for (Index r = 0; r < out.rows(); ++r) out.row(r) *= f.filter[r] * weight(r);
+    return out;
+  }
+  double weight(Index r) const { return weights_.size() == 0 ? 1 : weights_[r]; }
+
+  void weigh(const std::vector<double>& frequencies, const MatrixXd& noise) {
+    Eigen::VectorXd variance = Eigen::VectorXd::Zero(building_.rows());
+    for (const double hz : frequencies) {
+      const MatrixXcd r = at(hz).residual;
+      variance += kStep_hz * (r * noise * r.adjoint()).diagonal().real();
+    }
+    weights_ = variance.cwiseSqrt().cwiseInverse();
+  }
+
+  void add(double hz, double ground, const MatrixXd& noise) {
+    const AtFrequency f = at(hz);
+    const Complex s(0, 2 * M_PI * hz);
+    const Index measured = building_.measured, inputs = building_.inputs;
+    // The building's own motion under the base's.
+    const MatrixXcd moved = -ComplexLu(MatrixXcd(f.residual.rightCols(measured - inputs)))
+                                 .solve(MatrixXcd(f.residual.leftCols(inputs)));
+    MatrixXcd motion(measured, inputs);
+    motion << MatrixXcd::Identity(inputs, inputs), moved;
+    const Index p = table_.size(), dofs = springs_.cols();
+    const MatrixXcd by_springs = rows(f, f.motion.transpose() * springs_);
+    const MatrixXcd by_masses = rows(f, f.motion.transpose() * masses_);
+    // Base directions are independent of each other, each with this density.
+    for (Index input = 0; input < inputs; ++input) {
+      const Eigen::VectorXcd all = f.motion * motion.col(input);
+      const Eigen::VectorXcd stretched = springs_.transpose() * all;
+      const Eigen::VectorXcd moving = masses_.transpose() * all;
+      MatrixXcd h = MatrixXcd::Zero(building_.rows(), p);
+      MatrixXcd other = MatrixXcd::Zero(building_.rows(), mismatch_.cols());
+      for (Index dof = 0; dof < dofs; ++dof) {
+        const Eigen::VectorXcd force = by_springs.col(dof) * stretched[dof];
+        other.col(dof) = force;
+        other.col(dofs + dof / config_.structure.frames()) +=
+            s * s * moving[dof] * by_masses.col(dof);
+        const int group = of_group_[static_cast<std::size_t>(dof)];
+        if (group < 0) continue;
+        h.col(group) += force;
+        h.col(group + table_.elements()) += s * rate_[dof] * force;
+      }
+      for (Index i = 0; i < p; ++i)
+        if (table_[static_cast<int>(i)].kind == ParameterKind::bending_stiffness)
+          h.col(i) =
+              rows(f, f.motion.transpose() * (building_.parts[static_cast<std::size_t>(i)] * all));
+      information_ += kStep_hz * ground * (h.adjoint() * h).real();
+      mismatch_ += kStep_hz * ground * (h.adjoint() * other).real();
+      const MatrixXcd noisy = h.adjoint() * f.residual;
+      scores_ += kStep_hz * ground * config_.options.rate_hz / 2 *
+                 (noisy * noise * noisy.adjoint()).real();
+    }
+  }
+
+  /// A story's error less what the whole group has in common, which is the group's factor.
+  void add_design_error(const MatrixXd& sensitivity, LayoutPrediction& out) const {
+    const Structure& s = config_.structure;
+    const ParameterTable all(s);
+    const Index p = table_.size();
+    Eigen::VectorXd variance = Eigen::VectorXd::Zero(p);
+    for (int g = 0; g < table_.elements(); ++g) {
+      const Parameter& group = table_[g];
+      std::vector<Index> dof;
+      std::vector<double> share;
+      double flexibility = 0;
+      for (int story = group.story; story <= group.last_story; ++story) {
+        double sum = 0;
+        for (const int f : group.frames) sum += design_.theta[all.frame_stiffness(story, f)];
+        flexibility += 1 / sum;
+        for (const int f : group.frames) {
+          dof.push_back(s.dof(story, f));
+          share.push_back(design_.theta[all.frame_stiffness(story, f)] / (sum * sum));
+        }
+      }
+      Eigen::VectorXd common = Eigen::VectorXd::Zero(p);
+      for (const Index d : dof) common += sensitivity.col(d);
+      for (std::size_t i = 0; i < dof.size(); ++i)
+        variance += std::pow(tolerance_.profile, 2) *
+                    (sensitivity.col(dof[i]) - share[i] / flexibility * common).cwiseAbs2();
+    }
+    for (int story = 1; story <= s.stories; ++story)
+      variance += std::pow(tolerance_.mass, 2) *
+                  sensitivity.col(Index(s.degrees_of_freedom()) + story - 1).cwiseAbs2();
+    for (Index i = 0; i < p; ++i)
+      out.design_error[static_cast<std::size_t>(i)] = std::sqrt(variance[i]);
+  }
+
+  const PipelineConfig& config_;
+  ParameterTable table_;
+  DesignTolerance tolerance_;
+  GroupDesign design_;
+  ReducedBuilding building_;
+  FloorRows rows_;
+  MatrixXd projection_;
+  MatrixXd springs_, masses_;  ///< coordinates x frame stories, floors' frames
+  std::vector<int> of_group_;  ///< stiffness parameter of every frame story; -1: none
+  Eigen::VectorXd rate_;       ///< damping over stiffness of every frame story, s
+  Eigen::VectorXd weights_;
+  MatrixXd information_, scores_, mismatch_;
+};
+
+}  // namespace
+
+LayoutPrediction predict_layout(const PipelineConfig& config,
+                                const std::vector<double>& noise_density,
+                                const ExpectedShaking& shaking, const DesignTolerance& tolerance) {
+  return Prediction(config, noise_density, shaking, tolerance).result();
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/identify/elements/floor_layout.h"
+
+namespace framewatch::estimator {
+
+/// Share of the sensor noise in the normal matrix that the solver subtracts. Subtracting all of it
+/// would be unbiased, but the solution would diverge where there is little but noise. So this share
+/// is subtracted, and the right-hand side corrected such that the rest biases toward theta0 only.
+/// docs/equations.md, noise in the regressors.
+inline constexpr double kCompensatedShare = 0.8;
+
+struct FloorRows;
+
+/// The part of a floor's sensor noise per instant that a solver subtracts, packed like the sums:
+/// `share` of the normal matrix, and so much of the right-hand side that the rest biases toward
+/// theta0.
+void pack_compensation(const FloorLayout& layout, int floor, const FloorRows& rows, double share,
+                       std::vector<double>& out);
+
+/// One floor's projected equations: each row r is sum_f phi_rf (equation f), filtered by its
+/// oscillator section and scaled by the root of its weight.
+struct FloorRows {
+  /// Whether all sizes are those of a floor of this layout; numbers from a file may be any.
+  bool fits(const FloorLayout& layout, int floor) const;
+
+  int rows = 0;
+  std::vector<double> gain, a1, a2;  ///< OscillatorSection of every row
+  std::vector<double> frequency_hz;  ///< its corner
+  /// rows x padded(front): multiplies the filtered front signals [deformations..., response].
+  std::vector<double> beta;
+  std::vector<double> response;  ///< rows x frames: -phi_rf, forms the response from m p''
+  /// What sensor noise adds per instant, for x = 1: to the normal matrix (unknowns x
+  /// unknowns), to the right-hand side, and to the energy of the response.
+  std::vector<double> noise_energy;
+  std::vector<double> noise_diagonal;  ///< of noise_energy
+  std::vector<double> noise_bias;      ///< noise_energy times PerturbedDesigns
+  std::vector<double> noise_right;
+  double noise_response = 0;
+  /// The part of these that the solver subtracts per instant, packed like the sums.
+  std::vector<double> noise_compensation;
+  /// Of groups: by unknown the one whose solution it has. Empty: each its own.
+  std::vector<int> same_as;
+  double noise_residual = 0;  ///< expected weighted squared residual per instant
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(rows);
+    for (std::vector<double>* values :
+         {&gain, &a1, &a2, &frequency_hz, &beta, &response, &noise_energy, &noise_diagonal,
+          &noise_bias, &noise_right, &noise_compensation})
+      a.any_size(*values);
+    a.finite(noise_response, noise_residual);
+  }
+};
+
+}  // namespace framewatch::estimator

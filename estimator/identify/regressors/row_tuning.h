@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/identify/regressors/floor_rows.h"
+#include "estimator/identify/regressors/row_filter.h"
+#include "estimator/state/archive.h"
+
+namespace framewatch::estimator {
+
+/// How rows are formed and weighted for given parameters theta0, the design of the drawings at
+/// first, later what was identified.
+class RowTuning {
+ public:
+  virtual ~RowTuning() = default;
+
+  /// Other parameters. Every part must then be tuned, 0 to parts() - 1, before anything else is
+  /// asked. What a part takes fits into one instant.
+  virtual void set_theta0(const Eigen::VectorXd& theta0,
+                          const std::vector<double>& noise_density) = 0;
+  virtual int parts() const = 0;
+  virtual void tune(int part) = 0;
+
+  virtual const FloorRows& rows(int floor) const = 0;
+  virtual const Eigen::VectorXd& theta0() const = 0;
+  virtual const std::vector<double>& noise_density() const = 0;
+  /// Instants the slowest filter needs to forget its start, and at least `least`.
+  virtual int settle_rows(int least) const = 0;
+  /// How far the filters of a floor are from what they would be at `theta`, relative.
+  virtual double detuning(int floor, const Eigen::VectorXd& theta) = 0;
+  /// Flags of the axes that rows are formed of, where another set of them asks for another tuning;
+  /// empty where it does not.
+  virtual const std::vector<std::uint8_t>& axes() const { return no_axes_; }
+  /// As set_theta0().
+  virtual void set_axes(const std::vector<std::uint8_t>&) {}
+  /// Refers to the tuning, which must outlive it.
+  virtual std::unique_ptr<RowFilter> make_filter(int settle) = 0;
+
+  virtual void save(StateWriter& state) = 0;
+  virtual void load(StateReader& state) = 0;
+  template <typename Archive>
+  void archive(Archive& a) {
+    if constexpr (Archive::kReading)
+      load(a);
+    else
+      save(a);
+  }
+
+ protected:
+  RowTuning() = default;
+  RowTuning(const RowTuning&) = default;
+  RowTuning& operator=(const RowTuning&) = default;
+
+ private:
+  std::vector<std::uint8_t> no_axes_;
+};
+
+}  // namespace framewatch::estimator

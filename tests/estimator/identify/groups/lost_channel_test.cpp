@@ -1,0 +1,80 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "daemon/lab/few_sensors.h"
+#include "estimator/pipeline/pipeline.h"
+
+namespace framewatch::estimator {
+namespace lost_channel_test {
+
+constexpr double kNoSample = std::numeric_limits<double>::quiet_NaN();
+
+/// The last estimate of the main window, with the samples that there are.
+WindowEstimate last_estimate(const PipelineConfig& config, const Eigen::MatrixXd& accel) {
+  WindowEstimate last(static_cast<std::size_t>(config.parameters().size()));
+  Pipeline pipeline(config, [&](const WindowEstimate& estimate) { last = estimate; });
+  for (Eigen::Index i = 0; i < accel.rows(); ++i)
+    for (int a = 0; a < accel.cols(); ++a)
+      if (std::isfinite(accel(i, a)))
+        pipeline.push({from_microseconds(10'000 * i), a, accel(i, a)});
+  pipeline.finish();
+  return last;
+}
+
+TEST(LostChannel, MakesItsFloorAnInnerOne) {
+  daemon::TallTrial trial;
+  trial.duration_s = 60;
+  const daemon::TallRecord whole = daemon::tall_record(trial);
+  daemon::TallRecord lost = whole, never = whole;
+  lost.accel.col(2).tail(lost.accel.rows() - 2000).setConstant(kNoSample);
+  never.config.axes.erase(never.config.axes.begin() + 2);
+  never.accel.resize(whole.accel.rows(), 4);
+  for (int a = 0, to = 0; a < 5; ++a)
+    if (a != 2) never.accel.col(to++) = whole.accel.col(a);
+  const WindowEstimate last = last_estimate(lost.config, lost.accel);
+  const WindowEstimate reference = last_estimate(never.config, never.accel);
+  const ParameterTable table = lost.config.parameters(), merged = never.config.parameters();
+  ASSERT_EQ(merged[0].name, "kx_1to5");
+  ASSERT_EQ(merged[1].name, "kx_6to15");
+  ASSERT_EQ(to_microseconds(last.end), to_microseconds(reference.end));
+  EXPECT_EQ(last.reason[0], Observability::observable);
+  EXPECT_EQ(last.reason[1], Observability::observable);
+  EXPECT_NEAR(last.solution[0] / reference.solution[0], 1, 3e-3);
+  const double series = 1 / (1 / last.solution[1] + 1 / last.solution[2]);
+  EXPECT_NEAR(series / reference.solution[1], 1, 3e-3);
+  EXPECT_NEAR(last.solution[3] / reference.solution[2], 1, 3e-3);
+}
+
+TEST(LostChannel, ThatComesBackIsUsedAgain) {
+  daemon::TallTrial trial;
+  trial.duration_s = 90;
+  daemon::TallRecord record = daemon::tall_record(trial);
+  record.accel.col(3).segment(2000, 2500).setConstant(kNoSample);
+  const WindowEstimate last = last_estimate(record.config, record.accel);
+  for (int p = 0; p < 4; ++p) {
+    EXPECT_EQ(last.reason[static_cast<std::size_t>(p)], Observability::observable);
+    EXPECT_NEAR(last.solution[static_cast<std::size_t>(p)] / record.truth[p], 1, 0.01);
+  }
+}
+
+TEST(LostChannel, ForAMomentStartsTheFiltersAnewAndNoMore) {
+  daemon::TallTrial trial;
+  daemon::TallRecord record = daemon::tall_record(trial);
+  record.accel.col(3).segment(2500, 20).setConstant(kNoSample);
+  const WindowEstimate last = last_estimate(record.config, record.accel);
+  EXPECT_EQ(last.reason[2], Observability::observable);
+  EXPECT_NEAR(last.solution[2] / record.truth[2], 1, 0.01);
+}
+
+TEST(LostChannel, OfTheBaseEndsEverything) {
+  daemon::TallTrial trial;
+  daemon::TallRecord record = daemon::tall_record(trial);
+  record.accel.col(0).tail(3000).setConstant(kNoSample);
+  const WindowEstimate last = last_estimate(record.config, record.accel);
+  for (int p = 0; p < 8; ++p) EXPECT_TRUE(std::isnan(last.value[static_cast<std::size_t>(p)]));
+}
+
+}  // namespace lost_channel_test
+}  // namespace framewatch::estimator
