@@ -73,11 +73,15 @@ const Eigen::VectorXd& Decimator::output() {
   for (std::size_t c = 0; c < channels_.size(); ++c) {
     const std::vector<double>& taps = channels_[c].taps;
     const int skipped = delay_steps_ - static_cast<int>(taps.size() / 2);
-    const double* newest_first =
-        ring_.data() + channels_[c].column * ring_.cols() + newest_ + skipped;
-    double sum = 0;
-    for (std::size_t i = 0; i < taps.size(); ++i) sum += taps[i] * newest_first[i];
-    output_[static_cast<Eigen::Index>(c)] = sum;
+    const auto filtered = [&](int column) {
+      const double* newest_first = ring_.data() + column * ring_.cols() + newest_ + skipped;
+      double sum = 0;
+      for (std::size_t i = 0; i < taps.size(); ++i) sum += taps[i] * newest_first[i];
+      return sum;
+    };
+    double value = channels_[c].weight * filtered(channels_[c].column);
+    for (const auto& [column, weight] : channels_[c].also) value += weight * filtered(column);
+    output_[static_cast<Eigen::Index>(c)] = value;
   }
   return output_;
 }

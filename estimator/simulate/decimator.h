@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,6 +16,8 @@ std::vector<double> anti_alias_taps(int ratio, double delay = 0);
 struct DecimatorChannel {
   int column;                ///< of the fine stream
   std::vector<double> taps;  ///< odd number, centred; {1} passes the stream through
+  double weight = 1;         ///< of the column
+  std::vector<std::pair<int, double>> also = {};  ///< further columns with their weights
 };
 
 /// Low-passes a fine stream where it is asked to. All channels have one delay, delay_steps() fine

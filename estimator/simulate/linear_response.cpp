@@ -20,15 +20,17 @@ int steps_per_instant(const ResponseOptions& options) {
 Decimator decimator(const std::vector<ResponseChannel>& wanted, const ResponseOptions& options,
                     int ratio, int columns) {
   std::vector<DecimatorChannel> channels;
-  const auto add = [&](int column, double delay_s) {
-    assert(options.anti_alias || delay_s == 0);
-    channels.push_back({column, options.anti_alias
-                                    ? anti_alias_taps(ratio, delay_s * options.rate_hz * ratio)
-                                    : std::vector<double>{1.0}});
+  const auto add = [&](const ResponseChannel& c) {
+    assert(options.anti_alias || c.delay_s == 0);
+    channels.push_back({c.column,
+                        options.anti_alias
+                            ? anti_alias_taps(ratio, c.delay_s * options.rate_hz * ratio)
+                            : std::vector<double>{1.0},
+                        c.weight, c.also});
   };
-  for (const ResponseChannel& c : wanted) add(c.column, c.delay_s);
+  for (const ResponseChannel& c : wanted) add(c);
   if (wanted.empty())
-    for (int column = 0; column < columns; ++column) add(column, 0);
+    for (int column = 0; column < columns; ++column) add({column});
   return {std::move(channels), columns};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -31,6 +32,8 @@ struct ParameterChange {
 struct ResponseChannel {
   int column;
   double delay_s = 0;  ///< only 0 without the anti-alias filter, which makes it
+  double weight = 1;   ///< of the column
+  std::vector<std::pair<int, double>> also = {};  ///< further columns with their weights
 };
 
 /// Of the integration, s.

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "estimator/structure/story_groups.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -42,9 +44,27 @@ std::vector<ResponseChannel> response_channels(const Structure& structure,
                                                const std::vector<SensorAxis>& axes) {
   std::vector<ResponseChannel> out;
   for (const SensorAxis& axis : axes) {
-    const Direction direction = axis.frame >= 0 ? structure.direction(axis.frame) : axis.direction;
-    const int base = structure.degrees_of_freedom() + (direction == Direction::x ? 0 : 1);
-    out.push_back({axis.story > 0 ? structure.dof(axis.story, axis.frame) : base, axis.delay});
+    out.push_back({0, axis.delay, 0});
+    const auto add = [&](int column, double weight) {
+      if (std::abs(weight) < 1e-12) return;
+      if (out.back().weight == 0) {
+        out.back().column = column;
+        out.back().weight = weight;
+      } else {
+        out.back().also.emplace_back(column, weight);
+      }
+    };
+    if (axis.story > 0) {
+      const std::vector<double> weights = frame_weights(structure, axis);
+      for (int f = 0; f < structure.frames(); ++f)
+        add(structure.dof(axis.story, f), weights[static_cast<std::size_t>(f)]);
+      continue;
+    }
+    const Direction along = axis.frame >= 0 ? structure.direction(axis.frame) : axis.direction;
+    const double angle = axis.plan ? axis.plan->angle_rad : along == Direction::x ? 0 : M_PI / 2;
+    const int base = structure.degrees_of_freedom();  // the ground does not turn
+    if (axis.plan || along == Direction::x) add(base, std::cos(angle));
+    if (axis.plan || along == Direction::y) add(base + 1, std::sin(angle));
   }
   return out;
 }
