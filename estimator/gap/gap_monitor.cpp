@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/nan.h"
+#include "estimator/structure/story_groups.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -27,9 +29,17 @@ BaselineLearner any_window(const ParameterTable& table) {
                          std::numeric_limits<double>::infinity());
 }
 
-std::vector<char> compared(const std::vector<int>& dof) {
+std::vector<char> compared(const std::vector<std::vector<std::pair<int, double>>>& seen) {
   std::vector<char> out;
-  for (const int d : dof) out.push_back(d >= 0);
+  for (const auto& of_axis : seen) out.push_back(!of_axis.empty());
+  return out;
+}
+
+BendingStiffness bending_of(const std::vector<Effect>& effects) {
+  BendingStiffness out{};
+  for (const Effect& e : effects)
+    if (e.kind == EffectKind::frame_bending)
+      out[e.place.direction == Direction::x ? 0 : 1] = e.value("kr_nmprad");
   return out;
 }
 
@@ -38,23 +48,25 @@ std::vector<char> compared(const std::vector<int>& dof) {
 GapMonitor::Current::Current(const GapMonitor& m, const GapModel& model)
     : correction(m.axes_, model.effects, m.rate_hz_),
       filter(triples(correction, m.rate_hz_), HighPass(m.high_pass_hz_, m.rate_hz_)),
-      running(m.structure_, m.table_, model, m.rate_hz_, m.high_pass_hz_,
+      running(m.structure_, m.stories_, model, m.rate_hz_, m.high_pass_hz_,
               m.base_mean(correction.rest())),
-      noise(m.structure_, m.table_, model, m.rate_hz_, m.high_pass_hz_),
-      meter(compared(m.dof_), m.rate_hz_, static_cast<int>(m.options_.window_s)),
+      noise(m.structure_, m.stories_, model, m.rate_hz_, m.high_pass_hz_),
+      meter(compared(m.seen_), m.rate_hz_, static_cast<int>(m.options_.window_s)),
       delay(std::llround(
           1e6 / m.rate_hz_ *
           (matched_triple(m.rate_hz_).delay + RunningModel::kDelay + correction.held_back()))),
       held(m.axes_.size() * kHeld, kNaN) {}
 
-GapMonitor::GapMonitor(const Structure& structure, const std::vector<SensorAxis>& axes,
-                       const EstimatorOptions& estimation, const GapOptions& options,
-                       const std::optional<GapModel>& model)
-    : structure_(structure),
-      table_(structure),
+GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxis>& axes,
+                       const GapOptions& options, const std::optional<GapModel>& model)
+    : structure_(config.structure),
+      stories_(structure_),
+      table_(config.parameters()),
+      design_{config.design.size() > 0 ? config.design : guessed_design(structure_, stories_),
+              config.bending_nmprad},
       axes_(axes),
-      rate_hz_(estimation.rate_hz),
-      high_pass_hz_(estimation.high_pass_hz),
+      rate_hz_(config.options.rate_hz),
+      high_pass_hz_(config.options.high_pass_hz),
       options_(options),
       learner_(table_.size(), table_.elements(), options.learn_s),
       theta_error_(static_cast<std::size_t>(table_.size())),
@@ -62,19 +74,42 @@ GapMonitor::GapMonitor(const Structure& structure, const std::vector<SensorAxis>
       since_gap_(any_window(table_)),
       alarm_(options),
       noise_variance_(axes.size()) {
-  for (const SensorAxis& axis : axes)
-    dof_.push_back(axis.story > 0 ? structure.dof(axis.story, axis.frame) : -1);
+  for (const SensorAxis& axis : axes) {
+    seen_.emplace_back();
+    if (axis.story == 0) continue;
+    const std::vector<double> weights = frame_weights(structure_, axis);
+    for (int f = 0; f < structure_.frames(); ++f)
+      if (const double w = weights[static_cast<std::size_t>(f)]; w != 0)
+        seen_.back().emplace_back(structure_.dof(axis.story, f), w);
+  }
   if (model) adopt(*model);
 }
 
+GapModel GapMonitor::model_of(const Eigen::VectorXd& theta) const {
+  if (!table_.grouped()) return {theta, {}};
+  GapModel model{story_parameters(structure_, table_, design_, theta), {}};
+  for (int p = 0; p < table_.size(); ++p) {
+    if (table_[p].kind != ParameterKind::bending_stiffness) continue;
+    EffectPlace place;
+    place.kind = PlaceKind::building;
+    place.direction = table_[p].direction;
+    model.effects.push_back(make_effect(EffectKind::frame_bending, place));
+    model.effects.back().set("kr_nmprad", theta[p]);
+  }
+  return model;
+}
+
 void GapMonitor::adopt(const GapModel& model) {
-  theta_ = model.theta;
+  theta_ = table_.grouped()
+               ? group_parameters(structure_, table_, {model.theta, bending_of(model.effects)})
+               : model.theta;
   std::fill(theta_error_.begin(), theta_error_.end(), 0);
   std::fill(has_law_.begin(), has_law_.end(), char{0});
   for (const Effect& e : model.effects) {
     if (e.place.kind == PlaceKind::frame)
-      has_law_[static_cast<std::size_t>(table_.frame_stiffness(e.place.story, e.place.frame))] = 1;
-    if (e.place.kind == PlaceKind::panel)
+      if (const int p = table_.frame_stiffness(e.place.story, e.place.frame); p >= 0)
+        has_law_[static_cast<std::size_t>(p)] = 1;
+    if (e.place.kind == PlaceKind::panel && !table_.grouped())
       has_law_[static_cast<std::size_t>(table_.panel_stiffness(e.place.story, e.place.panel))] = 1;
   }
   current_.emplace(*this, model);
@@ -90,15 +125,15 @@ void GapMonitor::learn(const WindowEstimate& estimate, const Eigen::VectorXd& be
     return;
   }
   if (!learner_.push(estimate)) return;
-  GapModel model{believed, {}};
+  Eigen::VectorXd theta = believed;
   std::vector<double> error(theta_error_.size(), kNaN);
   const std::vector<WindowMean> learned = learner_.learned();
   for (std::size_t p = 0; p < learned.size(); ++p) {
     if (!(learned[p].value > 0)) continue;
-    model.theta[static_cast<Eigen::Index>(p)] = learned[p].value;
+    theta[static_cast<Eigen::Index>(p)] = learned[p].value;
     error[p] = learned[p].std_error;
   }
-  adopt(model);
+  adopt(model_of(theta));
   theta_error_ = error;
 }
 
@@ -123,9 +158,11 @@ void GapMonitor::name_place(GapNews& news) const {
 Eigen::Vector2d GapMonitor::base_mean(const std::vector<double>& of_axes) const {
   Eigen::Vector2d sum(0, 0), count(0, 0);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (dof_[a] >= 0) continue;
+    if (!seen_[a].empty()) continue;
     const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
-    sum[d] += of_axes[a];
+    const bool turned = axes_[a].plan && (d == 0 ? std::cos(axes_[a].plan->angle_rad)
+                                                 : std::sin(axes_[a].plan->angle_rad)) < 0;
+    sum[d] += turned ? -of_axes[a] : of_axes[a];
     count[d] += 1;
   }
   return sum.array() / count.array().max(1);
@@ -142,8 +179,10 @@ void GapMonitor::compare(Current& c) const {
   const int then = (c.newest + RunningModel::kDelay) % kHeld;
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     const double measured = c.held[static_cast<std::size_t>(then) * axes_.size() + a];
-    if (dof_[a] >= 0 && std::isfinite(measured))
-      c.meter.add(a, measured, c.running.accel_abs(dof_[a]));
+    if (seen_[a].empty() || !std::isfinite(measured)) continue;
+    double simulated = 0;
+    for (const auto& [dof, weight] : seen_[a]) simulated += weight * c.running.accel_abs(dof);
+    c.meter.add(a, measured, simulated);
   }
 }
 
@@ -155,15 +194,18 @@ void GapMonitor::noise_variances(const Current& c, const std::vector<double>& no
                : kNaN;
   };
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (dof_[a] >= 0) continue;
+    if (!seen_[a].empty()) continue;
     const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
     base[d] += variance(a);
     count[d] += 1;
   }
   base = base.array() / count.array().max(1).square();
-  for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (dof_[a] >= 0)
-      noise_variance_[a] = variance(a) * c.noise.own() + c.noise.base().row(dof_[a]).dot(base);
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    if (seen_[a].empty()) continue;
+    noise_variance_[a] = variance(a) * c.noise.own();
+    for (const auto& [dof, weight] : seen_[a])
+      noise_variance_[a] += std::abs(weight) * c.noise.base().row(dof).dot(base);
+  }
 }
 
 const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double>& noise_density) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "estimator/gap/axis_correction.h"
@@ -10,7 +11,8 @@
 #include "estimator/gap/noise_path.h"
 #include "estimator/gap/running_model.h"
 #include "estimator/motion/drift_controlled_integrator.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
+#include "estimator/structure/group_design.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/watch/baseline.h"
 
@@ -22,10 +24,9 @@ namespace framewatch::estimator {
 class GapMonitor {
  public:
   /// axes: with the remaining fractions of their delays (Pipeline::axes). model: none: it is
-  /// learned.
-  GapMonitor(const Structure& structure, const std::vector<SensorAxis>& axes,
-             const EstimatorOptions& estimation, const GapOptions& options,
-             const std::optional<GapModel>& model);
+  /// learned; stories of a group then keep their shares of the design.
+  GapMonitor(const PipelineConfig& config, const std::vector<SensorAxis>& axes,
+             const GapOptions& options, const std::optional<GapModel>& model);
 
   /// Replaces the model and begins anew. Not bounded in time, and allocates.
   void adopt(const GapModel& model);
@@ -51,7 +52,7 @@ class GapMonitor {
       for (const double value : theta)
         if (!(value > 0 && value < a.kMost)) return a.refuse();
       if (modelled && !has_model() && theta.size() == static_cast<std::size_t>(table_.size()))
-        adopt({Eigen::Map<const Eigen::VectorXd>(theta.data(), table_.size()), {}});
+        adopt(model_of(Eigen::Map<const Eigen::VectorXd>(theta.data(), table_.size())));
     }
     a(theta_error_);
     if (modelled && has_model()) a(*current_);
@@ -89,14 +90,20 @@ class GapMonitor {
   /// Puts the parameter that has changed most significantly into news.
   void name_place(GapNews& news) const;
 
+  /// A model of identified parameters.
+  GapModel model_of(const Eigen::VectorXd& theta) const;
+
   Structure structure_;
-  ParameterTable table_;
+  ParameterTable stories_;  ///< of the model that runs
+  ParameterTable table_;    ///< of what is identified
+  GroupDesign design_;
   std::vector<SensorAxis> axes_;
-  std::vector<int> dof_;  ///< of each axis; -1: base
+  /// What each axis measures: degrees of freedom with weights; none: base.
+  std::vector<std::vector<std::pair<int, double>>> seen_;
   double rate_hz_, high_pass_hz_;
   GapOptions options_;
   ModelLearner learner_;
-  Eigen::VectorXd theta_;
+  Eigen::VectorXd theta_;            ///< of what is identified
   std::vector<double> theta_error_;  ///< standard errors of what was learned; 0: as given
   std::vector<char> has_law_;        ///< of each parameter: an effect of the model acts there
   BaselineLearner since_gap_;        ///< windows since a gap began to show

@@ -69,7 +69,10 @@ class Gap : public testing::Test {
   }
 
   GapMonitor monitor(const GapModel& model) const {
-    return GapMonitor(structure_, axes_, {}, options_, model);
+    PipelineConfig config;
+    config.structure = structure_;
+    config.axes = axes_;
+    return GapMonitor(config, axes_, options_, model);
   }
 
   /// Every gap of a monitor, and every event.
@@ -239,7 +242,10 @@ TEST_F(Gap, GoesOnBitByBitFromItsState) {
 }
 
 TEST_F(Gap, LearnsItsModelWhenNoneIsGiven) {
-  GapMonitor m(structure_, axes_, {}, options_, std::nullopt);
+  PipelineConfig config;
+  config.structure = structure_;
+  config.axes = axes_;
+  GapMonitor m(config, axes_, options_, std::nullopt);
   WindowEstimate window(table_.size());
   window.status = WindowStatus::valid;
   std::fill(window.prior_share.begin(), window.prior_share.end(), 0.0);
