@@ -85,6 +85,12 @@ void add_check(CommandList& commands) {
   commands.reads_files(command->add_option(
       "CONFIG", arguments.config, "configuration file, or scenario file of simulate (TOML)"));
   add_json(command, arguments.json);
+  command
+      ->add_option(
+          "--advise", arguments.advise,
+          "floors that further sensors would gain most on, at most so many; for a building "
+          "with sensors on some floors")
+      ->check(CLI::Range(1, 100));
   command->add_flag("--print-options-markdown", arguments.print_options_markdown)->group("");
   command->add_flag("--print-effects-markdown", arguments.print_effects_markdown)->group("");
   commands.set_action(command, [&arguments] {

@@ -50,7 +50,7 @@ int check_command(const CheckArguments& arguments) {
   const std::optional<Config> config = scenario ? config_of_scenario(arguments.config, problems)
                                                 : load_config(arguments.config, problems);
   std::optional<CheckReport> report;
-  if (config) report = make_check_report(*config);
+  if (config) report = make_check_report(*config, arguments.advise);
   if (arguments.json) {
     fmt::print("{}", to_json(arguments.config, report, problems));
   } else if (report) {

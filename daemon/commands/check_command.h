@@ -7,6 +7,7 @@ namespace framewatch::daemon {
 struct CheckArguments {
   std::string config;
   bool json = false;
+  int advise = 0;                       ///< floors for further sensors to name
   bool print_effects_markdown = false;  ///< docs/effects.md
   bool print_options_markdown = false;  ///< docs/configuration.md instead of a check
 };

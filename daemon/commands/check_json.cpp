@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "daemon/commands/check_report.h"
@@ -9,6 +11,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
 Json channels(const Config& config) {
   Json out = Json::array();
   for (std::size_t i = 0; i < config.sources.size(); ++i) {
@@ -18,6 +24,9 @@ Json channels(const Config& config) {
                  {"story", axis.story},
                  {"direction", axis.direction == estimator::Direction::x ? "x" : "y"}};
     if (axis.frame >= 0) channel["frame"] = config.pipeline.structure.frame_name(axis.frame);
+    if (axis.plan)
+      channel["plan"] = {
+          {"x_m", axis.plan->x_m}, {"y_m", axis.plan->y_m}, {"angle_rad", axis.plan->angle_rad}};
     if (!source.can.empty())
       channel["source"] = {{"can", source.can}, {"dbc_signal", source.dbc_signal}};
     if (!source.can_node.empty()) channel["source"]["can_node"] = source.can_node;
@@ -51,6 +60,27 @@ std::string to_json(const std::string& path, const std::optional<CheckReport>& r
     out["panel_shear_ratio"] = Json::object();
     for (const PanelOutlook& panel : report->panels)
       out["panel_shear_ratio"][panel.parameter] = panel.shear_ratio;
+    if (report->layout) {
+      const LayoutOutlook& layout = *report->layout;
+      Json groups = Json::array(), advice = Json::array();
+      for (const GroupOutlook& g : layout.groups)
+        groups.push_back({{"parameter", g.parameter},
+                          {"window_error_ratio", finite(g.window_error)},
+                          {"design_error_ratio", finite(g.design_error)},
+                          {"damping_error_ratio", finite(g.damping_error)}});
+      for (const AdvisedFloor& a : layout.advised)
+        advice.push_back(
+            {{"floor", a.floor}, {"least_seen_loss_ratio", finite(a.least_seen_loss)}});
+      out["layout"] = {{"measured_floors", layout.floors},
+                       {"shaking_rms_mps2", layout.shaking_mps2},
+                       {"groups", groups},
+                       {"least_seen_loss_ratio", finite(layout.least_seen_loss)},
+                       {"weakest_story", layout.weakest_story},
+                       {"advice", advice}};
+    }
+    out["unused_channels"] = Json::array();
+    for (const UnusedChannel& unused : report->config.unused)
+      out["unused_channels"].push_back({{"name", unused.name}, {"reason", unused.reason}});
     out["lcm_url"] = report->config.lcm.url;
     out["can"] = Json::array();
     for (std::size_t b = 0; b < report->config.can.buses.size(); ++b) {

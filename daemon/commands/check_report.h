@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/commands/layout_outlook.h"
 #include "daemon/config/config.h"
 
 namespace framewatch::daemon {
@@ -24,10 +25,12 @@ struct CheckReport {
   std::vector<PanelOutlook> panels;
   /// What the estimator takes when it starts, and never more; 0 where the C library does not say.
   std::size_t memory_bytes = 0;
+  std::optional<LayoutOutlook> layout;  ///< of a building with sensors on some floors
   std::vector<std::string> warnings;
 };
 
-CheckReport make_check_report(const Config& config);
+/// advise: places for further sensors to name at most.
+CheckReport make_check_report(const Config& config, int advise = 0);
 
 /// For people, several lines, without the warnings.
 std::string to_text(const CheckReport& report);

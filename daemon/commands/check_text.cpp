@@ -42,8 +42,10 @@ std::string design_text(const CheckReport& r) {
 std::string channel_text(const estimator::Structure& s, const estimator::SensorAxis& axis,
                          const AxisSource& source) {
   const std::string place = axis.story == 0 ? "base" : fmt::format("story {}", axis.story);
-  const std::string frame =
-      axis.frame >= 0 ? fmt::format(", frame {}", s.frame_name(axis.frame)) : "";
+  const std::string frame = axis.frame >= 0 ? fmt::format(", frame {}", s.frame_name(axis.frame))
+                            : axis.plan
+                                ? fmt::format(", at {:g}, {:g} m", axis.plan->x_m, axis.plan->y_m)
+                                : "";
   const std::string from =
       !source.can.empty()      ? fmt::format("{}, {}{}", source.can, source.dbc_signal,
                                         source.can_node.empty() ? "" : " of " + source.can_node)
@@ -104,7 +106,7 @@ std::string to_text(const CheckReport& r) {
   for (std::size_t i = 0; i < r.config.sources.size(); ++i)
     out +=
         channel_text(r.config.pipeline.structure, r.config.pipeline.axes[i], r.config.sources[i]);
-  out += identifiable_text(r);
+  out += r.layout ? layout_text(*r.layout, r.config.pipeline.structure) : identifiable_text(r);
   return out;
 }
 

@@ -86,8 +86,8 @@ std::optional<estimator::Baseline> load_baseline(const std::string& path,
 void load_watch_baseline(Config& config, std::vector<ConfigProblem>& problems) {
   if (!config.watch || config.watch->baseline_path.empty()) return;
   if (drivers::is_absent(config.watch->baseline_path)) return;
-  config.watch->baseline = load_baseline(
-      config.watch->baseline_path, estimator::ParameterTable(config.pipeline.structure), problems);
+  config.watch->baseline =
+      load_baseline(config.watch->baseline_path, config.pipeline.parameters(), problems);
 }
 
 }  // namespace framewatch::daemon

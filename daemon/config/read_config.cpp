@@ -53,7 +53,8 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   check_sections(document, problems);
   const StructureReading structure = read_structure(document, problems);
   config.pipeline.structure = structure.structure;
-  config.pipeline.design = structure.design;
+  config.pipeline.design = structure.design.theta;
+  config.pipeline.bending_nmprad = structure.design.bending_nmprad;
   read_channels(document, structure, config, problems);
   config.pipeline.options = read_estimator(document, problems);
   config.lcm = read_lcm(document, problems);

@@ -40,7 +40,7 @@ template <typename Writer>
 class TableOutput : public EstimateOutput {
  public:
   explicit TableOutput(const Config& config)
-      : channel_(config.lcm.prefix + "ESTIMATE"), table_(config.pipeline.structure) {}
+      : channel_(config.lcm.prefix + "ESTIMATE"), table_(config.pipeline.parameters()) {}
   bool open(const EstimateFile& file) {
     std::vector<std::string> names, units;
     for (int i = 0; i < table_.size(); ++i) {

@@ -10,7 +10,7 @@
 namespace framewatch::daemon {
 
 BaselineKeeper::BaselineKeeper(const Config& config)
-    : table_(config.pipeline.structure), written_(static_cast<std::size_t>(table_.size())) {
+    : table_(config.pipeline.parameters()), written_(static_cast<std::size_t>(table_.size())) {
   if (!config.watch) return;
   path_ = config.watch->baseline_path;
   if (config.watch->baseline) written_ = *config.watch->baseline;

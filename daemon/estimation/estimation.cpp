@@ -61,8 +61,7 @@ void Estimation::begin_watch() {
 void Estimation::begin_gap() {
   gap_.reset();
   if (!config_.gap) return;
-  gap_.emplace(config_.pipeline.structure, pipeline_.axes(), config_.pipeline.options,
-               config_.gap->options, config_.gap->model);
+  gap_.emplace(config_.pipeline, pipeline_.axes(), config_.gap->options, config_.gap->model);
 }
 
 void Estimation::begin_shaking() {

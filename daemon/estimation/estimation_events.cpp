@@ -41,7 +41,7 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
   const auto worst = static_cast<std::size_t>(news.worst_axis);  // of a state file, perhaps
   const std::string channel =
       worst < config.pipeline.axes.size() ? config.pipeline.axes[worst].name : "";
-  const estimator::ParameterTable table(config.pipeline.structure);
+  const estimator::ParameterTable table = config.pipeline.parameters();
   const bool named = news.parameter >= 0 && news.parameter < table.elements();
   event_t m{};
   m.time_us = to_microseconds(news.found);

@@ -87,7 +87,7 @@ std::string drift_section(const EventReport& r, const Config& config) {
 }
 
 std::string stiffness_section(const EventReport& r, const Config& config) {
-  const estimator::ParameterTable table(config.pipeline.structure);
+  const estimator::ParameterTable table = config.pipeline.parameters();
   SvgAxis names{""};
   SvgSeries bars{"", 1, SvgMark::bars, {}, {}, {}};
   std::vector<std::vector<std::string>> rows;

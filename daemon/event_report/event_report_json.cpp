@@ -31,7 +31,7 @@ const char* before_word(estimator::BeforeFrom from) {
 }
 
 Json stiffness_json(const EventReport& r, const Config& config) {
-  const estimator::ParameterTable table(config.pipeline.structure);
+  const estimator::ParameterTable table = config.pipeline.parameters();
   Json out = Json::array();
   for (int p = 0; p < table.elements(); ++p) {
     const estimator::ShakenStiffness& k = r.shaking.stiffness[static_cast<std::size_t>(p)];

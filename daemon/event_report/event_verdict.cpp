@@ -57,7 +57,7 @@ std::string element_words(const estimator::Parameter& p) {
 /// Number of stiffnesses that could be compared.
 int judge_losses(const EventReport& r, const Config& config, std::vector<Reason>& reasons) {
   const EventReportSettings& s = *config.event_report;
-  const estimator::ParameterTable table(config.pipeline.structure);
+  const estimator::ParameterTable table = config.pipeline.parameters();
   int known = 0;
   for (int p = 0; p < table.elements(); ++p) {
     const estimator::ShakenStiffness& k = r.shaking.stiffness[static_cast<std::size_t>(p)];

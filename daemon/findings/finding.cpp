@@ -23,7 +23,7 @@ bool is_channel(const Config& config, const std::string& place) {
 }
 
 void describe_change(Finding& f, const Config& config) {
-  const estimator::ParameterTable table(config.pipeline.structure);
+  const estimator::ParameterTable table = config.pipeline.parameters();
   const auto at = table.find(f.place);
   f.kind = FindingKind::change;
   f.advice = fmt::format(

@@ -93,6 +93,7 @@ void collect_errors(const std::vector<estimator::WindowEstimate>& windows,
   for (const estimator::WindowEstimate& window : windows) {
     for (int p = 0; p < table.size(); ++p) {
       const auto i = static_cast<std::size_t>(p);
+      if (static_cast<std::size_t>(table[p].kind) >= errors.size()) continue;
       ErrorStatistics& kind = errors[static_cast<std::size_t>(table[p].kind)];
       kind.relative_error.push_back(std::abs(window.solution[i] / truth[p] - 1));
       if (window.reason[i] != estimator::Observability::observable) continue;

@@ -73,7 +73,7 @@ struct ErrorStatistics {
   void add(const ErrorStatistics& other);
 };
 
-/// By ParameterKind.
+/// By ParameterKind, of stories and groups; bending is left out.
 using ErrorsByKind = std::array<ErrorStatistics, 4>;
 
 void collect_errors(const std::vector<estimator::WindowEstimate>& windows,

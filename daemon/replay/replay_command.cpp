@@ -123,10 +123,10 @@ class ReplayRun {
         event_channel_(config.lcm.prefix + "EVENT"),
         survey_(config, a.salvage, a.span),
         learner_(
-            watched_parameters(estimator::ParameterTable(config.pipeline.structure),
+            watched_parameters(config.pipeline.parameters(),
                                config.watch ? config.watch->options : estimator::WatchOptions{}),
             std::numeric_limits<double>::infinity()),
-        series_(estimator::ParameterTable(config.pipeline.structure), expectations_.has_value(),
+        series_(config.pipeline.parameters(), expectations_.has_value(),
                 config.pipeline.options.min_snr),
         estimation_(config, sink(), [this](const estimator::WindowEstimate& e) {
           series_.add(e);
@@ -269,9 +269,8 @@ class ReplayRun {
     if (baseline.known() == 0)
       return "--write-baseline: no parameter has a value in half of the windows that the design "
              "does not pull";
-    return drivers::write_text_file(
-        a_.write_baseline,
-        baseline_text(baseline, estimator::ParameterTable(config_.pipeline.structure)));
+    return drivers::write_text_file(a_.write_baseline,
+                                    baseline_text(baseline, config_.pipeline.parameters()));
   }
 
   void tell_differences(const std::vector<Check>& checks) const {
@@ -326,8 +325,7 @@ int replay(const ReplayArguments& a) {
   std::optional<Expectations> expectations;
   if (!a.expect.empty()) {
     problems.clear();
-    expectations = load_expectations(
-        a.expect, estimator::ParameterTable(config->pipeline.structure), problems);
+    expectations = load_expectations(a.expect, config->pipeline.parameters(), problems);
     print_problems(problems);
     if (!expectations) return kBadInput;
   }

@@ -22,7 +22,7 @@ std::string out_path(const ReportArguments& a) {
 
 /// Whether the configuration describes the building of the estimates.
 bool fits(const Config& config, const SessionEstimates& estimates) {
-  const estimator::ParameterTable table(config.pipeline.structure);
+  const estimator::ParameterTable table = config.pipeline.parameters();
   if (static_cast<std::size_t>(table.size()) != estimates.parameters()) return false;
   for (int p = 0; p < table.size(); ++p)
     if (table[p].name != estimates.table.name[static_cast<std::size_t>(p)]) return false;

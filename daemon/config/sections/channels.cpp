@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
@@ -9,6 +10,8 @@
 #include "daemon/config/sections/sections.h"
 #include "daemon/keys/section.h"
 #include "daemon/keys/suggest.h"
+#include "daemon/keys/target.h"
+#include "estimator/structure/story_groups.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -40,19 +43,56 @@ int frame_of(ConfigSection& section, const StructureReading& reading) {
   return kNoFrame;
 }
 
-/// Story, frame and direction, and the rules between them.
+/// Middle of the frames that are parallel to the other direction, m.
+double middle_m(const estimator::Structure& s, estimator::Direction along) {
+  const bool x = along == estimator::Direction::x;
+  const int last = x ? s.frames() - 1 : s.n() - 1;
+  return (x ? s.m() : s.n()) > 0 ? line_position(s, last) / 2 : 0;
+}
+
+/// A place in plan and where the axis points; empty: a base channel of the whole plan.
+void read_plan(ConfigSection& section, const StructureReading& reading,
+               estimator::SensorAxis& axis) {
+  const bool azimuth = section.given("azimuth_deg");
+  if (azimuth && !reading.azimuth_y_deg)
+    section.problem("azimuth_deg", "needs the building's own: [structure] azimuth_y_deg");
+  if (azimuth && section.given("direction"))
+    section.problem("azimuth_deg", "a channel has a direction or an azimuth");
+  const bool at_place = section.given("x_m") || section.given("y_m") || azimuth;
+  if ((axis.story == 0 && !at_place) || !reading.frames_known) return;
+  estimator::PlanPlace place;
+  const estimator::Structure& s = reading.structure;
+  place.x_m = section.given("x_m") ? section.number("x_m") : middle_m(s, estimator::Direction::x);
+  place.y_m = section.given("y_m") ? section.number("y_m") : middle_m(s, estimator::Direction::y);
+  place.angle_rad = axis.direction == estimator::Direction::y ? M_PI / 2 : 0;
+  if (azimuth && reading.azimuth_y_deg)
+    place.angle_rad = std::remainder(
+        M_PI / 2 - radians(section.number("azimuth_deg") - *reading.azimuth_y_deg), 2 * M_PI);
+  if (azimuth)
+    axis.direction = std::abs(std::cos(place.angle_rad)) >= std::abs(std::sin(place.angle_rad))
+                         ? estimator::Direction::x
+                         : estimator::Direction::y;
+  axis.plan = place;
+}
+
+/// Story, frame, direction and place, and the rules between them.
 void read_place(ConfigSection& section, const StructureReading& reading,
                 estimator::SensorAxis& axis) {
   const bool names_frame = section.value("frame") != nullptr;
   if (section.good("story")) axis.story = section.integer("story");
-  if (section.good("story") && axis.story > 0 && !names_frame)
-    section.problem("frame", "is missing: above the base a channel rides on a frame");
-  if (section.good("story") && axis.story == 0 && !names_frame && !section.value("direction"))
-    section.problem("direction", "is missing: a base channel says direction = \"x\" or \"y\"");
+  if (section.good("story") && !names_frame && !section.value("direction") &&
+      !section.value("azimuth_deg"))
+    section.problem(axis.story > 0 ? "frame" : "direction",
+                    axis.story > 0
+                        ? "is missing: above the base a channel rides on a frame, or has a "
+                          "direction or an azimuth, and a place x_m, y_m"
+                        : "is missing: a base channel says direction = \"x\" or \"y\"");
   if (section.given("direction"))
     axis.direction =
         section.text("direction") == "y" ? estimator::Direction::y : estimator::Direction::x;
-  if (!names_frame) return;
+  if (!names_frame) return read_plan(section, reading, axis);
+  for (const char* key : {"x_m", "y_m", "azimuth_deg"})
+    if (section.given(key)) section.problem(key, "a channel on a frame is where the frame is");
   axis.frame =
       section.given("frame") && reading.frames_known ? frame_of(section, reading) : kNoFrame;
   if (axis.frame == kNoFrame) return;
@@ -99,6 +139,12 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
   if (section.given("name"))
     if (const std::string rule = problem_of_name(axis.name); !rule.empty())
       section.problem("name", rule);
+  const bool vertical = section.given("direction") && section.text("direction") == "z";
+  if (vertical || (section.given("use") && !section.boolean("use"))) {
+    config.unused.push_back(
+        {axis.name, vertical ? "it measures vertical motion" : "its use is false"});
+    return;
+  }
   read_place(section, reading, axis);
   config.pipeline.axes.push_back(axis);
   config.sources.push_back(read_source(section, label, problems));

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -41,8 +42,8 @@ double mean_frame_stiffness(const Eigen::VectorXd& theta, const estimator::Param
 
 }  // namespace
 
-Eigen::VectorXd read_design(const TomlValue* design, const estimator::Structure& s,
-                            bool shape_known, std::vector<TextProblem>& problems) {
+DesignReading read_design(const TomlValue* design, const estimator::Structure& s, bool shape_known,
+                          std::vector<TextProblem>& problems) {
   if (!design) return {};
   ConfigSection section("structure.design", "structure.design", design, {}, problems);
   if (!shape_known) return {};
@@ -56,10 +57,18 @@ Eigen::VectorXd read_design(const TomlValue* design, const estimator::Structure&
   const std::vector<double> cx = damping(section, "cx_nspm", {s.stories, s.n()});
   const std::vector<double> cy = damping(section, "cy_nspm", {s.stories, s.m()});
   const std::vector<double> gc = damping(section, "gc", {s.stories, s.n() - 1, s.m() - 1});
+  DesignReading out;
+  for (const auto& [key, frames, which] :
+       {std::tuple("krx_nmprad", s.n(), 0), std::tuple("kry_nmprad", s.m(), 1)}) {
+    if (!section.given(key)) continue;
+    if (frames == 0) section.problem(key, "the structure has no frame in this direction");
+    out.bending_nmprad[static_cast<std::size_t>(which)] = section.number(key);
+  }
   const bool complete = find_problems(s).empty() && section.good("kx_npm") &&
                         section.good("ky_npm") && section.good("gk") &&
                         section.good("damping_ratio") && section.good("cx_nspm") &&
-                        section.good("cy_nspm") && section.good("gc");
+                        section.good("cy_nspm") && section.good("gc") &&
+                        section.good("krx_nmprad") && section.good("kry_nmprad");
   if (!complete) return {};
 
   const estimator::ParameterTable table(s);
@@ -86,7 +95,8 @@ Eigen::VectorXd read_design(const TomlValue* design, const estimator::Structure&
     for (int p = 0; p < s.panels() && !gc.empty(); ++p)
       theta[table.panel_damping(story, p)] = gc[at((story - 1) * s.panels(), p)];
   }
-  return theta;
+  out.theta = theta;
+  return out;
 }
 
 }  // namespace framewatch::daemon

@@ -13,19 +13,25 @@
 
 namespace framewatch::daemon {
 
+/// Design parameters of a structure without problems.
+struct DesignReading {
+  Eigen::VectorXd theta;  ///< of every story; empty when the file has none
+  estimator::BendingStiffness bending_nmprad{};
+};
+
 /// [structure] and [structure.design] as far as they could be read.
 struct StructureReading {
   estimator::Structure structure;
-  Eigen::VectorXd design;  ///< theta order; empty when the file has none
+  DesignReading design;
+  std::optional<double> azimuth_y_deg;
   bool stories_known = false;
   bool frames_known = false;
 };
 
 StructureReading read_structure(const TomlValue& document, std::vector<TextProblem>& problems);
 
-/// Design parameters in theta order, of a structure without problems; empty when the file has none.
-Eigen::VectorXd read_design(const TomlValue* design, const estimator::Structure& structure,
-                            bool shape_known, std::vector<TextProblem>& problems);
+DesignReading read_design(const TomlValue* design, const estimator::Structure& structure,
+                          bool shape_known, std::vector<TextProblem>& problems);
 
 /// Rule that a frame or channel name breaks; empty when it is good.
 std::string problem_of_name(const std::string& name);

@@ -19,12 +19,18 @@
 
 namespace framewatch::daemon {
 
+/// A channel that the estimation does not use.
+struct UnusedChannel {
+  std::string name, reason;
+};
+
 /// One configuration file, defaults filled in.
 struct Config {
   std::string path;
   std::string sha256;
   estimator::PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
+  std::vector<UnusedChannel> unused;
   LcmSettings lcm;
   CommandSettings commands;
   drivers::CanMap can;                     ///< axes as in pipeline.axes

@@ -61,6 +61,7 @@ StructureReading read_structure(const TomlValue& document, std::vector<TextProbl
       if (p.field.empty() || p.field.starts_with("frames")) out.frames_known = false;
     }
   }
+  if (section.given("azimuth_y_deg")) out.azimuth_y_deg = section.number("azimuth_y_deg");
   const TomlEntry* design = entry ? entry->value.find("design") : nullptr;
   out.design = read_design(design ? &design->value : nullptr, s, shape_known, problems);
   return out;

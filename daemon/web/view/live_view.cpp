@@ -37,7 +37,7 @@ std::span<const std::uint8_t> bytes(const void* data, std::size_t size) {
 }
 
 std::vector<std::string> parameter_names(const Config& config) {
-  const estimator::ParameterTable table(config.pipeline.structure);
+  const estimator::ParameterTable table = config.pipeline.parameters();
   std::vector<std::string> out;
   for (int p = 0; p < table.size(); ++p) out.push_back(table[p].name);
   return out;

@@ -42,7 +42,7 @@ estimator::WindowEstimate decoded(int window, const window_estimate_t& m) {
 }  // namespace
 
 PageWatch::PageWatch(const Config& config, std::int64_t first_id)
-    : table_(config.pipeline.structure),
+    : table_(config.pipeline.parameters()),
       windows_s_(window_lengths_s(config.pipeline.options)),
       watch_(fresh_watch(table_, windows_s_)),
       first_id_(first_id) {}

@@ -57,7 +57,7 @@ void show(const SummaryRow& row, std::size_t p, window_estimate_t& e) {
 
 std::vector<window_estimate_t> stored_estimates(SummaryQuery& store, const Config& config,
                                                 std::int64_t newest_us) {
-  const estimator::ParameterTable table(config.pipeline.structure);
+  const estimator::ParameterTable table = config.pipeline.parameters();
   const auto parameters = static_cast<std::size_t>(table.size());
   const std::vector<SummaryPeriods> periods = store.periods();
   std::map<std::int64_t, window_estimate_t> by_end;

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "daemon/base/workers.h"
+#include "daemon/lab/accuracy_trial.h"
+#include "estimator/setup/pipeline_config.h"
+#include "estimator/structure/effect.h"
+
+namespace framewatch::daemon {
+
+/// A plane building of equal floors of 800 t, 3.5 m high: the stiffness falls from the base to a
+/// third at the top, the lowest frequency is 10 Hz over the number of stories.
+estimator::Structure tall_building(int stories);
+/// Its design, 1.5 % damping proportional to stiffness.
+Eigen::VectorXd tall_design(int stories);
+/// A channel at the base and one on each of these floors.
+std::vector<estimator::SensorAxis> floor_axes(const std::vector<int>& floors);
+
+/// A tall building as it is, which the estimator does not know, and what it is told.
+struct TallTrial {
+  std::vector<int> floors{5, 10, 15, 20};  ///< measured
+  int stories = 20;
+  double noise_ratio = 0.01;  ///< white noise of each channel over the rms of its motion
+  double stiffness_off = 0.2, damping_off = 0.3;  ///< of groups from the design, at most
+  double profile_off = 0, mass_off = 0;           ///< standard deviations: of stories, of floors
+  double bending_nmprad = 0;                      ///< of the building
+  double believed_bending_nmprad = 0;             ///< of the design; 0: it does not bend
+  double duration_s = 60;
+  std::uint64_t seed = 1;
+};
+
+/// A trial's building and what its channels measure.
+struct TallRecord {
+  estimator::PipelineConfig config;
+  Eigen::VectorXd truth;  ///< of config.parameters()
+  Eigen::MatrixXd accel;  ///< instants x axes, m/s^2
+};
+
+/// Truth integrated exactly at 1 ms; Kanai-Tajimi ground of 2.5 Hz, strong all the time.
+TallRecord tall_record(const TallTrial& trial);
+
+/// Errors of the 5-s windows from 20 s on, 5 s apart.
+struct FewSensorsErrors {
+  ErrorStatistics stiffness, damping;
+};
+FewSensorsErrors few_sensors_errors(const TallRecord& record);
+
+/// A line of the table of docs/accuracy.md: several trials of one layout.
+struct FewSensorsRow {
+  std::string name;
+  TallTrial trial;  ///< of seed 1; the others have the next ones
+  FewSensorsErrors errors;
+};
+std::vector<FewSensorsRow> study_few_sensors(int seeds, const Workers& workers);
+
+}  // namespace framewatch::daemon
