@@ -6,6 +6,7 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/event_report/event_report.h"
 #include "daemon/events/event_words.h"
+#include "daemon/events/place_words.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
@@ -47,13 +48,6 @@ void judge_drifts(const EventReport& r, const Config& config, EventVerdict& out,
   }
 }
 
-/// "frame y2 of story 1 (kx_1_y2)".
-std::string element_words(const estimator::Parameter& p) {
-  return fmt::format("{} {} of {} {} ({})", p.panel < 0 ? "frame" : "floor panel",
-                     p.name.substr(p.name.rfind('_') + 1), p.panel < 0 ? "story" : "floor", p.story,
-                     p.name);
-}
-
 /// Number of stiffnesses that could be compared.
 int judge_losses(const EventReport& r, const Config& config, std::vector<Reason>& reasons) {
   const EventReportSettings& s = *config.event_report;
@@ -67,10 +61,11 @@ int judge_losses(const EventReport& r, const Config& config, std::vector<Reason>
     const EventColor color = color_of(loss, s.yellow_loss_ratio, s.red_loss_ratio);
     if (color == EventColor::green || loss < kErrors * k.std_error()) continue;
     const double limit = color == EventColor::red ? s.red_loss_ratio : s.yellow_loss_ratio;
-    reasons.push_back({color, loss / limit,
-                       fmt::format("{} lost {:.1f} % (+-{:.1f} %) of its stiffness (limit {:g} %)",
-                                   element_words(table[p]), 100 * loss,
-                                   std::max(0.1, 100 * k.std_error()), 100 * limit)});
+    reasons.push_back(
+        {color, loss / limit,
+         fmt::format("{} ({}) lost {:.1f} % (+-{:.1f} %) of its stiffness (limit {:g} %)",
+                     element_words(table[p].name), table[p].name, 100 * loss,
+                     std::max(0.1, 100 * k.std_error()), 100 * limit)});
   }
   return known;
 }

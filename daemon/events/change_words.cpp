@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "daemon/events/place_words.h"
+
 namespace framewatch::daemon {
 namespace {
 
@@ -15,12 +17,6 @@ std::string sure_words(double errors) {
 
 }  // namespace
 
-std::string place_words(const estimator::Parameter& p) {
-  const std::string at = p.name.substr(p.name.find('_', p.name.find('_') + 1) + 1);
-  return p.frame >= 0 ? fmt::format("story {}, frame {}", p.story, at)
-                      : fmt::format("floor {}, panel {}", p.story, at);
-}
-
 std::string percent_words(double ratio, double std_error) {
   const double error = 100 * std::abs(std_error);
   const int digits =
@@ -29,8 +25,8 @@ std::string percent_words(double ratio, double std_error) {
 }
 
 std::string change_sentence(const estimator::Parameter& p, double ratio, double std_error) {
-  return fmt::format("{} ({}) {} {} of its stiffness, give or take {}: {}", place_words(p), p.name,
-                     ratio < 0 ? "has lost" : "has gained",
+  return fmt::format("{} ({}) {} {} of its stiffness, give or take {}: {}", place_words(p.name),
+                     p.name, ratio < 0 ? "has lost" : "has gained",
                      percent_words(std::abs(ratio), std_error), percent_words(std_error, std_error),
                      sure_words(std::abs(ratio) / std_error));
 }

@@ -6,8 +6,6 @@
 
 namespace framewatch::daemon {
 
-/// "story 1, frame y2", "floor 2, panel x1y1".
-std::string place_words(const estimator::Parameter& parameter);
 /// "0.83 %", "15 %": with as many digits as an error of that size deserves.
 std::string percent_words(double ratio, double std_error);
 /// "story 1, frame y2 (kx_1_y2) has lost 14.8 % of its stiffness, give or take 0.4 %: 36 times its

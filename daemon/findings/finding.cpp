@@ -8,6 +8,7 @@
 
 #include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
+#include "daemon/events/place_words.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
@@ -30,7 +31,7 @@ void describe_change(Finding& f, const Config& config) {
       "Have a structural engineer look at {} before the building is used as before; then "
       "acknowledge "
       "the finding.",
-      at ? place_words(table[*at]) : f.place);
+      at ? place_words(f.place) : f.place);
   if (!at || !std::isfinite(f.change_ratio) || !(f.std_error > 0)) return;  // its message says it
   f.text = change_sentence(table[*at], f.change_ratio, f.std_error) + ".";
 }

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/core.h>
-
 #include "daemon/events/event_words.h"
+#include "daemon/events/place_words.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/watch/watch.h"
 
@@ -122,12 +121,10 @@ std::vector<std::size_t> judged_elements(const SessionEstimates& s) {
 
 std::string element_words(const parameter_table_t& table, std::size_t p) {
   const std::string& name = table.name[p];
-  const std::size_t place = name.rfind('_');
-  const bool frame = table.kind[p] == static_cast<int>(estimator::ParameterKind::frame_stiffness);
-  const bool panel = table.kind[p] == static_cast<int>(estimator::ParameterKind::panel_stiffness);
-  if (place == std::string::npos || (!frame && !panel)) return name;
-  return fmt::format(fmt::runtime(frame ? "frame {} of story {}" : "floor panel {} of floor {}"),
-                     name.substr(place + 1), table.story[p]);
+  const bool stiffness =
+      table.kind[p] == static_cast<int>(estimator::ParameterKind::frame_stiffness) ||
+      table.kind[p] == static_cast<int>(estimator::ParameterKind::panel_stiffness);
+  return stiffness ? element_words(name) : name;
 }
 
 }  // namespace framewatch::daemon
