@@ -66,8 +66,9 @@ void Estimation::begin_gap() {
 
 void Estimation::begin_shaking() {
   if (!config_.event_report) return;
-  shaking_.emplace(config_.pipeline.structure, pipeline_.axes(), config_.pipeline.options,
-                   config_.event_report->options);
+  estimator::PipelineConfig config = config_.pipeline;
+  config.axes = pipeline_.axes();
+  shaking_.emplace(config, config_.event_report->options);
   counted_before_.resize(config_.pipeline.axes.size());
 }
 

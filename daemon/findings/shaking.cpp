@@ -21,7 +21,7 @@ double noise_mps2(const estimator::PipelineConfig& config) {
 Shaking::Shaking(const estimator::PipelineConfig& config)
     : config_(config),
       threshold_mps2_(std::max(kMoves_mps2, kNoiseSigmas * noise_mps2(config))),
-      response_(config.structure, config.axes, config.options) {}
+      response_(config) {}
 
 void Shaking::push(const estimator::SampleSet& instant) {
   const std::int64_t time_us = to_microseconds(instant.time);

@@ -62,21 +62,20 @@ WindowMean ShakingWatch::Windows::mean(std::size_t p, std::size_t parameters) co
   return mean_of(values, 0, values.size());
 }
 
-ShakingWatch::ShakingWatch(const Structure& structure, const std::vector<SensorAxis>& axes,
-                           const EstimatorOptions& estimation, const ShakingOptions& options)
-    : elements_(static_cast<std::size_t>(ParameterTable(structure).elements())),
+ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& options)
+    : elements_(static_cast<std::size_t>(config.parameters().elements())),
       options_(options),
-      response_(structure, axes, estimation),
-      peak_(axes.size(), static_cast<std::size_t>(structure.degrees_of_freedom())),
+      response_(config),
+      peak_(config.axes.size(), static_cast<std::size_t>(config.structure.degrees_of_freedom())),
       before_(kBefore, elements_),
       first_(kEnds, elements_),
       final_(kEnds, elements_),
       after_(kEnds, elements_),
       during_(any_windows(2 * elements_)) {
-  for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story == 0) trigger_axes_.push_back(a);
+  for (std::size_t a = 0; a < config.axes.size(); ++a)
+    if (config.axes[a].story == 0) trigger_axes_.push_back(a);
   if (!trigger_axes_.empty()) return;
-  trigger_axes_.resize(axes.size());
+  trigger_axes_.resize(config.axes.size());
   std::iota(trigger_axes_.begin(), trigger_axes_.end(), std::size_t{0});
 }
 
@@ -111,6 +110,7 @@ void ShakingWatch::begin(Time now) {
 }
 
 void ShakingWatch::push(const WindowEstimate& e) {
+  response_.follow(e);
   if (e.window != 0 || e.status != WindowStatus::valid) return;
   if (!active_) {
     if (!before_.overlaps(e)) before_.put(e, elements_);

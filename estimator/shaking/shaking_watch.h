@@ -3,9 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/shaking/shaking.h"
-#include "estimator/structure/sensors.h"
 #include "estimator/watch/baseline.h"
 
 namespace framewatch::estimator {
@@ -16,8 +15,7 @@ class ShakingWatch {
  public:
   static constexpr double kShortest_s = 0.5, kLongest_s = 900;
 
-  ShakingWatch(const Structure& structure, const std::vector<SensorAxis>& axes,
-               const EstimatorOptions& estimation, const ShakingOptions& options);
+  ShakingWatch(const PipelineConfig& config, const ShakingOptions& options);
 
   /// One calibrated instant. True once a strong motion has ended; it is in ended() then.
   bool push(const SampleSet& set, const Baseline* baseline);

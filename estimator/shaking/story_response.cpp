@@ -18,28 +18,35 @@ void raise_peak(double& peak, double value) {
 
 }  // namespace
 
-StoryResponse::StoryResponse(const Structure& structure, const std::vector<SensorAxis>& axes,
-                             const EstimatorOptions& estimation)
-    : structure_(structure),
-      axes_(axes),
-      section_(estimation.high_pass_hz, kDamping, estimation.rate_hz),
-      over_w2_(std::pow(2 * std::numbers::pi * estimation.high_pass_hz, -2)),
-      mean_step_(2 * std::numbers::pi * kMeanShare * estimation.high_pass_hz / estimation.rate_hz),
-      settling_(kSettlePeriods * estimation.rate_hz / estimation.high_pass_hz),
-      axis_of_dof_(static_cast<std::size_t>(structure.degrees_of_freedom()), -1),
-      motions_(axes.size()),
-      accel_(axes.size(), kNaN),
-      moved_(axes.size(), kNaN),
-      drift_(axis_of_dof_.size(), kNaN) {
-  for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story > 0 && axes[a].frame >= 0)
-      axis_of_dof_[static_cast<std::size_t>(structure.dof(axes[a].story, axes[a].frame))] =
-          static_cast<int>(a);
+StoryResponse::StoryResponse(const PipelineConfig& config)
+    : structure_(config.structure),
+      axes_(config.axes),
+      section_(config.options.high_pass_hz, kDamping, config.options.rate_hz),
+      over_w2_(std::pow(2 * std::numbers::pi * config.options.high_pass_hz, -2)),
+      mean_step_(2 * std::numbers::pi * kMeanShare * config.options.high_pass_hz /
+                 config.options.rate_hz),
+      settling_(kSettlePeriods * config.options.rate_hz / config.options.high_pass_hz),
+      motion_of_dof_(static_cast<std::size_t>(structure_.degrees_of_freedom()), -1),
+      accel_(axes_.size(), kNaN),
+      drift_(motion_of_dof_.size(), kNaN) {
+  std::size_t motions = axes_.size();
+  if (config.parameters().grouped()) {
+    floors_.emplace(config);
+    motions += static_cast<std::size_t>(structure_.frames()) + motion_of_dof_.size();
+  } else {
+    for (std::size_t a = 0; a < axes_.size(); ++a)
+      if (axes_[a].story > 0 && axes_[a].frame >= 0)
+        motion_of_dof_[static_cast<std::size_t>(structure_.dof(axes_[a].story, axes_[a].frame))] =
+            static_cast<int>(a);
+  }
+  motions_.resize(motions);
+  motion_accel_.assign(motions, kNaN);
+  moved_.assign(motions, kNaN);
 }
 
-void StoryResponse::follow(std::size_t axis, double accel) {
-  Motion& m = motions_[axis];
-  accel_[axis] = moved_[axis] = kNaN;
+void StoryResponse::follow(std::size_t motion, double accel) {
+  Motion& m = motions_[motion];
+  motion_accel_[motion] = moved_[motion] = kNaN;
   if (!std::isfinite(accel)) {
     m.x1 = m.x2 = m.s1 = m.s2 = m.settled = 0;  // the sensor rests where it rested
     return;
@@ -53,18 +60,31 @@ void StoryResponse::follow(std::size_t axis, double accel) {
   m.x1 = x;
   m.s2 = m.s1;
   m.s1 = s;
-  accel_[axis] = x;
-  if (++m.settled >= settling_) moved_[axis] = s * over_w2_;
+  motion_accel_[motion] = x;
+  if (++m.settled >= settling_) moved_[motion] = s * over_w2_;
 }
 
 void StoryResponse::push(const SampleSet& set) {
   const bool interrupted = set.index != next_index_;
   next_index_ = set.index + 1;
+  if (interrupted)
+    for (std::size_t i = 0; i < motions_.size(); ++i) follow(i, kNaN);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (interrupted) follow(a, kNaN);
     follow(a, set.accel[a]);
+    accel_[a] = motion_accel_[a];
   }
+  if (floors_) follow_floors(set);
   find_story_motion();
+}
+
+void StoryResponse::follow_floors(const SampleSet& set) {
+  const Eigen::VectorXd& accel = floors_->push(set);
+  for (Eigen::Index i = 0; i < accel.size(); ++i)
+    follow(axes_.size() + static_cast<std::size_t>(i), accel[i]);
+}
+
+void StoryResponse::follow(const WindowEstimate& estimate) {
+  if (floors_) floors_->follow(estimate);
 }
 
 /// Mean of the base's sensors; NaN: one is not settled, or there is none.
@@ -78,20 +98,29 @@ double StoryResponse::base_displacement(Direction direction) const {
   return count > 0 ? sum / count : kNaN;
 }
 
+StoryResponse::At StoryResponse::at(int level, int frame) const {
+  if (floors_) {
+    const std::size_t motion =
+        axes_.size() + static_cast<std::size_t>(level * structure_.frames() + frame);
+    return {motion_accel_[motion], moved_[motion]};
+  }
+  if (level == 0) return {kNaN, base_displacement(structure_.direction(frame))};
+  const int motion = motion_of_dof_[static_cast<std::size_t>(structure_.dof(level, frame))];
+  if (motion < 0) return {kNaN, kNaN};
+  return {motion_accel_[static_cast<std::size_t>(motion)],
+          moved_[static_cast<std::size_t>(motion)]};
+}
+
 void StoryResponse::find_story_motion() {
-  const std::array base = {base_displacement(Direction::x), base_displacement(Direction::y)};
   base_shear_ = {0, 0};
   for (int f = 0; f < structure_.frames(); ++f) {
     const std::size_t along = structure_.direction(f) == Direction::x ? 0 : 1;
-    double below = base[along];
+    double below = at(0, f).moved_m;
     for (int story = 1; story <= structure_.stories; ++story) {
-      const auto dof = static_cast<std::size_t>(structure_.dof(story, f));
-      const int axis = axis_of_dof_[dof];
-      const double at = axis < 0 ? kNaN : moved_[static_cast<std::size_t>(axis)];
-      const double accel = axis < 0 ? kNaN : accel_[static_cast<std::size_t>(axis)];
-      drift_[dof] = at - below;
-      below = at;
-      base_shear_[along] -= structure_.frame_mass(story, f) * accel;
+      const At floor = at(story, f);
+      drift_[static_cast<std::size_t>(structure_.dof(story, f))] = floor.moved_m - below;
+      below = floor.moved_m;
+      base_shear_[along] -= structure_.frame_mass(story, f) * floor.accel_mps2;
     }
   }
   if (structure_.n() == 0) base_shear_[0] = kNaN;

@@ -3,12 +3,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "estimator/identify/estimate/estimate.h"
 #include "estimator/motion/oscillator_section.h"
-#include "estimator/motion/sample_merger.h"
+#include "estimator/motion/sample.h"
 #include "estimator/numeric/nan.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
+#include "estimator/shaking/every_floor.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
@@ -16,14 +19,16 @@ namespace framewatch::estimator {
 
 /// The motion of the stories at one instant after the other. Displacements are accelerations less
 /// their mean through one oscillator section at the estimation's high-pass (docs/equations.md 8,
-/// 12); they are known two of its periods after the sensor's last interruption.
+/// 12); they are known two of its periods after the sensor's last interruption. Where floors have
+/// no sensors of their own, their motion is that of EveryFloor.
 class StoryResponse {
  public:
-  StoryResponse(const Structure& structure, const std::vector<SensorAxis>& axes,
-                const EstimatorOptions& estimation);
+  explicit StoryResponse(const PipelineConfig& config);
 
   /// One calibrated instant.
   void push(const SampleSet& set);
+  /// What was identified: floors without sensors move by it from now on.
+  void follow(const WindowEstimate& estimate);
 
   /// Of each axis: without its mean, m/s^2; NaN: none.
   const std::vector<double>& accel_mps2() const { return accel_; }
@@ -35,10 +40,11 @@ class StoryResponse {
   template <typename Archive>
   void archive(Archive& a) {
     a(next_index_, motions_);
+    if (floors_) a(*floors_);
   }
 
  private:
-  /// Displacement of one axis above the corner, w^2 times.
+  /// Displacement above the corner, w^2 times.
   struct Motion {
     double mean = 0, x1 = 0, x2 = 0, s1 = 0, s2 = 0;
     double seen = 0;     ///< instants in the mean
@@ -50,20 +56,28 @@ class StoryResponse {
       a.within(seen, 0, Archive::kMostCount);
     }
   };
-  void follow(std::size_t axis, double accel);
+  void follow(std::size_t motion, double accel);
+  void follow_floors(const SampleSet& set);
   double base_displacement(Direction direction) const;
+  /// Of a frame at a level, 0: the base.
+  struct At {
+    double accel_mps2, moved_m;
+  };
+  At at(int level, int frame) const;
   void find_story_motion();
 
   Structure structure_;
   std::vector<SensorAxis> axes_;
   OscillatorSection section_;
-  double over_w2_;                ///< s^2
-  double mean_step_;              ///< of the mean's filter
-  double settling_;               ///< instants
-  std::vector<int> axis_of_dof_;  ///< -1: none
+  double over_w2_;                    ///< s^2
+  double mean_step_;                  ///< of the mean's filter
+  double settling_;                   ///< instants
+  std::optional<EveryFloor> floors_;  ///< none where every frame has a sensor on every floor
+  std::vector<int> motion_of_dof_;    ///< -1: none
   std::int64_t next_index_ = -1;
-  std::vector<Motion> motions_;
-  std::vector<double> accel_, moved_;  ///< by axis; moved_: displacement, m
+  std::vector<Motion> motions_;               ///< by axis; then by level and frame
+  std::vector<double> motion_accel_, moved_;  ///< of motions_; moved_: displacement, m
+  std::vector<double> accel_;                 ///< by axis
   std::vector<double> drift_;
   std::array<double, 2> base_shear_{kNaN, kNaN};
 };

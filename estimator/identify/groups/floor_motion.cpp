@@ -27,9 +27,14 @@ FloorMotion::FloorMotion(const PipelineConfig& config)
 }
 
 void FloorMotion::tune(const Eigen::VectorXd& theta, const std::vector<std::uint8_t>& present) {
+  theta_ = theta;
   present_ = present;
-  building_ = reduced_building(config_.structure, config_.axes, table_, design_, present, true);
-  equations_ = group_equations(building_, theta.cwiseQuotient(designed_), config_.options.rate_hz);
+  form();
+}
+
+void FloorMotion::form() {
+  building_ = reduced_building(config_.structure, config_.axes, table_, design_, present_, true);
+  equations_ = group_equations(building_, theta_.cwiseQuotient(designed_), config_.options.rate_hz);
   double settle_s = 0;
   for (const InnerChain& chain : equations_.chains)
     settle_s = std::max(settle_s, kForgottenStart / chain.slowest_radps);

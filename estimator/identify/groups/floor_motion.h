@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,14 +31,27 @@ class FloorMotion {
 
   /// Instants until the start is forgotten.
   int settle_rows() const { return settle_rows_; }
+  const Eigen::VectorXd& theta() const { return theta_; }
+  const std::vector<std::uint8_t>& present() const { return present_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    for (Eigen::Index i = 0; i < theta_.size(); ++i)
+      a.within(theta_[i], std::numeric_limits<double>::min(), a.kMost);
+    a.each_within(present_, 0, 1);
+    if constexpr (Archive::kReading) form();
+    for (Inner& inner : inner_) a.finite(inner.state, inner.input_before);
+    a(expected_index_);
+  }
 
  private:
+  void form();
   void restart();
 
   PipelineConfig config_;
   ParameterTable table_;
   GroupDesign design_;
-  Eigen::VectorXd designed_;
+  Eigen::VectorXd designed_, theta_;
   ReducedBuilding building_;
   GroupEquations equations_;
   struct Inner {

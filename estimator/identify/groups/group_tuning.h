@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -57,7 +58,9 @@ class GroupTuning : public RowTuning {
  private:
   template <typename Archive>
   void members(Archive& a) {
-    a.finite(theta0_, noise_density_);
+    for (Eigen::Index i = 0; i < theta0_.size(); ++i)
+      a.within(theta0_[i], std::numeric_limits<double>::min(), a.kMost);
+    a.finite(noise_density_);
     a.each_within(present_, 0, 1);
     a.within(tuned_parts_, 0, a.kMostCount);
     if constexpr (Archive::kReading) restore();

@@ -30,7 +30,7 @@ class ShakingTest : public testing::Test {
       axes_.push_back(axis);
     }
   }
-  ShakingWatch watch() const { return {structure_, axes_, {}, {0.1, kQuiet_s}}; }
+  ShakingWatch watch() const { return {{structure_, axes_, {}, {}, {}}, {0.1, kQuiet_s}}; }
 
   /// A sine from 20 to 30 s that begins and ends within two seconds, m.
   static double displacement(double t) {
