@@ -44,6 +44,10 @@ class NoiseCompensation {
   double remaining_share() const { return level_ > 0 ? 1 - share_ : 1; }
   /// Expected weighted residual energy from noise alone.
   double residual() const { return residual_; }
+  double residual(int floor) const {
+    const Floor& f = floor_[static_cast<std::size_t>(floor)];
+    return f.rows == nullptr ? 0 : f.instants * f.rows->noise_residual;
+  }
 
   /// rows: the filter that formed the rows.
   template <typename Archive>

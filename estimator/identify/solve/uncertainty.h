@@ -61,6 +61,9 @@ class BatchMeans {
   const std::vector<double>& prior_share() const { return prior_share_; }
   /// Share of the noise that remains in the equations, 0..1 and rounding.
   const std::vector<double>& noise_share() const { return noise_share_; }
+  /// Diagonal of the inverse of the normal matrix, relative to theta0; valid when advance() has
+  /// completed a pass, until the next one begins.
+  const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
 
   /// rows, sums: those of the pass under way, if any.
   template <typename Archive, typename Sums>

@@ -29,6 +29,8 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       warm_share_(warm),
       solver_(layout),
       errors_(layout, compensation),
+      misfit_(layout),
+      model_error_(static_cast<std::size_t>(layout.unknowns()), 0),
       prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
       same_as_(layout.grouped() ? static_cast<std::size_t>(layout.unknowns()) : 0, 0),
       warm_(static_cast<std::size_t>(layout.floors()), 0),
@@ -80,11 +82,14 @@ void WindowSolution::solve(const WindowParts& sums, const RowFilter& rows, const
   noise_scale_ = noise_.residual() > 0 ? residual_energy_ / noise_.residual() : 0.0;
   if (!std::isfinite(noise_scale_)) noise_scale_ = noise_level_ = 0;  // or it would stay for ever
   if (closes_block && !overcompensated_) noise_level_ = noise_scale_;
+  if (closes_block) misfit_.update(sums, solver_.solution(), noise_, trust.noise_known);
 }
 
 bool WindowSolution::advance_errors(int steps) {
   if (!errors_.advance(steps)) return false;
   errors_known_ = true;
+  for (std::size_t u = 0; u < model_error_.size(); ++u)
+    model_error_[u] = misfit_.error(static_cast<int>(u), errors_.inverse_diagonal()[u]);
   return true;
 }
 
@@ -178,6 +183,8 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     e.solution[p] = solved_ ? theta0 * solver_.solution()[i] : kNaN;
     e.value[p] = observable ? e.solution[p] : kNaN;
     e.std_error[p] = observable ? theta0 * errors_.std_error()[i] : kNaN;
+    e.model_error[p] = observable ? theta0 * model_error_[i] : kNaN;
+    e.misfit[p] = observable ? misfit_.misfit(u) : kNaN;
     const double noise = noise_.energy()[i] * noise_scale_;
     e.snr[p] = solved_ && noise > 0 ? solver_.information()[i] / noise : 0;
     const bool shares = solved_ && errors_known_;

@@ -8,6 +8,7 @@
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/gram/sliding_gram.h"
 #include "estimator/identify/regressors/row_filter.h"
+#include "estimator/identify/solve/model_misfit.h"
 #include "estimator/identify/solve/noise_compensation.h"
 #include "estimator/identify/solve/story_solver.h"
 #include "estimator/identify/solve/uncertainty.h"
@@ -53,7 +54,10 @@ class WindowSolution {
   }
   int error_steps() const { return errors_.steps(); }
   const std::vector<double>& std_error() const { return errors_.std_error(); }
-  void rescale(int unknown, double factor) { errors_.rescale(unknown, factor); }
+  void rescale(int unknown, double factor) {
+    errors_.rescale(unknown, factor);
+    model_error_[static_cast<std::size_t>(unknown)] *= factor;
+  }
 
   const StorySolver& solver() const { return solver_; }
   /// Whether the window's motion shows the unknown above the sensors' noise.
@@ -78,6 +82,8 @@ class WindowSolution {
     noise_.archive(a, rows);
     errors_.archive(a, rows, sums);
     a.each_within(same_as_, 0, layout_.unknowns() - 1.0);
+    a(misfit_);
+    a.finite(model_error_);
     a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_,
       overcompensated_);
     a.finite(residual_energy_, noise_scale_, noise_level_);
@@ -105,6 +111,8 @@ class WindowSolution {
   double warm_share_;
   StorySolver solver_;
   BatchMeans errors_;
+  ModelMisfit misfit_;               ///< of the last closed block
+  std::vector<double> model_error_;  ///< relative, internal order, of the last pass of errors
   std::vector<double> prior_;
   std::vector<int> same_as_;  ///< FloorRows::same_as of a building of groups
   /// Of every floor: kWarm when its rows fill most of the window, kRowless when it has none there.
