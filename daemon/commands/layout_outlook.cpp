@@ -6,20 +6,12 @@
 
 #include <fmt/core.h>
 
-#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/groups/layout_prediction.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr double kNeverSeen = 1;  // all of the stiffness
-
-std::vector<double> noise_of(const std::vector<estimator::SensorAxis>& axes) {
-  std::vector<double> out;
-  for (const estimator::SensorAxis& axis : axes)
-    out.push_back(axis.noise_density > 0 ? axis.noise_density : estimator::kDefaultNoiseDensity);
-  return out;
-}
 
 struct Weakest {
   double loss = 0;
@@ -67,7 +59,8 @@ LayoutOutlook layout_outlook(const Config& config, int advise) {
     out.noise_configured = out.noise_configured && axis.noise_density > 0;
   }
   out.floors.assign(floors.begin(), floors.end());
-  const estimator::LayoutPrediction now = predict_layout(c, noise_of(c.axes), shaking);
+  const estimator::LayoutPrediction now =
+      predict_layout(c, estimator::noise_densities(c.axes), shaking);
   const estimator::ParameterTable table = c.parameters();
   for (int p = 0; p < table.size(); ++p) {
     const auto i = static_cast<std::size_t>(p);
@@ -90,7 +83,7 @@ LayoutOutlook layout_outlook(const Config& config, int advise) {
       more.axes.push_back(axis);
     }
     advised.least_seen_loss =
-        weakest(predict_layout(more, noise_of(more.axes), shaking), more).loss;
+        weakest(predict_layout(more, estimator::noise_densities(more.axes), shaking), more).loss;
     out.advised.push_back(std::move(advised));
   }
   std::stable_sort(out.advised.begin(), out.advised.end(),

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/estimation/design_error.h"
 #include "daemon/estimation/estimation_events.h"
 #include "daemon/estimation/intake_events.h"
 #include "daemon/events/event_words.h"
@@ -27,7 +28,7 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
       observer_(std::move(observer)),
       publisher_(config, std::move(sink)),
       pipeline_(
-          config.pipeline,
+          with_design_error(config.pipeline),
           [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
           [this](const estimator::WindowEstimate& estimate) {
             publisher_.other(estimate);
@@ -36,7 +37,8 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
           [this](const estimator::SampleSet& instant) {
             look_for_gap(instant);
             look_for_shaking(instant);
-          }),
+          },
+          [this](const estimator::ModelFit& fit) { publisher_.model(fit); }),
       intake_(
           wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
           intake_settings(config)),

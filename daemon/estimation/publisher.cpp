@@ -17,7 +17,8 @@ Publisher::Publisher(const Config& config, MessageSink sink)
       status_channel_(config.lcm.prefix + "STATUS"),
       event_channel_(config.lcm.prefix + "EVENT"),
       gap_channel_(config.lcm.prefix + "GAP"),
-      watch_channel_(config.lcm.prefix + "WATCH") {
+      watch_channel_(config.lcm.prefix + "WATCH"),
+      model_channel_(config.lcm.prefix + "MODEL_FIT") {
   other_channels_ = estimate_channels(config);
   estimate_channel_ = other_channels_.front();
   other_channels_.erase(other_channels_.begin());
@@ -168,6 +169,23 @@ void Publisher::watch(std::int64_t time_us, const estimator::Watch& watch) {
     }
   }
   send(time_us, watch_channel_, m);
+}
+
+void Publisher::model(const estimator::ModelFit& fit) {
+  if (!sink_) return;
+  framewatch::model_fit_t& m = model_;
+  m.window_start_us = to_microseconds(fit.start);
+  m.window_end_us = to_microseconds(fit.end);
+  m.sequence = fit.sequence;
+  m.parameters = static_cast<std::int32_t>(fit.word.size());
+  m.misfit = fit.misfit;
+  m.design_error = fit.design_error;
+  m.misfit_error = fit.misfit_error;
+  m.corner_error = fit.corner_error;
+  m.error = fit.error;
+  m.word.clear();
+  for (const estimator::FitWord word : fit.word) m.word.push_back(static_cast<std::int32_t>(word));
+  send(m.window_end_us, model_channel_, m);
 }
 
 void Publisher::gap(const estimator::GapWindow& window) {

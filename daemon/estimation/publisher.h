@@ -7,6 +7,7 @@
 
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
+#include <framewatch/model_fit_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/watch_t.hpp>
@@ -52,6 +53,7 @@ class Publisher {
   /// The baselines that changes are judged against.
   void watch(std::int64_t time_us, const estimator::Watch& watch);
   void gap(const estimator::GapWindow& window);
+  void model(const estimator::ModelFit& fit);
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
 
  private:
@@ -62,13 +64,14 @@ class Publisher {
   const Config& config_;
   MessageSink sink_;
   std::string parameters_channel_, estimate_channel_, status_channel_, event_channel_, gap_channel_,
-      watch_channel_;
+      watch_channel_, model_channel_;
   std::vector<std::string> other_channels_;
   framewatch::parameter_table_t parameters_{};
   framewatch::window_estimate_t estimate_{};
   framewatch::status_t status_{};
   framewatch::gap_t gap_{};
   framewatch::watch_t watch_{};
+  framewatch::model_fit_t model_{};
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "daemon/lab/paper_buildings.h"
 #include "estimator/simulate/linear_response.h"
@@ -47,17 +48,21 @@ Eigen::MatrixXd with_noise(const ExactRecord& record, std::uint64_t seed) {
   return out;
 }
 
-std::vector<estimator::WindowEstimate> run_windows(const estimator::PipelineConfig& config,
-                                                   const Eigen::MatrixXd& accel, double from_s,
-                                                   double every_s) {
-  std::vector<estimator::WindowEstimate> kept;
+std::vector<CheckedWindow> run_checked_windows(const estimator::PipelineConfig& config,
+                                               const Eigen::MatrixXd& accel, double from_s,
+                                               double every_s) {
+  std::vector<CheckedWindow> kept;
+  estimator::ModelFit newest(static_cast<std::size_t>(config.parameters().size()));
   std::int64_t next_us = std::llround(1e6 * from_s);
-  estimator::Pipeline pipeline(config, [&](const estimator::WindowEstimate& estimate) {
-    const std::int64_t end_us = to_microseconds(estimate.end);
-    if (estimate.status == estimator::WindowStatus::warming_up || end_us < next_us) return;
-    kept.push_back(estimate);
-    next_us = end_us + std::llround(1e6 * every_s);
-  });
+  estimator::Pipeline pipeline(
+      config,
+      [&](const estimator::WindowEstimate& estimate) {
+        const std::int64_t end_us = to_microseconds(estimate.end);
+        if (estimate.status == estimator::WindowStatus::warming_up || end_us < next_us) return;
+        kept.push_back({estimate, newest});
+        next_us = end_us + std::llround(1e6 * every_s);
+      },
+      {}, {}, [&](const estimator::ModelFit& fit) { newest = fit; });
   for (Eigen::Index i = 0; i < accel.rows(); ++i) {
     const estimator::Time time = estimator::from_microseconds(
         std::llround(static_cast<double>(i) * 1e6 / config.options.rate_hz));
@@ -66,6 +71,15 @@ std::vector<estimator::WindowEstimate> run_windows(const estimator::PipelineConf
   }
   pipeline.finish();
   return kept;
+}
+
+std::vector<estimator::WindowEstimate> run_windows(const estimator::PipelineConfig& config,
+                                                   const Eigen::MatrixXd& accel, double from_s,
+                                                   double every_s) {
+  std::vector<estimator::WindowEstimate> out;
+  for (CheckedWindow& window : run_checked_windows(config, accel, from_s, every_s))
+    out.push_back(std::move(window.estimate));
+  return out;
 }
 
 std::vector<estimator::WindowEstimate> run_trial(const AccuracyTrial& trial) {

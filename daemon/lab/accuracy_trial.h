@@ -40,6 +40,16 @@ std::vector<estimator::WindowEstimate> run_windows(const estimator::PipelineConf
                                                    const Eigen::MatrixXd& accel, double from_s,
                                                    double every_s);
 
+/// A window and the newest look at the model when it ended; ModelFit::sequence -1: none yet.
+struct CheckedWindow {
+  estimator::WindowEstimate estimate;
+  estimator::ModelFit fit;
+};
+/// As run_windows().
+std::vector<CheckedWindow> run_checked_windows(const estimator::PipelineConfig& config,
+                                               const Eigen::MatrixXd& accel, double from_s,
+                                               double every_s);
+
 /// One run of the whole pipeline on exact motion of a known building with noisy accelerometers.
 struct AccuracyTrial {
   estimator::Structure structure;

@@ -111,6 +111,15 @@ TallRecord tall_record(const TallTrial& t) {
     effects.push_back(make_effect(estimator::EffectKind::frame_bending, place));
     effects.back().set("kr_nmprad", t.bending_nmprad);
   }
+  for (int story = 1; story <= t.stories && t.ground_damping_ratio > 0; ++story) {
+    estimator::EffectPlace place;
+    place.kind = estimator::PlaceKind::node;
+    place.story = story;
+    place.frame = 0;
+    effects.push_back(make_effect(estimator::EffectKind::added_damper, place));
+    effects.back().set("c_nspm", 4 * std::numbers::pi * (10.0 / t.stories) *
+                                     t.ground_damping_ratio * truly.frame_mass(story, 0));
+  }
   estimator::ResponseOptions options;
   options.rate_hz = kTrialRate_hz;
   estimator::ResponseStream response(truly, stories, theta, directed(kanai_tajimi(ground), 0),

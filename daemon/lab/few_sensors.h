@@ -29,7 +29,10 @@ struct TallTrial {
   double stiffness_off = 0.2, damping_off = 0.3;  ///< of groups from the design, at most
   double profile_off = 0, mass_off = 0;           ///< standard deviations: of stories, of floors
   double bending_nmprad = 0;                      ///< of the building
-  double believed_bending_nmprad = 0;             ///< of the design; 0: it does not bend
+  /// Damping ratio that dashpots from the floors to the ground, proportional to mass, give the
+  /// lowest mode besides; no model of ours has them.
+  double ground_damping_ratio = 0;
+  double believed_bending_nmprad = 0;  ///< of the design; 0: it does not bend
   double duration_s = 60;
   std::uint64_t seed = 1;
 };

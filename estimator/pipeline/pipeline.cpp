@@ -10,13 +10,15 @@ namespace framewatch::estimator {
 
 class Pipeline::Implementation {
  public:
-  Implementation(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants)
+  Implementation(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants,
+                 ModelSink models)
       : table_(config.parameters()),
         acquisition_(config.axes, config.options, [this](const SampleSet& set) { estimate(set); }),
         estimator_(config, table_),
         sink_(std::move(sink)),
         others_(std::move(others)),
-        instants_(std::move(instants)) {}
+        instants_(std::move(instants)),
+        models_(std::move(models)) {}
 
   void push(const AccelSample& raw) { acquisition_.push(raw); }
   void finish() { acquisition_.finish(); }
@@ -46,6 +48,7 @@ class Pipeline::Implementation {
     }
     if (const WindowEstimate* other = estimator_.other(); other != nullptr && others_)
       others_(*other);
+    if (const ModelFit* fit = estimator_.model_fit(); fit != nullptr && models_) models_(*fit);
   }
 
   ParameterTable table_;
@@ -53,12 +56,14 @@ class Pipeline::Implementation {
   SlidingWindowEstimator estimator_;
   Sink sink_, others_;
   InstantSink instants_;
+  ModelSink models_;
   std::int64_t sets_ = 0, windows_ = 0;
 };
 
-Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants)
+Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others, InstantSink instants,
+                   ModelSink models)
     : implementation_(std::make_unique<Implementation>(config, std::move(sink), std::move(others),
-                                                       std::move(instants))) {}
+                                                       std::move(instants), std::move(models))) {}
 Pipeline::~Pipeline() = default;
 void Pipeline::push(const AccelSample& sample) {
   implementation_->push(sample);

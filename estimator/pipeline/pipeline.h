@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "estimator/identify/estimate/estimate.h"
+#include "estimator/identify/estimate/model_fit.h"
 #include "estimator/motion/sample.h"
 #include "estimator/motion/sample_merger.h"
 #include "estimator/setup/pipeline_config.h"
@@ -32,10 +33,13 @@ class Pipeline {
  public:
   using Sink = std::function<void(const WindowEstimate&)>;
   using InstantSink = std::function<void(const SampleSet&)>;
+  using ModelSink = std::function<void(const ModelFit&)>;
 
   /// Precondition: problems(config) is empty. others: gets the estimates of the other windows, if
-  /// anybody wants them; instants: the calibrated instants, each before the estimate it completes.
-  Pipeline(const PipelineConfig& config, Sink sink, Sink others = {}, InstantSink instants = {});
+  /// anybody wants them; instants: the calibrated instants, each before the estimate it completes;
+  /// models: how far the model may be wrong, once per window's length.
+  Pipeline(const PipelineConfig& config, Sink sink, Sink others = {}, InstantSink instants = {},
+           ModelSink models = {});
   ~Pipeline();
 
   /// One axis at one instant. Any order within options.lateness_s.

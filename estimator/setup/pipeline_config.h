@@ -22,6 +22,11 @@ struct PipelineConfig {
   /// the drawings say nothing.
   Eigen::VectorXd design;
   BendingStiffness bending_nmprad{};  ///< of the design
+  double mass_tolerance = 0.02;       ///< relative standard deviation of a floor's mass
+  double profile_tolerance = 0.05;    ///< of a story's share in its group's flexibility
+  /// Of groups of stories, by parameter: relative error that these tolerances make
+  /// (LayoutPrediction::design_error); empty: none is counted.
+  std::vector<double> design_error = {};
 
   StoryGroups groups() const { return story_groups(structure, axes); }
   /// What is identified.

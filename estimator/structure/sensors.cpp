@@ -84,4 +84,11 @@ std::vector<std::string> problems(const Structure& s, const std::vector<SensorAx
   return messages;
 }
 
+std::vector<double> noise_densities(const std::vector<SensorAxis>& axes) {
+  std::vector<double> out;
+  for (const SensorAxis& axis : axes)
+    out.push_back(axis.noise_density > 0 ? axis.noise_density : kDefaultNoiseDensity);
+  return out;
+}
+
 }  // namespace framewatch::estimator

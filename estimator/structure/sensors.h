@@ -35,6 +35,12 @@ struct SensorAxis {
   double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0 = unknown
 };
 
+/// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
+/// axes matter to the estimate: the level is taken from the residuals.
+inline constexpr double kDefaultNoiseDensity = 1e-4;
+/// Configured noise of every axis, kDefaultNoiseDensity where it is not.
+std::vector<double> noise_densities(const std::vector<SensorAxis>& axes);
+
 /// Every way in which the sensors do not fit the structure: two axes on one frame, a frame or story
 /// that does not exist, a direction that is measured above the base and not there, no axis above
 /// the base. A problem's index is that of the axis. Which places are left without a sensor is no

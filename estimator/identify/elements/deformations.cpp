@@ -7,15 +7,13 @@
 namespace framewatch::estimator {
 Deformations::Deformations(const Structure& s, const FloorLayout& layout,
                            const std::vector<SensorAxis>& axes)
-    : layout_(&layout) {
+    : layout_(&layout), noise_density_(noise_densities(axes)) {
   const int frames = layout.frames();
   place_.resize(static_cast<std::size_t>((s.stories + 1) * frames));
   const auto place = [&](int floor, int frame) -> std::vector<Weighted>& {
     return place_[static_cast<std::size_t>(floor * frames + frame)];
   };
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    noise_density_.push_back(axes[a].noise_density > 0 ? axes[a].noise_density
-                                                       : kDefaultNoiseDensity);
     if (axes[a].frame >= 0) place(axes[a].story, axes[a].frame) = {{static_cast<int>(a), 1.0}};
   }
   for (int f = 0; f < frames; ++f) {

@@ -55,8 +55,4 @@ inline double noise_variance(double density, double rate_hz) {
   return density * density * rate_hz / 2;
 }
 
-/// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
-/// axes matter to the estimate: the level is taken from the residuals.
-inline constexpr double kDefaultNoiseDensity = 1e-4;
-
 }  // namespace framewatch::estimator

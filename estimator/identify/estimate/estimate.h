@@ -53,10 +53,6 @@ struct WindowEstimate {
   double residual_ratio = 0;      ///< rms residual over rms response
   std::vector<double> value;      ///< SI
   std::vector<double> std_error;  ///< SI, one standard deviation
-  /// What the model may be wrong by, SI, one standard deviation: constant while the building is as
-  /// it is, so no part of a change (docs/equations.md, errors of the model).
-  std::vector<double> model_error;
-  std::vector<double> misfit;  ///< ModelMisfit::misfit(), relative
   std::vector<Observability> reason;
   std::vector<double> snr;          ///< regressor energy over its expected noise energy
   std::vector<double> prior_share;  ///< 0..1: share of the prior in the value
@@ -75,7 +71,7 @@ struct WindowEstimate {
     a.within(sequence, -1, a.kMostCount);
     a.within(status, 0, static_cast<double>(WindowStatus::nothing_identifiable));
     a.within(rows, 0, a.kMostCount);
-    a(residual_ratio, value, std_error, model_error, misfit);
+    a(residual_ratio, value, std_error);
     a.each_within(reason, 0, static_cast<double>(Observability::channel_lost));
     a(snr, prior_share, noise_share, last_value, last_std_error, last_end, boxplot, solution);
   }

@@ -62,27 +62,28 @@ FloorRows group_rows(const EstimatorOptions& o, const GroupDesign& design,
   return out;
 }
 
-GroupTuning::GroupTuning(const PipelineConfig& config, const ParameterTable& table,
-                         const FloorLayout& layout, const GroupDesign& design,
-                         const DerivativeTriple& triple, const HighPass& high_pass)
+GroupTuning::GroupTuning(const PipelineConfig& config, const EstimatorOptions& options,
+                         const ParameterTable& table, const FloorLayout& layout,
+                         const GroupDesign& design, const DerivativeTriple& triple,
+                         const HighPass& high_pass)
     : config_(&config),
+      options_(&options),
       layout_(&layout),
       table_(table),
       design_(design),
       designed_(group_parameters(config.structure, table, design)),
       theta0_(designed_),
+      noise_density_(noise_densities(config.axes)),
       present_(config.axes.size(), 1),
       perturbed_(layout) {
-  for (const SensorAxis& axis : config.axes)
-    noise_density_.push_back(axis.noise_density > 0 ? axis.noise_density : kDefaultNoiseDensity);
-  const EstimatorOptions& o = config.options;
+  const EstimatorOptions& o = options;
   const auto length = static_cast<std::size_t>(
       o.rate_hz * (kDecay / o.high_pass_hz + std::max(o.settle_s, kLongestSettle_s)));
   for (const std::vector<double>* taps :
        {&triple.value, &triple.first, &triple.second, &triple.held_first, &triple.held_second})
     impulse_.push_back(response(*taps, high_pass, length));
   set_axes(present_);
-  for (int part = 0; part < parts(); ++part) tune(part);
+  tune(0);
 }
 
 void GroupTuning::set_theta0(const Eigen::VectorXd& theta0,
@@ -102,7 +103,7 @@ void GroupTuning::set_axes(const std::vector<std::uint8_t>& present) {
 }
 
 int GroupTuning::impulse_rows() const {
-  const EstimatorOptions& o = config_->options;
+  const EstimatorOptions& o = *options_;
   return std::min(settle_rows(0) + static_cast<int>(o.rate_hz * kDecay / o.high_pass_hz),
                   static_cast<int>(impulse_.front().size()));
 }
@@ -126,8 +127,8 @@ void GroupTuning::tune(int part) {
 
 void GroupTuning::form() {
   const Eigen::VectorXd x = theta0_.cwiseQuotient(designed_);
-  equations_ = group_equations(building_, x, config_->options.rate_hz);
-  rows_ = group_rows(config_->options, design_, equations_, table_.size());
+  equations_ = group_equations(building_, x, options_->rate_hz);
+  rows_ = group_rows(*options_, design_, equations_, table_.size());
   rows_.same_as = building_.same_as;
   const int stride = padded(table_.size() + 1);
   plain_ = rows_;
@@ -140,7 +141,7 @@ void GroupTuning::form() {
 void GroupTuning::push_impulse(int axis, int part) {
   if (rows_.rows == 0 || present_[count_of(axis)] == 0) return;
   if (part == 0) chain_.start(equations_, table_.size());
-  const double variance = noise_variance(noise_density_[count_of(axis)], config_->options.rate_hz);
+  const double variance = noise_variance(noise_density_[count_of(axis)], options_->rate_hz);
   const int stride = padded(table_.size() + 1);
   const int end = std::min((part + 1) * kImpulseRows, impulse_rows());
   for (int t = part * kImpulseRows; t < end; ++t) {
@@ -203,7 +204,7 @@ void GroupTuning::restore() {
 }
 
 int GroupTuning::settle_rows(int least) const {
-  const EstimatorOptions& o = config_->options;
+  const EstimatorOptions& o = *options_;
   double slowest_hz = kHighestCorner * o.rate_hz;
   for (const double hz : rows_.frequency_hz) slowest_hz = std::min(slowest_hz, hz);
   double settle_s = 3 / (o.filter_damping * 2 * M_PI * slowest_hz);

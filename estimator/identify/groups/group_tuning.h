@@ -28,9 +28,11 @@ FloorRows group_rows(const EstimatorOptions& options, const GroupDesign& design,
 /// to (16) without algebra.
 class GroupTuning : public RowTuning {
  public:
-  /// config: of groups; must outlive the object, as layout. triple: held_triple.
-  GroupTuning(const PipelineConfig& config, const ParameterTable& table, const FloorLayout& layout,
-              const GroupDesign& design, const DerivativeTriple& triple, const HighPass& high_pass);
+  /// config: of groups; must outlive the object, as options (its own, or with other corners) and
+  /// layout. triple: held_triple. Only part 0 is tuned yet.
+  GroupTuning(const PipelineConfig& config, const EstimatorOptions& options,
+              const ParameterTable& table, const FloorLayout& layout, const GroupDesign& design,
+              const DerivativeTriple& triple, const HighPass& high_pass);
 
   void set_theta0(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density) override;
   int parts() const override;
@@ -44,6 +46,7 @@ class GroupTuning : public RowTuning {
   double detuning(int floor, const Eigen::VectorXd& theta) override;
   const std::vector<std::uint8_t>& axes() const override { return present_; }
   void set_axes(const std::vector<std::uint8_t>& present) override;
+  std::unique_ptr<RowTuning> copy() const override { return std::make_unique<GroupTuning>(*this); }
   std::unique_ptr<RowFilter> make_filter(int settle) override;
   void save(StateWriter& state) override { members(state); }
   void load(StateReader& state) override { members(state); }
@@ -74,6 +77,7 @@ class GroupTuning : public RowTuning {
   int parts_per_axis() const;
 
   const PipelineConfig* config_;
+  const EstimatorOptions* options_;
   const FloorLayout* layout_;
   ParameterTable table_;
   GroupDesign design_;

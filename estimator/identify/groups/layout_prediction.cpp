@@ -20,23 +20,30 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr double kHighest_hz = 25, kStep_hz = 0.04, kGroundHighPass_hz = 0.25;
+constexpr double kHighest_hz = 25, kGroundHighPass_hz = 0.25;
+/// Distance of frequencies: a share of the frequency, as modes are as narrow, within bounds.
+constexpr double kStepRatio = 0.02, kLeastStep_hz = 0.02, kMostStep_hz = 0.3;
 constexpr double kDetected = 4;  // standard errors of a difference
 
-/// One-sided density of the base's acceleration, (m/s^2)^2/Hz, at the frequencies.
-std::vector<double> ground_density(const ExpectedShaking& shaking,
-                                   const std::vector<double>& frequencies_hz) {
+struct Frequency {
+  double hz, step_hz;
+  double ground = 0;  ///< one-sided density of the base's acceleration, (m/s^2)^2/Hz
+};
+
+std::vector<Frequency> frequencies(const ExpectedShaking& shaking) {
+  std::vector<Frequency> out;
+  for (double hz = kLeastStep_hz; hz < kHighest_hz; hz += out.back().step_hz)
+    out.push_back({hz, std::clamp(kStepRatio * hz, kLeastStep_hz, kMostStep_hz)});
   const double wg = 2 * M_PI * shaking.ground_frequency_hz, wc = 2 * M_PI * kGroundHighPass_hz;
-  std::vector<double> out;
   double sum = 0;
-  for (const double hz : frequencies_hz) {
-    const Complex s(0, 2 * M_PI * hz);
+  for (Frequency& f : out) {
+    const Complex s(0, 2 * M_PI * f.hz);
     const Complex resonance = 2 * shaking.ground_damping_ratio * wg * s + wg * wg;
     const Complex gain = resonance / (s * s + resonance) * s * s / (s * s + 1.2 * wc * s + wc * wc);
-    out.push_back(std::norm(gain));
-    sum += out.back() * kStep_hz;
+    f.ground = std::norm(gain);
+    sum += f.ground * f.step_hz;
   }
-  for (double& density : out) density *= shaking.rms_mps2 * shaking.rms_mps2 / sum;
+  for (Frequency& f : out) f.ground *= shaking.rms_mps2 * shaking.rms_mps2 / sum;
   return out;
 }
 
@@ -115,9 +122,6 @@ class Prediction {
   }
 
   void sum(const std::vector<double>& noise_density, const ExpectedShaking& shaking) {
-    std::vector<double> frequencies;
-    for (double hz = kStep_hz; hz < kHighest_hz; hz += kStep_hz) frequencies.push_back(hz);
-    const std::vector<double> ground = ground_density(shaking, frequencies);
     const Index p = table_.size();
     information_ = scores_ = MatrixXd::Zero(p, p);
     mismatch_ =
@@ -128,8 +132,11 @@ class Prediction {
       const Eigen::VectorXd from = building_.from_axes.col(static_cast<Index>(a));
       noise += noise_density[a] * noise_density[a] * from * from.transpose();
     }
-    weigh(frequencies, noise);
-    for (std::size_t i = 0; i < frequencies.size(); ++i) add(frequencies[i], ground[i], noise);
+    const std::vector<Frequency> all = frequencies(shaking);
+    std::vector<AtFrequency> at_all;
+    for (const Frequency& f : all) at_all.push_back(at(f.hz));
+    weigh(all, at_all, noise);
+    for (std::size_t i = 0; i < all.size(); ++i) add(all[i], at_all[i], noise);
   }
 
   /// Rows filtered and projected, of the residual: rows x measured.
@@ -172,18 +179,22 @@ class Prediction {
   }
   double weight(Index r) const { return weights_.size() == 0 ? 1 : weights_[r]; }
 
-  void weigh(const std::vector<double>& frequencies, const MatrixXd& noise) {
+  /// Rows of equal noise, from now on and in what there is.
+  void weigh(const std::vector<Frequency>& frequencies, std::vector<AtFrequency>& at_all,
+             const MatrixXd& noise) {
     Eigen::VectorXd variance = Eigen::VectorXd::Zero(building_.rows());
-    for (const double hz : frequencies) {
-      const MatrixXcd r = at(hz).residual;
-      variance += kStep_hz * (r * noise * r.adjoint()).diagonal().real();
+    for (std::size_t i = 0; i < frequencies.size(); ++i) {
+      const MatrixXcd& r = at_all[i].residual;
+      variance += frequencies[i].step_hz * (r * noise * r.adjoint()).diagonal().real();
     }
     weights_ = variance.cwiseSqrt().cwiseInverse();
+    for (AtFrequency& f : at_all)
+      for (Index r = 0; r < f.residual.rows(); ++r) f.residual.row(r) *= weights_[r];
   }
 
-  void add(double hz, double ground, const MatrixXd& noise) {
-    const AtFrequency f = at(hz);
-    const Complex s(0, 2 * M_PI * hz);
+  void add(const Frequency& frequency, const AtFrequency& f, const MatrixXd& noise) {
+    const double of_ground = frequency.step_hz * frequency.ground;
+    const Complex s(0, 2 * M_PI * frequency.hz);
     const Index measured = building_.measured, inputs = building_.inputs;
     // The building's own motion under the base's.
     const MatrixXcd moved = -ComplexLu(MatrixXcd(f.residual.rightCols(measured - inputs)))
@@ -214,11 +225,10 @@ class Prediction {
         if (table_[static_cast<int>(i)].kind == ParameterKind::bending_stiffness)
           h.col(i) =
               rows(f, f.motion.transpose() * (building_.parts[static_cast<std::size_t>(i)] * all));
-      information_ += kStep_hz * ground * (h.adjoint() * h).real();
-      mismatch_ += kStep_hz * ground * (h.adjoint() * other).real();
+      information_ += of_ground * (h.adjoint() * h).real();
+      mismatch_ += of_ground * (h.adjoint() * other).real();
       const MatrixXcd noisy = h.adjoint() * f.residual;
-      scores_ += kStep_hz * ground * config_.options.rate_hz / 2 *
-                 (noisy * noise * noisy.adjoint()).real();
+      scores_ += of_ground * config_.options.rate_hz / 2 * (noisy * noise * noisy.adjoint()).real();
     }
   }
 

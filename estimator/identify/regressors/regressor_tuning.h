@@ -53,6 +53,9 @@ class RegressorTuning : public RowTuning {
   int settle_rows(int least) const override;
   /// Largest relative change of the corners of a floor's sections.
   double detuning(int floor, const Eigen::VectorXd& theta) override;
+  std::unique_ptr<RowTuning> copy() const override {
+    return std::make_unique<RegressorTuning>(*this);
+  }
   std::unique_ptr<RowFilter> make_filter(int settle) override;
   void save(StateWriter& state) override { archive(state); }
   void load(StateReader& state) override { archive(state); }

@@ -37,6 +37,8 @@ class RowTuning {
   virtual const std::vector<std::uint8_t>& axes() const { return no_axes_; }
   /// As set_theta0().
   virtual void set_axes(const std::vector<std::uint8_t>&) {}
+  /// The same, on its own.
+  virtual std::unique_ptr<RowTuning> copy() const = 0;
   /// Refers to the tuning, which must outlive it.
   virtual std::unique_ptr<RowFilter> make_filter(int settle) = 0;
 

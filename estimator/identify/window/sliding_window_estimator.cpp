@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/guessed_design.h"
@@ -104,29 +105,40 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
     boxplots_.emplace_back(options_.boxplot_windows);
   seen_axes_.assign(layout_.grouped() ? config_.axes.size() : 0, 1);
   shown_.assign(static_cast<std::size_t>(layout_.unknowns()), 0);
-  active_ = make_regression();
+  std::unique_ptr<RowTuning> tuning = make_tuning(options_);
+  for (int part = 0; part < tuning->parts(); ++part) tuning->tune(part);
+  active_ = make_regression(std::move(tuning));
   if (options_.self_tune && matched_)
-    self_tuning_ = std::make_unique<SelfTuning>(layout_, table_, make_regression(), kBlocks,
-                                                triple_.length(), noise_.configured());
+    self_tuning_ =
+        std::make_unique<SelfTuning>(layout_, table_, make_regression(active_->tuning().copy()),
+                                     kBlocks, triple_.length(), noise_.configured());
   if (options_.long_window_s > 0)
     long_ = std::make_unique<LongWindow>(config_.structure, layout_, table_, options_, block_rows_,
                                          static_cast<int>(other_blocks_.size()) + 1,
                                          noise_.configured());
+  if (matched_)
+    check_ = std::make_unique<ModelCheck>(
+        config_, table_, layout_, window_rows(),
+        [this](const EstimatorOptions& options) { return make_tuning(options); });
 }
 
-std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression() const {
+std::unique_ptr<RowTuning> SlidingWindowEstimator::make_tuning(
+    const EstimatorOptions& options) const {
   const Structure& structure = config_.structure;
   const Eigen::VectorXd design = config_.design.size() > 0
                                      ? config_.design
                                      : guessed_design(structure, ParameterTable(structure));
-  std::unique_ptr<RowTuning> tuning;
   if (layout_.grouped())
-    tuning = std::make_unique<GroupTuning>(
-        config_, table_, layout_, GroupDesign{design, config_.bending_nmprad}, triple_, high_pass_);
-  else
-    tuning = std::make_unique<RegressorTuning>(structure, layout_,
-                                               static_cast<const Deformations&>(*motion_source_),
-                                               options_, triple_, high_pass_, design);
+    return std::make_unique<GroupTuning>(config_, options, table_, layout_,
+                                         GroupDesign{design, config_.bending_nmprad}, triple_,
+                                         high_pass_);
+  return std::make_unique<RegressorTuning>(structure, layout_,
+                                           static_cast<const Deformations&>(*motion_source_),
+                                           options, triple_, high_pass_, design);
+}
+
+std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
+    std::unique_ptr<RowTuning> tuning) const {
   return std::make_unique<TunedRegression>(std::move(tuning), layout_, blocks_, block_rows_,
                                            other_blocks_, settle_rows_);
 }
@@ -145,6 +157,7 @@ void SlidingWindowEstimator::restart() {
   if (self_tuning_) self_tuning_->restart();
   main_.restart();
   others_.restart();
+  if (check_) check_->restart();
   since_hop_ = 0;
 }
 
@@ -181,6 +194,10 @@ const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
   const bool given = due && ring_.end() > triple_.length();
   if (due) since_hop_ = 0;
   if (given) fill_estimate(window_end);
+  model_fit_ = check_ && ring_.end() > triple_.length()
+                   ? check_->advance(
+                         {active_.get(), &main_, &ring_, trust(), tuned(), errors_new_, window_end})
+                   : nullptr;
   if (self_tuning_ && self_tuning_->step(active_, ring_)) regression_exchanged();
   return given ? &estimate_ : nullptr;
 }
@@ -200,6 +217,7 @@ void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known)
 }
 
 void SlidingWindowEstimator::advance_errors(Time window_end) {
+  errors_new_ = false;
   const bool closed = active_->finish(ring_);
   if (closed) sane_ = active_->sums().sane();
   if (closed && active_->full()) {
@@ -208,7 +226,8 @@ void SlidingWindowEstimator::advance_errors(Time window_end) {
     if (long_) long_->block_closed(active_->sums(), ring_.at(ring_.end() - 1).known, window_end);
     return;
   }
-  if (main_.advance_errors(steps_per_instant_)) check_tuning();
+  errors_new_ = main_.advance_errors(steps_per_instant_);
+  if (errors_new_) check_tuning();
   other_ =
       others_.advance({active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned()});
   if (long_ && other_ == nullptr) advance_long();
@@ -239,6 +258,7 @@ void SlidingWindowEstimator::regression_exchanged() {
   main_.retuned();
   others_.retuned();
   if (long_) long_->retuned();
+  if (check_) check_->regression_exchanged(active_->tuning());
 }
 
 void SlidingWindowEstimator::fill_estimate(Time end) {

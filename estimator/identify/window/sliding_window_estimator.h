@@ -8,6 +8,7 @@
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/long_window.h"
+#include "estimator/identify/window/model_check.h"
 #include "estimator/identify/window/other_windows.h"
 #include "estimator/identify/window/self_tuning.h"
 #include "estimator/identify/window/tuned_regression.h"
@@ -29,6 +30,8 @@ class SlidingWindowEstimator {
   const WindowEstimate* push(const SampleSet& set);
   /// The estimate of another window that the last push completed, or null.
   const WindowEstimate* other() const { return other_; }
+  /// The look at the model that the last push completed, or null.
+  const ModelFit* model_fit() const { return model_fit_; }
 
   /// The parameters that the filters are tuned to now, theta order, SI.
   const Eigen::VectorXd& theta0() const { return active_->tuning().theta0(); }
@@ -51,6 +54,7 @@ class SlidingWindowEstimator {
     main_.archive(a, active_->rows(), active_->sums());
     others_.archive(a, *active_);
     archive_long(a);
+    if (check_) a(*check_);
     a(boxplots_, estimate_);
     a.each_within(seen_axes_, 0, 1);
     a.within(axes_steady_rows_, 0, a.kMostCount);
@@ -93,7 +97,8 @@ class SlidingWindowEstimator {
   void regression_exchanged();
   /// The filters are right, as far as is known.
   bool tuned() const { return self_tuning_ == nullptr || self_tuning_->tuned(); }
-  std::unique_ptr<TunedRegression> make_regression() const;
+  std::unique_ptr<RowTuning> make_tuning(const EstimatorOptions& options) const;
+  std::unique_ptr<TunedRegression> make_regression(std::unique_ptr<RowTuning> tuning) const;
   WindowSolution::Trust trust() const { return {matched_ && tuned(), noise_known()}; }
   void fill_estimate(Time end);
 
@@ -114,12 +119,15 @@ class SlidingWindowEstimator {
   std::unique_ptr<SelfTuning> self_tuning_;  ///< null when switched off
   WindowSolution main_;
   OtherWindows others_;
-  std::unique_ptr<LongWindow> long_;  ///< null: none
-  int steps_per_instant_ = 1;         ///< of BatchMeans: done before the next block closes
-  std::vector<std::uint8_t> shown_;   ///< of check_tuning()
+  std::unique_ptr<LongWindow> long_;   ///< null: none
+  std::unique_ptr<ModelCheck> check_;  ///< null of the paper's variant
+  int steps_per_instant_ = 1;          ///< of BatchMeans: done before the next block closes
+  std::vector<std::uint8_t> shown_;    ///< of check_tuning()
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
   const WindowEstimate* other_ = nullptr;
+  const ModelFit* model_fit_ = nullptr;
+  bool errors_new_ = false;  ///< of the last push
   std::int64_t expected_index_ = -1, since_hop_ = 0, interruptions_ = 0;
   std::vector<std::uint8_t> seen_axes_;  ///< of the last instants, of groups
   int axes_steady_rows_ = 0;             ///< instants for which they have been these

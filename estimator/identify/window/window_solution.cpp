@@ -15,6 +15,8 @@ constexpr double kInflation = 4;  // information is overstated by correlated res
 constexpr double kSymmetric = 0.02;
 constexpr double kRounding = 1e-12;
 constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
+/// Of groups, whose residual is the model's as a rule: known noise is no higher than that.
+constexpr double kMostOfKnownNoise = 2;
 
 }  // namespace
 
@@ -30,7 +32,7 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       solver_(layout),
       errors_(layout, compensation),
       misfit_(layout),
-      model_error_(static_cast<std::size_t>(layout.unknowns()), 0),
+      misfit_error_(static_cast<std::size_t>(layout.unknowns()), 0),
       prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
       same_as_(layout.grouped() ? static_cast<std::size_t>(layout.unknowns()) : 0, 0),
       warm_(static_cast<std::size_t>(layout.floors()), 0),
@@ -65,6 +67,7 @@ void WindowSolution::solve(const WindowParts& sums, const RowFilter& rows, const
     for (int i = 0; i < kFirstPasses; ++i) solve(sums, rows, trust, true);
   }
   solved_ = true;
+  noise_known_ = trust.noise_known;
   const double compensation =
       trust.regularise && trust.noise_known ? std::min(noise_level_, 1.0) : 0.0;
   noise_.update(rows, sums, compensation);
@@ -88,15 +91,29 @@ void WindowSolution::solve(const WindowParts& sums, const RowFilter& rows, const
 bool WindowSolution::advance_errors(int steps) {
   if (!errors_.advance(steps)) return false;
   errors_known_ = true;
-  for (std::size_t u = 0; u < model_error_.size(); ++u)
-    model_error_[u] = misfit_.error(static_cast<int>(u), errors_.inverse_diagonal()[u]);
+  for (std::size_t u = 0; u < misfit_error_.size(); ++u)
+    misfit_error_[u] = misfit_.error(static_cast<int>(u), errors_.inverse_diagonal()[u]);
   return true;
+}
+
+double WindowSolution::misfit(int unknown) const {
+  return errors_known_ && shown(unknown) ? misfit_.misfit(unknown) : kNaN;
+}
+
+double WindowSolution::misfit_error(int unknown) const {
+  const auto u = static_cast<std::size_t>(unknown);
+  return errors_known_ && shown(unknown) ? misfit_error_[u] / solver_.solution()[u] : kNaN;
 }
 
 bool WindowSolution::shown(int unknown) const {
   const auto u = static_cast<std::size_t>(unknown);
   return !overcompensated_ && solver_.usable(unknown) && solver_.solution()[u] > 0 &&
-         solver_.information()[u] > options_.min_snr * noise_.energy()[u] * noise_scale_;
+         solver_.information()[u] > options_.min_snr * noise_.energy()[u] * gate_level();
+}
+
+double WindowSolution::gate_level() const {
+  return layout_.grouped() && noise_known_ ? std::min(noise_scale_, kMostOfKnownNoise)
+                                           : noise_scale_;
 }
 
 bool WindowSolution::published(int unknown) const {
@@ -163,7 +180,7 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
   see(*situation.known);
   bool any = false, any_frame = false, warming = true;
   for (int own = 0; own < layout_.unknowns(); ++own) {
-    const int u = same_as_.empty() ? own : same_as_[static_cast<std::size_t>(own)];
+    const int u = stands_for(own);
     const auto i = static_cast<std::size_t>(u);
     const int parameter = unknowns_[static_cast<std::size_t>(own)].parameter;
     const auto p = static_cast<std::size_t>(parameter);
@@ -183,9 +200,7 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
     e.solution[p] = solved_ ? theta0 * solver_.solution()[i] : kNaN;
     e.value[p] = observable ? e.solution[p] : kNaN;
     e.std_error[p] = observable ? theta0 * errors_.std_error()[i] : kNaN;
-    e.model_error[p] = observable ? theta0 * model_error_[i] : kNaN;
-    e.misfit[p] = observable ? misfit_.misfit(u) : kNaN;
-    const double noise = noise_.energy()[i] * noise_scale_;
+    const double noise = noise_.energy()[i] * gate_level();
     e.snr[p] = solved_ && noise > 0 ? solver_.information()[i] / noise : 0;
     const bool shares = solved_ && errors_known_;
     e.prior_share[p] = shares ? std::clamp(errors_.prior_share()[i], 0.0, 1.0) : 0;

@@ -54,12 +54,18 @@ class WindowSolution {
   }
   int error_steps() const { return errors_.steps(); }
   const std::vector<double>& std_error() const { return errors_.std_error(); }
-  void rescale(int unknown, double factor) {
-    errors_.rescale(unknown, factor);
-    model_error_[static_cast<std::size_t>(unknown)] *= factor;
+  void rescale(int unknown, double factor) { errors_.rescale(unknown, factor); }
+  /// ModelMisfit of the last closed block, NaN where the window does not show the unknown.
+  double misfit(int unknown) const;
+  /// ModelMisfit::error(), relative to the solution; of the last pass of errors.
+  double misfit_error(int unknown) const;
+  /// Whose solution an unknown has: mostly its own.
+  int stands_for(int unknown) const {
+    return same_as_.empty() ? unknown : same_as_[static_cast<std::size_t>(unknown)];
   }
 
   const StorySolver& solver() const { return solver_; }
+  StorySolver& solver() { return solver_; }
   /// Whether the window's motion shows the unknown above the sensors' noise.
   bool shown(int unknown) const;
   /// Whether the floor's rows fill enough of the window.
@@ -83,8 +89,8 @@ class WindowSolution {
     errors_.archive(a, rows, sums);
     a.each_within(same_as_, 0, layout_.unknowns() - 1.0);
     a(misfit_);
-    a.finite(model_error_);
-    a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, fresh_,
+    a.finite(misfit_error_);
+    a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, noise_known_, fresh_,
       overcompensated_);
     a.finite(residual_energy_, noise_scale_, noise_level_);
   }
@@ -100,6 +106,8 @@ class WindowSolution {
   bool rowless(int floor) const;
   void see(const std::vector<std::uint8_t>& known);
   bool published(int unknown) const;
+  /// Of the noise that motion must stand out of, over what the tuning assumes.
+  double gate_level() const;
   bool looks_symmetric(const WindowEstimate& estimate) const;
 
   Structure structure_;
@@ -111,8 +119,8 @@ class WindowSolution {
   double warm_share_;
   StorySolver solver_;
   BatchMeans errors_;
-  ModelMisfit misfit_;               ///< of the last closed block
-  std::vector<double> model_error_;  ///< relative, internal order, of the last pass of errors
+  ModelMisfit misfit_;                ///< of the last closed block
+  std::vector<double> misfit_error_;  ///< internal order, relative to theta0
   std::vector<double> prior_;
   std::vector<int> same_as_;  ///< FloorRows::same_as of a building of groups
   /// Of every floor: kWarm when its rows fill most of the window, kRowless when it has none there.
@@ -122,7 +130,8 @@ class WindowSolution {
   std::vector<std::uint8_t> place_known_;  ///< of every unknown: all motion it needs
   bool errors_known_ = false;
   bool solved_ = false;
-  bool fresh_ = true;  ///< the noise level is that of other rows or of none
+  bool noise_known_ = false;  ///< Trust::noise_known of the last solution
+  bool fresh_ = true;         ///< the noise level is that of other rows or of none
   /// More noise was subtracted than the window holds: its numbers mean nothing.
   bool overcompensated_ = false;
   double residual_energy_ = 0;

@@ -8,6 +8,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
 #include <framewatch/history_status_t.hpp>
+#include <framewatch/model_fit_t.hpp>
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/session_command_t.hpp>
@@ -47,6 +48,21 @@ inline gap_t gap() {
   m.name = {"base-x"};
   m.nrmse = {0.2};
   m.floor = {0.02};
+  return m;
+}
+
+inline model_fit_t model_fit() {
+  model_fit_t m{};
+  m.window_start_us = 50;
+  m.window_end_us = 60;
+  m.sequence = 3;
+  m.parameters = 2;
+  m.misfit = {0.02, 0.4};
+  m.design_error = {0.01, 0.02};
+  m.misfit_error = {0.005, 0.3};
+  m.corner_error = {0, 0.25};
+  m.error = {0.0125, 1};
+  m.word = {1, 3};
   return m;
 }
 
@@ -278,6 +294,7 @@ void for_each(Visit visit) {
   visit("FRAMEWATCH_ACKNOWLEDGED", acknowledged());
   visit("FRAMEWATCH_WATCH", watch());
   visit("FRAMEWATCH_RECEPTION", reception());
+  visit("FRAMEWATCH_MODEL_FIT", model_fit());
 }
 
 }  // namespace framewatch::drivers::examples

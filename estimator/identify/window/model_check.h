@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "estimator/identify/estimate/model_fit.h"
+#include "estimator/identify/regressors/row_tuning.h"
+#include "estimator/identify/solve/mass_errors.h"
+#include "estimator/identify/window/other_corner.h"
+#include "estimator/identify/window/tuned_regression.h"
+#include "estimator/identify/window/window_solution.h"
+#include "estimator/setup/pipeline_config.h"
+
+namespace framewatch::estimator {
+
+/// How far the model itself may be wrong: what the equations of the main window leave beyond noise;
+/// over windows that follow each other, what other corners of the row filters make of the values;
+/// what masses and stories that are off by their tolerance do. A fixed share of the work per
+/// instant. docs/equations.md, errors of the model.
+class ModelCheck {
+ public:
+  using MakeTuning = std::function<std::unique_ptr<RowTuning>(const EstimatorOptions& options)>;
+  /// config must outlive this. make_tuning: of rows by these options, which outlive them.
+  ModelCheck(const PipelineConfig& config, const ParameterTable& table, const FloorLayout& layout,
+             int window_rows, const MakeTuning& make_tuning);
+
+  /// The input was interrupted.
+  void restart();
+  /// The active regression is another one.
+  void regression_exchanged(const RowTuning& active);
+
+  struct Context {
+    const TunedRegression* active;
+    const WindowSolution* main;  ///< of the active regression
+    const MotionRing* ring;
+    WindowSolution::Trust trust;
+    bool tuned;
+    bool errors_new;  ///< the main window's standard errors are those of a new block
+    Time end;         ///< of the window that ends now
+  };
+  /// One instant's share; once a second the fit, otherwise null.
+  const ModelFit* advance(const Context& context);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    for (OtherCorner& corner : corners_) a(corner);
+    a.within(phase_, 0, static_cast<double>(Phase::masses));
+    masses_.archive(a, corners_[1].shape(), corners_[1].sums());
+    a(fit_);
+    a.finite(low_, mass_error_, misfit_square_, corner_square_);
+    a.each_within(misfits_, 0, kMisfits);
+    a.each_within(spreads_, 0, kSpreads);
+    a.within(blocks_, 0, kEvery);
+  }
+
+ private:
+  static constexpr int kEvery = 4;                   ///< blocks between fits
+  static constexpr int kMisfits = 24, kSpreads = 6;  ///< fits, windows that are averaged over
+  enum class Phase { tuning, filling, low, high, masses };
+  void next_window();
+  void advance_corners(const Context& context);
+  void take_spread(const Context& context);
+  void take_misfit(const Context& context);
+  const ModelFit& give(const Context& context);
+  /// Parameter of an unknown in internal order.
+  std::size_t parameter(int unknown) const {
+    return static_cast<std::size_t>(
+        layout_.parameter(unknown / layout_.own(), unknown % layout_.own()));
+  }
+
+  const PipelineConfig* config_;
+  ParameterTable table_;
+  FloorLayout layout_;
+  /// Held here, because tunings keep a reference.
+  std::array<EstimatorOptions, 2> options_;
+  std::vector<OtherCorner> corners_;  ///< lower, higher
+  MassErrors masses_;
+  int window_rows_, settle_rows_, masses_per_instant_;
+  Phase phase_ = Phase::tuning;
+  ModelFit fit_;
+  std::vector<double> low_;         ///< solution with the lower corners, internal order
+  std::vector<double> mass_error_;  ///< by parameter, relative
+  // By parameter, running means of squares and how many are in them.
+  std::vector<double> misfit_square_, corner_square_;
+  std::vector<int> misfits_, spreads_;
+  int blocks_ = 0;  ///< since the last fit
+};
+
+}  // namespace framewatch::estimator
