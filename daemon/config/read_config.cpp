@@ -55,6 +55,9 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.pipeline.structure = structure.structure;
   config.pipeline.design = structure.design.theta;
   config.pipeline.bending_nmprad = structure.design.bending_nmprad;
+  config.pipeline.group_floors = structure.group_floors;
+  config.pipeline.mass_tolerance = structure.mass_tolerance;
+  config.pipeline.profile_tolerance = structure.profile_tolerance;
   read_channels(document, structure, config, problems);
   config.pipeline.options = read_estimator(document, problems);
   config.lcm = read_lcm(document, problems);

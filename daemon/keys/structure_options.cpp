@@ -113,6 +113,41 @@ const Option kOptions[] = {
      .reload = restart,
      .by_hand = "goes into the channels' places"},
 
+    {.section = "structure",
+     .key = "group_floors",
+     .type = grid,
+     .shape = "[floor]",
+     .default_value = "[]",
+     .min = 1,
+     .max = 1000,
+     .meaning =
+         "Of a building with channels on some floors: the measured floors at which groups of "
+         "stories end, upward. Default: all of them. Fewer where single stories between "
+         "measured floors come out too uncertain.",
+     .reload = restart,
+     .by_hand = kSized},
+    {.section = "structure",
+     .key = "mass_tolerance_ratio",
+     .type = number,
+     .default_value = "0.02",
+     .min = 0,
+     .max = 0.5,
+     .meaning = "How far a floor's mass may be off, one standard deviation: counts in the error of "
+                "absolute values.",
+     .reload = restart,
+     .by_hand = kSized},
+    {.section = "structure",
+     .key = "profile_tolerance_ratio",
+     .type = number,
+     .default_value = "0.05",
+     .min = 0,
+     .max = 0.5,
+     .meaning =
+         "How far the design's stiffness of a story may be off from that of the others of its "
+         "group, one standard deviation: counts in the error of absolute values.",
+     .reload = restart,
+     .by_hand = kSized},
+
     {.section = "structure.design",
      .key = "kx_npm",
      .type = grid,

@@ -17,7 +17,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kFewSensorsDamping = 0.015, kTopShare = 0.35;
-constexpr double kFrom_s = 20, kEvery_s = 5;
+constexpr double kEvery_s = 5;
 
 double between(estimator::Random& random, double most) {
   return most * (2 * random.uniform() - 1);
@@ -139,10 +139,10 @@ TallRecord tall_record(const TallTrial& t) {
   return out;
 }
 
-FewSensorsErrors few_sensors_errors(const TallRecord& record) {
+FewSensorsErrors few_sensors_errors(const TallRecord& record, double from_s) {
   const estimator::ParameterTable table = record.config.parameters();
   ErrorsByKind errors;
-  collect_errors(run_windows(record.config, record.accel, kFrom_s, kEvery_s), table, record.truth,
+  collect_errors(run_windows(record.config, record.accel, from_s, kEvery_s), table, record.truth,
                  errors);
   return {errors[static_cast<std::size_t>(estimator::ParameterKind::frame_stiffness)],
           errors[static_cast<std::size_t>(estimator::ParameterKind::frame_damping)]};
@@ -176,6 +176,8 @@ std::vector<FewSensorsRow> study_few_sensors(int seeds, const Workers& workers) 
   add("4 of 20 floors, noise 1 %, stories off by 5 %, masses by 2 %", wrong);
   TallTrial bending;
   bending.bending_nmprad = bending.believed_bending_nmprad = 3e12;
+  bending.duration_s = 90;
+  bending.from_s = 50;  // what is held has been found
   add("4 of 20 floors, noise 1 %, frames bend", bending);
   bending.believed_bending_nmprad *= 2;
   add("4 of 20 floors, noise 1 %, frames bend, design twice as stiff in it", bending);
@@ -185,7 +187,7 @@ std::vector<FewSensorsRow> study_few_sensors(int seeds, const Workers& workers) 
   workers.run("few sensors", count * seeds, [&](int piece) {
     TallTrial trial = rows[static_cast<std::size_t>(piece / seeds)].trial;
     trial.seed = static_cast<std::uint64_t>(piece % seeds + 1);
-    const FewSensorsErrors errors = few_sensors_errors(tall_record(trial));
+    const FewSensorsErrors errors = few_sensors_errors(tall_record(trial), trial.from_s);
     const std::lock_guard lock(mutex);
     FewSensorsRow& row = rows[static_cast<std::size_t>(piece / seeds)];
     row.errors.stiffness.add(errors.stiffness);

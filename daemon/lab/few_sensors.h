@@ -34,6 +34,7 @@ struct TallTrial {
   double ground_damping_ratio = 0;
   double believed_bending_nmprad = 0;  ///< of the design; 0: it does not bend
   double duration_s = 60;
+  double from_s = 20;  ///< windows count from here on
   std::uint64_t seed = 1;
 };
 
@@ -47,11 +48,11 @@ struct TallRecord {
 /// Truth integrated exactly at 1 ms; Kanai-Tajimi ground of 2.5 Hz, strong all the time.
 TallRecord tall_record(const TallTrial& trial);
 
-/// Errors of the 5-s windows from 20 s on, 5 s apart.
+/// Errors of the 5-s windows from `from_s` on, 5 s apart.
 struct FewSensorsErrors {
   ErrorStatistics stiffness, damping;
 };
-FewSensorsErrors few_sensors_errors(const TallRecord& record);
+FewSensorsErrors few_sensors_errors(const TallRecord& record, double from_s = 20);
 
 /// A line of the table of docs/accuracy.md: several trials of one layout.
 struct FewSensorsRow {

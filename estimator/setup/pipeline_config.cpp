@@ -33,6 +33,18 @@ std::vector<std::string> problems(const PipelineConfig& config) {
   at_least("high_pass_hz", o.high_pass_hz, 0.001);
   at_least("filter_damping", o.filter_damping, 0.05);
   at_least("corner_ratio", o.corner_ratio, 0.1);
+  for (std::size_t i = 0; i < config.group_floors.size(); ++i) {
+    const int floor = config.group_floors[i];
+    const std::string name = "group_floors: " + std::to_string(floor);
+    if (i > 0 && floor <= config.group_floors[i - 1])
+      found.push_back(name + ": floors must ascend");
+    if (floor != config.structure.stories &&
+        std::none_of(config.axes.begin(), config.axes.end(),
+                     [&](const SensorAxis& a) { return a.story == floor && floor > 0; }))
+      found.push_back(name +
+                      ": has no channel, so nothing tells the stories below it from those "
+                      "above");
+  }
   if (config.design.size() > 0) {
     const ParameterTable table(config.structure);
     if (config.design.size() != table.size() || !(config.design.array() > 0).all())

@@ -21,14 +21,18 @@ struct PipelineConfig {
   /// Design parameters of every story, SI, in the order of ParameterTable(structure); empty when
   /// the drawings say nothing.
   Eigen::VectorXd design;
-  BendingStiffness bending_nmprad{};  ///< of the design
-  double mass_tolerance = 0.02;       ///< relative standard deviation of a floor's mass
-  double profile_tolerance = 0.05;    ///< of a story's share in its group's flexibility
+  BendingStiffness bending_nmprad{};   ///< of the design
+  std::vector<int> group_floors = {};  ///< WantedGroups::floors
+  double mass_tolerance = 0.02;        ///< relative standard deviation of a floor's mass
+  double profile_tolerance = 0.05;     ///< of a story's share in its group's flexibility
   /// Of groups of stories, by parameter: relative error that these tolerances make
   /// (LayoutPrediction::design_error); empty: none is counted.
   std::vector<double> design_error = {};
 
-  StoryGroups groups() const { return story_groups(structure, axes); }
+  StoryGroups groups() const {
+    return story_groups(structure, axes,
+                        {group_floors, bending_nmprad[0] > 0 || bending_nmprad[1] > 0});
+  }
   /// What is identified.
   ParameterTable parameters() const { return ParameterTable(structure, groups(), bending_nmprad); }
 };

@@ -10,6 +10,7 @@ namespace framewatch::estimator {
 EveryFloor::EveryFloor(const PipelineConfig& config)
     : motion_(config),
       elements_(static_cast<std::size_t>(config.parameters().elements())),
+      used_(identifying(config.axes)),
       away_rows_(kAway_s * config.options.rate_hz),
       away_(config.axes.size(), 0) {}
 
@@ -19,7 +20,8 @@ bool EveryFloor::follow_channels(const SampleSet& set) {
   std::vector<std::uint8_t> present = motion_.present();
   for (std::size_t a = 0; a < away_.size(); ++a) {
     away_[a] = std::isfinite(set.accel[a]) ? 0 : std::min(away_[a] + 1, away_rows_);
-    const std::uint8_t is = away_[a] == 0 || (present[a] != 0 && away_[a] < away_rows_);
+    const std::uint8_t is =
+        used_[a] == 0 ? 0 : away_[a] == 0 || (present[a] != 0 && away_[a] < away_rows_);
     changed = changed || is != present[a];
     present[a] = is;
   }

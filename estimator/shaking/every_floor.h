@@ -40,6 +40,7 @@ class EveryFloor {
 
   FloorMotion motion_;
   std::size_t elements_;
+  std::vector<std::uint8_t> used_;  ///< axes that are not for a check
   double away_rows_;
   std::vector<double> away_;  ///< instants without a value, by axis
   std::int64_t unsettled_ = 0;

@@ -84,6 +84,12 @@ std::vector<std::string> problems(const Structure& s, const std::vector<SensorAx
   return messages;
 }
 
+std::vector<std::uint8_t> identifying(const std::vector<SensorAxis>& axes) {
+  std::vector<std::uint8_t> out;
+  for (const SensorAxis& axis : axes) out.push_back(axis.check ? 0 : 1);
+  return out;
+}
+
 std::vector<double> noise_densities(const std::vector<SensorAxis>& axes) {
   std::vector<double> out;
   for (const SensorAxis& axis : axes)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,7 @@ struct SensorAxis {
   int cross = -1;              ///< axis of the other direction that corrects for mount_angle
   double range = 0.0;          ///< m/s^2 of scale * raw, at which it clips; 0 = unknown
   double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0 = unknown
+  bool check = false;          ///< compared with what the others predict, not identified from
 };
 
 /// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
@@ -40,6 +42,9 @@ struct SensorAxis {
 inline constexpr double kDefaultNoiseDensity = 1e-4;
 /// Configured noise of every axis, kDefaultNoiseDensity where it is not.
 std::vector<double> noise_densities(const std::vector<SensorAxis>& axes);
+
+/// Flags of the axes that are identified from: all but those for a check.
+std::vector<std::uint8_t> identifying(const std::vector<SensorAxis>& axes);
 
 /// Every way in which the sensors do not fit the structure: two axes on one frame, a frame or story
 /// that does not exist, a direction that is measured above the base and not there, no axis above

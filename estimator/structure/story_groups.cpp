@@ -86,9 +86,13 @@ bool shows_rotation(const Structure& s, const std::vector<SensorAxis>& axes) {
 /// Groups of a set of frames whose measured floors are given, ascending; above the highest one the
 /// building goes on with one group more.
 void add_groups(const Structure& s, Direction direction, const std::vector<int>& frames,
-                std::vector<int> floors, std::vector<StoryGroup>& out) {
+                std::vector<int> floors, const WantedGroups& wanted, std::vector<StoryGroup>& out) {
   if (floors.empty()) return;
-  if (floors.back() < s.stories) floors.push_back(s.stories);
+  if (!wanted.floors.empty())
+    std::erase_if(floors, [&](int floor) {
+      return std::find(wanted.floors.begin(), wanted.floors.end(), floor) == wanted.floors.end();
+    });
+  if (floors.empty() || floors.back() < s.stories) floors.push_back(s.stories);
   const bool whole = static_cast<int>(frames.size()) == lines_of(s, direction).count;
   int below = 0;
   for (const int floor : floors) {
@@ -114,26 +118,29 @@ std::vector<int> all_of(const Line& line) {
 }
 
 void add_rigid_groups(const Structure& s, const std::vector<SensorAxis>& axes, Direction direction,
-                      bool rotation_shown, std::vector<StoryGroup>& out) {
+                      bool rotation_shown, const WantedGroups& wanted,
+                      std::vector<StoryGroup>& out) {
   const Line line = lines_of(s, direction);
   const std::vector<int> floors =
       floors_where(s, axes, [&](const SensorAxis& a) { return measures(s, a, direction); });
   if (rotation_shown && line.count == 2) {
-    for (int f = line.first; f < line.first + 2; ++f) add_groups(s, direction, {f}, floors, out);
+    for (int f = line.first; f < line.first + 2; ++f)
+      add_groups(s, direction, {f}, floors, wanted, out);
   } else {
-    add_groups(s, direction, all_of(line), floors, out);
+    add_groups(s, direction, all_of(line), floors, wanted, out);
   }
 }
 
 void add_flexible_groups(const Structure& s, const std::vector<SensorAxis>& axes,
-                         Direction direction, std::vector<StoryGroup>& out) {
+                         Direction direction, const WantedGroups& wanted,
+                         std::vector<StoryGroup>& out) {
   const Line line = lines_of(s, direction);
   std::vector<int> measured;
   for (int f = line.first; f < line.first + line.count; ++f)
     if (!floors_where(s, axes, [&](const SensorAxis& a) { return a.frame == f; }).empty())
       measured.push_back(f);
   if (measured.empty())  // axes between the frames
-    return add_rigid_groups(s, axes, direction, false, out);
+    return add_rigid_groups(s, axes, direction, false, wanted, out);
   std::vector<std::vector<int>> sets(measured.size());
   for (int f = line.first; f < line.first + line.count; ++f) {
     std::size_t nearest = 0;
@@ -146,7 +153,7 @@ void add_flexible_groups(const Structure& s, const std::vector<SensorAxis>& axes
   for (std::size_t i = 0; i < measured.size(); ++i)
     add_groups(s, direction, sets[i],
                floors_where(s, axes, [&](const SensorAxis& a) { return a.frame == measured[i]; }),
-               out);
+               wanted, out);
 }
 
 bool on_every_frame(const Structure& s, const std::vector<SensorAxis>& axes) {
@@ -185,17 +192,20 @@ std::vector<double> frame_weights(const Structure& s, const SensorAxis& axis) {
   return weights;
 }
 
-StoryGroups story_groups(const Structure& s, const std::vector<SensorAxis>& axes) {
+StoryGroups story_groups(const Structure& s, const std::vector<SensorAxis>& all,
+                         const WantedGroups& wanted) {
+  std::vector<SensorAxis> axes = all;
+  std::erase_if(axes, [](const SensorAxis& axis) { return axis.check; });
   StoryGroups out;
-  out.every_story = on_every_frame(s, axes);
+  out.every_story = on_every_frame(s, axes) && wanted.floors.empty() && !wanted.bending;
   if (out.every_story) return out;
   const bool rigid = s.floor == FloorModel::rigid;
   const bool rotation = rigid && shows_rotation(s, axes);
   for (const Direction direction : {Direction::x, Direction::y}) {
     if (rigid)
-      add_rigid_groups(s, axes, direction, rotation, out.groups);
+      add_rigid_groups(s, axes, direction, rotation, wanted, out.groups);
     else
-      add_flexible_groups(s, axes, direction, out.groups);
+      add_flexible_groups(s, axes, direction, wanted, out.groups);
   }
   return out;
 }

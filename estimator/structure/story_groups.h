@@ -25,12 +25,20 @@ struct StoryGroups {
   std::vector<StoryGroup> groups;
 };
 
+/// What groups are asked for.
+struct WantedGroups {
+  /// Floors at which groups end, ascending; empty: at every measured floor.
+  std::vector<int> floors = {};
+  bool bending = false;  ///< frames bend: a building with a sensor everywhere has groups, too
+};
+
 /// On flexible floors a frame's groups end where the frame itself has an axis; frames without any
 /// share those of the nearest one of their direction that has. On rigid floors groups end where the
 /// direction is measured; two frames of a direction are told apart where every measured floor shows
 /// its translations and its rotation.
 /// Precondition: find_problems() of both is empty.
-StoryGroups story_groups(const Structure& structure, const std::vector<SensorAxis>& axes);
+StoryGroups story_groups(const Structure& structure, const std::vector<SensorAxis>& axes,
+                         const WantedGroups& wanted = {});
 
 /// What an axis at a place of a floor measures: weights of the floor's frames (Structure::dof of
 /// one story). Between frames, and on rigid floors anywhere, linear in plan.

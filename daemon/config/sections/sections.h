@@ -24,6 +24,8 @@ struct StructureReading {
   estimator::Structure structure;
   DesignReading design;
   std::optional<double> azimuth_y_deg;
+  std::vector<int> group_floors;
+  double mass_tolerance = 0, profile_tolerance = 0;  ///< relative
   bool stories_known = false;
   bool frames_known = false;
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/core.h>
 
@@ -61,6 +62,12 @@ StructureReading read_structure(const TomlValue& document, std::vector<TextProbl
       if (p.field.empty() || p.field.starts_with("frames")) out.frames_known = false;
     }
   }
+  for (const double floor : section.list("group_floors")) {
+    if (floor != std::floor(floor)) section.problem("group_floors", "floors are whole numbers");
+    out.group_floors.push_back(static_cast<int>(floor));
+  }
+  out.mass_tolerance = section.number("mass_tolerance_ratio");
+  out.profile_tolerance = section.number("profile_tolerance_ratio");
   if (section.given("azimuth_y_deg")) out.azimuth_y_deg = section.number("azimuth_y_deg");
   const TomlEntry* design = entry ? entry->value.find("design") : nullptr;
   out.design = read_design(design ? &design->value : nullptr, s, shape_known, problems);

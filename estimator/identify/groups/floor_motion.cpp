@@ -23,7 +23,7 @@ FloorMotion::FloorMotion(const PipelineConfig& config)
                   : guessed_design(config.structure, ParameterTable(config.structure)),
               config.bending_nmprad},
       designed_(group_parameters(config.structure, table_, design_)) {
-  tune(designed_, std::vector<std::uint8_t>(config.axes.size(), 1));
+  tune(designed_, identifying(config.axes));
 }
 
 void FloorMotion::tune(const Eigen::VectorXd& theta, const std::vector<std::uint8_t>& present) {

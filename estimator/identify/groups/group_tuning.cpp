@@ -74,7 +74,7 @@ GroupTuning::GroupTuning(const PipelineConfig& config, const EstimatorOptions& o
       designed_(group_parameters(config.structure, table, design)),
       theta0_(designed_),
       noise_density_(noise_densities(config.axes)),
-      present_(config.axes.size(), 1),
+      present_(identifying(config.axes)),
       perturbed_(layout) {
   const EstimatorOptions& o = options;
   const auto length = static_cast<std::size_t>(

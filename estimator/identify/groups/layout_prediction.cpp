@@ -58,7 +58,7 @@ class Prediction {
                     ? config.design
                     : guessed_design(config.structure, ParameterTable(config.structure)),
                 config.bending_nmprad} {
-    const std::vector<std::uint8_t> all(config.axes.size(), 1);
+    const std::vector<std::uint8_t> all = identifying(config.axes);
     building_ = reduced_building(config.structure, config.axes, table_, design_, all);
     const ReducedBuilding stories = reduced_building(
         config.structure, config.axes, ParameterTable(config.structure), design_, all, true);

@@ -44,7 +44,7 @@ void StorySolver::gather_information(const WindowParts& sums, int floor) {
 }
 
 void StorySolver::factor(const WindowParts& sums, const std::vector<double>& prior,
-                         const NoiseCompensation& noise) {
+                         const std::vector<double>& centre, const NoiseCompensation& noise) {
   const int own = layout_.own();
   const int passed = layout_.shared();
   response_energy_ = 0;
@@ -72,8 +72,8 @@ void StorySolver::factor(const WindowParts& sums, const std::vector<double>& pri
     for (int p = 0; p < own; ++p) {
       const auto unknown = static_cast<std::size_t>(floor * own + p);
       a[p * stride + p] += prior[unknown];
-      a[p * stride + last] += prior[unknown];
-      prior_energy += prior[unknown];
+      a[p * stride + last] += prior[unknown] * centre[unknown];
+      prior_energy += prior[unknown] * centre[unknown] * centre[unknown];
       pivot_floor_[static_cast<std::size_t>(p)] =
           kSmallestPivot * (information_[unknown] + prior[unknown]);
     }

@@ -17,9 +17,10 @@ class StorySolver {
  public:
   explicit StorySolver(const FloorLayout& layout);
 
-  /// prior: precision of every unknown about 1, in the rows' units, internal order; 0 = none.
+  /// prior: precision of every unknown about `centre`, in the rows' units, internal order; 0 =
+  /// none.
   void factor(const WindowParts& sums, const std::vector<double>& prior,
-              const NoiseCompensation& noise);
+              const std::vector<double>& centre, const NoiseCompensation& noise);
 
   /// Unknowns in internal order (floor by floor); unusable ones are 1 (theta0).
   const std::vector<double>& solution() const { return x_; }

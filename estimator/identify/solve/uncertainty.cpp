@@ -25,8 +25,8 @@ BatchMeans::BatchMeans(const FloorLayout& layout, double compensation)
   const auto unknowns = static_cast<std::size_t>(layout.unknowns());
   columns_values_.assign(unknowns * static_cast<std::size_t>(columns_), 0.0);
   for (std::vector<double>* v :
-       {&solution_, &score_scale_, &prior_, &inverse_diagonal_, &new_error_, &new_share_,
-        &new_noise_share_, &std_error_, &prior_share_, &noise_share_})
+       {&solution_, &score_scale_, &prior_, &prior_doubt_, &inverse_diagonal_, &new_error_,
+        &new_share_, &new_noise_share_, &std_error_, &prior_share_, &noise_share_})
     v->assign(unknowns, 0.0);
   const auto front = static_cast<std::size_t>(padded(layout.most_front()));
   score_.assign(front, 0.0);
@@ -34,8 +34,8 @@ BatchMeans::BatchMeans(const FloorLayout& layout, double compensation)
 }
 
 void BatchMeans::begin(const GramShape& shape, StorySolver& solver, const Fit& fit,
-                       const std::vector<double>& prior, const NoiseCompensation& noise,
-                       double noise_level) {
+                       const std::vector<double>& prior, const std::vector<double>& prior_doubt,
+                       const NoiseCompensation& noise, double noise_level) {
   solver.swap_factor(factor_);
   solution_ = *fit.solution;
   for (std::size_t u = 0; u < score_scale_.size(); ++u)
@@ -43,6 +43,7 @@ void BatchMeans::begin(const GramShape& shape, StorySolver& solver, const Fit& f
                           ? std::sqrt(solver.information()[u] / (*fit.information)[u])
                           : 0.0;
   prior_ = prior;
+  prior_doubt_ = prior_doubt;
   noise_ = noise;
   noise_level_ = noise_level;
   shape_ = &shape;
@@ -118,8 +119,9 @@ void BatchMeans::add_bias_columns(int floor) {
   const double* perturbation = perturbed_.floor(floor);
   for (int i = 0; i < layout_.own(); ++i)
     for (int c = 0; c < kCount; ++c)
-      columns(first + i)[kBlocks + c] +=
-          prior_[static_cast<std::size_t>(first + i)] * perturbation[i * kCount + c];
+      columns(first + i)[kBlocks + c] += prior_[static_cast<std::size_t>(first + i)] *
+                                         prior_doubt_[static_cast<std::size_t>(first + i)] *
+                                         perturbation[i * kCount + c];
 }
 
 void BatchMeans::finish(int floor) {

@@ -35,13 +35,15 @@ class BatchMeans {
   };
   /// sums: SlidingGram, after maintain() closed the block that ends the window `solver` solved and
   /// `fit` fits, and before the next one closes: the pass must be done by then; or other blocks
-  /// that last as long. Takes the solver's factor; its solution stays. noise_level: variance of the
+  /// that last as long. Takes the solver's factor; its solution stays. prior_doubt: how far the
+  /// prior's centre may be off, over the tolerance of a design. noise_level: variance of the
   /// noise that is there, divided by what the tuning assumes.
   template <typename Sums>
   void begin(const Sums& sums, StorySolver& solver, const Fit& fit,
-             const std::vector<double>& prior, const NoiseCompensation& noise, double noise_level) {
+             const std::vector<double>& prior, const std::vector<double>& prior_doubt,
+             const NoiseCompensation& noise, double noise_level) {
     for (int b = 0; b < kBlocks; ++b) block_[static_cast<std::size_t>(b)] = sums.block(b);
-    begin(sums.shape(), solver, fit, prior, noise, noise_level);
+    begin(sums.shape(), solver, fit, prior, prior_doubt, noise, noise_level);
   }
   /// Of a whole pass.
   int steps() const { return 2 * layout_.floors(); }
@@ -70,7 +72,7 @@ class BatchMeans {
   void archive(Archive& a, const RowFilter& rows, const Sums& sums) {
     a.within(next_step_, 0, steps());
     a(factor_, inverse_, noise_level_, columns_values_, solution_, score_scale_);
-    a(prior_, inverse_diagonal_, new_error_, new_share_, new_noise_share_);
+    a(prior_, prior_doubt_, inverse_diagonal_, new_error_, new_share_, new_noise_share_);
     a(std_error_, prior_share_, noise_share_);
     noise_.archive(a, rows);
     shape_ = &sums.shape();
@@ -84,7 +86,8 @@ class BatchMeans {
 
  private:
   void begin(const GramShape& shape, StorySolver& solver, const Fit& fit,
-             const std::vector<double>& prior, const NoiseCompensation& noise, double noise_level);
+             const std::vector<double>& prior, const std::vector<double>& prior_doubt,
+             const NoiseCompensation& noise, double noise_level);
   void assemble(int floor);
   void add_block_scores(int floor);
   void add_bias_columns(int floor);
@@ -102,7 +105,7 @@ class BatchMeans {
   std::vector<const double*> block_;
   std::vector<double> columns_values_;  ///< unknowns x (blocks, then perturbations)
   PerturbedDesigns perturbed_;
-  std::vector<double> solution_, score_scale_, prior_, x_, score_, inverse_diagonal_;
+  std::vector<double> solution_, score_scale_, prior_, prior_doubt_, x_, score_, inverse_diagonal_;
   std::vector<double> new_error_, new_share_, new_noise_share_;
   std::vector<double> std_error_, prior_share_, noise_share_;
 };

@@ -28,8 +28,9 @@ EstimatorOptions lenient(EstimatorOptions o, bool noise_configured) {
 
 LongWindow::LongWindow(const Structure& structure, const FloorLayout& layout,
                        const ParameterTable& table, const EstimatorOptions& options, int block_rows,
-                       int window, bool noise_configured)
+                       int window, bool noise_configured, Blocks blocks)
     : shape_(layout),
+      which_(blocks),
       floors_(layout.floors()),
       own_(static_cast<std::size_t>(layout.own())),
       block_rows_(block_rows),
@@ -54,15 +55,46 @@ LongWindow::LongWindow(const Structure& structure, const FloorLayout& layout,
   known_.reserve(static_cast<std::size_t>(layout.places()));
 }
 
-void LongWindow::retuned() {
+void LongWindow::begin_anew() {
   std::fill(current_.begin(), current_.end(), 0.0);
   std::fill(instants_.begin(), instants_.end(), 0.0);
-  usual_ = usual_misfit_ = rows_ = 0;
-  std::fill(fit_.begin(), fit_.end(), 1.0);
+  rows_ = 0;
   blocks_ = 0;
   pieces_ = 0;
   work_ = Work::none;
   solution_.restart();
+}
+
+void LongWindow::rescale(double* block, const std::vector<double>& factor) {
+  std::size_t first = 0;
+  for (const GramShape::Floor& floor : shape_.floor) {
+    const auto scale = [&](int i) {
+      return i + 1 < floor.front ? factor[first + static_cast<std::size_t>(i)] : 1;
+    };
+    std::size_t at = floor.offset;
+    for (int i = 0; i < floor.front; ++i) {
+      const int begin = packed_row_begin(i);
+      for (int k = i; k < floor.front; ++k)
+        block[at + static_cast<std::size_t>(k - begin)] *= scale(i) * scale(k);
+      at += static_cast<std::size_t>(floor.stride - begin);
+    }
+    first += own_;
+  }
+}
+
+void LongWindow::rescale(const std::vector<double>& factor) {
+  for (std::size_t piece = 0; piece < kPieces; ++piece)
+    rescale(&ring_[piece * shape_.size], factor);
+  rescale(current_.data(), factor);
+  for (std::size_t u = 0; u < fit_.size(); ++u) fit_[u] /= factor[u];
+  work_ = Work::none;
+  solution_.retuned();
+}
+
+void LongWindow::retuned() {
+  begin_anew();
+  usual_ = usual_misfit_ = 0;
+  std::fill(fit_.begin(), fit_.end(), 1.0);
 }
 
 const double* LongWindow::block(int age) const {
@@ -121,7 +153,7 @@ void LongWindow::block_closed(SlidingGram& sums, const std::vector<std::uint8_t>
   if (!fits(known)) return;
   const double* block = sums.block(0);
   if (!(energy(block, false) > 0)) return;
-  const double weight = this->weight(block);
+  const double weight = which_ == Blocks::limited ? this->weight(block) : 1;
   if (blocks_ == 0)
     since_ = time - SensorClock::duration(std::llround((block_rows_ - 1) * 1e6 / rate_hz_));
   for (std::size_t i = 0; i < shape_.size; ++i) current_[i] += weight * block[i];

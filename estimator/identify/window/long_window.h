@@ -25,12 +25,20 @@ class LongWindow {
   /// options.long_window_s: at least that of BatchMeans::kBlocks blocks. window: of its estimates.
   /// Without configured noise the gate is that of ordinary windows: measured noise is too inexact
   /// to be subtracted from a motion as weak as itself.
+  /// Blocks count alike, see above, or as they are.
+  enum class Blocks { limited, by_energy };
   LongWindow(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
-             const EstimatorOptions& options, int block_rows, int window, bool noise_configured);
+             const EstimatorOptions& options, int block_rows, int window, bool noise_configured,
+             Blocks blocks = Blocks::limited);
 
   int rows() const { return kPieces * piece_blocks_ * block_rows_; }
   /// The tuning has changed: everything so far is of other rows and is discarded.
   void retuned();
+  /// The tuning has changed, and everything so far is kept as if of the new one: unknowns become
+  /// relative to theta0 times `factor`, internal order.
+  void rescale(const std::vector<double>& factor);
+  /// The pieces so far are not used again.
+  void begin_anew();
   /// A block has closed at `time`, the end of its last instant. known: places with a working
   /// sensor. Blocks with other places than the rest are left out; when more of them than a piece
   /// holds come in a row, the window begins anew with them.
@@ -78,6 +86,7 @@ class LongWindow {
   enum class Work { none, adding, solving, errors };
   bool fits(const std::vector<std::uint8_t>& known);
   double weight(const double* block);
+  void rescale(double* block, const std::vector<double>& factor);
   /// Of the response, or of its residual under the last solution.
   double energy(const double* block, bool residual);
   void close_piece();
@@ -86,6 +95,7 @@ class LongWindow {
   const WindowEstimate& give(const Context& context);
 
   GramShape shape_;
+  Blocks which_;
   int floors_;
   std::size_t own_;
   int block_rows_, piece_blocks_;

@@ -62,6 +62,10 @@ void ModelCheck::regression_exchanged(const RowTuning& active) {
   phase_ = Phase::tuning;
 }
 
+void ModelCheck::hold(int unknown, double ratio, double std_error) {
+  for (OtherCorner& corner : corners_) corner.solution().hold(unknown, ratio, std_error);
+}
+
 void ModelCheck::next_window() {
   for (OtherCorner& corner : corners_) corner.begin_window();
   phase_ = Phase::filling;

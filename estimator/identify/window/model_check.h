@@ -32,6 +32,9 @@ class ModelCheck {
   /// The active regression is another one.
   void regression_exchanged(const RowTuning& active);
 
+  /// WindowSolution::hold() of both corners.
+  void hold(int unknown, double ratio, double std_error);
+
   struct Context {
     const TunedRegression* active;
     const WindowSolution* main;  ///< of the active regression

@@ -26,6 +26,10 @@ void OtherWindows::restart() {
   current_ = count();
 }
 
+void OtherWindows::hold(int unknown, double ratio, double std_error) {
+  for (Window& window : windows_) window.solution.hold(unknown, ratio, std_error);
+}
+
 void OtherWindows::retuned() {
   for (Window& window : windows_) window.solution.retuned();
   current_ = count();

@@ -18,6 +18,8 @@ class OtherWindows {
                const EstimatorOptions& options, const std::vector<int>& blocks, int block_rows);
 
   void restart();
+  /// WindowSolution::hold() of every window.
+  void hold(int unknown, double ratio, double std_error);
   /// The tuning has changed: a solution under way is abandoned.
   void retuned();
   /// A block has closed at `time`, the end of its last instant. `main` fits the sums' own window.

@@ -104,7 +104,9 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
   for (std::size_t p = 0; p < estimate_.value.size(); ++p)
     boxplots_.emplace_back(options_.boxplot_windows);
   seen_axes_.assign(layout_.grouped() ? config_.axes.size() : 0, 1);
+  identified_from_ = seen_axes_;
   shown_.assign(static_cast<std::size_t>(layout_.unknowns()), 0);
+  retuned_by_.assign(shown_.size(), 1.0);
   std::unique_ptr<RowTuning> tuning = make_tuning(options_);
   for (int part = 0; part < tuning->parts(); ++part) tuning->tune(part);
   active_ = make_regression(std::move(tuning));
@@ -116,10 +118,14 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
     long_ = std::make_unique<LongWindow>(config_.structure, layout_, table_, options_, block_rows_,
                                          static_cast<int>(other_blocks_.size()) + 1,
                                          noise_.configured());
+  if (layout_.grouped() && table_[table_.size() - 1].kind == ParameterKind::bending_stiffness)
+    bending_ = std::make_unique<HeldBending>(config_.structure, layout_, table_, options_,
+                                             block_rows_, noise_.configured(), theta0());
   if (matched_)
     check_ = std::make_unique<ModelCheck>(
         config_, table_, layout_, window_rows(),
         [this](const EstimatorOptions& options) { return make_tuning(options); });
+  if (bending_) hold_bending();
 }
 
 std::unique_ptr<RowTuning> SlidingWindowEstimator::make_tuning(
@@ -164,6 +170,7 @@ void SlidingWindowEstimator::restart() {
 void SlidingWindowEstimator::recover() {
   noise_.reset();
   if (long_) long_->retuned();
+  if (bending_) bending_->restart();
   ++interruptions_;
   restart();
 }
@@ -208,12 +215,15 @@ void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known)
     axes_steady_rows_ = 0;
     return;
   }
-  if (self_tuning_ == nullptr || known == active_->tuning().axes() || !self_tuning_->idle()) return;
+  if (self_tuning_ == nullptr || !self_tuning_->idle()) return;
+  for (std::size_t a = 0; a < known.size(); ++a)
+    identified_from_[a] = known[a] != 0 && !config_.axes[a].check;
+  if (identified_from_ == active_->tuning().axes()) return;
   if (++axes_steady_rows_ < options_.rate_hz * kAxesSteady_s ||
-      !shows_groups(config_.structure, config_.axes, known))
+      !shows_groups(config_.structure, config_.axes, identified_from_))
     return;
   axes_steady_rows_ = 0;
-  self_tuning_->begin_axes(*active_, known);
+  self_tuning_->begin_axes(*active_, identified_from_);
 }
 
 void SlidingWindowEstimator::advance_errors(Time window_end) {
@@ -223,7 +233,9 @@ void SlidingWindowEstimator::advance_errors(Time window_end) {
   if (closed && active_->full()) {
     main_.begin_errors(active_->sums(), main_);
     others_.block_closed(active_->sums(), window_end);
-    if (long_) long_->block_closed(active_->sums(), ring_.at(ring_.end() - 1).known, window_end);
+    const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
+    if (long_) long_->block_closed(active_->sums(), known, window_end);
+    if (bending_) bending_->block_closed(active_->sums(), known, window_end);
     return;
   }
   errors_new_ = main_.advance_errors(steps_per_instant_);
@@ -231,6 +243,9 @@ void SlidingWindowEstimator::advance_errors(Time window_end) {
   other_ =
       others_.advance({active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned()});
   if (long_ && other_ == nullptr) advance_long();
+  if (bending_ &&
+      bending_->advance({active_.get(), &ring_.at(ring_.end() - 1).known, trust(), tuned()}))
+    hold_bending();
 }
 
 void SlidingWindowEstimator::advance_long() {
@@ -244,6 +259,15 @@ void SlidingWindowEstimator::advance_long() {
                             noise_);
 }
 
+void SlidingWindowEstimator::hold_bending() {
+  for (const HeldBending::Held& held : bending_->held()) {
+    const double ratio = held.value / theta0()[held.parameter];
+    main_.hold(held.unknown, ratio, held.std_error);
+    others_.hold(held.unknown, ratio, held.std_error);
+    if (check_) check_->hold(held.unknown, ratio, held.std_error);
+  }
+}
+
 void SlidingWindowEstimator::check_tuning() {
   if (!self_tuning_ || !self_tuning_->due()) return;
   for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = main_.shown(static_cast<int>(u));
@@ -253,11 +277,17 @@ void SlidingWindowEstimator::check_tuning() {
 void SlidingWindowEstimator::regression_exchanged() {
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const int p = layout_.parameter(u / layout_.own(), u % layout_.own());
-    main_.rescale(u, self_tuning_->before().tuning().theta0()[p] / theta0()[p]);
+    const double before = self_tuning_->before().tuning().theta0()[p];
+    main_.rescale(u, before / theta0()[p]);
+    retuned_by_[static_cast<std::size_t>(u)] = theta0()[p] / before;
   }
   main_.retuned();
   others_.retuned();
   if (long_) long_->retuned();
+  if (bending_) {
+    bending_->retuned(retuned_by_);
+    hold_bending();
+  }
   if (check_) check_->regression_exchanged(active_->tuning());
 }
 

@@ -7,6 +7,7 @@
 #include "estimator/identify/estimate/boxplot.h"
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/noise/axis_noise.h"
+#include "estimator/identify/window/held_bending.h"
 #include "estimator/identify/window/long_window.h"
 #include "estimator/identify/window/model_check.h"
 #include "estimator/identify/window/other_windows.h"
@@ -54,6 +55,7 @@ class SlidingWindowEstimator {
     main_.archive(a, active_->rows(), active_->sums());
     others_.archive(a, *active_);
     archive_long(a);
+    if (bending_) bending_->archive(a, *active_);
     if (check_) a(*check_);
     a(boxplots_, estimate_);
     a.each_within(seen_axes_, 0, 1);
@@ -91,6 +93,7 @@ class SlidingWindowEstimator {
   void advance_errors(Time window_end);
   void check_tuning();
   void advance_long();
+  void hold_bending();
   /// Of groups: a channel that is gone makes its floor an inner one, one that is back a measured
   /// one.
   void follow_axes(const std::vector<std::uint8_t>& known);
@@ -119,19 +122,22 @@ class SlidingWindowEstimator {
   std::unique_ptr<SelfTuning> self_tuning_;  ///< null when switched off
   WindowSolution main_;
   OtherWindows others_;
-  std::unique_ptr<LongWindow> long_;   ///< null: none
-  std::unique_ptr<ModelCheck> check_;  ///< null of the paper's variant
-  int steps_per_instant_ = 1;          ///< of BatchMeans: done before the next block closes
-  std::vector<std::uint8_t> shown_;    ///< of check_tuning()
+  std::unique_ptr<LongWindow> long_;      ///< null: none
+  std::unique_ptr<HeldBending> bending_;  ///< null where frames do not bend
+  std::unique_ptr<ModelCheck> check_;     ///< null of the paper's variant
+  int steps_per_instant_ = 1;             ///< of BatchMeans: done before the next block closes
+  std::vector<std::uint8_t> shown_;       ///< of check_tuning()
+  std::vector<double> retuned_by_;        ///< of regression_exchanged()
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
   const WindowEstimate* other_ = nullptr;
   const ModelFit* model_fit_ = nullptr;
   bool errors_new_ = false;  ///< of the last push
   std::int64_t expected_index_ = -1, since_hop_ = 0, interruptions_ = 0;
-  std::vector<std::uint8_t> seen_axes_;  ///< of the last instants, of groups
-  int axes_steady_rows_ = 0;             ///< instants for which they have been these
-  bool sane_ = true;                     ///< the newest block of sums; not kept: looked at again
+  std::vector<std::uint8_t> seen_axes_;        ///< of the last instants, of groups
+  std::vector<std::uint8_t> identified_from_;  ///< of follow_axes()
+  int axes_steady_rows_ = 0;                   ///< instants for which they have been these
+  bool sane_ = true;  ///< the newest block of sums; not kept: looked at again
 };
 
 }  // namespace framewatch::estimator

@@ -13,6 +13,7 @@ constexpr double kInflation = 4;  // information is overstated by correlated res
 /// Frames of a direction whose frequencies differ by less than this cannot be told from a plan that
 /// does not shear its floors.
 constexpr double kSymmetric = 0.02;
+constexpr double kHeld = 0.01;  // relative width of the prior of what is held
 constexpr double kRounding = 1e-12;
 constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
 /// Of groups, whose residual is the model's as a rule: known noise is no higher than that.
@@ -34,6 +35,8 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       misfit_(layout),
       misfit_error_(static_cast<std::size_t>(layout.unknowns()), 0),
       prior_(static_cast<std::size_t>(layout.unknowns()), 0.0),
+      centre_(prior_.size(), 1.0),
+      doubt_(prior_.size(), 1.0),
       same_as_(layout.grouped() ? static_cast<std::size_t>(layout.unknowns()) : 0, 0),
       warm_(static_cast<std::size_t>(layout.floors()), 0),
       known_(static_cast<std::size_t>(layout.places()), 0),
@@ -49,6 +52,14 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
     const double tolerance = design_tolerance(kind);
     unknowns_.push_back({parameter, kind, kInflation / (tolerance * tolerance), limit});
   }
+}
+
+void WindowSolution::hold(int unknown, double ratio, double std_error) {
+  const auto u = static_cast<std::size_t>(unknown);
+  unknowns_[u].held = true;
+  unknowns_[u].prior = kInflation / (kHeld * kHeld);
+  centre_[u] = ratio;
+  doubt_[u] = std_error / design_tolerance(unknowns_[u].kind);
 }
 
 void WindowSolution::restart() {
@@ -77,8 +88,9 @@ void WindowSolution::solve(const WindowParts& sums, const RowFilter& rows, const
                                                               : kRowless;
   if (layout_.grouped()) same_as_ = rows.floor_rows(0).same_as;
   const double prior_scale = trust.regularise && options_.prior ? noise_level_ : 0.0;
-  for (std::size_t u = 0; u < prior_.size(); ++u) prior_[u] = prior_scale * unknowns_[u].prior;
-  solver_.factor(sums, prior_, noise_);
+  for (std::size_t u = 0; u < prior_.size(); ++u)
+    prior_[u] = (unknowns_[u].held ? noise_level_ : prior_scale) * unknowns_[u].prior;
+  solver_.factor(sums, prior_, centre_, noise_);
   const double residual = solver_.residual_energy() + compensation * noise_.residual();
   overcompensated_ = compensation > 0 && residual < -kRounding * solver_.response_energy();
   residual_energy_ = std::max(residual, 0.0);

@@ -28,6 +28,9 @@ class WindowSolution {
                  const EstimatorOptions& options, double compensation = kCompensatedShare,
                  double warm = 0.5);
 
+  /// The unknown is held at `ratio` of theta0, known from elsewhere within a relative standard
+  /// error that counts in those of the others.
+  void hold(int unknown, double ratio, double std_error);
   /// After an interruption: errors and noise level are unknown again.
   void restart();
   /// What the rows of a tuning allow. regularise: noise may be subtracted and the prior be added;
@@ -44,7 +47,7 @@ class WindowSolution {
   template <typename Sums>
   void begin_errors(const Sums& all, const WindowSolution& fit) {
     const BatchMeans::Fit of{&fit.solver_.solution(), &fit.solver_.information()};
-    errors_.begin(all, solver_, of, prior_, noise_, noise_scale_);
+    errors_.begin(all, solver_, of, prior_, doubt_, noise_, noise_scale_);
   }
   bool advance_errors(int steps);
   /// The next solution is of other rows: a pass under way is abandoned, errors stay.
@@ -90,6 +93,9 @@ class WindowSolution {
     a.each_within(same_as_, 0, layout_.unknowns() - 1.0);
     a(misfit_);
     a.finite(misfit_error_);
+    for (Unknown& unknown : unknowns_) a.within(unknown.prior, 0, a.kMost);
+    for (double& centre : centre_) a.within(centre, 0, a.kMost);
+    a.finite(doubt_);
     a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, noise_known_, fresh_,
       overcompensated_);
     a.finite(residual_energy_, noise_scale_, noise_level_);
@@ -101,6 +107,7 @@ class WindowSolution {
     ParameterKind kind;
     double prior;        ///< its weight over the level of the noise
     double error_limit;  ///< relative standard error above which it is not published
+    bool held = false;   ///< hold(): whatever the Trust
   };
   bool place_known(int unknown) const;
   bool rowless(int floor) const;
@@ -122,7 +129,8 @@ class WindowSolution {
   ModelMisfit misfit_;                ///< of the last closed block
   std::vector<double> misfit_error_;  ///< internal order, relative to theta0
   std::vector<double> prior_;
-  std::vector<int> same_as_;  ///< FloorRows::same_as of a building of groups
+  std::vector<double> centre_, doubt_;  ///< of the prior: hold()
+  std::vector<int> same_as_;            ///< FloorRows::same_as of a building of groups
   /// Of every floor: kWarm when its rows fill most of the window, kRowless when it has none there.
   static constexpr std::uint8_t kFilling = 0, kWarm = 1, kRowless = 2;
   std::vector<std::uint8_t> warm_;

@@ -84,7 +84,8 @@ void expect_dense(const Structure& s, const Eigen::VectorXd& theta, double prior
   const int n = b.layout.unknowns();
   NoiseCompensation noise(b.layout);
   noise.update(b.filter, b.sums.window(), 0);  // nothing subtracted
-  b.solver.factor(b.sums.window(), std::vector<double>(static_cast<std::size_t>(n), prior), noise);
+  b.solver.factor(b.sums.window(), std::vector<double>(static_cast<std::size_t>(n), prior),
+                  std::vector<double>(static_cast<std::size_t>(n), 1.0), noise);
   std::vector<int> kept;
   for (int u = 0; u < n; ++u) {
     EXPECT_EQ(b.solver.usable(u), u != fixed) << u;
