@@ -20,12 +20,16 @@ void add_init(CommandList& commands) {
       "along x), 2:y1 (floor 2, frame y1), or 2:x where one frame moves along x. The frames that\n"
       "move along x are called y1, y2, ... in order of y, those along y x1, x2, ... in order of "
       "x.\n"
+      "Files of strong-motion networks say in their headers where their channels are; PLACE is "
+      "then "
+      "2,\nroof, base, with a direction 2:x where the header has none, or unused.\n"
       "Exit status: 0 written, 2 not, with everything that is missing.\n"
       "Examples:\n"
       "  framewatch init\n"
       "  framewatch init --record shaken.csv --unit g\n"
       "  framewatch init --record shaken.csv --stories 3 --bays 0x0 --heights 4.2,3.5,3.5 \\\n"
       "    --mass 18000 --channel acc0=0:x\n"
+      "  framewatch init --record *.V1c.gz --stories 20 --plan 40x40 --heights 4 --mass 1000t\n"
       "  framewatch init --live lcm --stories 5 --bays 1x1 --span-x 10.7 --span-y 15 \\\n"
       "    --heights 3.5 --mass 400kg/m2 --start 0.5Hz --out tower.toml");
   auto& answers = arguments.answers;
@@ -36,13 +40,23 @@ void add_init(CommandList& commands) {
             [&answers, name](const std::string& text) { answers.by_option[name] = text; }, what)
         ->type_name(type);
   };
-  answer("record", "record from whose header the channels come", "FILE");
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--record",
+          [&answers](const std::vector<std::string>& files) {
+            std::string& all = answers.by_option["record"];
+            for (const std::string& file : files) all += (all.empty() ? "" : "\n") + file;
+          },
+          "record from whose header the channels come; of a station all of its files")
+      ->type_name("FILE");
   add_record_options(command, answers.record);
   answer("live", "where live samples come from (default with a record: none)", "TEXT")
       ->check(CLI::IsMember({"lcm", "can", "none"}));
   answer("interface", "of the CAN bus (default: can0)", "TEXT");
   answer("dbc", "file that describes the CAN bus", "FILE");
   answer("building", "its name", "TEXT");
+  answer("base", "level of a station that is the base (default: ground)", "TEXT")
+      ->check(CLI::IsMember({"ground", "basement"}));
   answer("stories", "stories above the base", "INT");
   answer("directions", "that the accelerometers measure (default: both)", "TEXT")
       ->check(CLI::IsMember({"x", "y", "both"}));
@@ -50,7 +64,9 @@ void add_init(CommandList& commands) {
   answer("span-x", "spans along x, m: one for all, or a list", "LIST");
   answer("span-y", "spans along y, m", "LIST");
   answer("heights", "of the stories from the bottom, m: one for all, or a list", "LIST");
-  answer("floors", "in their plane (default: flexible)", "TEXT")
+  answer("plan", "lengths along x and y, m, for sensors that are said to be at its sides: 40x25",
+         "TEXT");
+  answer("floors", "in their plane (default: flexible; of a station: rigid)", "TEXT")
       ->check(CLI::IsMember({"flexible", "rigid"}));
   answer("mass", "of each floor, kg or with its unit: 18000, 18t, 500kg/m2; or a list", "LIST");
   answer("area", "of a floor, m^2, for a mass in kg/m2 where spans do not give it", "FLOAT");

@@ -11,6 +11,7 @@
 #include "daemon/base/log.h"
 #include "daemon/base/progress.h"
 #include "daemon/config/config.h"
+#include "daemon/config/header_differences.h"
 #include "daemon/estimates/estimates_csv.h"
 #include "daemon/simulation/simulation_output.h"
 #include "drivers/base/standard_streams.h"
@@ -133,7 +134,7 @@ std::vector<AxisAddress> configured(const Config& config, Record& record, Proble
   const std::string& path = config.path;
   const std::vector<AxisAddress> known = addresses(config.sources);
   const auto& axes = config.pipeline.axes;
-  Record kept{{}, std::move(record.time_s), {}, record.rate_hz, std::move(record.notes), {}};
+  Record kept{{}, std::move(record.time_s), {}, record.rate_hz, std::move(record.notes), {}, {}};
   std::vector<AxisAddress> result;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto at = std::find(record.names.begin(), record.names.end(), axes[i].name);
@@ -292,7 +293,11 @@ void convert_records(const ConvertArguments& a, ProgressLine& progress, Problems
   auto record = read_merged(a, config, devices, problems);
   if (!record) return;
   auto where = numbered(*record, devices, a.channel);
-  if (config) where = configured(*config, *record, problems);
+  if (config) {
+    for (const std::string& difference : header_differences(*config, *record))
+      log(LogLevel::warning, difference);
+    where = configured(*config, *record, problems);
+  }
   if (a.denoise && problems.empty()) denoise(*record, problems);
   if (!problems.empty()) return;
   report(*record);

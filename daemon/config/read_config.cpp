@@ -55,6 +55,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.pipeline.structure = structure.structure;
   config.pipeline.design = structure.design.theta;
   config.pipeline.bending_nmprad = structure.design.bending_nmprad;
+  config.azimuth_y_deg = structure.azimuth_y_deg;
   read_channels(document, structure, config, problems);
   config.pipeline.options = read_estimator(document, problems);
   config.lcm = read_lcm(document, problems);
