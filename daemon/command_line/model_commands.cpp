@@ -29,7 +29,6 @@ void add_init(CommandList& commands) {
       "  framewatch init --record shaken.csv --unit g\n"
       "  framewatch init --record shaken.csv --stories 3 --bays 0x0 --heights 4.2,3.5,3.5 \\\n"
       "    --mass 18000 --channel acc0=0:x\n"
-      "  framewatch init --record *.V1c.gz --stories 20 --plan 40x40 --heights 4 --mass 1000t\n"
       "  framewatch init --live lcm --stories 5 --bays 1x1 --span-x 10.7 --span-y 15 \\\n"
       "    --heights 3.5 --mass 400kg/m2 --start 0.5Hz --out tower.toml");
   auto& answers = arguments.answers;

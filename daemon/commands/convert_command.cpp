@@ -62,13 +62,22 @@ void check_arguments(const ConvertArguments& a, Problems& problems) {
     problems.push_back({"--start-us", fmt::format("must lie within +-{}", kMaxStartUs)});
 }
 
+bool is_force(const Record& record, const std::string& name) {
+  for (std::size_t c = 0; c < record.headers.size(); ++c)
+    if (record.names[c] == name) return record.headers[c].unit == "N";
+  return false;
+}
+
 /// Of the channel with that name, or of any accelerometer.
-drivers::PlausibleRange range_of(const std::optional<Config>& config, const std::string& name) {
+drivers::PlausibleRange range_of(const std::optional<Config>& config, const Record& record,
+                                 const std::string& name) {
   drivers::PlausibleRange range;
+  if (is_force(record, name)) range.range_mps2 = drivers::kMostValue;
   if (!config) return range;
   for (const estimator::SensorAxis& axis : config->pipeline.axes) {
     if (axis.name != name) continue;
     range.scale = axis.scale;
+    if (axis.is_force) range.range_mps2 = drivers::kMostValue;
     if (axis.range > 0) range.range_mps2 = axis.range;
   }
   return range;
@@ -78,7 +87,8 @@ drivers::PlausibleRange range_of(const std::optional<Config>& config, const std:
 void look_at(const Record& record, const std::string& path, const std::optional<Config>& config,
              Problems& problems) {
   for (const std::string& doubt : drivers::implausible(
-           record, path, [&](const std::string& name) { return range_of(config, name); }, problems))
+           record, path, [&](const std::string& name) { return range_of(config, record, name); },
+           problems))
     log(LogLevel::warning, doubt);
   const double configured_hz = config ? config->pipeline.options.rate_hz : record.rate_hz;
   if (std::abs(record.rate_hz / configured_hz - 1) > kRateTolerance)

@@ -125,6 +125,13 @@ std::string about_level(const Both& both, int stories, std::optional<int> usual)
 }
 
 std::string about_unit(const Both& both) {
+  const bool is_force = both.header->unit == "N";
+  if (is_force && !both.axis->is_force)
+    return "it is a force in N, which the configuration takes for an acceleration: quantity = "
+           "\"force\" is right for this record";
+  if (both.axis->is_force && !is_force && !both.header->unit.empty())
+    return fmt::format("its values are in {}, which the configuration takes for a force in N",
+                       both.header->unit);
   if (both.axis->scale == 1 || both.header->unit.empty()) return {};
   return fmt::format(
       "its values, {} in the file, are read as m/s^2: scale = {:g} makes {:g} times of "

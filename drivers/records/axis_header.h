@@ -13,7 +13,7 @@ struct AxisHeader {
   std::optional<int> floor;                     ///< a number of it, in the network's counting
   std::optional<double> north_m, east_m, up_m;  ///< from the station's reference
   std::optional<double> latitude_deg, longitude_deg;  ///< of the sensor itself
-  std::string unit;                                   ///< of the file's values: "cm/s2", "count"
+  std::string unit;  ///< of the file's values: "cm/s2", "count"; "N" of a force
 
   bool operator==(const AxisHeader&) const = default;
 };

@@ -185,9 +185,10 @@ std::vector<double> frame_weights(const Structure& s, const SensorAxis& axis) {
   return weights;
 }
 
-StoryGroups story_groups(const Structure& s, const std::vector<SensorAxis>& axes) {
+StoryGroups story_groups(const Structure& s, const std::vector<SensorAxis>& all) {
+  const std::vector<SensorAxis> axes = accelerometers(all);
   StoryGroups out;
-  out.every_story = on_every_frame(s, axes);
+  out.every_story = axes.size() == all.size() && on_every_frame(s, axes);
   if (out.every_story) return out;
   const bool rigid = s.floor == FloorModel::rigid;
   const bool rotation = rigid && shows_rotation(s, axes);
