@@ -9,6 +9,23 @@
 
 namespace framewatch::daemon {
 
+namespace {
+
+/// Files of one record, a line each.
+void add_records(CLI::App* command, InitAnswers& answers) {
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--record",
+          [&answers](const std::vector<std::string>& files) {
+            std::string& all = answers.by_option["record"];
+            for (const std::string& file : files) all += (all.empty() ? "" : "\n") + file;
+          },
+          "record from whose header the channels come; of a station all of its files")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
 void add_init(CommandList& commands) {
   InitArguments& arguments = commands.arguments<InitArguments>();
   CLI::App* command = commands.add(
@@ -39,15 +56,7 @@ void add_init(CommandList& commands) {
             [&answers, name](const std::string& text) { answers.by_option[name] = text; }, what)
         ->type_name(type);
   };
-  command
-      ->add_option_function<std::vector<std::string>>(
-          "--record",
-          [&answers](const std::vector<std::string>& files) {
-            std::string& all = answers.by_option["record"];
-            for (const std::string& file : files) all += (all.empty() ? "" : "\n") + file;
-          },
-          "record from whose header the channels come; of a station all of its files")
-      ->type_name("FILE");
+  add_records(command, answers);
   add_record_options(command, answers.record);
   answer("live", "where live samples come from (default with a record: none)", "TEXT")
       ->check(CLI::IsMember({"lcm", "can", "none"}));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -181,20 +182,27 @@ std::optional<StationPlace> station_place(const StationReading& reading,
   else if (!along)
     why = "its header does not say the direction";
   if (!why.empty()) return std::nullopt;
-  StationPlace out;
+  StationPlace out = place_on_floor(reading, columns, c, plan);
   out.story = *story;
-  out.along = *along;
-  if (*along != 'z') out.azimuth_deg = *header.azimuth_deg;
   out.why_unused = why_unused(level, *along, plan);
-  const auto metres = places_m(reading, columns)[c];
-  const auto [x, y] = along_plan(reading.sides[c], reading.azimuth_y_deg);
-  if (metres) {
+  return out;
+}
+
+StationPlace place_on_floor(const StationReading& reading,
+                            const std::vector<ChannelColumn>& columns, std::size_t c,
+                            const StationPlan& plan) {
+  const AxisHeader& header = columns[c].header;
+  StationPlace out;
+  out.along = letter_of(header, reading.azimuth_y_deg).value_or('x');
+  if (is_horizontal(header)) out.azimuth_deg = *header.azimuth_deg;
+  if (const auto metres = places_m(reading, columns)[c]) {
     out.x_m = metres->first;
     out.y_m = metres->second;
-  } else {
-    if (x != 0 && plan.x_m > 0) out.x_m = x > 0 ? plan.x_m : 0;
-    if (y != 0 && plan.y_m > 0) out.y_m = y > 0 ? plan.y_m : 0;
+    return out;
   }
+  const auto [x, y] = along_plan(reading.sides[c], reading.azimuth_y_deg);
+  if (x != 0 && plan.x_m > 0) out.x_m = x > 0 ? plan.x_m : 0;
+  if (y != 0 && plan.y_m > 0) out.y_m = y > 0 ? plan.y_m : 0;
   return out;
 }
 

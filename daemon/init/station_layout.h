@@ -39,6 +39,12 @@ std::optional<StationPlace> station_place(const StationReading& reading,
                                           const std::vector<ChannelColumn>& columns, std::size_t c,
                                           const StationPlan& plan, std::string& why);
 
+/// What a column's header says but for its level: direction (x where it says none) and place in
+/// plan.
+StationPlace place_on_floor(const StationReading& reading,
+                            const std::vector<ChannelColumn>& columns, std::size_t c,
+                            const StationPlan& plan);
+
 /// As --channel takes it: "3", "base" or "roof" for the floor, "3:x", "3:y" or "3:z" where the
 /// header does not say the direction, "unused".
 std::optional<StationPlace> parse_station_place(const std::string& text, const StationPlace& header,

@@ -65,10 +65,7 @@ class StationPlacing {
     const auto by_header = station_place(*d.station, columns_, c, d.station_plan, why);
     const std::string answer = answer_about(name);
     if (!answer.empty()) {
-      StationPlace known = by_header.value_or(StationPlace{});
-      if (!by_header) known.along = is_vertical(columns_[c].header) ? 'z' : 'x';
-      if (!by_header && is_horizontal(columns_[c].header))
-        known.azimuth_deg = columns_[c].header.azimuth_deg;
+      const StationPlace known = place_on_floor(*d.station, columns_, c, d.station_plan);
       const auto at = parse_station_place(answer.substr(name.size() + 1), known, d.station_plan);
       if (!at)
         refuse(answer, fmt::format("a place is a floor, 0 to {}, base or roof, with :x, :y or :z "

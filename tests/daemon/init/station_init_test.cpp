@@ -194,7 +194,7 @@ TEST_F(StationInit, OfTheAtwoodBuildingIsAsWrittenByHand) {
     EXPECT_NE(written.find(part), std::string::npos) << part;
   const ShellResult check = shell("$F check building.toml");
   EXPECT_EQ(check.status, 0) << check.err;
-  EXPECT_NE(check.out.find("kx_13to18"), std::string::npos) << check.out;
+  EXPECT_NE(check.out.find("kx_14to18"), std::string::npos) << check.out;
 }
 
 }  // namespace station_init_test

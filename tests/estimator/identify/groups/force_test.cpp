@@ -1,4 +1,5 @@
 // A building driven by a shaker or a hammer on a base that rests.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -145,7 +146,7 @@ TEST(Force, OnAnInnerFloorOfFewSensorsIsExact) {
 
 TEST(Force, OnAMeasuredFloorOfAWhollyMeasuredBuildingIsExact) {
   const ForcedRecord record = forced_record(5, {1, 2, 3, 4, 5}, 5, shaker(), 0);
-  ASSERT_EQ(record.config.parameters()[2].name, "kx_3");
+  ASSERT_EQ(record.config.parameters()[2].name, "kx_3_y1");
   const Largest errors = errors_of(record);
   EXPECT_LT(errors.stiffness, kExactStiffness);
   EXPECT_LT(errors.damping, kExactDamping);
