@@ -98,8 +98,6 @@ void check_declared(RecordFormat format, const RecordOptions& options, FileProbl
   const bool needs_unit =
       format == RecordFormat::columns || format == RecordFormat::rows || of_station;
   const bool needs_step = format == RecordFormat::rows;
-  if (!options.station_xml.empty() && !of_station)
-    problems.add(0, "--station-xml is for miniSEED and SAC");
   if (of_station && options.unit_mps2 && !options.station_xml.empty())
     problems.add(0, "--unit and --station-xml both say what a count is: leave one out");
   if (needs_unit && !options.unit_mps2 && (!of_station || options.station_xml.empty()))
@@ -138,6 +136,8 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
                               FileProblems& problems) {
   const bool table = format == RecordFormat::csv || format == RecordFormat::mat;
   if (!table) check_declared(format, options, problems);
+  if (!options.station_xml.empty() && format != RecordFormat::mseed && format != RecordFormat::sac)
+    problems.add(0, "--station-xml is for miniSEED and SAC");
   if (options.step_s && !(std::isfinite(*options.step_s) && *options.step_s > 0))
     problems.add(0, fmt::format("--step {} must be positive", *options.step_s));
   if (problems.any()) return std::nullopt;

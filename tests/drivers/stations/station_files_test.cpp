@@ -183,7 +183,7 @@ TEST_F(StationFile, OfKnetIsReadWithItsHeader) {
   const auto deep = read(replaced(knet(), "E-W", "3"));
   ASSERT_TRUE(deep);
   EXPECT_EQ(deep->names, std::vector<std::string>{"AKT001.UD1"});
-  EXPECT_TRUE(deep->notes[0].ends_with(": in the borehole, up"));
+  EXPECT_TRUE(deep->notes[0].ends_with(": up, in the borehole"));
 }
 
 TEST_F(StationFile, OfKnetThatIsDamagedIsRefused) {
