@@ -70,6 +70,10 @@ void add_json(CLI::App* command, bool& json) {
 void add_record_options(CLI::App* command, RecordFileArguments& record) {
   command->add_option("--unit", record.unit,
                       "of a file that does not say it: g, mg, gal, mps2, or the m/s^2 of one");
+  command
+      ->add_option("--station-xml", record.station_xml,
+                   "StationXML of the network of a miniSEED or SAC file, which says that and more")
+      ->type_name("FILE");
   command->add_option("--step", record.step_s, "seconds between samples of a file without time");
   command->add_option("--time", record.time,
                       "title of the column (or MATLAB variable) with the times");

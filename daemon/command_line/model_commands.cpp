@@ -9,6 +9,23 @@
 
 namespace framewatch::daemon {
 
+namespace {
+
+/// Files of one record, a line each.
+void add_records(CLI::App* command, InitAnswers& answers) {
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--record",
+          [&answers](const std::vector<std::string>& files) {
+            std::string& all = answers.by_option["record"];
+            for (const std::string& file : files) all += (all.empty() ? "" : "\n") + file;
+          },
+          "record from whose header the channels come; of a station all of its files")
+      ->type_name("FILE");
+}
+
+}  // namespace
+
 void add_init(CommandList& commands) {
   InitArguments& arguments = commands.arguments<InitArguments>();
   CLI::App* command = commands.add(
@@ -20,6 +37,9 @@ void add_init(CommandList& commands) {
       "along x), 2:y1 (floor 2, frame y1), or 2:x where one frame moves along x. The frames that\n"
       "move along x are called y1, y2, ... in order of y, those along y x1, x2, ... in order of "
       "x.\n"
+      "Files of strong-motion networks say in their headers where their channels are; PLACE is "
+      "then "
+      "2,\nroof, base, with a direction 2:x where the header has none, or unused.\n"
       "Exit status: 0 written, 2 not, with everything that is missing.\n"
       "Examples:\n"
       "  framewatch init\n"
@@ -36,13 +56,15 @@ void add_init(CommandList& commands) {
             [&answers, name](const std::string& text) { answers.by_option[name] = text; }, what)
         ->type_name(type);
   };
-  answer("record", "record from whose header the channels come", "FILE");
+  add_records(command, answers);
   add_record_options(command, answers.record);
   answer("live", "where live samples come from (default with a record: none)", "TEXT")
       ->check(CLI::IsMember({"lcm", "can", "none"}));
   answer("interface", "of the CAN bus (default: can0)", "TEXT");
   answer("dbc", "file that describes the CAN bus", "FILE");
   answer("building", "its name", "TEXT");
+  answer("base", "level of a station that is the base (default: ground)", "TEXT")
+      ->check(CLI::IsMember({"ground", "basement"}));
   answer("stories", "stories above the base", "INT");
   answer("directions", "that the accelerometers measure (default: both)", "TEXT")
       ->check(CLI::IsMember({"x", "y", "both"}));
@@ -50,7 +72,9 @@ void add_init(CommandList& commands) {
   answer("span-x", "spans along x, m: one for all, or a list", "LIST");
   answer("span-y", "spans along y, m", "LIST");
   answer("heights", "of the stories from the bottom, m: one for all, or a list", "LIST");
-  answer("floors", "in their plane (default: flexible)", "TEXT")
+  answer("plan", "lengths along x and y, m, for sensors that are said to be at its sides: 40x25",
+         "TEXT");
+  answer("floors", "in their plane (default: flexible; of a station: rigid)", "TEXT")
       ->check(CLI::IsMember({"flexible", "rigid"}));
   answer("mass", "of each floor, kg or with its unit: 18000, 18t, 500kg/m2; or a list", "LIST");
   answer("area", "of a floor, m^2, for a mass in kg/m2 where spans do not give it", "FLOAT");

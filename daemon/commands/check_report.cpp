@@ -104,6 +104,21 @@ void warn_about_bus_load(CheckReport& report) {
   }
 }
 
+void warn_about_force(CheckReport& report) {
+  const estimator::PipelineConfig& c = report.config.pipeline;
+  const bool rests = std::none_of(c.axes.begin(), c.axes.end(),
+                                  [](const estimator::SensorAxis& a) { return a.story == 0; });
+  if (rests)
+    report.warnings.push_back(
+        "no base channel: the base is taken to rest while a force drives the building");
+  if (c.structure.panels() > 0)
+    report.warnings.push_back(
+        "with a force the floor panels are not identified: they are as stiff as the design says");
+  report.warnings.push_back(
+      "how well a test with a force shows its parameters is not predicted: the standard errors of "
+      "its windows say it");
+}
+
 /// What a layout of few sensors does not show, and what would.
 void warn_about_layout(CheckReport& report) {
   const estimator::PipelineConfig& c = report.config.pipeline;
@@ -153,7 +168,9 @@ CheckReport make_check_report(const Config& config, int advise) {
   report.hop_rows = pipeline.hop_rows();
   const estimator::ParameterTable table(c.structure), identified = c.parameters();
   for (int i = 0; i < identified.size(); ++i) report.parameters.push_back(identified[i].name);
-  if (identified.grouped()) {
+  if (has_force(c.axes)) {
+    warn_about_force(report);
+  } else if (identified.grouped()) {
     report.layout = layout_outlook(config, advise);
     warn_about_layout(report);
   }

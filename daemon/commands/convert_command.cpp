@@ -11,6 +11,7 @@
 #include "daemon/base/log.h"
 #include "daemon/base/progress.h"
 #include "daemon/config/config.h"
+#include "daemon/config/header_differences.h"
 #include "daemon/estimates/estimates_csv.h"
 #include "daemon/simulation/simulation_output.h"
 #include "drivers/base/standard_streams.h"
@@ -61,13 +62,22 @@ void check_arguments(const ConvertArguments& a, Problems& problems) {
     problems.push_back({"--start-us", fmt::format("must lie within +-{}", kMaxStartUs)});
 }
 
+bool is_force(const Record& record, const std::string& name) {
+  for (std::size_t c = 0; c < record.headers.size(); ++c)
+    if (record.names[c] == name) return record.headers[c].unit == "N";
+  return false;
+}
+
 /// Of the channel with that name, or of any accelerometer.
-drivers::PlausibleRange range_of(const std::optional<Config>& config, const std::string& name) {
+drivers::PlausibleRange range_of(const std::optional<Config>& config, const Record& record,
+                                 const std::string& name) {
   drivers::PlausibleRange range;
+  if (is_force(record, name)) range.range_mps2 = drivers::kMostValue;
   if (!config) return range;
   for (const estimator::SensorAxis& axis : config->pipeline.axes) {
     if (axis.name != name) continue;
     range.scale = axis.scale;
+    if (axis.is_force) range.range_mps2 = drivers::kMostValue;
     if (axis.range > 0) range.range_mps2 = axis.range;
   }
   return range;
@@ -77,7 +87,8 @@ drivers::PlausibleRange range_of(const std::optional<Config>& config, const std:
 void look_at(const Record& record, const std::string& path, const std::optional<Config>& config,
              Problems& problems) {
   for (const std::string& doubt : drivers::implausible(
-           record, path, [&](const std::string& name) { return range_of(config, name); }, problems))
+           record, path, [&](const std::string& name) { return range_of(config, record, name); },
+           problems))
     log(LogLevel::warning, doubt);
   const double configured_hz = config ? config->pipeline.options.rate_hz : record.rate_hz;
   if (std::abs(record.rate_hz / configured_hz - 1) > kRateTolerance)
@@ -133,7 +144,7 @@ std::vector<AxisAddress> configured(const Config& config, Record& record, Proble
   const std::string& path = config.path;
   const std::vector<AxisAddress> known = addresses(config.sources);
   const auto& axes = config.pipeline.axes;
-  Record kept{{}, std::move(record.time_s), {}, record.rate_hz, std::move(record.notes), {}};
+  Record kept{{}, std::move(record.time_s), {}, record.rate_hz, std::move(record.notes), {}, {}};
   std::vector<AxisAddress> result;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto at = std::find(record.names.begin(), record.names.end(), axes[i].name);
@@ -292,7 +303,11 @@ void convert_records(const ConvertArguments& a, ProgressLine& progress, Problems
   auto record = read_merged(a, config, devices, problems);
   if (!record) return;
   auto where = numbered(*record, devices, a.channel);
-  if (config) where = configured(*config, *record, problems);
+  if (config) {
+    for (const std::string& difference : header_differences(*config, *record))
+      log(LogLevel::warning, difference);
+    where = configured(*config, *record, problems);
+  }
   if (a.denoise && problems.empty()) denoise(*record, problems);
   if (!problems.empty()) return;
   report(*record);

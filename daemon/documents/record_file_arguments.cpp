@@ -8,9 +8,9 @@
 namespace framewatch::daemon {
 
 bool RecordFileArguments::any() const {
-  return !unit.empty() || step_s != 0 || format != "detect" || !time.empty() ||
-         !time_unit.empty() || !zone.empty() || !decimal.empty() || !columns.empty() ||
-         !names.empty();
+  return !unit.empty() || !station_xml.empty() || step_s != 0 || format != "detect" ||
+         !time.empty() || !time_unit.empty() || !zone.empty() || !decimal.empty() ||
+         !columns.empty() || !names.empty();
 }
 
 drivers::RecordOptions record_options(const RecordFileArguments& a,
@@ -26,6 +26,7 @@ drivers::RecordOptions record_options(const RecordFileArguments& a,
   out.unit_mps2 = drivers::declared_unit(a.unit);
   if (!a.unit.empty() && !out.unit_mps2)
     wrong("--unit", a.unit, "g, mg, gal or mps2, nor a number of m/s^2");
+  out.station_xml = a.station_xml;
   if (a.step_s != 0) out.step_s = a.step_s;
   out.time_column = a.time;
   out.time_unit_s = drivers::seconds_per(a.time_unit);

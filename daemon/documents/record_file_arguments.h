@@ -10,7 +10,8 @@ namespace framewatch::daemon {
 
 /// What the command line says of record files, as text; empty or 0: not declared.
 struct RecordFileArguments {
-  std::string unit;  ///< g, mg, gal, mps2, or a number: m/s^2 of one
+  std::string unit;         ///< g, mg, gal, mps2, or a number: m/s^2 of one
+  std::string station_xml;  ///< a file that says what a count is; instead of a unit
   double step_s = 0;
   std::string format = "detect";
   std::string time, time_unit, zone, decimal;

@@ -12,7 +12,7 @@ constexpr double kNoiseSigmas = 8;  // no noise reaches that within a year
 double noise_mps2(const estimator::PipelineConfig& config) {
   double density = 0;
   for (const estimator::SensorAxis& axis : config.axes)
-    density = std::max(density, axis.noise_density);
+    if (!axis.is_force) density = std::max(density, axis.noise_density);
   return density * std::sqrt(config.options.rate_hz / 2);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "daemon/init/place.h"
+#include "drivers/records/axis_header.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::daemon {
@@ -11,13 +13,24 @@ namespace framewatch::daemon {
 /// What can become a channel: a column of a record, a signal of a CAN bus, an axis of an LCM node.
 struct ChannelColumn {
   std::string name;
-  std::string source;  ///< TOML of its `source`; empty: from files only
-  double scale = 1;    ///< m/s^2 of one
+  std::string source;               ///< TOML of its `source`; empty: from files only
+  double scale = 1;                 ///< m/s^2 of one
+  drivers::AxisHeader header = {};  ///< what its file says of it
+};
+
+/// Where a channel of a network's station is: at a place in plan, in a direction of the compass.
+struct StationPlace {
+  int story = 0;
+  std::string why_unused;             ///< empty: it is used
+  std::optional<double> azimuth_deg;  ///< empty: `along`
+  char along = 'z';                   ///< x, y, or z: vertical
+  std::optional<double> x_m, y_m;     ///< empty: not known
 };
 
 struct PlannedChannel {
   Place place;
   ChannelColumn column;
+  std::optional<StationPlace> station = {};  ///< instead of `place`
 };
 
 /// A building as its owner described it, SI units.
@@ -32,6 +45,8 @@ struct BuildingPlan {
   std::vector<PlannedChannel> channels;
   std::string can_interface, dbc;  ///< empty: no CAN
   std::string record;              ///< empty: none; with its options as `replay` takes them
+  int record_files = 1;            ///< over 1: `record` is in words, `convert` makes one of them
+  std::optional<double> azimuth_y_deg;  ///< of a station's building
 };
 
 /// Share of the plan that each line of frames carries, between neighbours of which these spans lie:

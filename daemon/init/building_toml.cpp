@@ -96,6 +96,10 @@ std::string structure_section(const BuildingPlan& p) {
     out += fmt::format("span_x_m = {}  # between the frames of frames_y\n", numbers(s.span_x));
   if (s.n() > 1)
     out += fmt::format("span_y_m = {}  # between the frames of frames_x\n", numbers(s.span_y));
+  if (p.azimuth_y_deg)
+    out += fmt::format(
+        "azimuth_y_deg = {:g}  # where y points by the compass; x is 90 deg clockwise from it\n",
+        *p.azimuth_y_deg);
   out += fmt::format("story_height_m = {}  # for drift ratios; stiffness does not depend on it\n",
                      numbers(s.story_height));
   out += fmt::format(
@@ -144,7 +148,25 @@ std::string can_section(const BuildingPlan& p) {
       quoted(p.can_interface), quoted(p.dbc));
 }
 
+/// At a place in plan. What the header says stands beside it.
+std::string station_channel_section(const PlannedChannel& channel) {
+  const StationPlace& at = *channel.station;
+  const drivers::AxisHeader& header = channel.column.header;
+  std::string out =
+      fmt::format("\n[[channel]]\nname = {}\nstory = {}{}\n", quoted(channel.column.name), at.story,
+                  header.place.empty() ? "" : "  # " + printable(header.place));
+  if (at.azimuth_deg)
+    out += fmt::format("azimuth_deg = {:g}  # along {}\n", *at.azimuth_deg, at.along);
+  else
+    out += fmt::format("direction = \"{}\"\n", at.along);
+  if (at.x_m && at.along != 'z') out += fmt::format("x_m = {:.6g}\n", *at.x_m);
+  if (at.y_m && at.along != 'z') out += fmt::format("y_m = {:.6g}\n", *at.y_m);
+  if (!at.why_unused.empty()) out += fmt::format("use = false  # {}\n", at.why_unused);
+  return out;
+}
+
 std::string channel_section(const estimator::Structure& s, const PlannedChannel& channel) {
+  if (channel.station) return station_channel_section(channel);
   std::string out = fmt::format("\n[[channel]]\nname = {}\nstory = {}\n",
                                 quoted(channel.column.name), channel.place.story);
   const char* direction = channel.place.direction == estimator::Direction::x ? "x" : "y";
@@ -166,11 +188,19 @@ std::string building_toml(const BuildingPlan& p) {
                      fmt::format("{:.10g}", p.rate_hz),
                      p.rate_from.empty() ? "" : "  # " + p.rate_from);
   out += can_section(p);
-  out +=
-      "\n# The accelerometers: every frame has one on every floor, the base one in each direction. "
-      "An\n"
-      "# axis mounted backwards has polarity = -1; noise_mps2_per_rthz (data sheet) is worth "
-      "giving.\n";
+  if (p.azimuth_y_deg)
+    out +=
+        "\n# The accelerometers, where the record's headers say they are: azimuth_deg is where the "
+        "positive\n# axis points, x_m and y_m are from the first frames; `framewatch check` says "
+        "what "
+        "they show.\n# noise_mps2_per_rthz (data sheet) is worth giving.\n";
+  else
+    out +=
+        "\n# The accelerometers: every frame has one on every floor, the base one in each "
+        "direction. "
+        "An\n"
+        "# axis mounted backwards has polarity = -1; noise_mps2_per_rthz (data sheet) is worth "
+        "giving.\n";
   const auto lcm = std::find_if(p.channels.begin(), p.channels.end(), [](const auto& channel) {
     return channel.column.source.find("lcm") != std::string::npos;
   });

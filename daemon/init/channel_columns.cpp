@@ -1,5 +1,8 @@
 #include "daemon/init/channel_columns.h"
 
+#include <glob.h>
+
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -7,10 +10,12 @@
 #include <fmt/format.h>
 
 #include "daemon/base/file_digest.h"
+#include "drivers/base/input_file.h"
 #include "drivers/base/number_text.h"
 #include "drivers/dbc/dbc.h"
 #include "drivers/formats/record_file.h"
 #include "drivers/records/accel_unit.h"
+#include "drivers/records/record_merge.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -40,7 +45,8 @@ void set_option(const std::string& name, const std::string& value, RecordAnswer&
   for (const auto& [known, text] :
        {std::pair("unit", &a.unit), std::pair("time", &a.time),
         std::pair("time-unit", &a.time_unit), std::pair("zone", &a.zone),
-        std::pair("decimal", &a.decimal), std::pair("format", &a.format)})
+        std::pair("station-xml", &a.station_xml), std::pair("decimal", &a.decimal),
+        std::pair("format", &a.format)})
     if (name == known) {
       *text = value;
       return;
@@ -57,17 +63,45 @@ void set_option(const std::string& name, const std::string& value, RecordAnswer&
   }
 }
 
+/// Names on lines of their own; one that is a pattern stands for the files it fits.
+std::vector<std::string> files_of(const std::string& text) {
+  std::vector<std::string> out;
+  std::size_t at = 0;
+  while (at <= text.size()) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string name = text.substr(at, end - at);
+    at = end + 1;
+    glob_t found{};
+    const bool pattern = name.find_first_of("*?") != std::string::npos && drivers::is_absent(name);
+    if (pattern && ::glob(name.c_str(), 0, nullptr, &found) == 0)
+      out.insert(out.end(), found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    else
+      out.push_back(name);
+    ::globfree(&found);
+  }
+  return out;
+}
+
 }  // namespace
 
-ChannelColumns columns_of_record(const std::string& path, const RecordFileArguments& arguments) {
+ChannelColumns columns_of_records(const std::vector<std::string>& paths,
+                                  const RecordFileArguments& arguments) {
   ChannelColumns out;
   std::vector<drivers::Problem> problems;
   const drivers::RecordOptions options = record_options(arguments, problems);
+  std::vector<drivers::Record> records;
+  for (const std::string& path : paths)
+    if (auto read = problems.empty() ? drivers::read_record(path, options, problems) : std::nullopt)
+      records.push_back(std::move(*read));
   std::optional<drivers::Record> record;
-  if (problems.empty()) record = drivers::read_record(path, options, problems);
+  if (problems.empty() && paths.size() == 1) record = std::move(records.front());
+  if (problems.empty() && paths.size() > 1)
+    record = merge_records(std::move(records), paths, drivers::MergeSpan::common, problems);
   out.problem = lines_of(problems);
   if (!record) return out;
-  for (const std::string& name : record->names) out.columns.push_back({name, "", 1});
+  for (std::size_t c = 0; c < record->names.size(); ++c)
+    out.columns.push_back({record->names[c], "", 1,
+                           record->headers.empty() ? drivers::AxisHeader{} : record->headers[c]});
   out.rate_hz = round_rate_hz(record->rate_hz);
   out.notes = record->notes;
   return out;
@@ -90,8 +124,10 @@ ChannelColumns columns_of_dbc(const std::string& path, const std::string& interf
       if (const auto scale = drivers::mps2_per(signal.unit); scale && !signal.is_multiplexor) {
         const std::string name = message.name + "." + signal.name;
         out.columns.push_back(
-            {name, fmt::format("{{ can = \"{}\", dbc_signal = \"{}\" }}", interface, name),
-             *scale});
+            {name,
+             fmt::format("{{ can = \"{}\", dbc_signal = \"{}\" }}", interface, name),
+             *scale,
+             {}});
       }
   if (out.columns.empty())
     out.problem = path + ": no signal has a unit of acceleration (g, mg, gal, m/s^2)";
@@ -101,7 +137,7 @@ ChannelColumns columns_of_dbc(const std::string& path, const std::string& interf
 RecordAnswer parse_record_answer(const std::string& text) {
   RecordAnswer out;
   std::size_t at = text.find(" --");
-  out.path = std::string(drivers::trimmed(std::string_view(text).substr(0, at)));
+  out.paths = files_of(std::string(drivers::trimmed(std::string_view(text).substr(0, at))));
   while (at != std::string::npos && out.problem.empty()) {
     const std::size_t end = text.find(" --", at + 1);
     const std::string option(drivers::trimmed(
@@ -134,6 +170,7 @@ std::string options_text(const RecordFileArguments& a) {
     if (!value.empty()) out += fmt::format(" --{} {}", option, shell_word(value));
   };
   add("unit", a.unit);
+  add("station-xml", a.station_xml);
   if (a.step_s != 0) add("step", drivers::format_number(a.step_s));
   add("time", a.time);
   add("time-unit", a.time_unit);

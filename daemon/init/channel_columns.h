@@ -17,15 +17,17 @@ struct ChannelColumns {
   std::string problem;             ///< why there is nothing, of several lines; empty: all is well
 };
 
-ChannelColumns columns_of_record(const std::string& path, const RecordFileArguments& arguments);
+/// Of several files the channels of all, which must have one clock.
+ChannelColumns columns_of_records(const std::vector<std::string>& paths,
+                                  const RecordFileArguments& arguments);
 
 /// The signals of a DBC file whose unit is one of acceleration.
 ChannelColumns columns_of_dbc(const std::string& path, const std::string& interface);
 
-/// "rec.csv --unit g" as a person answers: the file's name, and options of it. A word that is no
-/// such option is a problem.
+/// "rec.csv --unit g" as a person answers: the file's name, or a pattern of several
+/// ("np8040/*.V1c.gz"), and options of them. A word that is no such option is a problem.
 struct RecordAnswer {
-  std::string path;
+  std::vector<std::string> paths;  ///< one at least
   RecordFileArguments arguments;
   std::string problem;
 };

@@ -6,6 +6,7 @@
 
 #include "daemon/base/printable.h"
 #include "daemon/init/place.h"
+#include "daemon/init/station_questions.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -61,16 +62,15 @@ class ChannelPlacing {
   void take_named() {
     for (const std::string& text : answers_.channels) {
       const std::size_t equals = text.rfind('=');
-      const auto place = equals == std::string::npos
-                             ? std::nullopt
-                             : parse_place(structure_, text.substr(equals + 1));
-      const auto column =
-          std::find_if(columns_.begin(), columns_.end(), [&](const ChannelColumn& c) {
-            return equals != std::string::npos && c.name == text.substr(0, equals);
-          });
-      if (equals == std::string::npos)
+      if (equals == std::string::npos) {
         refuse(text, "write NAME=PLACE, such as acc3=2:y1");
-      else if (column == columns_.end())
+        continue;
+      }
+      const auto column =
+          std::find_if(columns_.begin(), columns_.end(),
+                       [&](const ChannelColumn& c) { return c.name == text.substr(0, equals); });
+      const std::optional<Place> place = parse_place(structure_, text.substr(equals + 1));
+      if (column == columns_.end())
         refuse(text, "there is no such column; there are " + names_left());
       else if (!place)
         refuse(text, "no place of this building; places are " +
@@ -190,6 +190,7 @@ class ChannelPlacing {
 }  // namespace
 
 void place_channels(const InitAnswers& answers, InitReading& reading) {
+  if (reading.draft.station) return place_station(answers, reading);
   ChannelPlacing(answers, reading).place();
 }
 

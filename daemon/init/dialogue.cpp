@@ -102,6 +102,10 @@ class Dialogue {
 
   void take(const OpenQuestion& question, const std::string& answer) {
     history_.push_back(question.option);
+    if (!question.column.empty()) {
+      answers_.channels.push_back(question.column + "=" + answer);
+      return;
+    }
     if (question.place) {
       const InitReading reading = read_answers(answers_, false, files_);
       answers_.channels.push_back(answer + "=" +
@@ -151,7 +155,9 @@ class Dialogue {
       answers_.by_option.erase(option);
       return;
     }
-    terminal_.say("\nWrite NAME=PLACE, such as acc3=2:y1, or base_x=0:x for the base.\n");
+    terminal_.say(
+        "\nWrite NAME=PLACE, such as acc3=2:y1, or base_x=0:x for the base; of a station ch3=2, "
+        "ch3=roof:x or ch3=unused.\n");
     const std::string answer = line();
     if (answer.empty()) return;
     const std::size_t equals = answer.rfind('=');

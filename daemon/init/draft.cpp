@@ -2,10 +2,12 @@
 
 namespace framewatch::daemon {
 
-const ChannelColumns& ColumnCache::record(const std::string& path,
-                                          const RecordFileArguments& arguments) {
-  const auto [at, fresh] = read_.try_emplace(path + options_text(arguments));
-  if (fresh) at->second = columns_of_record(path, arguments);
+const ChannelColumns& ColumnCache::records(const std::vector<std::string>& paths,
+                                           const RecordFileArguments& arguments) {
+  std::string key = options_text(arguments);
+  for (const std::string& path : paths) key += "\n" + path;
+  const auto [at, fresh] = read_.try_emplace(key);
+  if (fresh) at->second = columns_of_records(paths, arguments);
   return at->second;
 }
 

@@ -10,12 +10,14 @@
 #include "daemon/init/building_plan.h"
 #include "daemon/init/channel_columns.h"
 #include "daemon/init/column_places.h"
+#include "daemon/init/station_layout.h"
 
 namespace framewatch::daemon {
 
 /// What was answered, as it was typed: by option or in the dialogue.
 struct InitAnswers {
-  std::map<std::string, std::string, std::less<>> by_option;  ///< "stories": "3"
+  std::map<std::string, std::string, std::less<>> by_option;  ///< "stories": "3"; files of
+                                                              ///< "record" stand one a line
   std::vector<std::string> channels;                          ///< NAME=PLACE
   RecordFileArguments record;                                 ///< what the record does not say
 };
@@ -23,7 +25,8 @@ struct InitAnswers {
 /// Files as they were read, by name and options, so that a dialogue reads each once.
 class ColumnCache {
  public:
-  const ChannelColumns& record(const std::string& path, const RecordFileArguments& arguments);
+  const ChannelColumns& records(const std::vector<std::string>& paths,
+                                const RecordFileArguments& arguments);
   const ChannelColumns& dbc(const std::string& path, const std::string& interface);
 
  private:
@@ -42,7 +45,9 @@ struct BuildingDraft {
   std::vector<double> mass;            ///< as answered
   std::string mass_unit;               ///< kg, t, kg/m2
   std::optional<double> area_m2;
-  std::optional<TitleReading> reading;  ///< of the columns' titles
+  std::optional<TitleReading> reading;    ///< of the columns' titles
+  std::optional<StationReading> station;  ///< what headers of a network's files say
+  StationPlan station_plan;
 };
 
 /// What is still to be answered, or was answered wrongly.
@@ -53,6 +58,7 @@ struct OpenQuestion {
   std::string problem;         ///< why the answer does not serve; empty: there is none yet
   std::optional<Place> place;  ///< of a channel: which column is there?
   std::string answer = {};     ///< of a channel: the one that does not serve
+  std::string column = {};     ///< of a station: where is this one?
 };
 
 /// An answer as the summary shows it.

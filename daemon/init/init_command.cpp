@@ -54,6 +54,7 @@ int refuse_answers(const InitReading& reading) {
     std::replace(missing.begin(), missing.end(), '\n', ' ');
     if (open.option == "live") missing += " Or is there a record: --record FILE?";
     std::string option = "--" + open.option;
+    if (!open.column.empty()) option += " " + printable(open.column) + "=PLACE";
     if (open.place) option += " NAME=" + place_option(reading.draft.plan.structure, *open.place);
     fmt::print(stderr, "{}: {}\n", option,
                printable_lines(open.problem.empty() ? missing : open.problem));
@@ -68,7 +69,13 @@ std::string next_steps(const BuildingPlan& plan, const std::string& path) {
   const std::string config = shell_word(path);
   std::string out =
       fmt::format("{}: written. What follows:\n  framewatch check {}\n", path, config);
-  if (!plan.record.empty())
+  if (plan.record_files > 1)
+    out += fmt::format(
+        "  framewatch convert FILES station.lcmlog   (the {})\n"
+        "  framewatch replay {} station.lcmlog --out estimates.lcmlog\n"
+        "  framewatch report estimates.lcmlog --out report.html\n",
+        plan.record, config);
+  else if (!plan.record.empty())
     out += fmt::format(
         "  framewatch replay {} {} --out estimates.lcmlog\n"
         "  framewatch report estimates.lcmlog --out report.html\n",

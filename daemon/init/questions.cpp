@@ -8,6 +8,7 @@
 #include "daemon/base/printable.h"
 #include "daemon/init/answer_text.h"
 #include "daemon/init/start_question.h"
+#include "daemon/init/station_answers.h"
 #include "drivers/base/number_text.h"
 
 namespace framewatch::daemon {
@@ -35,11 +36,17 @@ std::string take_record(const std::string& text, Draft& d, ColumnCache& files) {
   RecordAnswer answer = parse_record_answer(text);
   if (!answer.problem.empty()) return answer.problem;
   if (!answer.arguments.any()) answer.arguments = d.record_arguments;
-  const ChannelColumns& read = files.record(answer.path, answer.arguments);
+  const ChannelColumns& read = files.records(answer.paths, answer.arguments);
   if (!read.problem.empty()) return read.problem;
   d.columns = read.columns;
+  d.station = read_station(d.columns);
+  if (d.station) d.station_plan.base_is_basement = !d.station->ground_can_be_base;
   d.notes.insert(d.notes.end(), read.notes.begin(), read.notes.end());
-  d.plan.record = shell_word(answer.path) + options_text(answer.arguments);
+  d.plan.record_files = static_cast<int>(answer.paths.size());
+  d.plan.record = d.plan.record_files == 1
+                      ? shell_word(answer.paths.front()) + options_text(answer.arguments)
+                      : fmt::format("{} files, {} to {}", answer.paths.size(), answer.paths.front(),
+                                    answer.paths.back());
   d.plan.rate_hz = read.rate_hz;
   d.plan.rate_from = "as the record's times say";
   return "";
@@ -79,7 +86,7 @@ std::string take_stories(const std::string& text, Draft& d, ColumnCache&) {
   const auto number = drivers::parse_integer(text);
   if (!number || *number < 1 || *number > kMostStories)
     return fmt::format("a whole number from 1 to {}", kMostStories);
-  d.plan.structure.stories = static_cast<int>(*number);
+  d.plan.structure.stories = d.station_plan.stories = static_cast<int>(*number);
   d.stories_known = true;
   return "";
 }
@@ -88,12 +95,18 @@ std::string take_directions(const std::string& text, Draft& d, ColumnCache&) {
   if (text != "x" && text != "y" && text != "both") return "x, y or both";
   d.has_x = text != "y";
   d.has_y = text != "x";
+  d.station_plan.has_x = d.has_x;
+  d.station_plan.has_y = d.has_y;
   if (!d.has_x) d.plan.structure.frames_x.clear();
   if (!d.has_y) d.plan.structure.frames_y.clear();
   return "";
 }
 
 std::string ask_bays(const Draft& d) {
+  if (d.station)
+    return "Bays of the plan along x and along y, such as 2x1? With 0x0 one frame stands for all "
+           "of "
+           "its\ndirection; torsion needs frames.";
   std::string out =
       "Bays of the plan along x and along y, such as 2x1? Every frame needs an accelerometer on "
       "every\nfloor: ";
@@ -242,7 +255,6 @@ constexpr char kAskLive[] = "Where do live samples come from: lcm, can, or none 
 constexpr char kAskInterface[] = "Which network interface is the CAN bus?";
 constexpr char kAskDbc[] = "Which DBC file describes the bus?";
 constexpr char kAskName[] = "What is the building called?";
-constexpr char kAskStories[] = "How many stories does it have above its base?";
 constexpr char kAskDirections[] =
     "Which horizontal directions do the accelerometers measure: x, y or both?";
 constexpr char kAskSpanX[] = "Spans along x, m (one for all, or each)?";
@@ -255,11 +267,14 @@ constexpr char kAskMass[] =
     "Mass of each floor with what it carries: 18000 (kg), 18 t, one for all or each; or 500 kg/m2?";
 constexpr char kAskArea[] = "Area of a floor, m^2?";
 constexpr char kAskRate[] = "Samples a second of every accelerometer?";
-constexpr char kNone[] = "none", kCan0[] = "can0", kBuilding[] = "building", kBoth[] = "both",
-               kFlexible[] = "flexible", k100[] = "100";
+constexpr char kNone[] = "none", kCan0[] = "can0", kBuilding[] = "building", k100[] = "100",
+               kGround[] = "ground";
 
-std::string of_plane(const Draft& d) {
-  return d.has_x && d.has_y ? "" : "0x0";
+std::string initial_bays(const Draft& d) {
+  return d.has_x && d.has_y && !d.station ? "" : "0x0";
+}
+std::string initial_floors(const Draft& d) {
+  return d.station ? "rigid" : "flexible";
 }
 std::string initial_live(const Draft& d) {
   return d.plan.record.empty() ? "" : "none";
@@ -284,22 +299,26 @@ const InitQuestion kQuestions[] = {
      }},
     {"building", "name", fixed<kAskName>, always, fixed<kBuilding>, take_name,
      [](const Draft& d) { return d.plan.structure.name; }},
-    {"stories", "stories", fixed<kAskStories>, always, must, take_stories,
+    {"base", "base", ask_base, asks_base, fixed<kGround>, take_base, understood_base},
+    {"stories", "stories", ask_stories, always, must, take_stories,
      [](const Draft& d) { return fmt::format("{}", d.plan.structure.stories); }},
-    {"directions", "directions", fixed<kAskDirections>, always, fixed<kBoth>, take_directions,
+    {"directions", "directions", fixed<kAskDirections>, always, initial_directions, take_directions,
      [](const Draft& d) {
        return std::string(!d.has_y ? "x" : !d.has_x ? "y" : "x and y");
      }},
-    {"bays", "bays", ask_bays, always, of_plane, take_bays, understood_bays},
+    {"bays", "bays", ask_bays, always, initial_bays, take_bays, understood_bays},
     {"span-x", "spans along x", fixed<kAskSpanX>,
      [](const Draft& d) { return d.plan.structure.m() > 1; }, must, take_span_x, lengths_x},
     {"span-y", "spans along y", fixed<kAskSpanY>,
      [](const Draft& d) { return d.plan.structure.n() > 1; }, must, take_span_y, lengths_y},
+    {"plan", "lengths of the plan", ask_plan, asks_plan, must, take_plan, understood_plan},
     {"heights", "story heights", fixed<kAskHeights>, always, must, take_heights,
      understood_heights},
     {"floors", "floors", fixed<kAskFloors>,
-     [](const Draft& d) { return d.plan.structure.n() > 1 || d.plan.structure.m() > 1; },
-     fixed<kFlexible>, take_floors,
+     [](const Draft& d) {
+       return d.station || d.plan.structure.n() > 1 || d.plan.structure.m() > 1;
+     },
+     initial_floors, take_floors,
      [](const Draft& d) {
        return std::string(d.plan.structure.floor == estimator::FloorModel::rigid ? "rigid"
                                                                                  : "flexible");

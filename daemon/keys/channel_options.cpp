@@ -9,6 +9,7 @@ namespace {
 using enum OptionType;
 using enum Reach;
 
+constexpr std::string_view kForce = "the field of an accelerometer's key, for a force";
 constexpr std::string_view kPlace = "story, frame and direction decide the place together";
 
 const Option kOptions[] = {
@@ -73,6 +74,17 @@ const Option kOptions[] = {
      .reload = restart,
      .by_hand = kPlace},
     {.section = "channel",
+     .key = "quantity",
+     .type = choice,
+     .default_value = "\"acceleration\"",
+     .choices = "acceleration|force",
+     .meaning =
+         "What it measures: acceleration, or the force of a shaker or hammer on the building "
+         "at its place, N, positive toward the building's +x or +y. With one, and without a "
+         "base channel, the base rests. docs/force.md.",
+     .reload = restart,
+     .by_hand = "decides which units the other keys have"},
+    {.section = "channel",
      .key = "use",
      .type = boolean,
      .default_value = "true",
@@ -112,6 +124,15 @@ const Option kOptions[] = {
      .meaning = "Subtracted after scaling.",
      .reload = restart,
      .target = into<&estimator::SensorAxis::offset>},
+    {.section = "channel",
+     .key = "offset_n",
+     .type = number,
+     .unit = "N",
+     .min = -1e12,
+     .max = 1e12,
+     .meaning = "Of a force: subtracted after scaling.",
+     .reload = restart,
+     .by_hand = kForce},
     {.section = "channel",
      .key = "polarity",
      .type = integer,
@@ -172,6 +193,24 @@ const Option kOptions[] = {
                 "range, and what is more than 200 m/s^2 from offset_mps2 is rejected.",
      .reload = restart,
      .target = into<&estimator::SensorAxis::range>},
+    {.section = "channel",
+     .key = "range_n",
+     .type = number,
+     .unit = "N",
+     .min = 0,
+     .max = 1e12,
+     .meaning = "Of a force: as range_mps2; nothing is judged without it.",
+     .reload = restart,
+     .by_hand = kForce},
+    {.section = "channel",
+     .key = "noise_n_per_rthz",
+     .type = number,
+     .unit = "N/sqrt(Hz)",
+     .min = 0,
+     .max = 1e9,
+     .meaning = "Of a force: as noise_mps2_per_rthz.",
+     .reload = restart,
+     .by_hand = kForce},
     {.section = "channel",
      .key = "noise_mps2_per_rthz",
      .type = number,

@@ -129,9 +129,8 @@ const Option kScenarioOptions[] = {
      .unit = "m/s^2",
      .min = 0,
      .max = 1000,
-     .above_min = true,
      .meaning = "The motion is scaled to this peak; by default 2 for a Kanai-Tajimi motion, and a "
-                "record is left as it is."},
+                "record is left as it is. 0: the base rests."},
     {.section = "motion",
      .key = "angle_deg",
      .type = number,

@@ -109,15 +109,17 @@ int refine(const RefineArguments& a) {
   if (!survey.problems().empty()) return kBadInput;
 
   const estimator::ParameterTable table(pipeline_config.structure);
+  const estimator::ParameterTable identified = pipeline_config.parameters();
   SegmentCollector collector(pipeline_config, a.from_s, to_s);
   Report report{a.from_s, to_s, {}, {}};
   report.streaming.assign(std::size_t(table.size()), std::nan(""));
   estimator::Pipeline pipeline(pipeline_config, [&](const estimator::WindowEstimate& estimate) {
     const auto end_us = static_cast<double>(to_microseconds(estimate.end) - collector.first_us());
     if (end_us > 1e6 * to_s + 1) return;
-    for (std::size_t p = 0; p < report.streaming.size(); ++p)
-      if (estimate.reason[p] == estimator::Observability::observable)
-        report.streaming[p] = estimate.value[p];
+    for (int p = 0; p < table.size(); ++p)
+      if (const auto q = identified.find(table[p].name))
+        if (estimate.reason[std::size_t(*q)] == estimator::Observability::observable)
+          report.streaming[std::size_t(p)] = estimate.value[std::size_t(*q)];
   });
   ProgressLine progress("refine", false);
   std::int64_t pushed = 0;

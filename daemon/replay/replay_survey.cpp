@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config/header_differences.h"
 #include "drivers/base/input_file.h"
 #include "drivers/base/standard_streams.h"
 #include "drivers/can/can_log.h"
@@ -22,7 +23,8 @@ bool looks_like_record(const std::string& path) {
   if (drivers::is_event_log(path)) return false;
   const std::string name = std::filesystem::path(path).filename();
   return path == drivers::kStandardInput || name.find(".csv") != std::string::npos ||
-         name.ends_with(".txt") || name.ends_with(".AT2") || name.ends_with(".at2");
+         name.ends_with(".txt") || name.ends_with(".AT2") || name.ends_with(".at2") ||
+         drivers::is_network_file(path);
 }
 
 }  // namespace
@@ -97,6 +99,8 @@ void ReplaySurvey::add_record(ReplayInput input) {
                                     input.path, config_.path, others));
   else if (!others.empty())
     notes_.push_back(fmt::format("{}: columns without a channel ignored: {}", input.path, others));
+  for (const std::string& difference : header_differences(config_, record))
+    notes_.push_back(fmt::format("{}: {}", input.path, difference));
   check_rate(input.path, record.rate_hz);
   std::vector<std::int64_t> used_us;
   for (const double time_s : record.time_s)

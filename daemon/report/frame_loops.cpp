@@ -27,6 +27,7 @@ Places places(const estimator::Structure& s, const SessionMotion& m) {
   Places out{std::vector<int>(static_cast<std::size_t>(s.degrees_of_freedom()), -1), {}};
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
     const estimator::SensorAxis& axis = m.axes[a];
+    if (axis.is_force) continue;
     if (axis.story == 0)
       out.base[axis.direction == estimator::Direction::x ? 0 : 1].push_back(static_cast<int>(a));
     else if (axis.frame >= 0)
@@ -40,7 +41,7 @@ Places places(const estimator::Structure& s, const SessionMotion& m) {
 Index strongest(const SessionMotion& m, Index size, Index first, Index end) {
   VectorXd most = VectorXd::Zero(m.accel.rows());
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
-    if (m.axes[a].story == 0) continue;
+    if (m.axes[a].story == 0 || m.axes[a].is_force) continue;
     const VectorXd column = m.accel.col(static_cast<Index>(a));
     double sum = 0, count = 0;
     for (const double v : column) {

@@ -57,11 +57,17 @@ class Collector {
   estimator::Acquisition acquisition_;
 };
 
-/// rms of every block of some axes, without the blocks' means; the largest of the axes.
-std::vector<double> block_rms(const SessionMotion& m, bool base, Eigen::Index block) {
+/// Whether it is the base's motion or a force: what makes the building move.
+bool drives(const estimator::SensorAxis& axis) {
+  return axis.story == 0 || axis.is_force;
+}
+
+/// rms of every block of the axes that drive, or of the others, without the blocks' means; the
+/// largest of the axes.
+std::vector<double> block_rms(const SessionMotion& m, bool driving, Eigen::Index block) {
   std::vector<double> out(static_cast<std::size_t>(m.accel.rows() / block), 0.0);
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
-    if ((m.axes[a].story == 0) != base) continue;
+    if (drives(m.axes[a]) != driving) continue;
     for (std::size_t b = 0; b < out.size(); ++b) {
       const Eigen::ArrayXd part = m.accel.col(static_cast<Eigen::Index>(a))
                                       .segment(static_cast<Eigen::Index>(b) * block, block)
@@ -84,10 +90,10 @@ std::vector<bool> moving(const std::vector<double>& rms, double noise, double sh
   return out;
 }
 
-double worst_noise(const SessionMotion& m, bool base) {
+double worst_noise(const SessionMotion& m, bool driving) {
   double worst = 0;
   for (const estimator::SensorAxis& axis : m.axes)
-    if ((axis.story == 0) == base)
+    if (drives(axis) == driving)
       worst = std::max(worst, axis.noise_density * std::sqrt(m.rate_hz / 2));
   return worst;
 }

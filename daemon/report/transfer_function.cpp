@@ -27,7 +27,7 @@ Eigen::VectorXd mean_of(const SessionMotion& m, Index from, Index to, Wanted wan
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(to - from);
   double count = 0;
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
-    if (!wanted(m.axes[a])) continue;
+    if (m.axes[a].is_force || !wanted(m.axes[a])) continue;
     sum += m.accel.col(static_cast<Index>(a)).segment(from, to - from);
     ++count;
   }
@@ -260,7 +260,7 @@ Eigen::MatrixXd floors_of(const estimator::Structure& s, const SessionMotion& m,
   Eigen::MatrixXd out(to - from, s.degrees_of_freedom());
   int found = 0;
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
-    if (m.axes[a].story == 0 || m.axes[a].frame < 0) continue;
+    if (m.axes[a].story == 0 || m.axes[a].frame < 0 || m.axes[a].is_force) continue;
     const Eigen::VectorXd& base =
         s.direction(m.axes[a].frame) == estimator::Direction::x ? base_x : base_y;
     auto column = out.col(s.dof(m.axes[a].story, m.axes[a].frame));

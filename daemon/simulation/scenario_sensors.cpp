@@ -32,6 +32,21 @@ void read_sensor(ConfigSection& s, estimator::SensorModel& model, double& noise_
   for (const std::string& rule : problems(model)) s.problem("", rule);
 }
 
+/// Of what all sensors do only what has no unit of acceleration.
+estimator::SensorModel of_force(const estimator::SensorModel& common) {
+  estimator::SensorModel out;
+  out.loss_ratio = common.loss_ratio;
+  return out;
+}
+
+void refuse_acceleration(ConfigSection& s) {
+  for (const char* key : {"noise_mps2_per_rthz", "bias_mps2", "ramp_mps3", "full_scale_g", "bits"})
+    if (s.given(key))
+      s.problem(key,
+                "is of an accelerometer; a channel of a force has noise_ratio, loss_ratio, "
+                "dead_from_s and dead_to_s");
+}
+
 }  // namespace
 
 void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& single,
@@ -44,6 +59,8 @@ void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& sin
   const std::vector<estimator::SensorAxis>& axes = scenario.config.pipeline.axes;
   scenario.sensors.assign(axes.size(), common);
   scenario.noise_ratio.assign(axes.size(), common_ratio);
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (axes[a].is_force) scenario.sensors[a] = of_force(common);
   for (const TomlValue* table : single) {
     ConfigSection one("sensor", "sensor", table, {}, problems);
     const std::string name = one.text("channel");
@@ -52,6 +69,7 @@ void read_sensors(const TomlValue* all, const std::vector<const TomlValue*>& sin
     if (at != axes.end()) {
       const auto index = static_cast<std::size_t>(at - axes.begin());
       read_sensor(one, scenario.sensors[index], scenario.noise_ratio[index]);
+      if (axes[index].is_force) refuse_acceleration(one);
       continue;
     }
     if (!axes.empty() && one.given("channel"))

@@ -36,7 +36,7 @@ bool is_units_line(const Cells& cells) {
   bool any = false;
   for (const std::string& cell : cells) {
     const std::string unit = column_title(cell).unit.value_or(cell);
-    if (!unit.empty() && !mps2_per(unit) && !seconds_per(unit)) return false;
+    if (!unit.empty() && !mps2_per(unit) && !seconds_per(unit) && !newtons_per(unit)) return false;
     any = any || !unit.empty();
   }
   return any;
@@ -153,6 +153,7 @@ class TableReader {
 
   std::optional<Record> finish() {
     auto record = builder_.finish();
+    if (record) say_forces(*record);
     if (!record || !columns_.time || columns_.time_unit_said || stamps_) return record;
     if (record->rate_hz < kLeastRateOfSeconds_hz || record->rate_hz > 1e4) {
       problems_.add(layout_.header_line,
@@ -175,6 +176,15 @@ class TableReader {
     std::vector<std::string> out;
     for (const TableColumns::Channel& channel : columns_.channels) out.push_back(channel.name);
     return out;
+  }
+
+  void say_forces(Record& record) const {
+    const auto is_force = [](const TableColumns::Channel& channel) { return channel.is_force; };
+    if (std::none_of(columns_.channels.begin(), columns_.channels.end(), is_force)) return;
+    for (const TableColumns::Channel& channel : columns_.channels) {
+      record.headers.emplace_back().unit = channel.is_force ? "N" : "";
+      if (channel.is_force) record.notes.push_back(channel.name + ": a force, N");
+    }
   }
 
   std::string hint(std::size_t fields) const {

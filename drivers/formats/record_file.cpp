@@ -94,14 +94,18 @@ RecordFormat detect(const RecordOptions& options, FileProblems& problems) {
 
 /// Reports options that the format needs and lacks, and those that do not apply to it.
 void check_declared(RecordFormat format, const RecordOptions& options, FileProblems& problems) {
-  const bool needs_unit = format == RecordFormat::columns || format == RecordFormat::rows ||
-                          format == RecordFormat::mseed || format == RecordFormat::sac;
+  const bool of_station = format == RecordFormat::mseed || format == RecordFormat::sac;
+  const bool needs_unit =
+      format == RecordFormat::columns || format == RecordFormat::rows || of_station;
   const bool needs_step = format == RecordFormat::rows;
-  if (needs_unit && !options.unit_mps2)
+  if (of_station && options.unit_mps2 && !options.station_xml.empty())
+    problems.add(0, "--unit and --station-xml both say what a count is: leave one out");
+  if (needs_unit && !options.unit_mps2 && (!of_station || options.station_xml.empty()))
     problems.add(0,
                  format == RecordFormat::mseed
                      ? "a miniSEED file does not say what a count is: declare it with --unit, "
-                       "the m/s^2 of one, for example --unit 1e-6"
+                       "the m/s^2 of one, for example --unit 1e-6, or give its network's "
+                       "StationXML with --station-xml"
                      : "the file does not say its unit: declare it with --unit g, mg, gal or mps2");
   if (!needs_unit && options.unit_mps2)
     problems.add(0, "the format has its own unit: --unit does not apply");
@@ -132,6 +136,8 @@ std::optional<Record> read_as(RecordFormat format, const RecordOptions& options,
                               FileProblems& problems) {
   const bool table = format == RecordFormat::csv || format == RecordFormat::mat;
   if (!table) check_declared(format, options, problems);
+  if (!options.station_xml.empty() && format != RecordFormat::mseed && format != RecordFormat::sac)
+    problems.add(0, "--station-xml is for miniSEED and SAC");
   if (options.step_s && !(std::isfinite(*options.step_s) && *options.step_s > 0))
     problems.add(0, fmt::format("--step {} must be positive", *options.step_s));
   if (problems.any()) return std::nullopt;
@@ -176,6 +182,16 @@ std::optional<Record> read_record(const std::string& path, const RecordOptions& 
   if (record) give_names(options.names, *record, problems);
   if (problems.any()) return std::nullopt;
   return record;
+}
+
+bool is_network_file(const std::string& path) {
+  std::vector<Problem> ignored;
+  FileProblems problems(path, ignored);
+  if (const auto binary = format_by_signature(problems))
+    return *binary == RecordFormat::mseed || *binary == RecordFormat::sac;
+  LineReader lines(problems);
+  std::string_view line;
+  return !problems.any() && lines.next(line) && format_of_network(line) != RecordFormat::detect;
 }
 
 }  // namespace framewatch::drivers

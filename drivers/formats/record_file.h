@@ -18,4 +18,7 @@ namespace framewatch::drivers {
 std::optional<Record> read_record(const std::string& path, const RecordOptions& options,
                                   std::vector<Problem>& problems);
 
+/// Whether it is what a network of stations publishes (drivers/stations).
+bool is_network_file(const std::string& path);
+
 }  // namespace framewatch::drivers

@@ -109,13 +109,15 @@ void add_channel(std::size_t column, const ColumnTitle& title, bool own,
                  const RecordOptions& options, std::int64_t line, bool& unit_used,
                  TableColumns& out, FileProblems& problems) {
   double unit_mps2 = 1;
+  const bool is_force = title.unit && newtons_per(*title.unit);
   if (title.unit) {
-    const auto said = mps2_per(*title.unit);
+    const auto said = is_force ? newtons_per(*title.unit) : mps2_per(*title.unit);
     if (!said)
-      problems.add(line,
-                   fmt::format("{}: {} is no unit of acceleration (g, mg, gal, m/s^2, cm/s^2, "
-                               "mm/s^2); say with --columns which columns are channels",
-                               show_text(title.name), show_text(*title.unit)));
+      problems.add(
+          line,
+          fmt::format("{}: {} is no unit of acceleration (g, mg, gal, m/s^2, cm/s^2, "
+                      "mm/s^2) or force (N, kN); say with --columns which columns are channels",
+                      show_text(title.name), show_text(*title.unit)));
     unit_mps2 = said.value_or(1);
   } else if (!own) {
     if (!options.unit_mps2)
@@ -126,7 +128,7 @@ void add_channel(std::size_t column, const ColumnTitle& title, bool own,
     unit_mps2 = options.unit_mps2.value_or(1);
     unit_used = true;
   }
-  out.channels.push_back({column, title.name, unit_mps2});
+  out.channels.push_back({column, title.name, unit_mps2, is_force});
 }
 
 }  // namespace
@@ -137,7 +139,8 @@ ColumnTitle column_title(const std::string& text) {
     if (open == std::string::npos || text.back() != pair[1]) continue;
     const std::string inside(
         trimmed(std::string_view(text).substr(open + 1, text.size() - open - 2)));
-    if (pair[0] == '(' && !mps2_per(inside) && !seconds_per(inside)) continue;
+    if (pair[0] == '(' && !mps2_per(inside) && !seconds_per(inside) && !newtons_per(inside))
+      continue;
     return {std::string(trimmed(std::string_view(text).substr(0, open))), inside};
   }
   const std::size_t behind = text.find_last_of("_/ ");

@@ -17,8 +17,8 @@ struct ColumnTitle {
   std::optional<std::string> unit;  ///< as it is written; empty: it says none
 };
 
-/// A pair of brackets at the end is a unit when they are [] or when it is one of acceleration or
-/// time; otherwise it belongs to the name. "time_ms" is "time" in ms.
+/// A pair of brackets at the end is a unit when they are [] or when it is one of acceleration,
+/// force or time; otherwise it belongs to the name. "time_ms" is "time" in ms.
 ColumnTitle column_title(const std::string& text);
 
 /// Whether people call the column of times so: Time, t, timestamp, seconds, ...
@@ -33,7 +33,8 @@ struct TableColumns {
   struct Channel {
     std::size_t column;
     std::string name;
-    double unit_mps2;
+    double unit_mps2;  ///< or N of one of a force's
+    bool is_force = false;
   };
   std::vector<Channel> channels;
   std::vector<std::string> notes;

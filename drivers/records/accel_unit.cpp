@@ -23,6 +23,7 @@ constexpr std::array kAccelUnits = {
     NamedUnit{"cm/s/s", 0.01}, NamedUnit{"cm/sec2", 0.01},  NamedUnit{"cms-2", 0.01},
     NamedUnit{"mm/s2", 0.001}, NamedUnit{"mm/s/s", 0.001},  NamedUnit{"mms-2", 0.001},
 };
+constexpr std::array kForceUnits = {NamedUnit{"n", 1}, NamedUnit{"kn", 1e3}};
 constexpr std::array kTimeUnits = {
     NamedUnit{"s", 1},       NamedUnit{"sec", 1},   NamedUnit{"second", 1}, NamedUnit{"ms", 1e-3},
     NamedUnit{"msec", 1e-3}, NamedUnit{"us", 1e-6}, NamedUnit{"ns", 1e-9},  NamedUnit{"seconds", 1},
@@ -57,6 +58,10 @@ std::optional<double> unit_of(const std::array<NamedUnit, Count>& units, std::st
 
 std::optional<double> mps2_per(std::string_view unit) {
   return unit_of(kAccelUnits, unit);
+}
+
+std::optional<double> newtons_per(std::string_view unit) {
+  return unit_of(kForceUnits, unit);
 }
 
 std::optional<double> declared_unit(std::string_view text) {

@@ -111,6 +111,8 @@ std::optional<Record> merge_records(std::vector<Record> records,
   merged.rate_hz = records[0].rate_hz;
   for (std::int64_t at = first; at <= last; ++at)
     merged.time_s.push_back(grid_time(records[0], at));
+  const bool any_header = std::any_of(records.begin(), records.end(),
+                                      [](const Record& r) { return !r.headers.empty(); });
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Placed& p = places[i];
     for (const std::string& note : records[i].notes)
@@ -121,6 +123,8 @@ std::optional<Record> merge_records(std::vector<Record> records,
           std::max<std::int64_t>(0, first - p.first) + std::max<std::int64_t>(0, p.last - last)));
     for (std::size_t c = 0; c < records[i].names.size(); ++c) {
       merged.names.push_back(records[i].names[c]);
+      if (any_header)
+        merged.headers.push_back(records[i].headers.empty() ? AxisHeader{} : records[i].headers[c]);
       auto& column = merged.accel_mps2.emplace_back(merged.time_s.size(),
                                                     std::numeric_limits<double>::quiet_NaN());
       const auto& source = records[i].accel_mps2[c];

@@ -15,8 +15,9 @@ enum class MergeSpan {
 };
 
 /// Puts records of one rate and one clock beside each other on the first one's instants. `where` is
-/// each record's place in messages. Empty, with every problem, when the rates differ, the clocks do
-/// not overlap, the instants lie more than a tenth of a step apart or a name appears twice.
+/// each record's place in messages. Headers go with their axes. Empty, with every problem, when the
+/// rates differ, the clocks do not overlap, the instants lie more than a tenth of a step apart or a
+/// name appears twice.
 std::optional<Record> merge_records(std::vector<Record> records,
                                     const std::vector<std::string>& where, MergeSpan span,
                                     std::vector<Problem>& problems);

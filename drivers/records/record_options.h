@@ -27,6 +27,7 @@ enum class RecordFormat {
 struct RecordOptions {
   RecordFormat format = RecordFormat::detect;
   std::optional<double> unit_mps2;    ///< m/s^2 of one of the file's
+  std::string station_xml;            ///< a StationXML file, which says that and more; empty: none
   std::optional<double> step_s;       ///< time between samples
   std::string time_column;            ///< title of the column of times; empty: what it is called
   std::optional<double> time_unit_s;  ///< seconds of one of that column's

@@ -53,10 +53,8 @@ std::optional<double> mps2_of(int unit, const CosmosHeader& header) {
 }
 
 /// Directions beside an azimuth (table 6 of the format).
-std::string direction_text(const CosmosHeader& header) {
-  constexpr std::array<std::pair<int, const char*>, 9> kWords = {{
-      {400, "up"},
-      {401, "down"},
+std::string direction_words(int code) {
+  constexpr std::array<std::pair<int, const char*>, 7> kWords = {{
       {402, "vertical, up or down is not said"},
       {500, "radial"},
       {501, "transverse"},
@@ -65,16 +63,52 @@ std::string direction_text(const CosmosHeader& header) {
       {700, "horizontal, azimuth unknown"},
       {701, "horizontal, azimuth unknown"},
   }};
+  for (const auto& [known, word] : kWords)
+    if (code == known) return word;
+  return {};
+}
+
+const char* unit_text(int unit) {
+  switch (unit) {
+    case 2:
+      return "g";
+    case 7:
+      return "in/s2";
+    case 11:
+      return "mg";
+    case 12:
+      return "ug";
+    case kCounts:
+      return "count";
+    default:
+      return "cm/s2";
+  }
+}
+
+/// Direction, place and unit; `direction` in words where the fields do not say it.
+AxisHeader axis_header(const CosmosHeader& header, int unit, std::string& direction) {
+  constexpr int kUp = 400, kDown = 401;
+  AxisHeader out;
+  out.place = after(header, "Location:");
+  out.unit = unit_text(unit);
+  out.north_m = header.real(CosmosReal::north_m);
+  out.east_m = header.real(CosmosReal::east_m);
+  out.up_m = header.real(CosmosReal::up_m);
   const auto absolute = header.integer(CosmosInteger::azimuth);
   const auto value = absolute ? absolute : header.integer(CosmosInteger::azimuth_to_reference);
-  if (!value) return "direction not said";
-  for (const auto& [code, word] : kWords)
-    if (*value == code) return word;
-  if (*value < 0 || *value > 360) return "direction not said";
-  if (absolute) return azimuth_text(*value);
+  if (!value) return out;
+  if (*value == kUp || *value == kDown) out.elevation_deg = *value == kUp ? 90 : -90;
+  direction = direction_words(static_cast<int>(*value));
+  if (*value < 0 || *value > 360) return out;
   const auto reference = header.integer(CosmosInteger::reference_azimuth);
-  if (!reference) return fmt::format("{:g} deg from an axis whose azimuth is not said", *value);
-  return azimuth_text(std::fmod(*value + *reference, 360));
+  if (absolute)
+    out.azimuth_deg = *value;
+  else if (reference)
+    out.azimuth_deg = std::fmod(*value + *reference, 360);
+  else
+    direction = fmt::format("{:g} deg from an axis whose azimuth is not said", *value);
+  if (out.azimuth_deg) out.elevation_deg = 0;
+  return out;
 }
 
 std::string stage_text(const CosmosHeader& header, double unit_mps2) {
@@ -86,11 +120,6 @@ std::string stage_text(const CosmosHeader& header, double unit_mps2) {
   if (stage != 2) return "stage of processing not said";
   if (!low_hz || !high_hz) return "corrected";
   return fmt::format("corrected, {:g} to {:g} Hz kept", *low_hz, *high_hz);
-}
-
-std::string place_text(const CosmosHeader& header) {
-  const std::string_view place = after(header, "Location:");
-  return direction_text(header) + (place.empty() ? "" : ", " + std::string(place));
 }
 
 std::string treatment_text(const CosmosHeader& header, double unit_mps2) {
@@ -184,7 +213,7 @@ class CosmosReader {
     channel.name = name_of(*header_);
     channel.step_s = step_s;
     channel.start_utc_s = start_utc_s;
-    channel.place = place_text(*header_);
+    channel.header = axis_header(*header_, unit, channel.direction);
     channel.treatment = treatment_text(*header_, *unit_mps2);
     if (const auto peak = header_->real(CosmosReal::peak); peak && unit != kCounts)
       channel.peak_mps2 = *peak * *unit_mps2;

@@ -38,7 +38,7 @@ class KnetReader {
     const double rate_hz = number_before("Sampling Freq", "Hz");
     const double unit_mps2 = scale();
     channel.start_utc_s = start();
-    channel.place = direction(channel.name);
+    channel.header = direction(channel.name);
     channel.treatment = "uncorrected; not used of the header: coordinates, event";
     if (!problems_.any() && !(rate_hz > 0 && rate_hz <= RecordBuilder::kMaxRateHz))
       complain("Sampling Freq", "must be a rate");
@@ -125,24 +125,31 @@ class KnetReader {
   }
 
   /// K-NET names its directions, KiK-net numbers them: 1 to 3 in the borehole, 4 to 6 above it.
-  std::string direction(std::string& name) {
+  AxisHeader direction(std::string& name) {
     const std::string dir = find("Dir.").text, station = find("Station Code").text;
+    constexpr double kNorth = 0, kEast = 90, kUp = -1;
     struct Direction {
-      const char *in_file, *channel, *words;
+      const char *in_file, *channel, *place;
+      double azimuth_deg;
     };
-    constexpr Direction kDirections[] = {{"N-S", "NS", "north"},
-                                         {"E-W", "EW", "east"},
-                                         {"U-D", "UD", "up"},
-                                         {"1", "NS1", "in the borehole, north"},
-                                         {"2", "EW1", "in the borehole, east"},
-                                         {"3", "UD1", "in the borehole, up"},
-                                         {"4", "NS2", "at the surface, north"},
-                                         {"5", "EW2", "at the surface, east"},
-                                         {"6", "UD2", "at the surface, up"}};
+    constexpr Direction kDirections[] = {{"N-S", "NS", "", kNorth},
+                                         {"E-W", "EW", "", kEast},
+                                         {"U-D", "UD", "", kUp},
+                                         {"1", "NS1", "in the borehole", kNorth},
+                                         {"2", "EW1", "in the borehole", kEast},
+                                         {"3", "UD1", "in the borehole", kUp},
+                                         {"4", "NS2", "at the surface", kNorth},
+                                         {"5", "EW2", "at the surface", kEast},
+                                         {"6", "UD2", "at the surface", kUp}};
     for (const Direction& known : kDirections) {
       if (dir != known.in_file) continue;
       name = fmt::format("{}.{}", station, known.channel);
-      return known.words;
+      AxisHeader header;
+      header.place = known.place;
+      header.unit = "gal";
+      header.elevation_deg = known.azimuth_deg == kUp ? 90 : 0;
+      if (known.azimuth_deg != kUp) header.azimuth_deg = known.azimuth_deg;
+      return header;
     }
     if (!problems_.any()) complain("Dir.", "is none of N-S, E-W, U-D, 1 to 6");
     return {};

@@ -16,6 +16,7 @@
 #include "drivers/base/gzip_input.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_merge.h"
+#include "drivers/stations/count_meanings.h"
 #include "drivers/stations/seed_trace.h"
 #include "drivers/stations/station_formats.h"
 
@@ -205,21 +206,34 @@ void check_together(const SeedContents& contents, FileProblems& problems) {
                        1e-6 * static_cast<double>(end_us - begin_us), RecordBuilder::kMaxValues));
 }
 
+std::int64_t first_us(const SeedTrace& trace) {
+  std::int64_t out = INT64_MAX;
+  for (const SeedPiece& piece : trace.pieces) out = std::min(out, piece.start_us);
+  return out;
+}
+
 }  // namespace
 
 std::optional<Record> read_mseed(const RecordOptions& options, FileProblems& problems) {
   auto contents = read_traces(options, problems);
   if (!contents) return std::nullopt;
   check_together(*contents, problems);
+  const auto meanings = CountMeanings::read(options, problems);
+  if (problems.any()) return std::nullopt;
   std::vector<Record> records;
   std::vector<std::string> where;
   for (auto& [name, trace] : contents->traces) {
-    if (problems.any()) return std::nullopt;
-    auto record = record_of_trace(std::move(trace), options.unit_mps2.value_or(1), problems);
+    const auto meaning =
+        meanings->of(name, 1e-6 * static_cast<double>(first_us(trace)), trace.rate_hz, problems);
+    if (!meaning) continue;  // every channel's problem is told
+    auto record = record_of_trace(std::move(trace), meaning->unit_mps2, problems);
     if (!record) return std::nullopt;
+    if (!meaning->note.empty()) record->headers = {meaning->header};
+    if (!meaning->note.empty()) record->notes.push_back(meaning->note);
     where.push_back(name);
     records.push_back(std::move(*record));
   }
+  if (problems.any()) return std::nullopt;
   std::vector<std::size_t> samples;
   for (const Record& record : records) samples.push_back(record.time_s.size());
   std::vector<Problem> apart;

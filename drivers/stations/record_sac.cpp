@@ -7,6 +7,7 @@
 
 #include "drivers/base/gzip_input.h"
 #include "drivers/records/record_builder.h"
+#include "drivers/stations/count_meanings.h"
 #include "drivers/stations/sac_header.h"
 #include "drivers/stations/station_channel.h"
 #include "drivers/stations/station_formats.h"
@@ -28,12 +29,13 @@ std::string name_of(const SacHeader& header) {
   return name == "..." ? "station" : name;
 }
 
-std::string place_of(const SacHeader& header) {
-  const auto from_up = header.number(SacFloat::from_up_deg),
-             azimuth = header.number(SacFloat::azimuth_deg);
-  if (from_up == 0) return "up";
-  if (from_up == 180) return "down";
-  return azimuth && from_up == 90 ? azimuth_text(*azimuth) : "direction not said";
+AxisHeader axis_header(const SacHeader& header) {
+  AxisHeader out;
+  const auto from_up = header.number(SacFloat::from_up_deg);
+  if (from_up) out.elevation_deg = 90 - *from_up;
+  if (from_up && *from_up != 0 && *from_up != 180)
+    out.azimuth_deg = header.number(SacFloat::azimuth_deg);
+  return out;
 }
 
 std::optional<double> start_of(const SacHeader& header, FileProblems& problems) {
@@ -100,12 +102,18 @@ std::optional<Record> read_sac(const RecordOptions& options, FileProblems& probl
   StationChannel channel;
   channel.start_utc_s = start_of(*header, problems);
   if (problems.any()) return std::nullopt;
-  const auto values = read_values(file, *header, options.unit_mps2.value_or(1), problems);
-  if (!values) return std::nullopt;
   channel.name = name_of(*header);
+  const auto meanings = CountMeanings::read(options, problems);
+  const auto meaning = meanings
+                           ? meanings->of(channel.name, channel.start_utc_s, 1 / step_s, problems)
+                           : std::nullopt;
+  if (!meaning) return std::nullopt;
+  const auto values = read_values(file, *header, meaning->unit_mps2, problems);
+  if (!values) return std::nullopt;
   channel.step_s = step_s;
-  channel.place = place_of(*header);
-  channel.treatment = "times --unit; not used of the header: coordinates, event, picks";
+  channel.header = meaning->note.empty() ? axis_header(*header) : meaning->header;
+  channel.treatment = (meaning->note.empty() ? "times --unit" : meaning->note) +
+                      "; not used of the header: coordinates, event, picks";
   return station_record(channel, *values, 0, values->size(), problems);
 }
 

@@ -63,16 +63,16 @@ std::string name_of(const SmcHeader& header) {
   return name;
 }
 
-std::string place_text(const SmcHeader& header) {
-  const auto from_up = header.integer(SmcInteger::from_up_deg),
-             azimuth = header.integer(SmcInteger::azimuth_deg);
-  std::string text = "direction not said";
-  if (from_up == 0) text = "up";
-  if (from_up == 180) text = "down";
-  if (azimuth && from_up.value_or(90) == 90) text = azimuth_text(*azimuth);
-  if (const auto floor = header.integer(SmcInteger::floor))
-    text += fmt::format(", floor {}", *floor);
-  return text;
+AxisHeader axis_header(const SmcHeader& header) {
+  AxisHeader out;
+  const auto from_up = header.integer(SmcInteger::from_up_deg);
+  const auto azimuth = header.integer(SmcInteger::azimuth_deg);
+  if (from_up || azimuth) out.elevation_deg = 90 - from_up.value_or(90);
+  if (azimuth && from_up.value_or(90) == 90) out.azimuth_deg = *azimuth;
+  out.floor = header.integer(SmcInteger::floor);
+  if (out.floor) out.place = fmt::format("floor {}", *out.floor);
+  out.unit = "cm/s2";
+  return out;
 }
 
 std::string treatment_text(const SmcHeader& header) {
@@ -146,7 +146,8 @@ std::optional<Record> read_smc(FileProblems& problems) {
   return station_record({name_of(*header),
                          1 / header->rate_hz,
                          start_utc_s,
-                         place_text(*header),
+                         axis_header(*header),
+                         {},
                          treatment_text(*header),
                          {}},
                         *values, line, 8, problems);

@@ -52,10 +52,6 @@ std::optional<double> utc_of(std::optional<double> day_s, double hour, double mi
   return *day_s + 3600 * hour + 60 * minute + second;
 }
 
-std::string azimuth_text(double azimuth_deg) {
-  return fmt::format("azimuth {:g} deg", azimuth_deg);
-}
-
 std::optional<Record> station_record(const StationChannel& channel,
                                      const std::vector<double>& accel_mps2, std::int64_t line,
                                      std::size_t per_line, FileProblems& problems) {
@@ -72,7 +68,10 @@ std::optional<Record> station_record(const StationChannel& channel,
                 {&accel_mps2[i], 1});
     peak_mps2 = std::max(peak_mps2, std::abs(accel_mps2[i]));
   }
-  builder.note(fmt::format("{}: {}", channel.name, channel.place));
+  builder.note(
+      fmt::format("{}: {}{}{}", channel.name,
+                  channel.direction.empty() ? direction_text(channel.header) : channel.direction,
+                  channel.header.place.empty() ? "" : ", ", channel.header.place));
   builder.note(channel.treatment +
                (channel.start_utc_s ? "; " + start_text(*channel.start_utc_s) : ""));
   if (channel.peak_mps2 &&
@@ -80,7 +79,10 @@ std::optional<Record> station_record(const StationChannel& channel,
     builder.note(fmt::format("the header says a peak of {:.4g} m/s2, the values have {:.4g}",
                              std::abs(*channel.peak_mps2), peak_mps2));
   auto record = builder.finish();
-  if (record) record->rate_hz = 1 / channel.step_s;  // its times are rounded
+  if (record) {
+    record->rate_hz = 1 / channel.step_s;  // its times are rounded
+    record->headers = {channel.header};
+  }
   return record;
 }
 

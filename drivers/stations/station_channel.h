@@ -16,9 +16,10 @@ struct StationChannel {
   std::string name;  ///< "NP.8040.01.HNE": network, station, location, channel as far as known
   double step_s = 0;
   std::optional<double>
-      start_utc_s;                  ///< of the first sample, since 1970; without it time is from 0
-  std::string place;                ///< for a person: direction and place of the sensor
-  std::string treatment;            ///< for a person: what was done to its values, what is not used
+      start_utc_s;  ///< of the first sample, since 1970; without it time is from 0
+  AxisHeader header;
+  std::string direction;  ///< for a person, where the header's fields do not say it; else empty
+  std::string treatment;  ///< for a person: what was done to its values, what is not used
   std::optional<double> peak_mps2;  ///< that the header states, of either sign
 };
 
@@ -27,9 +28,6 @@ struct StationChannel {
 std::optional<Record> station_record(const StationChannel& channel,
                                      const std::vector<double>& accel_mps2, std::int64_t line,
                                      std::size_t per_line, FileProblems& problems);
-
-/// "azimuth 90 deg" clockwise from north.
-std::string azimuth_text(double azimuth_deg);
 
 /// Seconds since 1970 at the beginning of a day in UTC; empty for a date that is none.
 std::optional<double> utc_of_date(int year, int month, int day);

@@ -10,7 +10,15 @@ namespace {
 
 std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
   std::vector<AxisGuard::Axis> out;
-  for (const SensorAxis& axis : axes) out.push_back({axis.range, static_cast<int>(axis.direction)});
+  for (const SensorAxis& axis : axes)
+    out.push_back({axis.range, static_cast<int>(axis.direction), !axis.is_force});
+  return out;
+}
+
+/// A hammer's blow is no smooth curve through its neighbours.
+std::vector<std::uint8_t> axes_to_repair(const std::vector<SensorAxis>& axes, bool repair) {
+  std::vector<std::uint8_t> out;
+  for (const SensorAxis& axis : axes) out.push_back(repair && !axis.is_force);
   return out;
 }
 
@@ -22,7 +30,7 @@ Acquisition::Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOpt
       merger_(static_cast<int>(axes.size()), options.rate_hz, options.lateness_s),
       guard_(guarded_axes(axes), options.rate_hz, lone_spikes),
       calibration_(axes),
-      filler_(static_cast<int>(axes.size()), options.fill_single_losses),
+      filler_(axes_to_repair(axes, options.fill_single_losses)),
       sink_(std::move(sink)) {
   for (SensorAxis& axis : axes_) {
     bound_.push_back(sample_bound(axis));

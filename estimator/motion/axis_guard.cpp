@@ -56,6 +56,7 @@ void AxisGuard::decide(std::size_t a) {
   const SpikeGuard::Decided decided =
       lone_spikes_ ? SpikeGuard::Decided{std::isnan(held(0).accel[a]) ? 0u : 1u, 0}
                    : spikes_.decide(static_cast<int>(a));
+  if (!state_[a].axis.judged) return;
   if (decided.absurd != 0) take_out_absurd(a, decided.absurd);
   for (int age = decided.sound > 1 ? kLookAhead : 0; age >= 0; --age)
     if ((decided.sound >> age & 1u) != 0) judge(a, held(age).accel[a], age);
@@ -130,7 +131,7 @@ double AxisGuard::others_moving(std::size_t a) {
   double finest = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < state_.size(); ++b) {
     const State& other = state_[b];
-    if (b == a || other.axis.direction != state_[a].axis.direction) continue;
+    if (b == a || other.axis.direction != state_[a].axis.direction || !other.axis.judged) continue;
     const bool stands = other.run >= long_run_ || other.smallest_step == 0;
     sorted_.push_back(stands ? 0 : other.step);
     if (!stands) finest = std::min(finest, other.smallest_step);
@@ -152,7 +153,8 @@ void AxisGuard::remove(std::size_t a, int age, std::vector<std::int64_t>& counte
 
 const SampleSet* AxisGuard::drain() {
   for (std::size_t a = 0; a < state_.size(); ++a)
-    take_out_absurd(a, spikes_.finish(static_cast<int>(a)).absurd);
+    if (const unsigned absurd = spikes_.finish(static_cast<int>(a)).absurd; state_[a].axis.judged)
+      take_out_absurd(a, absurd);
   return waiting_ > 0 ? give() : nullptr;
 }
 

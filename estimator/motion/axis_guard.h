@@ -22,8 +22,9 @@ namespace framewatch::estimator {
 class AxisGuard {
  public:
   struct Axis {
-    double range = 0;   ///< m/s^2, of the scaled value; 0 = not known
-    int direction = 0;  ///< axes of one direction are compared
+    double range = 0;    ///< m/s^2, of the scaled value; 0 = not known
+    int direction = 0;   ///< axes of one direction are compared
+    bool judged = true;  ///< false for a force: it rests at 0 and leaps when a hammer strikes
   };
   /// lone_spikes: whether what one axis alone does is kept: somebody taps at the sensors.
   AxisGuard(const std::vector<Axis>& axes, double rate_hz, bool lone_spikes = false);

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace framewatch::estimator {
 
-LostSampleFiller::LostSampleFiller(int axes, bool repair) : repair_(repair) {
-  for (SampleSet& s : ring_) s.accel.resize(static_cast<std::size_t>(axes));
-  out_.accel.resize(static_cast<std::size_t>(axes));
-  repaired_.assign(static_cast<std::size_t>(axes), 0);
+LostSampleFiller::LostSampleFiller(std::vector<std::uint8_t> repair) : repair_(std::move(repair)) {
+  for (SampleSet& s : ring_) s.accel.resize(repair_.size());
+  out_.accel.resize(repair_.size());
+  repaired_.assign(repair_.size(), 0);
 }
 
 const SampleSet* LostSampleFiller::push(const SampleSet& set) {
@@ -37,10 +38,10 @@ const SampleSet* LostSampleFiller::give() {
 }
 
 void LostSampleFiller::repair() {
-  if (!repair_ || held(0).index - held(4).index != 4) return;
+  if (held(0).index - held(4).index != 4) return;
   for (std::size_t a = 0; a < repaired_.size(); ++a) {
     double& x = held(2).accel[a];
-    if (!std::isnan(x)) continue;
+    if (repair_[a] == 0 || !std::isnan(x)) continue;
     const double near = held(1).accel[a] + held(3).accel[a];
     const double far = held(0).accel[a] + held(4).accel[a];
     const double filled = (4 * near - far) / 6;

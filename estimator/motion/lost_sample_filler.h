@@ -12,7 +12,8 @@ namespace framewatch::estimator {
 /// x = (4 (x-1 + x+1) - (x-2 + x+2)) / 6. Longer losses stay NaN. docs/equations.md, lost samples.
 class LostSampleFiller {
  public:
-  LostSampleFiller(int axes, bool repair);
+  /// repair: flags of the axes.
+  explicit LostSampleFiller(std::vector<std::uint8_t> repair);
 
   /// Takes the next set; returns the set two instants older, or null while there is none.
   const SampleSet* push(const SampleSet& set);
@@ -37,7 +38,7 @@ class LostSampleFiller {
   void repair();
   const SampleSet* give();
 
-  bool repair_;
+  std::vector<std::uint8_t> repair_;
   std::array<SampleSet, 5> ring_;
   int next_ = 0;     ///< slot of the next set
   int filled_ = 0;   ///< consecutive sets held, at most 5

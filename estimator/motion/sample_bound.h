@@ -26,8 +26,9 @@ struct SampleBound {
 /// With a range, kBeyondRange of it on either side of 0: what is between the two is clipped
 /// (AxisGuard). Without one, kMostAccel on either side of the offset.
 inline SampleBound sample_bound(const SensorAxis& axis) {
-  constexpr double kBeyondRange = 1.25;
+  constexpr double kBeyondRange = 1.25, kMostForce_n = 1e12;
   if (axis.range > 0) return {-kBeyondRange * axis.range, kBeyondRange * axis.range};
+  if (axis.is_force) return {-kMostForce_n, kMostForce_n};
   return {axis.offset - kMostAccel, axis.offset + kMostAccel};
 }
 

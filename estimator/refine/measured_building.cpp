@@ -1,9 +1,13 @@
 #include "estimator/refine/measured_building.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/floor_layout.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
+#include "estimator/structure/story_groups.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -48,7 +52,9 @@ std::optional<MeasuredBuilding> measured_building(const Structure& s, const Para
   }
 
   std::vector<Index> measured;
-  const auto base = places(deformations, 0, frames, count, true, measured);
+  const bool rests = has_force(axes) && std::none_of(axes.begin(), axes.end(),
+                                                     [](const auto& a) { return a.story == 0; });
+  const auto base = places(deformations, 0, frames, count, !rests, measured);
   if (!base) return std::nullopt;
   MatrixXd motion(s.degrees_of_freedom(), count);
   measured.clear();
@@ -84,6 +90,13 @@ std::optional<MeasuredBuilding> measured_building(const Structure& s, const Para
 
   const Matrices matrices = assemble(s, table, Eigen::VectorXd::Zero(table.size()));
   out.mass = constraint.transpose() * matrices.mass.asDiagonal() * constraint * coordinates;
+  for (Index a = 0; a < count; ++a) {
+    const SensorAxis& axis = axes[static_cast<std::size_t>(a)];
+    if (!axis.is_force) continue;
+    const std::vector<double> weights = frame_weights(s, axis);
+    out.mass.col(a) -= constraint.middleRows(s.dof(axis.story, 0), frames).transpose() *
+                       Eigen::Map<const Eigen::VectorXd>(weights.data(), frames);
+  }
   MatrixXd vectors = MatrixXd::Zero(s.degrees_of_freedom(), table.elements());
   MatrixXd ground = MatrixXd::Zero(table.elements(), count);
   for (const Element& e : elements(s, table)) {

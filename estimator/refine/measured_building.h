@@ -13,7 +13,8 @@ namespace framewatch::estimator {
 
 /// The equation of motion (6) in terms of the sensor axes, docs/equations.md (31): with A the
 /// spectra of the axes, e(w) = [mass + act diag(c_e / jw - k_e / w^2) sense] A(w) is zero for exact
-/// motion. The ground motion is not assumed known: base axes are measured like any other.
+/// motion. The ground motion is not assumed known: base axes are measured like any other. A force
+/// axis has less its lever on the equations in `mass`: its "acceleration" is the force, N.
 struct MeasuredBuilding {
   Eigen::MatrixXd mass;      ///< equations x axes, kg
   Eigen::MatrixXd act;       ///< equations x elements: directions of the elements' forces
@@ -27,7 +28,8 @@ struct MeasuredBuilding {
   Eigen::Index axes() const { return sense.cols(); }
 };
 
-/// Empty when a motion that the equations need has no sensor. The motion of rigid floors is the
+/// Empty when a motion that the equations need has no sensor; a base without one rests when a force
+/// is measured. The motion of rigid floors is the
 /// weighted mean of their sensors.
 std::optional<MeasuredBuilding> measured_building(const Structure& structure,
                                                   const ParameterTable& table,

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"
@@ -75,8 +74,8 @@ ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& o
   for (std::size_t a = 0; a < config.axes.size(); ++a)
     if (config.axes[a].story == 0) trigger_axes_.push_back(a);
   if (!trigger_axes_.empty()) return;
-  trigger_axes_.resize(config.axes.size());
-  std::iota(trigger_axes_.begin(), trigger_axes_.end(), std::size_t{0});
+  for (std::size_t a = 0; a < config.axes.size(); ++a)
+    if (!config.axes[a].is_force) trigger_axes_.push_back(a);
 }
 
 bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {

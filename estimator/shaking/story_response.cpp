@@ -155,7 +155,7 @@ double largest_drift_ratio(const PeakResponse& peak, const Structure& structure)
 double peak_accel_mps2(const PeakResponse& peak, const std::vector<SensorAxis>& axes, int level) {
   double most = kNaN;
   for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story == level) raise_peak(most, peak.accel_mps2[a]);
+    if (axes[a].story == level && !axes[a].is_force) raise_peak(most, peak.accel_mps2[a]);
   return most;
 }
 

@@ -17,20 +17,27 @@ int steps_per_instant(const ResponseOptions& options) {
   return static_cast<int>(std::ceil(1 / (options.rate_hz * options.longest_step_s) - 1e-9));
 }
 
+/// Degrees of freedom, the base's two directions, where there are forces those on each degree.
+Eigen::Index columns_of(const SimulatedBuilding& building) {
+  return building.accel_abs().size() + 2 + building.applied_n().size();
+}
+
 Decimator decimator(const std::vector<ResponseChannel>& wanted, const ResponseOptions& options,
-                    int ratio, int columns) {
+                    int ratio, const SimulatedBuilding& building) {
+  const auto columns = static_cast<int>(columns_of(building));
   std::vector<DecimatorChannel> channels;
   const auto add = [&](const ResponseChannel& c) {
     assert(options.anti_alias || c.delay_s == 0);
-    channels.push_back({c.column,
+    const bool exists = c.column < columns;  // a force that nothing applies is none
+    channels.push_back({exists ? c.column : 0,
                         options.anti_alias
                             ? anti_alias_taps(ratio, c.delay_s * options.rate_hz * ratio)
                             : std::vector<double>{1.0},
-                        c.weight, c.also});
+                        exists ? c.weight : 0, exists ? c.also : decltype(c.also){}});
   };
   for (const ResponseChannel& c : wanted) add(c);
   if (wanted.empty())
-    for (int column = 0; column < columns; ++column) add({column});
+    for (int column = 0; column < building.accel_abs().size() + 2; ++column) add({column});
   return {std::move(channels), columns};
 }
 
@@ -66,10 +73,9 @@ ResponseStream::ResponseStream(std::unique_ptr<SimulatedBuilding> building, Plan
       changes_(std::move(changes)),
       ratio_(steps_per_instant(options)),
       building_(std::move(building)),
-      decimator_(decimator(channels, options, ratio_,
-                           static_cast<int>(building_->accel_abs().size()) + 2)),
+      decimator_(decimator(channels, options, ratio_, *building_)),
       step_(-decimator_.delay_steps() - 1),
-      fine_(Eigen::VectorXd::Zero(building_->accel_abs().size() + 2)) {
+      fine_(Eigen::VectorXd::Zero(columns_of(*building_))) {
   building_->set_time(static_cast<double>(step_) * fine_step_s(options));
 }
 
@@ -92,10 +98,12 @@ void ResponseStream::advance() {
   const double now_s = static_cast<double>(step_) / (options_.rate_hz * ratio_);
   while (next_change_ < changes_.size() && changes_[next_change_].at_s <= now_s + kRounding_s)
     building_->set_theta(changes_[next_change_++].theta);
-  const Eigen::Vector2d before = fine_.tail<2>();
-  fine_.tail<2>() = ground(++step_);
-  building_->advance(before, fine_.tail<2>());
-  fine_.head(building_->accel_abs().size()) = building_->accel_abs();
+  const Eigen::Index dofs = building_->accel_abs().size();
+  const Eigen::Vector2d before = fine_.segment<2>(dofs), after = ground(++step_);
+  building_->advance(before, after);
+  fine_.head(dofs) = building_->accel_abs();
+  fine_.segment<2>(dofs) = after;
+  if (building_->applied_n().size() > 0) fine_.tail(dofs) = building_->applied_n();
   decimator_.push(fine_);
 }
 

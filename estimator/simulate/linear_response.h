@@ -27,8 +27,8 @@ struct ParameterChange {
   Eigen::VectorXd theta;
 };
 
-/// What a stream gives: a degree of freedom, or after the last one base x and base y, as it was
-/// delay_s before the instant.
+/// What a stream gives: a degree of freedom, or after the last one base x and base y, then the
+/// forces from outside on every degree of freedom, as it was delay_s before the instant.
 struct ResponseChannel {
   int column;
   double delay_s = 0;  ///< only 0 without the anti-alias filter, which makes it
@@ -56,7 +56,8 @@ class ResponseStream {
                  ResponseOptions options, std::vector<ParameterChange> changes,
                  const std::vector<ResponseChannel>& channels);
 
-  /// Absolute accelerations of the channels, m/s^2, at the next instant, the first being time 0.
+  /// Absolute accelerations of the channels, m/s^2, or forces, N, at the next instant, the first
+  /// being time 0.
   /// After the motion's end the ground rests.
   const Eigen::VectorXd& next();
   /// Of the instant next() gave last, s.

@@ -282,6 +282,9 @@ void NonlinearBuilding::forces_at(double time_s, Eigen::VectorXd& out) const {
 void NonlinearBuilding::update_accel() {
   const Eigen::Index q = constraint_.cols();
   forces_at(time_s_, force_now_);
+  applied_n_.setZero(forces_.empty() ? 0 : accel_abs_.size());
+  for (std::size_t i = 0; i < forces_.size(); ++i)
+    applied_n_[forces_[i].dof] += force_now_[static_cast<Eigen::Index>(i)];
   evaluate(time_s_, state_, z_, force_now_, k1_);
   multiply(output_.data(), state_.data(), accel_abs_.data(), output_.rows(), output_.cols(), 0,
            2 * q);

@@ -35,6 +35,7 @@ class NonlinearBuilding : public SimulatedBuilding {
   Eigen::VectorXd disp_rel() const override;
   Eigen::VectorXd vel_rel() const override;
   const Eigen::VectorXd& accel_abs() const override { return accel_abs_; }
+  const Eigen::VectorXd& applied_n() const override { return applied_n_; }
   std::vector<double> motion() const override;
   [[nodiscard]] bool resume(const std::vector<double>& motion) override;
 
@@ -84,6 +85,7 @@ class NonlinearBuilding : public SimulatedBuilding {
   Eigen::VectorXd state_;  ///< scaled coordinates, their velocities, ground, its slope
   Eigen::VectorXd z_;      ///< of all laws
   Eigen::VectorXd accel_abs_;
+  Eigen::VectorXd applied_n_;
   // Room for one part's arithmetic.
   Slope k1_, k2_, k3_, k4_;
   Eigen::VectorXd middle_, stage_, end_, carried_, stage_z_, force_now_, force_middle_, force_end_;

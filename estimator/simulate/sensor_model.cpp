@@ -54,6 +54,13 @@ std::vector<ResponseChannel> response_channels(const Structure& structure,
         out.back().also.emplace_back(column, weight);
       }
     };
+    if (axis.is_force) {  // all of it that acts where the axis is
+      const std::vector<double> weights = frame_weights(structure, axis);
+      for (int f = 0; f < structure.frames(); ++f)
+        if (weights[static_cast<std::size_t>(f)] > 0.5)
+          add(structure.degrees_of_freedom() + 2 + structure.dof(axis.story, f), 1);
+      continue;
+    }
     if (axis.story > 0) {
       const std::vector<double> weights = frame_weights(structure, axis);
       for (int f = 0; f < structure.frames(); ++f)

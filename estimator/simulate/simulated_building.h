@@ -23,6 +23,11 @@ class SimulatedBuilding {
   virtual Eigen::VectorXd vel_rel() const = 0;
   /// m/s^2, positive toward +x or +y.
   virtual const Eigen::VectorXd& accel_abs() const = 0;
+  /// Forces from outside that act now, N, one entry per degree of freedom; empty: there are none.
+  virtual const Eigen::VectorXd& applied_n() const {
+    static const Eigen::VectorXd none;
+    return none;
+  }
 
   /// Everything that later motion depends on, but for the time.
   virtual std::vector<double> motion() const = 0;

@@ -1,9 +1,12 @@
 #include "estimator/structure/sensors.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <tuple>
+#include <utility>
 
 namespace framewatch::estimator {
 namespace {
@@ -12,10 +15,21 @@ constexpr double kSteepest = M_PI / 3;
 
 }  // namespace
 
+bool has_force(const std::vector<SensorAxis>& axes) {
+  return std::any_of(axes.begin(), axes.end(), [](const SensorAxis& a) { return a.is_force; });
+}
+
+std::vector<SensorAxis> accelerometers(const std::vector<SensorAxis>& axes) {
+  std::vector<SensorAxis> out;
+  std::copy_if(axes.begin(), axes.end(), std::back_inserter(out),
+               [](const SensorAxis& a) { return !a.is_force; });
+  return out;
+}
+
 std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorAxis>& axes) {
   std::vector<Problem> found;
   std::set<std::string> names;
-  std::map<std::tuple<int, int>, std::string> places;
+  std::map<std::tuple<int, int, bool>, std::string> places;
   std::set<Direction> base, above;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const SensorAxis& a = axes[i];
@@ -40,7 +54,7 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
       add("cross_channel", "its cross channel does not exist");
     } else if (a.cross >= 0) {
       const SensorAxis& other = axes[static_cast<std::size_t>(a.cross)];
-      if (other.direction == a.direction || other.story != a.story)
+      if (other.direction == a.direction || other.story != a.story || other.is_force != a.is_force)
         add("cross_channel",
             "channel '" + other.name + "' does not measure the other direction on the same floor");
       else if (std::abs(a.mount_angle - other.mount_angle) > kSteepest)
@@ -52,12 +66,17 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
                        std::to_string(s.stories) + " do");
       continue;
     }
+    if (a.is_force && a.story == 0) {
+      add("story", "a force on the base moves nothing: it acts on a floor, 1 to " +
+                       std::to_string(s.stories));
+      continue;
+    }
     if (a.frame >= s.frames() || (a.story > 0 && a.frame < 0 && !a.plan)) {
       add("frame", "its frame does not exist");
       continue;
     }
     const Direction along = a.frame >= 0 ? s.direction(a.frame) : a.direction;
-    (a.story == 0 ? base : above).insert(along);
+    if (!a.is_force) (a.story == 0 ? base : above).insert(along);
     if (a.plan) {
       if ((along == Direction::x ? s.n() : s.m()) == 0)
         add("direction", std::string("the building has no frame parallel to ") +
@@ -65,14 +84,15 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
       continue;
     }
     const int place = a.frame >= 0 ? a.frame : (a.direction == Direction::x ? -1 : -2);
-    const auto [at, fresh] = places.emplace(std::tuple(a.story, place), a.name);
+    const auto [at, fresh] = places.emplace(std::tuple(a.story, place, a.is_force), a.name);
     if (!fresh) add("", "sits where channel '" + at->second + "' sits already");
   }
   const auto missing = [&](const std::string& what) {
     found.push_back({"", -1, "channels: no " + what});
   };
   for (const auto& [direction, name] : {std::pair(Direction::x, "x"), std::pair(Direction::y, "y")})
-    if (above.contains(direction) && !base.contains(direction))
+    if (above.contains(direction) && !base.contains(direction) &&
+        (!has_force(axes) || !base.empty()))
       missing(std::string("base channel (story = 0) in direction ") + name);
   if (above.empty()) missing("channel above the base");
   return found;

@@ -18,7 +18,8 @@ struct PlanPlace {
 
 /// One accelerometer axis and where it sits. Its corrected value, m/s^2, absolute, positive toward
 /// +x or +y, is polarity * (scale * raw - offset), freed from gravity and from the other horizontal
-/// direction where the axis is mounted at an angle (Calibration).
+/// direction where the axis is mounted at an angle (Calibration). Or a force that a shaker or a
+/// hammer applies to the building there, N, of the same signs: where this says m/s^2, read N.
 struct SensorAxis {
   std::string name;
   int story = 0;                       ///< 0 = base
@@ -35,6 +36,7 @@ struct SensorAxis {
   double range = 0.0;          ///< m/s^2 of scale * raw, at which it clips; 0 = unknown
   double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0 = unknown
   bool check = false;          ///< compared with what the others predict, not identified from
+  bool is_force = false;       ///< of the building, not of an accelerometer
 };
 
 /// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
@@ -45,11 +47,16 @@ std::vector<double> noise_densities(const std::vector<SensorAxis>& axes);
 
 /// Flags of the axes that are identified from: all but those for a check.
 std::vector<std::uint8_t> identifying(const std::vector<SensorAxis>& axes);
+/// Whether any axis is a force: without base axes the base then rests.
+bool has_force(const std::vector<SensorAxis>& axes);
+/// Those that are none, in their order.
+std::vector<SensorAxis> accelerometers(const std::vector<SensorAxis>& axes);
 
 /// Every way in which the sensors do not fit the structure: two axes on one frame, a frame or story
-/// that does not exist, a direction that is measured above the base and not there, no axis above
-/// the base. A problem's index is that of the axis. Which places are left without a sensor is no
-/// problem: StoryGroups says what such a layout shows.
+/// that does not exist, a direction that is measured above the base and not there (unless a force
+/// drives the building and the base rests), no axis above the base, a force on the base. A
+/// problem's index is that of the axis. Which places are left without a sensor is no problem:
+/// StoryGroups says what such a layout shows.
 std::vector<Problem> find_problems(const Structure& structure, const std::vector<SensorAxis>& axes);
 /// Their messages.
 std::vector<std::string> problems(const Structure& structure, const std::vector<SensorAxis>& axes);

@@ -194,10 +194,11 @@ std::vector<double> frame_weights(const Structure& s, const SensorAxis& axis) {
 
 StoryGroups story_groups(const Structure& s, const std::vector<SensorAxis>& all,
                          const WantedGroups& wanted) {
-  std::vector<SensorAxis> axes = all;
+  std::vector<SensorAxis> axes = accelerometers(all);
+  const bool forced = axes.size() < all.size();
   std::erase_if(axes, [](const SensorAxis& axis) { return axis.check; });
   StoryGroups out;
-  out.every_story = on_every_frame(s, axes) && wanted.floors.empty() && !wanted.bending;
+  out.every_story = !forced && on_every_frame(s, axes) && wanted.floors.empty() && !wanted.bending;
   if (out.every_story) return out;
   const bool rigid = s.floor == FloorModel::rigid;
   const bool rotation = rigid && shows_rotation(s, axes);

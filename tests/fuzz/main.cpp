@@ -12,10 +12,11 @@ namespace framewatch::test {
 namespace {
 
 const FuzzTarget* const kTargets[] = {
-    &kPacketTarget, &kMessagesTarget, &kPageTarget,     &kSamplesTarget,     &kLogTarget,
-    &kRecordTarget, &kMiniseedTarget, &kMatTarget,      &kCanTarget,         &kCandumpTarget,
-    &kDbcTarget,    &kConfigTarget,   &kScenarioTarget, &kExpectationTarget, &kBaselineTarget,
-    &kStateTarget,  &kDatabaseTarget, &kSessionTarget,  &kHttpTarget,        &kCommandTarget};
+    &kPacketTarget,   &kMessagesTarget, &kPageTarget,     &kSamplesTarget,    &kLogTarget,
+    &kRecordTarget,   &kMiniseedTarget, &kMatTarget,      &kStationXmlTarget, &kCanTarget,
+    &kCandumpTarget,  &kDbcTarget,      &kConfigTarget,   &kScenarioTarget,   &kExpectationTarget,
+    &kBaselineTarget, &kStateTarget,    &kDatabaseTarget, &kSessionTarget,    &kHttpTarget,
+    &kCommandTarget};
 /// libFuzzer begins itself anew, to merge for one: with the arguments it saw, and this.
 constexpr const char* kTargetVariable = "FRAMEWATCH_FUZZ_TARGET";
 const FuzzTarget* chosen = nullptr;

@@ -18,7 +18,7 @@ struct FuzzTarget {
 };
 
 extern const FuzzTarget kPacketTarget, kMessagesTarget, kPageTarget, kSamplesTarget;
-extern const FuzzTarget kLogTarget, kRecordTarget, kMiniseedTarget, kMatTarget;
+extern const FuzzTarget kLogTarget, kRecordTarget, kMiniseedTarget, kMatTarget, kStationXmlTarget;
 extern const FuzzTarget kCanTarget, kCandumpTarget, kDbcTarget;
 extern const FuzzTarget kConfigTarget, kScenarioTarget, kExpectationTarget, kBaselineTarget;
 extern const FuzzTarget kStateTarget, kDatabaseTarget, kSessionTarget;

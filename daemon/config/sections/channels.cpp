@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <tuple>
@@ -124,6 +125,24 @@ AxisSource read_source(ConfigSection& channel, const std::string& label,
   return source;
 }
 
+/// A force has keys in N where an accelerometer has them in m/s^2.
+void read_quantity(ConfigSection& section, estimator::SensorAxis& axis) {
+  axis.is_force = section.given("quantity") && section.text("quantity") == "force";
+  const auto refuse = [&](std::initializer_list<const char*> keys, const char* rule) {
+    for (const char* key : keys)
+      if (section.given(key)) section.problem(key, rule);
+  };
+  if (!axis.is_force)
+    return refuse({"offset_n", "range_n", "noise_n_per_rthz"},
+                  "is of a force: quantity = \"force\"");
+  refuse({"offset_mps2", "range_mps2", "noise_mps2_per_rthz"},
+         "a force is in N: offset_n, range_n, noise_n_per_rthz");
+  refuse({"tilt_deg", "mount_angle_deg", "cross_channel"}, "is of an accelerometer");
+  if (section.given("offset_n")) axis.offset = section.number("offset_n");
+  if (section.given("range_n")) axis.range = section.number("range_n");
+  if (section.given("noise_n_per_rthz")) axis.noise_density = section.number("noise_n_per_rthz");
+}
+
 std::string label_of(const TomlValue& table) {
   const TomlEntry* name = table.find("name");
   const bool named = name && name->value.kind == TomlKind::text && !name->value.text.empty();
@@ -145,6 +164,7 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
         {axis.name, vertical ? "it measures vertical motion" : "its use is false"});
     return;
   }
+  read_quantity(section, axis);
   read_place(section, reading, axis);
   config.pipeline.axes.push_back(axis);
   config.sources.push_back(read_source(section, label, problems));

@@ -31,6 +31,7 @@ struct Config {
   estimator::PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
   std::vector<UnusedChannel> unused;
+  std::optional<double> azimuth_y_deg;  ///< where the plan's y points, clockwise from north
   LcmSettings lcm;
   CommandSettings commands;
   drivers::CanMap can;                     ///< axes as in pipeline.axes

@@ -18,7 +18,8 @@ std::vector<int> axes_at(const std::vector<SensorAxis>& axes,
                          const std::vector<std::uint8_t>& present, int story) {
   std::vector<int> at;
   for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story == story && present[a] != 0) at.push_back(static_cast<int>(a));
+    if (axes[a].story == story && !axes[a].is_force && present[a] != 0)
+      at.push_back(static_cast<int>(a));
   return at;
 }
 

@@ -27,6 +27,7 @@ struct Spring {
 struct Coordinates {
   std::vector<FloorCoordinates> floor;  ///< base first
   std::vector<std::vector<int>> index;  ///< of every floor's coordinates
+  std::vector<int> forces;              ///< axes of the coordinates behind the base's
   int inputs = 0, measured = 0, total = 0;
 };
 
@@ -36,7 +37,9 @@ Coordinates number_coordinates(const Structure& s, const std::vector<SensorAxis>
   c.floor.push_back(base_coordinates(s, axes, present));
   for (int story = 1; story <= s.stories; ++story)
     c.floor.push_back(floor_coordinates(s, axes, present, story));
-  c.inputs = c.floor[0].measured;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (axes[a].is_force && present[a] != 0) c.forces.push_back(static_cast<int>(a));
+  c.inputs = c.floor[0].measured + static_cast<int>(c.forces.size());
   c.index.resize(c.floor.size());
   for (const bool inner : {false, true}) {
     for (std::size_t l = 0; l < c.floor.size(); ++l) {
@@ -44,6 +47,7 @@ Coordinates number_coordinates(const Structure& s, const std::vector<SensorAxis>
       const auto to =
           inner ? c.floor[l].frames.cols() : static_cast<Eigen::Index>(c.floor[l].measured);
       for (Eigen::Index i = from; i < to; ++i) c.index[l].push_back(c.total++);
+      if (l == 0 && !inner) c.total = c.inputs;
     }
     if (!inner) c.measured = c.total;
   }
@@ -131,7 +135,24 @@ std::vector<std::vector<int>> connected(const std::vector<Spring>& springs,
   return out;
 }
 
-Eigen::MatrixXd mass_of(const Structure& s, const Coordinates& c) {
+/// Forces work on what their places move by.
+void add_forces(const Structure& s, const std::vector<SensorAxis>& axes, const Coordinates& c,
+                Eigen::MatrixXd& mass) {
+  for (std::size_t n = 0; n < c.forces.size(); ++n) {
+    const SensorAxis& force = axes[static_cast<std::size_t>(c.forces[n])];
+    const auto l = static_cast<std::size_t>(force.story);
+    const std::vector<double> weights = frame_weights(s, force);
+    const Eigen::RowVectorXd lever =
+        Eigen::Map<const Eigen::RowVectorXd>(weights.data(), s.frames()) * c.floor[l].frames;
+    const int at = c.floor[0].measured + static_cast<int>(n);
+    for (Eigen::Index i = 0; i < lever.size(); ++i)
+      mass(at, c.index[l][static_cast<std::size_t>(i)]) =
+          mass(c.index[l][static_cast<std::size_t>(i)], at) = -lever[i];
+  }
+}
+
+Eigen::MatrixXd mass_of(const Structure& s, const std::vector<SensorAxis>& axes,
+                        const Coordinates& c) {
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(c.total, c.total);
   for (int story = 1; story <= s.stories; ++story) {
     const auto l = static_cast<std::size_t>(story);
@@ -144,6 +165,7 @@ Eigen::MatrixXd mass_of(const Structure& s, const Coordinates& c) {
         mass(c.index[l][static_cast<std::size_t>(i)], c.index[l][static_cast<std::size_t>(j)]) =
             m(i, j);
   }
+  add_forces(s, axes, c, mass);
   return mass;
 }
 
@@ -238,7 +260,7 @@ ReducedBuilding reduced_building(const Structure& s, const std::vector<SensorAxi
                                  const std::vector<std::uint8_t>& present, bool keep_groups) {
   Coordinates c = number_coordinates(s, axes, present);
   const std::vector<Spring> all = springs(s, table, design, c);
-  const Eigen::MatrixXd mass = mass_of(s, c);
+  const Eigen::MatrixXd mass = mass_of(s, axes, c);
   const Basis basis = basis_of(all, mass, c);
   ReducedBuilding out;
   out.inputs = c.inputs;
@@ -250,6 +272,9 @@ ReducedBuilding reduced_building(const Structure& s, const std::vector<SensorAxi
     if (l > 0 && c.floor[l].measured > 0) out.floors.push_back(row);
     out.from_axes.middleRows(row, c.floor[l].measured) = c.floor[l].from_axes;
     row += c.floor[l].measured;
+    if (l > 0) continue;
+    out.from_axes.middleRows(row, c.inputs - row).setZero();
+    for (const int axis : c.forces) out.from_axes(row++, axis) = 1;
   }
   out.floors.push_back(row);
   const Eigen::Index size = basis.shapes.cols();
@@ -288,12 +313,17 @@ ReducedBuilding reduced_building(const Structure& s, const std::vector<SensorAxi
 bool shows_groups(const Structure& s, const std::vector<SensorAxis>& axes,
                   const std::vector<std::uint8_t>& present) {
   bool above[2] = {false, false}, base[2] = {false, false};
+  bool driven = false, base_has_axes = false;
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    if (present[a] == 0) continue;
+    if (axes[a].is_force && present[a] == 0) return false;
+    driven = driven || axes[a].is_force;
+    base_has_axes = base_has_axes || axes[a].story == 0;
+    if (present[a] == 0 || axes[a].is_force) continue;
     const Direction along = axes[a].frame >= 0 ? s.direction(axes[a].frame) : axes[a].direction;
     (axes[a].story == 0 ? base : above)[along == Direction::x ? 0 : 1] = true;
   }
-  return (base[0] || !above[0]) && (base[1] || !above[1]) && (above[0] || above[1]);
+  const bool rests = driven && !base_has_axes;
+  return (rests || ((base[0] || !above[0]) && (base[1] || !above[1]))) && (above[0] || above[1]);
 }
 
 }  // namespace framewatch::estimator

@@ -13,11 +13,12 @@
 namespace framewatch::estimator {
 
 /// A linear building in coordinates of which the first are measured: those of the base, of which
-/// nothing else is asked, then those of the measured floors, then inner ones. Absolute motion. Its
-/// stiffness is K = constant + sum over parameters of x_p K_p, damping likewise, with x_p = 1 at
-/// the design. docs/equations.md, groups of stories.
+/// nothing else is asked, measured forces, then those of the measured floors, then inner ones. A
+/// force is a coordinate whose "acceleration" it is: less its lever on the others in the mass
+/// matrix. Absolute motion. Its stiffness is K = constant + sum over parameters of x_p K_p, damping
+/// likewise, with x_p = 1 at the design. docs/equations.md, groups of stories.
 struct ReducedBuilding {
-  int inputs = 0;             ///< coordinates of the base
+  int inputs = 0;             ///< coordinates of the base, and forces
   int measured = 0;           ///< coordinates that are measured, inputs among them
   Eigen::MatrixXd from_axes;  ///< measured x axes
   /// Where the measured coordinates of each measured floor begin, behind the inputs; then their
@@ -40,16 +41,17 @@ struct ReducedBuilding {
 };
 
 /// The building as the axes flagged in `present` see it. table: of groups. rows() is 0 where the
-/// base is not measured in a direction that is measured above. Groups between which a floor is not
-/// present become one, unless keep_groups. Inner floors that move together, more than
-/// kMostInner of them, are described by their lowest modes with the ends held.
+/// base is not measured in a direction that is measured above, and while a force is missing. Groups
+/// between which a floor is not present become one, unless keep_groups. Inner floors that move
+/// together, more than kMostInner of them, are described by their lowest modes with the ends held.
 /// Source: Craig and Bampton, AIAA J. 6 (1968), 1313.
 ReducedBuilding reduced_building(const Structure& structure, const std::vector<SensorAxis>& axes,
                                  const ParameterTable& table, const GroupDesign& design,
                                  const std::vector<std::uint8_t>& present,
                                  bool keep_groups = false);
 
-/// Whether the base is measured in every direction that is measured above it, and something is.
+/// Whether the base is measured in every direction that is measured above it, or rests while every
+/// force is known; and something is measured above it.
 bool shows_groups(const Structure& structure, const std::vector<SensorAxis>& axes,
                   const std::vector<std::uint8_t>& present);
 

@@ -34,7 +34,7 @@ class AccelLog : public testing::Test {
 };
 
 TEST_F(AccelLog, GivesBackTheRecordItWasMadeOf) {
-  Record record{{"F1", "F2", "G"}, {}, {{}, {}, {}}, 100, {}, {}};
+  Record record{{"F1", "F2", "G"}, {}, {{}, {}, {}}, 100, {}, {}, {}};
   for (int i = 0; i < 250; ++i) {
     record.time_s.push_back(i / 100.0);
     for (int c = 0; c < 3; ++c)

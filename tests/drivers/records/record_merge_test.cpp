@@ -10,7 +10,7 @@ namespace record_merge_test {
 
 /// Values 0, 1, 2, ... in one column of `name`.
 Record ramp(const std::string& name, double begin_s, double step_s, std::size_t rows) {
-  Record record{{name}, {}, {{}}, 1 / step_s, {}, {}};
+  Record record{{name}, {}, {{}}, 1 / step_s, {}, {}, {}};
   for (std::size_t i = 0; i < rows; ++i) {
     record.time_s.push_back(begin_s + static_cast<double>(i) * step_s);
     record.accel_mps2[0].push_back(static_cast<double>(i));

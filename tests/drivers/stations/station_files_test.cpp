@@ -179,11 +179,11 @@ TEST_F(StationFile, OfKnetIsReadWithItsHeader) {
   EXPECT_NEAR(r->time_s[0], kStart_utc_s, 1e-6);
   ASSERT_EQ(r->accel_mps2[0].size(), 10u);
   EXPECT_DOUBLE_EQ(r->accel_mps2[0][9], -22645 * (3920.0 / 6182761 * 0.01));
-  EXPECT_TRUE(r->notes[0].ends_with(": east")) << r->notes[0];
+  EXPECT_TRUE(r->notes[0].ends_with(": azimuth 90 deg")) << r->notes[0];
   const auto deep = read(replaced(knet(), "E-W", "3"));
   ASSERT_TRUE(deep);
   EXPECT_EQ(deep->names, std::vector<std::string>{"AKT001.UD1"});
-  EXPECT_TRUE(deep->notes[0].ends_with(": in the borehole, up"));
+  EXPECT_TRUE(deep->notes[0].ends_with(": up, in the borehole"));
 }
 
 TEST_F(StationFile, OfKnetThatIsDamagedIsRefused) {

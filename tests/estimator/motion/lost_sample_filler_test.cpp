@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -29,7 +30,7 @@ double cubic(double t) {
 }
 
 TEST(LostSampleFiller, GivesTwoInstantsLaterAndDrainsTheRest) {
-  LostSampleFiller filler(1, true);
+  LostSampleFiller filler({1});
   EXPECT_EQ(filler.push(set_of(0, {1})), nullptr);
   EXPECT_EQ(filler.push(set_of(1, {2})), nullptr);
   ASSERT_NE(filler.push(set_of(2, {3})), nullptr);
@@ -39,7 +40,7 @@ TEST(LostSampleFiller, GivesTwoInstantsLaterAndDrainsTheRest) {
 }
 
 TEST(LostSampleFiller, SingleLossIsTheCubicThroughItsNeighbours) {
-  LostSampleFiller filler(2, true);
+  LostSampleFiller filler({1, 1});
   std::vector<SampleSet> sets;
   for (int i = 0; i < 12; ++i) sets.push_back(set_of(i, {i == 6 ? kNaN : cubic(i), 7.0 * i}));
   const auto out = run(filler, sets);
@@ -57,7 +58,7 @@ TEST(LostSampleFiller, SingleLossIsTheCubicThroughItsNeighbours) {
 /// Losses at the given instants of 20: which remain.
 std::vector<int> left_after(const std::vector<int>& lost, bool repair = true,
                             int interrupted_after = -1) {
-  LostSampleFiller filler(1, repair);
+  LostSampleFiller filler({static_cast<std::uint8_t>(repair)});
   std::vector<SampleSet> sets;
   for (int i = 0; i < 20; ++i) {
     const bool gone = std::find(lost.begin(), lost.end(), i) != lost.end();
