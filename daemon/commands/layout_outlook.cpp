@@ -55,7 +55,7 @@ LayoutOutlook layout_outlook(const Config& config, int advise) {
   std::set<int> floors;
   out.noise_configured = true;
   for (const estimator::SensorAxis& axis : c.axes) {
-    if (axis.story > 0) floors.insert(axis.story);
+    if (axis.story > 0 && !axis.check) floors.insert(axis.story);
     out.noise_configured = out.noise_configured && axis.noise_density > 0;
   }
   out.floors.assign(floors.begin(), floors.end());
