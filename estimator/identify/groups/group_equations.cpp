@@ -12,7 +12,9 @@ namespace {
 
 /// Modes above are taken as rigid: the derivative filters end here.
 constexpr double kHighestMode_hz = 20;
-constexpr int kFewestModes = 3;  // of an inner set, for each pair of its ends
+/// Of an inner set, for each pair of its ends: with 4 the rest, taken as rigid, changes stiffnesses
+/// by 1e-5, with 3 by 2e-4, and what a shift costs does not grow with the stories of a group.
+constexpr int kFewestModes = 3, kMostModes = 4;
 
 std::vector<double> by_columns(const Eigen::MatrixXd& m) {
   return {m.data(), m.data() + m.size()};
@@ -108,13 +110,15 @@ class Builder {
       const RealEigen eigen = generalized_eigen(b_.mass.block(first, first, size, size), k);
       const int ends = static_cast<int>(
           not_zero_rows(stiffness_.block(first, 0, size, b_.measured).transpose()).size());
-      const int least = kFewestModes * std::max(1, (ends + 1) / 2);
+      const int pairs = std::max(1, (ends + 1) / 2);
       SetModes set{first, size, Eigen::MatrixXd(size, size), Eigen::VectorXd(size)};
       Eigen::Index modes = 0;
       for (Eigen::Index m = size - 1; m >= 0; --m) {  // 1 / w^2, ascending
         const double over_w2 = eigen.values[m];
         const bool low = over_w2 * std::pow(2 * M_PI * kHighestMode_hz, 2) > 1;
-        if (!(over_w2 > 1e-12 * eigen.values[size - 1]) || (!low && modes >= least)) break;
+        if (!(over_w2 > 1e-12 * eigen.values[size - 1]) || modes >= kMostModes * pairs ||
+            (!low && modes >= kFewestModes * pairs))
+          break;
         set.w2[modes] = 1 / over_w2;
         set.shape.col(modes++) = eigen.vectors.col(m) / std::sqrt(over_w2);
       }
