@@ -66,9 +66,9 @@ void ModelCheck::hold(int unknown, double ratio, double std_error) {
   for (OtherCorner& corner : corners_) corner.solution().hold(unknown, ratio, std_error);
 }
 
-void ModelCheck::next_window() {
-  for (OtherCorner& corner : corners_) corner.begin_window();
-  phase_ = Phase::filling;
+void ModelCheck::pause() {
+  pause_left_ = kPause * window_rows_;
+  phase_ = Phase::pausing;
 }
 
 const ModelFit* ModelCheck::advance(const Context& c) {
@@ -87,6 +87,10 @@ void ModelCheck::advance_corners(const Context& c) {
     phase_ = Phase::filling;
     return restart();
   }
+  if (phase_ == Phase::pausing) {
+    if (--pause_left_ <= 0) restart();
+    return;
+  }
   for (OtherCorner& corner : corners_) corner.advance(*c.ring);
   switch (phase_) {
     case Phase::tuning:
@@ -101,7 +105,7 @@ void ModelCheck::advance_corners(const Context& c) {
     case Phase::high:
       corners_[1].solve(c.trust);
       if (c.tuned) take_spread(c);
-      if (layout_.grouped()) return next_window();
+      if (layout_.grouped()) return pause();
       masses_.begin(corners_[1].solution().solver(), corners_[1].shape(), corners_[1].sums(),
                     config_->mass_tolerance);
       phase_ = Phase::masses;
@@ -112,7 +116,9 @@ void ModelCheck::advance_corners(const Context& c) {
         if (c.main->shown(u))
           mass_error_[parameter(u)] = masses_.error()[static_cast<std::size_t>(u)] /
                                       c.main->solver().solution()[static_cast<std::size_t>(u)];
-      next_window();
+      pause();
+      break;
+    case Phase::pausing:
       break;
   }
 }

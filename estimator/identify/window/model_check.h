@@ -50,20 +50,23 @@ class ModelCheck {
   template <typename Archive>
   void archive(Archive& a) {
     for (OtherCorner& corner : corners_) a(corner);
-    a.within(phase_, 0, static_cast<double>(Phase::masses));
+    a.within(phase_, 0, static_cast<double>(Phase::pausing));
     masses_.archive(a, corners_[1].shape(), corners_[1].sums());
     a(fit_);
     a.finite(low_, mass_error_, misfit_square_, corner_square_);
     a.each_within(misfits_, 0, kMisfits);
     a.each_within(spreads_, 0, kSpreads);
     a.within(blocks_, 0, kEvery);
+    a.within(pause_left_, 0, a.kMostCount);
   }
 
  private:
   static constexpr int kEvery = 4;                   ///< blocks between fits
   static constexpr int kMisfits = 24, kSpreads = 6;  ///< fits, windows that are averaged over
-  enum class Phase { tuning, filling, low, high, masses };
-  void next_window();
+  static constexpr int kPause =
+      2;  ///< windows that are left out between two: what is looked for stays
+  enum class Phase { tuning, filling, low, high, masses, pausing };
+  void pause();
   void advance_corners(const Context& context);
   void take_spread(const Context& context);
   void take_misfit(const Context& context);
@@ -90,6 +93,7 @@ class ModelCheck {
   std::vector<double> misfit_square_, corner_square_;
   std::vector<int> misfits_, spreads_;
   int blocks_ = 0;  ///< since the last fit
+  int pause_left_ = 0;
 };
 
 }  // namespace framewatch::estimator

@@ -30,7 +30,9 @@ void OtherCorner::restart(int settle) {
   rows_filter_->reset(settle);
   settling_ = settle + 1;
   solution_.restart();
-  begin_window();
+  std::fill(sum_.begin(), sum_.end(), 0.0);
+  std::fill(instants_.begin(), instants_.end(), 0);
+  count_ = 0;
 }
 
 void OtherCorner::retune(const RowTuning& active) {
@@ -44,12 +46,6 @@ bool OtherCorner::tune() {
   for (int i = 0; i < parts_per_instant_ && next_part_ < tuning_->parts(); ++i)
     tuning_->tune(next_part_++);
   return true;
-}
-
-void OtherCorner::begin_window() {
-  std::fill(sum_.begin(), sum_.end(), 0.0);
-  std::fill(instants_.begin(), instants_.end(), 0);
-  count_ = 0;
 }
 
 void OtherCorner::advance(const MotionRing& ring) {

@@ -12,7 +12,7 @@
 namespace framewatch::estimator {
 
 /// The regression once more, with other corners of its oscillator sections, over windows that
-/// follow each other: where the model is right they give the same numbers. Allocates when
+/// now and then: where the model is right they give the same numbers. Allocates when
 /// constructed, never after.
 class OtherCorner {
  public:
@@ -34,11 +34,10 @@ class OtherCorner {
   bool full() const { return count_ >= rows_; }
   /// Of a full window, which the next one follows.
   const WindowSolution& solve(const WindowSolution::Trust& trust);
-  /// The sums of the window that was solved last, until begin_window().
+  /// The sums of the window that was solved last, until restart().
   const std::vector<double>& sums() const { return sum_; }
   const GramShape& shape() const { return shape_; }
   WindowSolution& solution() { return solution_; }
-  void begin_window();
 
   template <typename Archive>
   void archive(Archive& a) {
