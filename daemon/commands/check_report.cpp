@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/commands/layout_warnings.h"
 #include "drivers/can/bus_load.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/structure/matrices.h"
@@ -18,9 +19,6 @@
 
 namespace framewatch::daemon {
 namespace {
-
-/// Off the frames' directions by more: an axis measures both.
-constexpr double kOblique_deg = 15;
 
 /// Below this share rounding is all there is.
 constexpr double kNoShear = 1e-9;
@@ -119,42 +117,6 @@ void warn_about_force(CheckReport& report) {
       "its windows say it");
 }
 
-/// What a layout of few sensors does not show, and what would.
-void warn_about_layout(CheckReport& report) {
-  const estimator::PipelineConfig& c = report.config.pipeline;
-  const estimator::EstimatorOptions& o = c.options;
-  const LayoutOutlook& layout = *report.layout;
-  for (const GroupOutlook& g : layout.groups)
-    if (!(g.window_error < o.max_error_k))
-      report.warnings.push_back(fmt::format(
-          "{}: its standard error will be {}, above estimator.max_error_k = {:g} %: no value of it "
-          "will be shown under such shaking",
-          g.parameter,
-          std::isfinite(g.window_error) ? fmt::format("{:.2g} %", 100 * g.window_error)
-                                        : std::string("without bound"),
-          100 * o.max_error_k));
-  if (!layout.floors.empty() && layout.floors.back() < c.structure.stories)
-    report.warnings.push_back(
-        fmt::format("no channel on the roof, floor {}: what is above floor {} is judged by what it "
-                    "does to that floor alone; a channel on the roof tells most",
-                    c.structure.stories, layout.floors.back()));
-  for (const estimator::SensorAxis& axis : c.axes) {
-    if (!axis.plan) continue;
-    const double off = std::asin(std::min(std::abs(std::cos(axis.plan->angle_rad)),
-                                          std::abs(std::sin(axis.plan->angle_rad)))) *
-                       180 / M_PI;
-    if (off > kOblique_deg)
-      report.warnings.push_back(
-          fmt::format("channel '{}' points {:.0f} degrees off the frames of direction {}: it "
-                      "measures both directions; if it does not, its azimuth or azimuth_y_deg is "
-                      "wrong",
-                      axis.name, off, axis.direction == estimator::Direction::x ? "x" : "y"));
-  }
-  for (const UnusedChannel& unused : report.config.unused)
-    report.warnings.push_back(
-        fmt::format("channel '{}' is not used: {}", unused.name, unused.reason));
-}
-
 }  // namespace
 
 CheckReport make_check_report(const Config& config, int advise) {
@@ -172,7 +134,7 @@ CheckReport make_check_report(const Config& config, int advise) {
     warn_about_force(report);
   } else if (identified.grouped()) {
     report.layout = layout_outlook(config, advise);
-    warn_about_layout(report);
+    report.warnings = layout_warnings(config, *report.layout);
   }
   for (const ConfigProblem& doubt : config.doubts)
     report.warnings.push_back(fmt::format("{}: {}", doubt.where, doubt.message));

@@ -28,7 +28,11 @@ class Shaking {
   explicit Shaking(const estimator::PipelineConfig& config);
 
   void push(const estimator::SampleSet& instant);
+  /// What was identified: floors without sensors move by it from now on.
+  void follow(const estimator::WindowEstimate& estimate) { response_.follow(estimate); }
 
+  /// The motion at the last instant.
+  const estimator::StoryResponse& response() const { return response_; }
   /// Null while there was none.
   const Shake* newest() const { return newest_ ? &*newest_ : nullptr; }
   /// By drift ratio, the newest one included.

@@ -87,15 +87,17 @@ void StoryResponse::follow(const WindowEstimate& estimate) {
   if (floors_) floors_->follow(estimate);
 }
 
-/// Mean of the base's sensors; NaN: one is not settled, or there is none.
-double StoryResponse::base_displacement(Direction direction) const {
-  double sum = 0, count = 0;
+/// Mean of the base's sensors; NaN: one has no value, or there is none.
+StoryResponse::At StoryResponse::base(Direction direction) const {
+  At sum{0, 0};
+  double count = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
     if (axes_[a].story == 0 && axes_[a].direction == direction) {
-      sum += moved_[a];
+      sum.accel_mps2 += motion_accel_[a];
+      sum.moved_m += moved_[a];
       ++count;
     }
-  return count > 0 ? sum / count : kNaN;
+  return count > 0 ? At{sum.accel_mps2 / count, sum.moved_m / count} : At{kNaN, kNaN};
 }
 
 StoryResponse::At StoryResponse::at(int level, int frame) const {
@@ -104,7 +106,7 @@ StoryResponse::At StoryResponse::at(int level, int frame) const {
         axes_.size() + static_cast<std::size_t>(level * structure_.frames() + frame);
     return {motion_accel_[motion], moved_[motion]};
   }
-  if (level == 0) return {kNaN, base_displacement(structure_.direction(frame))};
+  if (level == 0) return base(structure_.direction(frame));
   const int motion = motion_of_dof_[static_cast<std::size_t>(structure_.dof(level, frame))];
   if (motion < 0) return {kNaN, kNaN};
   return {motion_accel_[static_cast<std::size_t>(motion)],

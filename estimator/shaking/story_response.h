@@ -32,6 +32,8 @@ class StoryResponse {
 
   /// Of each axis: without its mean, m/s^2; NaN: none.
   const std::vector<double>& accel_mps2() const { return accel_; }
+  /// Of a frame on a floor, 0: the base, m/s^2, without its mean; NaN: not known.
+  double floor_accel_mps2(int floor, int frame) const { return at(floor, frame).accel_mps2; }
   /// Of each frame in each story (Structure::dof), m, positive toward +x or +y; NaN: not known.
   const std::vector<double>& drift_m() const { return drift_; }
   /// Along x and y: minus the floors' masses times their accelerations, N; NaN: not known.
@@ -58,12 +60,12 @@ class StoryResponse {
   };
   void follow(std::size_t motion, double accel);
   void follow_floors(const SampleSet& set);
-  double base_displacement(Direction direction) const;
   /// Of a frame at a level, 0: the base.
   struct At {
     double accel_mps2, moved_m;
   };
   At at(int level, int frame) const;
+  At base(Direction direction) const;
   void find_story_motion();
 
   Structure structure_;

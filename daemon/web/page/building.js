@@ -30,9 +30,17 @@ class Building {
     this.zs = [0];
     for (const h of plan.story_height_m) this.zs.push(this.zs[this.zs.length - 1] + h);
     this.extent = Math.max(this.xs.at(-1), this.ys.at(-1), this.zs.at(-1));
-    const n = plan.frames_x.length;
-    this.axisOf = (story, frame) => plan.axes.findIndex(a => a.story === story && a.frame === frame);
+    const n = plan.frames_x.length, frames = n + plan.frames_y.length;
+    // With channels on some floors the server adds the motion of every frame, the base's first.
+    this.axisOf = plan.grouped ? (story, frame) => plan.axes.length + story * frames + frame
+      : (story, frame) => plan.axes.findIndex(a => a.story === story && a.frame === frame);
     this.baseOf = direction => plan.axes.findIndex(a => a.story === 0 && a.direction === direction);
+    const motions = plan.grouped ? plan.axes.length + (plan.stories + 1) * frames : plan.axes.length;
+    // What each motion is measured from: the base of its frame, or of its direction.
+    this.from = Array.from({length: motions}, (_, i) => i < plan.axes.length ? this.baseOf(plan.axes[i].direction)
+      : this.axisOf(0, (i - plan.axes.length) % frames));
+    this.ofBase = i => i < plan.axes.length ? plan.axes[i].story === 0 : i < plan.axes.length + frames;
+    this.measured = [...new Set(plan.axes.map(a => a.story))];
     this.floorAxis = [];
     for (let s = 0; s <= plan.stories; s++) {
       this.floorAxis.push({
@@ -48,12 +56,15 @@ class Building {
       const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[e.key];
       if (!step) return;
       e.preventDefault();
-      this.choose((this.chosen + step + this.faces.length) % this.faces.length);
+      const size = this.faces.length, of = k => this.faces[k].i;
+      let k = this.chosen;
+      do k = (k + step + size) % size; while (of(k) === of(this.chosen) && k !== this.chosen); // a group has many
+      this.choose(k);
     });
   }
   // What the integrators make of a beginning in the midst of motion is not shown.
   begin() {
-    this.motion = this.plan.axes.map(() => ({last: null, a: 0, v: 0, d: 0}));
+    this.motion = this.from.map(() => ({last: null, a: 0, v: 0, d: 0}));
     this.settling = Math.ceil(1.2 * this.plan.rate_hz / this.plan.high_pass_hz);
   }
   makeFaces() {
@@ -61,9 +72,11 @@ class Building {
     const xe = this.xs.length - 1, ye = this.ys.length - 1;
     p.parameters.forEach((q, i) => {
       const t = q.story;
-      if (q.kind === 0 && q.frame < n) faces.push({i, at: [[0, q.frame, t - 1], [xe, q.frame, t - 1], [xe, q.frame, t], [0, q.frame, t]]});
-      else if (q.kind === 0) faces.push({i, at: [[q.frame - n, 0, t - 1], [q.frame - n, ye, t - 1], [q.frame - n, ye, t], [q.frame - n, 0, t]]});
-      else if (q.kind === 1) {
+      if (q.kind === 0) {
+        for (let s = t; s <= q.last_story; s++)
+          for (const f of q.frames) faces.push({i, at: f < n ? [[0, f, s - 1], [xe, f, s - 1], [xe, f, s], [0, f, s]]
+            : [[f - n, 0, s - 1], [f - n, ye, s - 1], [f - n, ye, s], [f - n, 0, s]]});
+      } else if (q.kind === 1) {
         const bays = p.frames_y.length - 1, x = q.panel % bays, y = Math.floor(q.panel / bays);
         faces.push({i, at: [[x, y, t], [x + 1, y, t], [x + 1, y + 1, t], [x, y + 1, t]]});
       }
@@ -74,11 +87,9 @@ class Building {
   push(accel) {
     const dt = 1 / this.plan.rate_hz, keep = Math.exp(-2 * Math.PI * this.plan.high_pass_hz * dt);
     if (this.settling > 0) --this.settling;
-    const base = {x: accel[this.baseOf('x')] ?? 0, y: accel[this.baseOf('y')] ?? 0};
-    this.plan.axes.forEach((a, i) => {
-      const m = this.motion[i];
-      if (a.story === 0 || accel[i] === null) return;
-      const relative = accel[i] - base[a.direction];
+    this.motion.forEach((m, i) => {
+      if (this.ofBase(i) || accel[i] === null || accel[i] === undefined) return;
+      const relative = accel[i] - (accel[this.from[i]] ?? 0);
       m.a = m.last === null ? 0 : keep * (m.a + relative - m.last);
       m.last = relative;
       m.v = keep * m.v + m.a * dt;
@@ -89,9 +100,9 @@ class Building {
   }
   drift(parameter) {
     const q = this.plan.parameters[parameter];
-    if (!q || q.frame < 0 || this.settling) return null;
-    const d = s => { const a = this.axisOf(s, q.frame); return s === 0 || a < 0 ? 0 : this.motion[a].d; };
-    return d(q.story) - d(q.story - 1);
+    if (!q || !q.frames.length || this.settling) return null;
+    const d = s => { const a = this.axisOf(s, q.frames[0]); return s === 0 || a < 0 ? 0 : this.motion[a].d; };
+    return d(q.last_story) - d(q.story - 1);
   }
   at(x, y, s) {
     const f = this.floorAxis[s], d = i => i >= 0 && i !== undefined ? this.motion[i].d : 0;
@@ -137,9 +148,11 @@ class Building {
       g.strokeStyle = chosen ? style.ink : style.soft;
       g.stroke();
     }
+    this.levels(g, style);
     const dead = deadChannels();
     this.dots = [];
     for (const a of this.plan.axes) {
+      if (a.x_m !== undefined) { this.dot(g, style, a.name, this.planPoint(a), dead.has(a.name)); continue; }
       if (a.story === 0 || a.frame < 0) { if (dead.has(a.name)) this.dot(g, style, a.name, ground[a.direction === 'x' ? 0 : 3], true); continue; }
       const n = this.plan.frames_x.length, inX = a.frame < n;
       const p = inX ? this.at(0, a.frame, a.story) : this.at(a.frame - n, 0, a.story);
@@ -152,6 +165,23 @@ class Building {
     g.fillText(this.still ? 'no motion to show' : rest ? 'hardly moves' : 'motion × ' + digits(this.factor, 2), 6, h - 8);
     this.drifts(g, style);
     this.compass(g, style);
+  }
+  // Floors with channels, where others have none.
+  levels(g, style) {
+    if (!this.plan.grouped) return;
+    const x = this.xs.length - 1, y = this.ys.length - 1;
+    g.lineWidth = 2.5; g.strokeStyle = style.ink;
+    for (const s of this.measured) {
+      if (s === 0) continue;
+      this.path(g, [this.at(0, 0, s), this.at(x, 0, s), this.at(x, y, s), this.at(0, y, s)]);
+      g.stroke();
+    }
+  }
+  // Of a channel that rides on no frame.
+  planPoint(a) {
+    const f = this.floorAxis[a.story], g = this.factor, d = i => a.story > 0 && i !== undefined && i >= 0 ? this.motion[i].d : 0;
+    const inside = (v, all) => Math.min(Math.max(v, 0), all.at(-1));
+    return this.project([inside(a.x_m, this.xs) + g * d(f.x[0]), inside(a.y_m, this.ys) + g * d(f.y[0]), this.zs[a.story]]);
   }
   dot(g, style, name, [x, y], dead) {
     g.beginPath(); g.arc(x, y, dead ? 7 : 3, 0, 7);
@@ -167,14 +197,19 @@ class Building {
     if (!told.drift.length) return;
     g.font = '12px system-ui'; g.textAlign = 'right'; g.fillStyle = style.soft;
     g.fillText('peak drift ratio', this.w - 6, 14);
-    told.drift.forEach((d, i) => {
-      if (d.frame < 0) return;
+    const largest = told.drift.reduce((m, d, i) => d.frame >= 0 && !(d.ratio <= told.drift[m].ratio) ? i : m, 0), taken = [];
+    const order = told.drift.map((_, i) => i).sort((a, b) => (b === largest) - (a === largest) || b - a);
+    for (const i of order) {
+      const d = told.drift[i];
+      if (d.frame < 0) continue;
       const low = this.project([this.xs.at(-1) / 2, this.ys.at(-1) / 2, this.zs[i]]), high = this.project([this.xs.at(-1) / 2, this.ys.at(-1) / 2, this.zs[i + 1]]);
       g.fillStyle = style.ink;
       const at = [this.w - 6, Math.max(30, (low[1] + high[1]) / 2)], words = `story ${i + 1}: ${digits(100 * d.ratio, 3)} %`;
+      if (taken.some(y => Math.abs(y - at[1]) < 14)) continue; // a tall building has no room for all
+      taken.push(at[1]);
       g.strokeStyle = style.card; g.lineWidth = 4;
       g.strokeText(words, ...at); g.fillText(words, ...at);
-    });
+    }
   }
   compass(g, style) {
     const o = this.project([0, 0, 0]), length = 26;

@@ -35,10 +35,16 @@ function showTip(text, x, y) {
 function hideTip() { $('tip').hidden = true; }
 function place(q) {
   const n = plan.frames_x.length;
-  if (q.frame >= 0) return `story ${q.story}, frame ${q.frame < n ? plan.frames_x[q.frame] : plan.frames_y[q.frame - n]}`;
+  const name = f => f < n ? plan.frames_x[f] : plan.frames_y[f - n];
+  if (q.kind === 4) return `all frames along ${q.direction}`;
+  if (q.frames.length) {
+    const stories = q.last_story > q.story ? `stories ${q.story} to ${q.last_story}` : `story ${q.story}`;
+    return `${stories}, ` + (q.frames.length > 1 || q.frame < 0 ? `along ${q.direction}` : `frame ${name(q.frames[0])}`);
+  }
   return `floor ${q.story}, panel ${q.name.split('_').pop()}`;
 }
-const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.'];
+const groupMeaning = {0: 'Stories between two measured floors, together: the stiffness of their springs in series, which is what these channels show.', 2: 'Viscous damping of these stories together; an equivalent, of which changes mean something and the value little.'};
+const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.', 'Rotational stiffness of the frames against bending, the same at every floor.'];
 function reference(i) { return baseline[i] || plan.parameters[i].design || null; }
 const baselineKnown = () => baseline.some(b => b);
 const flows = () => lastMotion > 0 && performance.now() - lastMotion <= kSilence_ms;
@@ -48,7 +54,7 @@ const newestUs = () => Math.max(lastRow || 0, estimate ? estimate.end_us : 0);
 const nowUs = () => newestUs() + (flows() || !lastMotion ? 0 : 1e3 * (performance.now() - lastMotion));
 const whyNot = i => estimate ? reasons[estimate.reason[i]] || 'no value' : 'no value yet';
 function elementText(i) {
-  const q = plan.parameters[i], out = [`${q.name}: ${place(q)}`, meaning[q.kind]], v = known[i], f = findingOf(q.name);
+  const q = plan.parameters[i], out = [`${q.name}: ${place(q)}`, q.last_story > q.story && groupMeaning[q.kind] || meaning[q.kind]], v = known[i], f = findingOf(q.name);
   if (f) out.push(`${f.ratio < 0 ? 'lost' : 'gained'} ${percent(f.ratio, f.error).slice(1)} of its stiffness, give or take ${percent(f.error, f.error).slice(1)}, since ${when(f.since_us)}`);
   if (v) out.push(`${isNow(i) ? 'newest window' : 'last value'} ${withError(v.value, v.error, q.unit)} (one standard error)` + (isNow(i) ? '' : `, ${span((nowUs() - v.us) / 1e6)} old, of ${when(v.us)}`));
   if (!isNow(i) && flows()) out.push(`now no value: ${whyNot(i)}`);
@@ -68,7 +74,7 @@ function choose(i) {
   strip = engineering(size, q.unit);
   past.forEach(pushStiffness);
   strips.k.name(`${q.name}, ${strip.unit}: value and one standard error`);
-  strips.drift.name(q.frame >= 0 ? `story drift in ${place(q)}, mm` : 'story drift: choose a frame');
+  strips.drift.name(q.frames.length ? `${q.last_story > q.story ? 'drift over' : 'story drift in'} ${place(q)}, mm` : 'story drift: choose a frame');
 }
 function start(json) {
   plan = json;
@@ -184,7 +190,7 @@ function onEstimate(e) {
 }
 function colour() {
   plan.parameters.forEach((q, i) => {
-    if (q.kind > 1) return;
+    if (q.kind > 1 && q.kind !== 4) return;
     const f = findingOf(q.name);
     building.known[i] = known[i] !== undefined;
     building.old[i] = !isNow(i);

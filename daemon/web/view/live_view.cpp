@@ -57,6 +57,7 @@ LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give
           [this](const estimator::AccelSample& sample) { acquisition_.push(sample); },
           intake_settings(config)),
       shaking_(config.pipeline),
+      grouped_(config.pipeline.parameters().grouped()),
       reports_(config.event_report ? config.event_report->directory : std::string()),
       ring_(kRing),
       history_(config.pipeline),
@@ -169,8 +170,8 @@ void LiveView::parameters(const void* data, std::size_t size) {
   parameters_ = table->name;
   watch_.reset();
   // An estimator of another building's configuration is shown, not watched.
-  if (parameters_ == parameter_names(config_))
-    watch_.emplace(config_, std::max<std::int64_t>(1, table->time_us));
+  same_parameters_ = parameters_ == parameter_names(config_);
+  if (same_parameters_) watch_.emplace(config_, std::max<std::int64_t>(1, table->time_us));
 }
 
 void LiveView::estimate(const std::string& channel, const void* data, std::size_t size) {
@@ -187,6 +188,8 @@ void LiveView::estimate(const std::string& channel, const void* data, std::size_
   new_estimate_ = true;
   estimate_at_ = flushes_;
   fit_.push(*found);
+  if (found->value.size() == parameters_.size() && same_parameters_)
+    shaking_.follow(decoded_estimate(window, *found));
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     history_.estimate(*found);
@@ -209,10 +212,20 @@ void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
 
 void LiveView::instant(const estimator::SampleSet& set) {
   motion_at_ = flushes_;
-  motion_.push(set);
   shaking_.push(set);
+  motion_.push(with_every_floor(set));
   const std::lock_guard<std::mutex> lock(mutex_);
   history_.instant(set);
+}
+
+/// Behind the channels the motion of every frame, the base's first, where that is not the same.
+estimator::SampleSet LiveView::with_every_floor(estimator::SampleSet set) const {
+  if (!grouped_) return set;
+  const estimator::Structure& s = config_.pipeline.structure;
+  for (int floor = 0; floor <= s.stories; ++floor)
+    for (int f = 0; f < s.frames(); ++f)
+      set.accel.push_back(shaking_.response().floor_accel_mps2(floor, f));
+  return set;
 }
 
 std::vector<double> LiveView::baseline() const {

@@ -73,6 +73,7 @@ class LiveView {
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);
   void instant(const estimator::SampleSet& instant);
+  estimator::SampleSet with_every_floor(estimator::SampleSet set) const;
   void push_if_new(const std::string& name, const std::string& json);
   /// What changes are judged against, and which of the parameters are.
   std::vector<double> baseline() const;
@@ -93,6 +94,8 @@ class LiveView {
   bool new_estimate_ = false;                                   ///< since the last flush
   std::int64_t flushes_ = 0, motion_at_ = 0, estimate_at_ = 0;  ///< flushes: the view's clock
   Shaking shaking_;
+  bool grouped_;                  ///< parameters are of groups of stories
+  bool same_parameters_ = false;  ///< the estimator's are the configuration's
   ModelFit fit_;
   NewestEventReport reports_;
   bool same_config_ = true;

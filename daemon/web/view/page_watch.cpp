@@ -22,8 +22,9 @@ estimator::Watch fresh_watch(const estimator::ParameterTable& table,
   return {table, options, windows_s, std::nullopt};
 }
 
-/// What Watch reads of an estimate.
-estimator::WindowEstimate decoded(int window, const window_estimate_t& m) {
+}  // namespace
+
+estimator::WindowEstimate decoded_estimate(int window, const window_estimate_t& m) {
   estimator::WindowEstimate e;
   e.window = window;
   e.start = estimator::from_microseconds(m.window_start_us);
@@ -38,8 +39,6 @@ estimator::WindowEstimate decoded(int window, const window_estimate_t& m) {
   e.noise_share.assign(m.noise_share.begin(), m.noise_share.end());
   return e;
 }
-
-}  // namespace
 
 PageWatch::PageWatch(const Config& config, std::int64_t first_id)
     : table_(config.pipeline.parameters()),
@@ -56,7 +55,7 @@ void PageWatch::renew() {
 std::vector<event_t> PageWatch::observe(int window, const window_estimate_t& estimate) {
   std::vector<event_t> out;
   if (estimate.value.size() != static_cast<std::size_t>(watch_.parameters())) return out;
-  for (const estimator::Alarm& alarm : watch_.push(decoded(window, estimate))) {
+  for (const estimator::Alarm& alarm : watch_.push(decoded_estimate(window, estimate))) {
     last_alarm_ = std::max(last_alarm_, alarm.id);
     out.push_back(event(alarm));
   }

@@ -12,6 +12,9 @@
 
 namespace framewatch::daemon {
 
+/// What Watch and the motion of floors without sensors read of an estimate.
+estimator::WindowEstimate decoded_estimate(int window, const window_estimate_t& message);
+
 /// Watches the stiffnesses of published estimates for changes where nobody else does: without
 /// [watch] in the configuration. The test is the estimator's (estimator::Watch), in the main and
 /// the other windows at once, against a baseline that it learns from the first kBaseline_s of
