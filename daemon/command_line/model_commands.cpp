@@ -131,10 +131,11 @@ void add_reproduce(CommandList& commands) {
       "reproduce",
       "the paper's examples again: its tables and figures, its method against this one");
   command->footer(
-      "Writes DIR/report.html and, with all cases, DIR/accuracy.md. The paper's ground motions and "
-      "the\nmeasured shaking table are looked for in the folder FRAMEWATCH_DATA; seeded motions "
-      "stand in.\n"
-      "Cases: table1, table2b, table2c, table2d, noise, denoise, table-test.\n"
+      "Writes DIR/report.html and, with all cases or few-sensors, DIR/accuracy.md. The paper's\n"
+      "ground motions and the measured shaking table are looked for in the folder "
+      "FRAMEWATCH_DATA;\n"
+      "seeded motions stand in.\n"
+      "Cases: table1, table2b, table2c, table2d, noise, denoise, table-test, few-sensors.\n"
       "Exit status: 0 written and every promise kept, 1 one not kept, 2 bad usage.\n"
       "Example: framewatch reproduce --case table1 --out paper");
   command->add_option("--out", arguments.out, "folder for what is written")

@@ -70,7 +70,8 @@ int reproduce(const ReproduceArguments& a) {
   const Reproduction all = measured(a);
   if (!a.quiet) tell_what_is_missing(all);
   if (!write(a.out + "/report.html", reproduction_html(all, a.only))) return kBadInput;
-  if (a.only.empty() && !write(a.out + "/accuracy.md", accuracy_markdown(all))) return kBadInput;
+  const bool tables = a.only.empty() || !all.few_sensors.empty();
+  if (tables && !write(a.out + "/accuracy.md", accuracy_markdown(all))) return kBadInput;
 
   const std::vector<Promise> list = promises(all);
   const auto broken =
@@ -78,12 +79,11 @@ int reproduce(const ReproduceArguments& a) {
   for (const Promise& promise : list)
     if (!promise.kept) fmt::print("not kept: {}: {}\n", promise.what, promise.measured);
   if (!a.quiet)
-    fmt::print("{}/report.html{}; {}\n", a.out,
-               a.only.empty() ? fmt::format(", {}/accuracy.md", a.out) : "",
-               list.empty()
-                   ? fmt::format("fewer than {} seeds: nothing judged", kSeedsToJudge)
-                   : fmt::format("{} of {} promises kept",
-                                 static_cast<std::ptrdiff_t>(list.size()) - broken, list.size()));
+    fmt::print(
+        "{}/report.html{}; {}\n", a.out, tables ? fmt::format(", {}/accuracy.md", a.out) : "",
+        list.empty() ? fmt::format("fewer than {} seeds: nothing judged", kSeedsToJudge)
+                     : fmt::format("{} of {} promises kept",
+                                   static_cast<std::ptrdiff_t>(list.size()) - broken, list.size()));
   return broken > 0 ? kBroken : 0;
 }
 

@@ -77,8 +77,8 @@ Robustness robustness(int seeds, const Workers& workers) {
 }  // namespace
 
 const std::vector<std::string>& reproduction_cases() {
-  static const std::vector<std::string> cases = {"table1", "table2b", "table2c",   "table2d",
-                                                 "noise",  "denoise", "table-test"};
+  static const std::vector<std::string> cases = {"table1", "table2b", "table2c",    "table2d",
+                                                 "noise",  "denoise", "table-test", "few-sensors"};
   return cases;
 }
 
@@ -107,6 +107,10 @@ Reproduction reproduce_paper(const std::string& only, int seeds, const std::stri
     if (wanted("denoise")) out.denoise = sweep;
   }
   if (wanted("noise")) out.robustness = robustness(seeds, workers);
+  if (wanted("few-sensors")) {
+    out.few_sensors = study_few_sensors(seeds, workers);
+    out.wrong_models = study_wrong_models(seeds, workers);
+  }
   if (wanted("table-test")) {
     out.tables.push_back(virtual_table_test(data, workers));
     auto measured = measured_table_test(data, workers);

@@ -9,6 +9,7 @@
 #include "daemon/base/workers.h"
 #include "daemon/lab/accuracy_study.h"
 #include "daemon/lab/excitation_study.h"
+#include "daemon/lab/few_sensors.h"
 #include "daemon/lab/noise_sweep.h"
 #include "daemon/lab/table_test.h"
 
@@ -41,6 +42,7 @@ struct Reproduction {
   std::vector<BuildingReproduction> buildings;
   std::optional<NoiseSweep> noise, denoise;
   std::optional<Robustness> robustness;
+  std::vector<FewSensorsRow> few_sensors, wrong_models;
   std::vector<TableTest> tables;
   bool motions_missing = false;         ///< seeded ones stand in for at least one
   bool measured_table_missing = false;  ///< asked for and not there

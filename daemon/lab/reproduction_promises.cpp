@@ -11,6 +11,7 @@ namespace {
 constexpr const char* kJudgedKinds[] = {"k", "G", "c"};
 constexpr double kLeastCoverage = 0.90, kMostCoverage = 0.98;
 constexpr double kMostWrong = 0.05;
+constexpr double kLeastHeld = 0.85;
 constexpr double kMostChangeByBias = 1e-4;
 /// Fewer published values say nothing about the share of intervals that hold.
 constexpr int kFewestToJudge = 200;
@@ -63,6 +64,23 @@ void judge(const Robustness& r, std::vector<Promise>& out) {
   if (r.random_buildings) judge_row(*r.random_buildings, out);
 }
 
+void judge(const FewSensorsRow& row, std::vector<Promise>& out) {
+  if (!(row.most_k > 0)) return;
+  const double k = row.errors.stiffness.quantile(0.5), c = row.errors.damping.quantile(0.5);
+  out.push_back({fmt::format("{}: median error of k at most {}", row.name, percent(row.most_k)),
+                 percent(k), k <= row.most_k});
+  out.push_back({fmt::format("{}: median error of c at most {}", row.name, percent(row.most_c)),
+                 percent(c), c <= row.most_c});
+}
+
+void judge_wrong_model(const FewSensorsRow& row, std::vector<Promise>& out) {
+  if (row.errors.stiffness.published == 0) return;
+  const double held = row.errors.held_ratio();
+  out.push_back({fmt::format("{}: intervals of k with the model's error hold in {} at least",
+                             row.name, percent(kLeastHeld)),
+                 percent_1(held), held >= kLeastHeld});
+}
+
 }  // namespace
 
 std::vector<Promise> promises(const Reproduction& all) {
@@ -71,6 +89,8 @@ std::vector<Promise> promises(const Reproduction& all) {
   for (const BuildingReproduction& building : all.buildings)
     for (const AccuracyRow& row : building.rows) judge_row(row, out);
   if (all.robustness) judge(*all.robustness, out);
+  for (const FewSensorsRow& row : all.few_sensors) judge(row, out);
+  for (const FewSensorsRow& row : all.wrong_models) judge_wrong_model(row, out);
   return out;
 }
 

@@ -76,6 +76,7 @@ std::string reproduction_html(const Reproduction& all, const std::string& only) 
     body += "<h2>Shaking-table test</h2>\n" + command_html("table-test", all.seeds);
   for (const TableTest& test : all.tables) body += table_section(test);
   if (all.robustness) body += robustness_section(*all.robustness, all.seeds);
+  if (!all.few_sensors.empty()) body += few_sensors_section(all);
   body += "<h2>Promises</h2>\n" + promises_section(all);
   return html_page("framewatch: the paper's examples, reproduced", body);
 }

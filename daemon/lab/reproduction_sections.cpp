@@ -138,4 +138,28 @@ std::string table_section(const TableTest& test) {
   return out;
 }
 
+std::string few_sensors_section(const Reproduction& all) {
+  std::vector<std::vector<std::string>> rows;
+  for (const FewSensorsRow& r : all.few_sensors)
+    rows.push_back({html_text(r.name), percent(r.errors.stiffness.quantile(0.5)),
+                    percent(r.errors.stiffness.quantile(0.95)),
+                    percent(r.errors.damping.quantile(0.5)),
+                    percent(r.errors.damping.quantile(0.95)), r.must()});
+  std::string out =
+      "<h2>Few sensors</h2>\n" + command_html("few-sensors", all.seeds) +
+      "<p>Groups of stories of a plane building of 20 stories, 5-s windows.</p>\n" +
+      html_table({"sensors", "k", "95 % of k", "c", "95 % of c", "must (k, c)"}, rows);
+  rows.clear();
+  for (const FewSensorsRow& r : all.wrong_models)
+    rows.push_back({html_text(r.name), percent(r.errors.stiffness.quantile(0.5)),
+                    percent(r.errors.stiffness.published_ratio()),
+                    percent(r.errors.stiffness.coverage_ratio()), percent(r.errors.held_ratio())});
+  return out +
+         "<h3>When the model is wrong</h3>\n<p>Share of published stiffnesses whose 95 % interval "
+         "holds the truth.</p>\n" +
+         html_table({"building", "error of k", "published", "by the window's error",
+                     "with the model's error"},
+                    rows);
+}
+
 }  // namespace framewatch::daemon

@@ -21,6 +21,8 @@ std::string noise_section(const Reproduction& all);
 std::string denoise_section(const Reproduction& all);
 /// Figure 10 with its numbers.
 std::string table_section(const TableTest& test);
+/// Accuracy with sensors on few floors, and intervals where the model is wrong.
+std::string few_sensors_section(const Reproduction& all);
 /// Fading excitation, silence, bias, random buildings.
 std::string robustness_section(const Robustness& robustness, int seeds);
 
