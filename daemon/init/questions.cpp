@@ -31,6 +31,10 @@ std::string take_name(const std::string& text, Draft& d, ColumnCache&) {
   return "";
 }
 
+std::string file_name(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
 std::string take_record(const std::string& text, Draft& d, ColumnCache& files) {
   if (text == "none") return "";
   RecordAnswer answer = parse_record_answer(text);
@@ -43,10 +47,11 @@ std::string take_record(const std::string& text, Draft& d, ColumnCache& files) {
   if (d.station) d.station_plan.base_is_basement = !d.station->ground_can_be_base;
   d.notes.insert(d.notes.end(), read.notes.begin(), read.notes.end());
   d.plan.record_files = static_cast<int>(answer.paths.size());
-  d.plan.record = d.plan.record_files == 1
-                      ? shell_word(answer.paths.front()) + options_text(answer.arguments)
-                      : fmt::format("{} files, {} to {}", answer.paths.size(), answer.paths.front(),
-                                    answer.paths.back());
+  d.plan.record =
+      d.plan.record_files == 1
+          ? shell_word(answer.paths.front()) + options_text(answer.arguments)
+          : fmt::format("{} files, {} to {}", answer.paths.size(), file_name(answer.paths.front()),
+                        file_name(answer.paths.back()));
   d.plan.rate_hz = read.rate_hz;
   d.plan.rate_from = "as the record's times say";
   return "";
