@@ -48,7 +48,7 @@ Stretch without_silent_channels(const estimator::PipelineConfig& config,
   out.config.axes.clear();
   for (Eigen::Index a = 0; a < accel.cols(); ++a) {
     const estimator::SensorAxis& axis = collector.axes()[static_cast<std::size_t>(a)];
-    if (accel.col(a).array().isNaN().all()) {
+    if (accel.col(a).array().isNaN().all() && !axis.is_force) {
       out.silent.push_back(axis.name);
       continue;
     }

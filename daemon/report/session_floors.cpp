@@ -28,10 +28,11 @@ int direction_of(const estimator::Structure& s, const estimator::SensorAxis& axi
 /// Rows between which most of the highest measured floor's motion is.
 std::pair<Index, Index> strong_rows(const SessionMotion& m) {
   int top = 0;
-  for (const estimator::SensorAxis& axis : m.axes) top = std::max(top, axis.story);
+  for (const estimator::SensorAxis& axis : m.axes)
+    if (!axis.is_force) top = std::max(top, axis.story);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(m.accel.rows());
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
-    if (m.axes[a].story != top) continue;
+    if (m.axes[a].story != top || m.axes[a].is_force) continue;
     const auto column = m.accel.col(static_cast<Index>(a)).array();
     const auto known = column.isFinite();
     const double mean =
@@ -115,8 +116,9 @@ SessionFloors session_floors(const Config& config, const SessionMotion& m,
   out.to_us = m.time_us(end);
   out.measured.assign(static_cast<std::size_t>(s.stories) + 1, {false, false});
   for (const estimator::SensorAxis& axis : m.axes)
-    out.measured[static_cast<std::size_t>(axis.story)]
-                [static_cast<std::size_t>(direction_of(s, axis))] = true;
+    if (!axis.is_force)
+      out.measured[static_cast<std::size_t>(axis.story)]
+                  [static_cast<std::size_t>(direction_of(s, axis))] = true;
   choose_parameters(config, estimates, out);
   find_peaks(config, m, out);
   const Eigen::VectorXd theta =

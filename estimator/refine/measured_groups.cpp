@@ -94,8 +94,7 @@ MeasuredGroups measured_groups(const PipelineConfig& c) {
       c.design.size() > 0 ? c.design : guessed_design(c.structure, ParameterTable(c.structure)),
       c.bending_nmprad};
   out.designed = group_parameters(c.structure, table, design);
-  out.building = reduced_building(c.structure, c.axes, table, design,
-                                  std::vector<std::uint8_t>(c.axes.size(), 1));
+  out.building = reduced_building(c.structure, c.axes, table, design, identifying(c.axes));
   for (const MatrixXd& part : out.building.parts) {
     out.touched.push_back(touched_rows(part));
     out.factors.push_back(factor_of(part, out.touched.back()));
