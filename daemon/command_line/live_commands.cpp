@@ -16,13 +16,20 @@ void add_demo(CommandList& commands) {
   CLI::App* command = commands.add(
       "demo",
       "a virtual two-story shaking-table test over LCM, with a live page and a table of truth");
+  command->add_option("--building", arguments.building,
+                      "stories: 2, a channel on every frame of every floor, or 20, on five levels")
+      ->check(CLI::IsMember({2, 20}))
+      ->capture_default_str();
   command
       ->add_option("--can", arguments.can,
                    "interface that carries the samples, as frames; no page then")
       ->type_name("INTERFACE");
   command->footer(
       "After 20 s one frame loses 15 % of its stiffness; the page says which, how much, how sure.\n"
-      "Example: framewatch demo --seconds 40 --report demo.html");
+      "Of 20 stories, five lose 20 % in one frame: groups of stories are what is told apart there.\n"
+      "Examples:\n"
+      "  framewatch demo --seconds 40 --report demo.html\n"
+      "  framewatch demo --building 20 --seconds 40");
   CLI::Option* report = command->add_option("--report", arguments.report,
                                             "page to write about it at the end (demo.html)");
   report->expected(0, 1)->type_name("[FILE]");

@@ -127,6 +127,11 @@ void add_report(CommandList& commands) {
                        "raw samples: LCM event logs and record files, in order of time")
           ->type_name("FILE"));
   add_record_options(command, arguments.record);
+  command
+      ->add_option("--floors", arguments.floors,
+                   "JSON file for the peaks of every floor and the errors of measured floors left\n"
+                   "out in turn (channels on some floors only)")
+      ->type_name("FILE");
   command->add_option("--title", arguments.title, "of the page");
   command->add_option("--test", arguments.test, "name of the test");
   command->add_option("--operator", arguments.operator_name, "who made it");

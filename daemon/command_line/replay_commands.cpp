@@ -18,6 +18,7 @@ void add_replay(CommandList& commands) {
       "Examples:\n"
       "  framewatch replay building.toml monday.lcmlog tuesday.lcmlog.zst --out estimates.lcmlog\n"
       "  framewatch replay building.toml record.csv --json\n"
+      "  framewatch replay building.toml record.csv --floors floors.csv\n"
       "  framewatch replay building.toml golden.lcmlog --write-expect new.toml\n"
       "  framewatch replay building.toml golden.lcmlog --expect expected.toml --junit result.xml");
   add_config(commands, command, arguments.config);
@@ -32,6 +33,12 @@ void add_replay(CommandList& commands) {
                    "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5)")
       ->type_name("FILE");
   command->add_flag("--boxplot", arguments.boxplot, "boxplot statistics in .csv and .mat too");
+  command
+      ->add_option(
+          "--floors", arguments.floors,
+          "file for the accelerations of every floor and the drift ratios of every story,\n"
+          "those without a channel too: .csv or .csv.gz")
+      ->type_name("FILE");
   command
       ->add_option("--from", arguments.span.from_s,
                    "leave out what is earlier: seconds after the "

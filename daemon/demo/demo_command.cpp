@@ -18,6 +18,7 @@
 #include "daemon/demo/demo_scenario.h"
 #include "daemon/demo/demo_view.h"
 #include "daemon/estimation/estimation.h"
+#include "daemon/events/place_words.h"
 #include "daemon/simulation/can_output.h"
 #include "daemon/simulation/scenario.h"
 #include "daemon/simulation/simulation.h"
@@ -36,19 +37,8 @@ int demo_port() {
   return 7700 + static_cast<int>(::getpid() % 1000);
 }
 
-// What the viewer is to see.
-constexpr double kDropAt_s = 20, kDrop_ratio = 0.15;
-constexpr const char* kDropped = "kx_1_y2";
-constexpr double kForgotten_s = 6;  // the window and the filters have seen nothing else by then
+constexpr double kDropAt_s = 20;
 constexpr double kFlush_s = 0.05;
-
-/// What the frame is like after it has lost some of its stiffness.
-Eigen::VectorXd dropped(const Scenario& s) {
-  Eigen::VectorXd theta = s.truth;
-  theta[estimator::ParameterTable(s.config.pipeline.structure).find(kDropped).value()] *=
-      1 - kDrop_ratio;
-  return theta;
-}
 
 /// The four parties of the demo, each with its own LCM where the provider allows it.
 class DemoBus {
@@ -71,8 +61,9 @@ class DemoBus {
   std::unique_ptr<drivers::LcmProvider> all_[4];
 };
 
-void introduce(const Scenario& s, const DemoNetwork& network, double seconds,
+void introduce(const DemoBuilding& building, const DemoNetwork& network, double seconds,
                const std::string& page) {
+  const Scenario& s = building.scenario;
   fmt::print("{}: {} accelerometers, a truth the estimator does not know, shaken for {:g} s.\n",
              s.config.pipeline.structure.name, s.config.pipeline.axes.size(), seconds);
   fmt::print("{}.\n", network.explanation);
@@ -82,14 +73,15 @@ void introduce(const Scenario& s, const DemoNetwork& network, double seconds,
   if (!network.in_process) fmt::print("Listen with LCM_DEFAULT_URL='{}'.\n", network.url);
   if (!page.empty()) fmt::print("\n  Open {}\n\n", page);
   if (seconds > kDropAt_s)
-    fmt::print("At {:g} s the frame of {} loses {:g} % of its stiffness: see where it shows.\n",
-               kDropAt_s, kDropped, 100 * kDrop_ratio);
+    fmt::print("At {:g} s {} loses {:g} % of its stiffness: see where it shows.\n", kDropAt_s,
+               element_words(building.loses), 100 * building.loss_ratio);
   std::fflush(stdout);
 }
 
 /// The parties of the demo, each served in turn by one thread.
 struct DemoLoop {
   const Scenario& scenario;
+  double forgotten_s;  ///< after the loss
   double seconds;
   SimulationOutput& sensors;
   drivers::LcmSource& source;
@@ -129,7 +121,7 @@ bool DemoLoop::shake() {
       live.flush();
       server.wake();
     }
-    if (!changed && simulation.time_s() > kDropAt_s + kForgotten_s) {
+    if (!changed && simulation.time_s() > kDropAt_s + forgotten_s) {
       changed = true;
       view.set_truth(truth_of(scenario, scenario.changes.front().theta));
     }
@@ -150,10 +142,11 @@ void DemoLoop::receive_rest(const Estimation& estimation) {
 }  // namespace
 
 int demo(const DemoArguments& a) {
-  Scenario scenario = demo_scenario();
+  DemoBuilding building = demo_building(a.building);
+  Scenario& scenario = building.scenario;
   if (!a.can.empty()) put_on_can(scenario.config, a.can);
   scenario.duration_s = a.seconds;
-  scenario.changes.push_back({kDropAt_s, dropped(scenario)});
+  scenario.changes.push_back({kDropAt_s, after_loss(building)});
   // Before the network: the page is for a browser outside of it.
   std::string no_page;
   int socket = listen_on("127.0.0.1", a.port, no_page);
@@ -182,7 +175,7 @@ int demo(const DemoArguments& a) {
   const bool served = a.can.empty() && socket >= 0 && server.start(socket, no_page);
   if (!served && a.can.empty()) fmt::print(stderr, "framewatch demo: no page: {}\n", no_page);
   if (!a.quiet)
-    introduce(scenario, network, a.seconds,
+    introduce(building, network, a.seconds,
               served ? page_address(web, server.port(), web.token) : std::string());
 
   const auto sensors =
@@ -218,8 +211,8 @@ int demo(const DemoArguments& a) {
                                  settings.queue_capacity,
                                  [&](const drivers::LcmMessage& m) { view.message(m); });
 
-  DemoLoop loop{scenario,    a.seconds,   *sensors, source, can,
-                page_source, view_source, live,     server, view};
+  DemoLoop loop{scenario,    building.forgotten_s, a.seconds, *sensors, source, can,
+                page_source, view_source,          live,      server,   view};
   if (!loop.shake()) return 2;
   loop.receive_rest(estimation);
   estimation.finish();

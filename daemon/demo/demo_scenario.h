@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -11,9 +12,24 @@ namespace framewatch::daemon {
 
 /// The built-in scenario, configs/scenario_table_two_story.toml.
 Scenario demo_scenario();
+/// configs/scenario_tall_20_stories.toml.
+Scenario tall_demo_scenario();
 
-/// Stiffness and damping by parameter name, SI. theta: in the order of the scenario's parameter
-/// table.
+/// What a demo shakes, and what becomes of it.
+struct DemoBuilding {
+  Scenario scenario;
+  std::string loses;  ///< parameter of which all stories lose stiffness
+  double loss_ratio;
+  double forgotten_s;  ///< after so long windows and filters have seen nothing else
+};
+/// stories: 2 or 20.
+DemoBuilding demo_building(int stories);
+
+/// The scenario's truth with the loss, in the order of the parameters of every story.
+Eigen::VectorXd after_loss(const DemoBuilding& building);
+
+/// What is to be identified, by parameter name, SI: of groups of stories in series. theta: every
+/// story's.
 std::map<std::string, double> truth_of(const Scenario& scenario, const Eigen::VectorXd& theta);
 
 }  // namespace framewatch::daemon

@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -108,6 +109,17 @@ estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
   return diagnose(input.plant, input.segments, options);
 }
 
+/// Floors whose motion would follow from that of others have laws of their own inside.
+bool on_frames_of_every_floor(const estimator::PipelineConfig& c) {
+  std::vector<bool> seen(static_cast<std::size_t>(c.structure.stories) + 1, false);
+  seen[0] = true;
+  for (const estimator::SensorAxis& axis : c.axes) {
+    if (axis.plan) return false;
+    seen[static_cast<std::size_t>(axis.story)] = true;
+  }
+  return std::find(seen.begin(), seen.end(), false) == seen.end();
+}
+
 bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {
   std::error_code failure;
   std::filesystem::create_directories(directory, failure);
@@ -133,6 +145,11 @@ int diagnose_command(const DiagnoseArguments& a) {
   const estimator::PipelineConfig& pipeline = config->pipeline;
   if (a.component.any() && (pipeline.structure.stories != 1 || pipeline.structure.frames() != 1))
     problems.push_back(a.config + ": a component test has one story and one frame");
+  if (!on_frames_of_every_floor(pipeline))
+    problems.push_back(a.config +
+                       ": floors without a channel, or channels at places in plan: a diagnosis "
+                       "needs channels on the frames of every floor; framewatch refine, and report "
+                       "with --raw, say how far the model is off here");
   estimator::DiagnosisOptions options;
   options.holdout_from = a.event.empty() ? a.train.size() : 1;
   options.known = config->effects;

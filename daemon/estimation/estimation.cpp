@@ -37,6 +37,7 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
           [this](const estimator::SampleSet& instant) {
             look_for_gap(instant);
             look_for_shaking(instant);
+            if (taps_.instant) taps_.instant(instant);
           },
           [this](const estimator::ModelFit& fit) { publisher_.model(fit); }),
       intake_(

@@ -57,6 +57,7 @@ class Estimation {
     std::function<void(const estimator::GapNews&)> gap;
     std::function<void(const event_t&)> event;            ///< after it was published
     std::function<void(const EventReport&)> shaken = {};  ///< of a strong motion that has ended
+    std::function<void(const estimator::SampleSet&)> instant = {};  ///< calibrated
   };
   void tap(Taps taps) { taps_ = std::move(taps); }
 

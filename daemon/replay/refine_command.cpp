@@ -18,6 +18,7 @@
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/refine/max_likelihood.h"
+#include "estimator/structure/group_design.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -26,10 +27,49 @@ constexpr int kNotRefined = 1;
 
 /// Everything a person is told.
 struct Report {
-  double from_s, to_s;
+  double from_s = 0, to_s = 0;
   estimator::Refinement refinement;
-  std::vector<double> streaming;  ///< theta order; NaN: not published
+  std::vector<double> streaming;    ///< theta order; NaN: not published
+  std::vector<std::string> silent;  ///< channels without samples, which were done without
 };
+
+/// What is refined: the stretch without the channels that have no sample in it.
+struct Stretch {
+  estimator::PipelineConfig config;
+  Eigen::MatrixXd accel;
+  std::vector<std::string> silent;
+};
+
+Stretch without_silent_channels(const estimator::PipelineConfig& config,
+                                const SegmentCollector& collector) {
+  Stretch out{config, {}, {}};
+  const Eigen::MatrixXd accel = collector.accel();
+  std::vector<Eigen::Index> kept;
+  out.config.axes.clear();
+  for (Eigen::Index a = 0; a < accel.cols(); ++a) {
+    const estimator::SensorAxis& axis = collector.axes()[static_cast<std::size_t>(a)];
+    if (accel.col(a).array().isNaN().all() && !axis.is_force) {
+      out.silent.push_back(axis.name);
+      continue;
+    }
+    kept.push_back(a);
+    out.config.axes.push_back(axis);
+  }
+  if (!out.silent.empty() && !find_problems(config.structure, out.config.axes).empty())
+    return {config, accel, {}};
+  for (estimator::SensorAxis& axis : out.config.axes) axis.cross = -1;  // corrected already
+  out.accel = accel(Eigen::all, kept);
+  return out;
+}
+
+/// The design of what is identified, SI.
+Eigen::VectorXd design_of(const estimator::PipelineConfig& c) {
+  const estimator::ParameterTable table = c.parameters(), stories(c.structure);
+  const Eigen::VectorXd design =
+      c.design.size() > 0 ? c.design : guessed_design(c.structure, stories);
+  return table.grouped() ? group_parameters(c.structure, table, {design, c.bending_nmprad})
+                         : design;
+}
 
 std::string json(const RefineArguments& a, const Config& config,
                  const estimator::ParameterTable& table, const Report& report) {
@@ -42,6 +82,7 @@ std::string json(const RefineArguments& a, const Config& config,
            {"from_s", report.from_s},
            {"to_s", report.to_s},
            {"prior", a.prior},
+           {"channels_without_samples", report.silent},
            {"status", status_word(r.status)}};
   if (r.has_values()) {
     out["iterations"] = r.iterations;
@@ -74,6 +115,8 @@ std::string text(const estimator::ParameterTable& table, const Report& report) {
       "{} steps, {:.2f} to {:.2f} Hz, log-likelihood {:.6g}; misfit {:.3g} of what sensor noise "
       "explains\n",
       r.iterations, r.band.low_hz, r.band.high_hz, r.log_likelihood, r.misfit_ratio);
+  for (const std::string& name : report.silent)
+    out += fmt::format("channel {} has no samples: done without it\n", printable(name));
   out += fmt::format("{:<12} {:>12} {:>12} {:>12} {:>12}  {}\n", "parameter", "streaming",
                      "refined", "std error", "least error", "unit");
   for (int p = 0; p < table.size(); ++p)
@@ -108,18 +151,15 @@ int refine(const RefineArguments& a) {
     fmt::print(stderr, "{}\n", printable_lines(problem));
   if (!survey.problems().empty()) return kBadInput;
 
-  const estimator::ParameterTable table(pipeline_config.structure);
-  const estimator::ParameterTable identified = pipeline_config.parameters();
+  const estimator::ParameterTable streamed = pipeline_config.parameters();
   SegmentCollector collector(pipeline_config, a.from_s, to_s);
-  Report report{a.from_s, to_s, {}, {}};
-  report.streaming.assign(std::size_t(table.size()), std::nan(""));
+  std::vector<double> streaming(std::size_t(streamed.size()), std::nan(""));
   estimator::Pipeline pipeline(pipeline_config, [&](const estimator::WindowEstimate& estimate) {
     const auto end_us = static_cast<double>(to_microseconds(estimate.end) - collector.first_us());
     if (end_us > 1e6 * to_s + 1) return;
-    for (int p = 0; p < table.size(); ++p)
-      if (const auto q = identified.find(table[p].name))
-        if (estimate.reason[std::size_t(*q)] == estimator::Observability::observable)
-          report.streaming[std::size_t(p)] = estimate.value[std::size_t(*q)];
+    for (std::size_t p = 0; p < streaming.size(); ++p)
+      if (estimate.reason[p] == estimator::Observability::observable)
+        streaming[p] = estimate.value[p];
   });
   ProgressLine progress("refine", false);
   std::int64_t pushed = 0;
@@ -143,12 +183,20 @@ int refine(const RefineArguments& a) {
   pipeline.finish();
   collector.finish();
 
-  const Eigen::VectorXd design = pipeline_config.design.size() > 0
-                                     ? pipeline_config.design
-                                     : guessed_design(pipeline_config.structure, table);
-  Eigen::VectorXd start = pipeline.theta0();
-  for (int p = 0; p < table.size(); ++p)
-    if (report.streaming[std::size_t(p)] > 0) start[p] = report.streaming[std::size_t(p)];
+  const Stretch stretch = without_silent_channels(pipeline_config, collector);
+  const estimator::ParameterTable table = stretch.config.parameters();
+  const Eigen::VectorXd design = design_of(stretch.config);
+  Report report;
+  report.from_s = a.from_s;
+  report.to_s = to_s;
+  report.silent = stretch.silent;
+  Eigen::VectorXd start = design;
+  for (int p = 0; p < table.size(); ++p) {
+    const std::optional<int> same = streamed.find(table[p].name);
+    report.streaming.push_back(same ? streaming[std::size_t(*same)] : std::nan(""));
+    if (same) start[p] = pipeline.theta0()[*same];
+    if (report.streaming.back() > 0) start[p] = report.streaming.back();
+  }
   estimator::RefineOptions options;
   // Without drawings the design is a guess: nothing to be pulled to.
   progress.part_begins();
@@ -156,8 +204,7 @@ int refine(const RefineArguments& a) {
     progress(fmt::format("step {} of {} at most", step, options.max_iterations), 0);
   };
   options.prior = a.prior && pipeline_config.options.prior && pipeline_config.design.size() > 0;
-  report.refinement = refine_max_likelihood(pipeline_config.structure, collector.axes(),
-                                            pipeline_config.options.rate_hz, collector.accel(),
+  report.refinement = refine_max_likelihood(stretch.config, stretch.accel,
                                             options.prior ? design : start, start, options);
   fmt::print("{}", a.json ? json(a, *config, table, report) : text(table, report));
   return report.refinement.status == estimator::RefineStatus::converged ? 0 : kNotRefined;

@@ -22,6 +22,8 @@
 #include "daemon/estimation/state_file.h"
 #include "daemon/event_report/event_report_files.h"
 #include "daemon/replay/expectation_check.h"
+#include "daemon/replay/floors_output.h"
+#include "daemon/replay/replay_arguments.h"
 #include "daemon/replay/replay_summary.h"
 #include "drivers/base/standard_streams.h"
 #include "drivers/base/text_output.h"
@@ -32,39 +34,6 @@ namespace {
 
 constexpr int kNotAsExpected = 1;
 using Clock = std::chrono::steady_clock;
-
-bool writes_standard_output(const ReplayArguments& a) {
-  const auto outputs = {a.out, a.write_expect, a.write_baseline, a.junit};
-  return std::find(outputs.begin(), outputs.end(), drivers::kStandardOutput) != outputs.end();
-}
-
-/// What can be said before any file is read.
-std::vector<std::string> argument_problems(const ReplayArguments& a) {
-  std::vector<std::string> found;
-  if (!a.out.empty())
-    if (const std::string problem = problem_of_output_name(a.out); !problem.empty())
-      found.push_back(problem);
-  std::vector<std::string> inputs = a.inputs;
-  inputs.push_back(a.config);
-  for (const std::string& input : {a.expect, a.load_state})
-    if (!input.empty()) inputs.push_back(input);
-  for (const std::string& out : {a.out, a.write_expect, a.write_baseline, a.junit, a.save_state})
-    for (const std::string& input : inputs) {
-      std::error_code error;
-      if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
-        found.push_back(input + ": is input and output");
-    }
-  if (!a.junit.empty() && a.expect.empty())
-    found.push_back("--junit: needs --expect, its test cases are the expectations");
-  if (!a.expect.empty() && !a.write_expect.empty())
-    found.push_back("--write-expect: leave --expect out, it is about the old file");
-  if (a.json && writes_standard_output(a))
-    found.push_back("--json: standard output is taken by an output that is named -");
-  if (!(a.span.to_s > a.span.from_s)) found.push_back("--to: must be later than --from");
-  if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog")))
-    found.push_back("--boxplot: is for --out with .csv or .mat; a log always has them");
-  return found;
-}
 
 /// Says all that is wrong. False when replay must not go on.
 bool judge(const ReplaySurvey& survey) {
@@ -131,14 +100,20 @@ class ReplayRun {
         estimation_(config, sink(), [this](const estimator::WindowEstimate& e) {
           series_.add(e);
           learner_.push(e);
+          if (floors_) floors_->follow(e);
         }) {
     survey_.declare(a.record);
-    if (a.event_reports.empty()) return;
-    estimation_.tap({{}, {}, {}, {}, [this](const EventReport& report) {
-                       const std::string problem =
-                           write_event_report(report, config_, a_.event_reports);
-                       if (failed_.empty()) failed_ = problem;
-                     }});
+    Estimation::Taps taps;
+    if (!a.event_reports.empty())
+      taps.shaken = [this](const EventReport& report) {
+        const std::string problem = write_event_report(report, config_, a_.event_reports);
+        if (failed_.empty()) failed_ = problem;
+      };
+    if (!a.floors.empty())
+      taps.instant = [this](const estimator::SampleSet& instant) {
+        if (failed_.empty() && floors_ && !floors_->put(instant)) failed_ = floors_->error();
+      };
+    estimation_.tap(std::move(taps));
   }
 
   int run() {
@@ -157,6 +132,7 @@ class ReplayRun {
     const std::int64_t events = outputs_.empty() ? events_before_ : outputs_.front()->events();
     for (const auto& output : outputs_)
       if (failed_.empty() && !output->close()) fail(*output);
+    if (failed_.empty() && floors_ && !floors_->close()) failed_ = floors_->error();
     if (!failed_.empty()) return refuse("replay", failed_);
     if (!a_.save_state.empty()) {
       const std::string problem =
@@ -178,6 +154,13 @@ class ReplayRun {
 
   bool open_outputs() {
     std::string error;
+    if (!a_.floors.empty()) {
+      floors_.emplace(config_.pipeline);
+      if (!floors_->open(a_.floors)) {
+        refuse("replay", floors_->error());
+        return false;
+      }
+    }
     const auto add = [&](std::unique_ptr<EstimateOutput> output, const std::string& name) {
       if (output)
         outputs_.push_back(std::move(output));
@@ -303,6 +286,7 @@ class ReplayRun {
   std::string alarms_;
   std::vector<std::unique_ptr<EstimateOutput>> outputs_;
   std::string failed_;
+  std::optional<FloorsOutput> floors_;
   Estimation estimation_;
 };
 

@@ -26,6 +26,7 @@ struct ReplayArguments {
   std::string save_state = {};      ///< file to go on from later: the input has not ended
   std::string write_baseline = {};  ///< baseline file of [watch] to write
   std::string event_reports = {};   ///< folder for the reports of [event_report]; empty: none
+  std::string floors = {};          ///< CSV of every floor's motion to write; empty: none
   std::string junit = {};           ///< result of `expect` for a CI system
 };
 

@@ -33,24 +33,30 @@ bool fits(const Config& config, const SessionEstimates& estimates) {
 
 std::string write_report(SessionReport r,
                          const std::vector<std::pair<std::string, std::string>>& files,
-                         const std::string& path) {
+                         const std::string& path, const std::string& floors_path) {
   for (const auto& [use, file] : files) r.files.push_back({use, file, sha256_of_file(file)});
   evaluate(r);
-  return drivers::write_text_file(path, session_report_html(r));
+  const std::string problem = drivers::write_text_file(path, session_report_html(r));
+  if (!problem.empty() || floors_path.empty()) return problem;
+  return drivers::write_text_file(floors_path, floors_json(*r.floors, *r.config, *r.motion));
 }
 
 int report(const ReportArguments& a) {
   if (!a.raw.empty() && a.config.empty())
     return refuse("report", "--raw needs --config, which says what the channels are");
+  if (!a.floors.empty() && a.raw.empty())
+    return refuse("report", "--floors needs --config and --raw: it is computed from the samples");
   if (a.raw.empty() && a.record.any())
     return refuse("report", "--unit, --step and the like are for the record files of --raw");
   const std::string path = out_path(a);
   std::vector<std::string> inputs = a.raw;
   inputs.insert(inputs.end(), {a.estimates, a.config});
   for (const std::string& input : inputs) {
-    std::error_code error;
-    if (input == path || std::filesystem::equivalent(input, path, error))
-      return refuse("report", path + ": is input and output");
+    for (const std::string& out : {path, a.floors}) {
+      std::error_code error;
+      if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
+        return refuse("report", out + ": is input and output");
+    }
   }
   SessionReport r;
   r.title = a.title;
@@ -79,6 +85,9 @@ int report(const ReportArguments& a) {
   for (const drivers::Problem& p : problems) complain(p.where + ": " + p.message);
   if (estimates && r.config && !fits(*r.config, *estimates))
     complain(a.config + ": describes another building than " + a.estimates);
+  if (r.config && !a.floors.empty() && !r.config->pipeline.parameters().grouped())
+    complain("--floors: every frame of " + a.config +
+             " has a channel on every floor; replay --floors writes their motion");
   if (good && !a.raw.empty()) {
     progress.follow_reading("reading the raw samples", a.raw, 1);
     std::vector<std::string> raw_problems;
@@ -91,8 +100,9 @@ int report(const ReportArguments& a) {
   if (!a.config.empty()) files.push_back({"configuration", a.config});
   for (const std::string& raw : a.raw) files.push_back({"raw samples", raw});
   progress("making the page", 0);
-  const std::string problem = write_report(std::move(r), files, path);
+  const std::string problem = write_report(std::move(r), files, path, a.floors);
   if (!problem.empty()) return refuse("report", problem);
+  if (!a.quiet && !a.floors.empty()) fmt::print(stderr, "{}\n", a.floors);
   if (!a.quiet && path != drivers::kStandardOutput) fmt::print("{}\n", path);
   return 0;
 }

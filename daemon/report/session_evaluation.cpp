@@ -3,6 +3,7 @@
 
 #include "daemon/report/session_report.h"
 #include "estimator/numeric/nan.h"
+#include "estimator/structure/group_design.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
@@ -57,16 +58,27 @@ void compare(SessionReport& r) {
               r.estimates.end_us.back());
 }
 
+bool bends(const estimator::PipelineConfig& c) {
+  return c.bending_nmprad[0] > 0 || c.bending_nmprad[1] > 0;
+}
+
+/// What the drawings say of what is identified; empty: nothing.
+Eigen::VectorXd drawn(const estimator::PipelineConfig& c) {
+  const estimator::ParameterTable table = c.parameters();
+  if (c.design.size() == 0 || !table.grouped()) return c.design;
+  return group_parameters(c.structure, table, {c.design, c.bending_nmprad});
+}
+
 Eigen::VectorXd as_vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-void add_dynamic_references(SessionReport& r, const estimator::Structure& structure) {
-  const estimator::ParameterTable table(structure);
+void add_dynamic_references(SessionReport& r) {
+  const estimator::ParameterTable table = r.config->pipeline.parameters();
   for (int p = 0; p < table.size(); ++p) {
     if (table[p].kind != estimator::ParameterKind::frame_stiffness) continue;
     for (const TransferFunction& t : r.transfer)
-      if (t.direction == structure.direction(table[p].frame))
+      if (t.direction == table[p].direction)
         r.reference_dynamic[static_cast<std::size_t>(p)] =
             r.reference_static[static_cast<std::size_t>(p)] * t.stiffness_ratio();
   }
@@ -77,8 +89,8 @@ void add_dynamic_references(SessionReport& r, const estimator::Structure& struct
 void evaluate(SessionReport& r) {
   const std::size_t count = r.estimates.parameters();
   r.reference_static = r.estimates.table.design;
-  if (r.config && r.config->pipeline.design.size() == static_cast<Eigen::Index>(count)) {
-    const Eigen::VectorXd& design = r.config->pipeline.design;
+  const Eigen::VectorXd design = r.config ? drawn(r.config->pipeline) : Eigen::VectorXd();
+  if (design.size() == static_cast<Eigen::Index>(count)) {
     r.reference_static.assign(design.begin(), design.end());
     r.reference_from_drawings = true;
   }
@@ -94,21 +106,25 @@ void evaluate(SessionReport& r) {
 
   const SessionMotion& m = *r.motion;
   const estimator::Structure& structure = r.config->pipeline.structure;
+  const bool grouped = r.config->pipeline.parameters().grouped();
+  // The model of transfer functions does not bend.
   const Eigen::VectorXd reference =
-      r.reference_from_drawings ? as_vector(r.reference_static) : Eigen::VectorXd();
+      bends(r.config->pipeline) ? Eigen::VectorXd() : r.config->pipeline.design;
   for (std::size_t i = 0; i < r.compared.size(); ++i) {
     const ReportStage& stage = r.compared[i];
     if (stage.kind != StageKind::forced) continue;
     const Eigen::Index from = m.row_at(stage.from_us), to = m.row_at(stage.to_us);
     auto& transfer = stage.after ? r.transfer_after : r.transfer;
     if (transfer.empty()) transfer = transfer_functions(structure, m, from, to, reference);
+    if (grouped) continue;
     std::vector<double> identified;
     for (std::size_t p = 0; p < count; ++p)
       identified.push_back(summarise(r.estimates, p, stage.whole).boxplot.median);
     r.loops.push_back({i, frame_loops(structure, m, as_vector(identified),
                                       r.config->pipeline.options.high_pass_hz, kLoop_s, from, to)});
   }
-  add_dynamic_references(r, structure);
+  add_dynamic_references(r);
+  if (grouped) r.floors = session_floors(*r.config, m, r.estimates);
 }
 
 double session_seconds(const SessionReport& r, std::int64_t time_us) {
@@ -116,11 +132,16 @@ double session_seconds(const SessionReport& r, std::int64_t time_us) {
   return 1e-6 * static_cast<double>(time_us - origin);
 }
 
+bool is_stiffness_kind(int kind) {
+  const auto k = static_cast<estimator::ParameterKind>(kind);
+  return k == estimator::ParameterKind::frame_stiffness ||
+         k == estimator::ParameterKind::panel_stiffness ||
+         k == estimator::ParameterKind::bending_stiffness;
+}
+
 std::pair<double, std::string> paper_unit(int kind) {
-  constexpr const char* kUnits[] = {"kN/m", "kN/(rad*m)", "N*s/m", "N*s/(rad*m)"};
-  const bool stiffness = kind == static_cast<int>(estimator::ParameterKind::frame_stiffness) ||
-                         kind == static_cast<int>(estimator::ParameterKind::panel_stiffness);
-  return {stiffness ? 1e-3 : 1.0, kUnits[std::clamp(kind, 0, 3)]};
+  constexpr const char* kUnits[] = {"kN/m", "kN/(rad*m)", "N*s/m", "N*s/(rad*m)", "kN*m/rad"};
+  return {is_stiffness_kind(kind) ? 1e-3 : 1.0, kUnits[std::clamp(kind, 0, 4)]};
 }
 
 }  // namespace framewatch::daemon

@@ -103,7 +103,7 @@ std::string histories_section(const SessionReport& r) {
     std::size_t left_out = 0;
     for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
       const int kind = r.estimates.table.kind[p];
-      if ((kind < 2) != stiffness) continue;
+      if (is_stiffness_kind(kind) != stiffness) continue;
       if (plots.size() < kMostHistories)
         plots.push_back(history(r, p, t));
       else

@@ -69,9 +69,9 @@ std::string session_report_html(const SessionReport& r) {
   const std::string title = r.title.empty() ? "Session of " + r.estimates.table.structure : r.title;
   return html_page(title, verdict_section(r) + "<h1>" + html_text(title) + "</h1>\n" +
                               events_section(r) + session_section(r) + figure_10_section(r) +
-                              loops_section(r) + transfer_section(r) + histories_section(r) +
-                              parameter_section(r) + check_section(r) + health_section(r) +
-                              provenance(r));
+                              floors_section(r) + loops_section(r) + transfer_section(r) +
+                              histories_section(r) + parameter_section(r) + check_section(r) +
+                              health_section(r) + provenance(r));
 }
 
 }  // namespace framewatch::daemon

@@ -10,6 +10,7 @@
 #include "daemon/report/frame_loops.h"
 #include "daemon/report/session_changes.h"
 #include "daemon/report/session_file.h"
+#include "daemon/report/session_floors.h"
 #include "daemon/report/session_motion.h"
 #include "daemon/report/transfer_function.h"
 
@@ -54,6 +55,7 @@ struct SessionReport {
   std::vector<TransferFunction> transfer;        ///< of the longest forced stage before a change
   std::vector<TransferFunction> transfer_after;  ///< and after it; empty without one
   std::vector<StageLoops> loops;
+  std::optional<SessionFloors> floors;  ///< of a building of groups, with motion
   std::vector<ReportFile> files;
 };
 
@@ -75,11 +77,14 @@ std::string stages_section(const SessionReport& report);
 std::string histories_section(const SessionReport& report);
 std::string transfer_section(const SessionReport& report);
 std::string loops_section(const SessionReport& report);
+std::string floors_section(const SessionReport& report);
 std::string health_section(const SessionReport& report);
 std::string check_section(const SessionReport& report);
 
 /// Seconds since the session's first window or sample.
 double session_seconds(const SessionReport& report, std::int64_t time_us);
+/// Of a frame, of a panel, or against bending; `kind` of a parameter_table_t.
+bool is_stiffness_kind(int kind);
 /// Factor and unit in which a kind of parameter is printed: 1e-3, "kN/m".
 std::pair<double, std::string> paper_unit(int kind);
 

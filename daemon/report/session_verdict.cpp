@@ -51,8 +51,7 @@ std::vector<ElementChange> largest_first(std::vector<ElementChange> changes) {
 
 std::size_t stiffnesses(const SessionReport& r) {
   return static_cast<std::size_t>(std::count_if(r.estimates.table.kind.begin(),
-                                                r.estimates.table.kind.end(),
-                                                [](int kind) { return kind < 2; }));
+                                                r.estimates.table.kind.end(), is_stiffness_kind));
 }
 
 /// What is said of the elements that have not changed.

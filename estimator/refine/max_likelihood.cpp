@@ -8,7 +8,9 @@
 
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/solve.h"
+#include "estimator/refine/group_likelihood.h"
 #include "estimator/refine/measured_building.h"
+#include "estimator/refine/measured_groups.h"
 #include "estimator/refine/window_likelihood.h"
 
 namespace framewatch::estimator {
@@ -38,14 +40,13 @@ MatrixXd signal_part(const MatrixXd& information, const MatrixXd& noise_part, do
 /// One refinement, in units of the design: x = theta / design.
 class Refiner {
  public:
-  Refiner(const MeasuredBuilding& building, const Spectrum& spectrum, const ParameterTable& table,
+  Refiner(SegmentLikelihood& likelihood, bool noise_known, const ParameterTable& table,
           const VectorXd& design, const RefineOptions& options)
-      : building_(building),
-        spectrum_(spectrum),
+      : likelihood_(likelihood),
+        noise_known_(noise_known),
         table_(table),
         design_(design),
         options_(options),
-        likelihood_(building, spectrum, EndTerms::sampled),
         prior_(VectorXd::Zero(table.size())) {
     if (!options.prior) return;
     for (int p = 0; p < table.size(); ++p)
@@ -54,8 +55,8 @@ class Refiner {
 
   Refinement run(VectorXd x) {
     Refinement out;
-    out.band = spectrum_.band;
-    out.bins = static_cast<int>(spectrum_.bins());
+    out.band = likelihood_.spectrum().band;
+    out.bins = static_cast<int>(likelihood_.spectrum().bins());
     out.status = RefineStatus::not_converged;
     auto point = at(x);
     for (; point && out.status == RefineStatus::not_converged &&
@@ -102,7 +103,7 @@ class Refiner {
   }
 
   /// Actual over configured noise, as it scales the prior.
-  double noise_level() const { return building_.noise_known ? std::max(level_, 1.0) : level_; }
+  double noise_level() const { return noise_known_ ? std::max(level_, 1.0) : level_; }
   VectorXd pull() const { return noise_level() * prior_; }
 
   double cost(const VectorXd& x, double misfit) const {
@@ -152,21 +153,25 @@ class Refiner {
     out.bound = std::sqrt(level) * bound_of(signal).cwiseProduct(design_);
     out.misfit_ratio = level_;
     out.log_likelihood = -point.misfit;
-    for (const double variance_of_axis : building_.variance)
-      out.log_likelihood -= static_cast<double>(spectrum_.bins()) *
-                            std::log(std::numbers::pi * spectrum_.intervals * variance_of_axis);
+    for (const double variance_of_axis : likelihood_.variance())
+      out.log_likelihood -=
+          static_cast<double>(likelihood_.spectrum().bins()) *
+          std::log(std::numbers::pi * likelihood_.spectrum().intervals * variance_of_axis);
   }
 
-  const MeasuredBuilding& building_;
-  const Spectrum& spectrum_;
+  SegmentLikelihood& likelihood_;
+  bool noise_known_;
   const ParameterTable& table_;
   const VectorXd& design_;
   RefineOptions options_;
-  WindowLikelihood likelihood_;
   VectorXd prior_;
   VectorXd error_;
   double level_ = 1;
 };
+
+bool all_positive(const VectorXd& values, int size) {
+  return values.size() == size && values.allFinite() && (values.array() > 0).all();
+}
 
 RefineStatus refused(SegmentStatus status) {
   switch (status) {
@@ -184,22 +189,50 @@ RefineStatus refused(SegmentStatus status) {
 }  // namespace
 
 Refinement refine_max_likelihood(const Structure& structure, const std::vector<SensorAxis>& axes,
-                                 double rate_hz, const Eigen::MatrixXd& accel_abs,
-                                 const Eigen::VectorXd& design, const Eigen::VectorXd& start,
-                                 const RefineOptions& options) {
+                                 double rate_hz, const MatrixXd& accel_abs, const VectorXd& design,
+                                 const VectorXd& start, const RefineOptions& options) {
   Refinement out;
   const SegmentStatus segment = check_segment(structure, axes, start, rate_hz, accel_abs);
   if (segment != SegmentStatus::good) {
     out.status = refused(segment);
     return out;
   }
-  if (design.size() != start.size() || !design.allFinite() || !(design.array() > 0).all())
-    return out;
   const ParameterTable table(structure);
+  if (!all_positive(design, table.size())) return out;
   const auto building = measured_building(structure, table, axes, rate_hz);
   const Spectrum spectrum = spectrum_of(accel_abs, building->delay, rate_hz,
                                         structure_band(structure, table, start, rate_hz));
-  return Refiner(*building, spectrum, table, design, options).run(start.cwiseQuotient(design));
+  WindowLikelihood likelihood(*building, spectrum, EndTerms::sampled);
+  return Refiner(likelihood, building->noise_known, table, design, options)
+      .run(start.cwiseQuotient(design));
+}
+
+Refinement refine_max_likelihood(const PipelineConfig& config, const MatrixXd& accel_abs,
+                                 const VectorXd& design, const VectorXd& start,
+                                 const RefineOptions& options) {
+  const double rate_hz = config.options.rate_hz;
+  const ParameterTable table = config.parameters();
+  if (!table.grouped())
+    return refine_max_likelihood(config.structure, config.axes, rate_hz, accel_abs, design, start,
+                                 options);
+  Refinement out;
+  if (accel_abs.cols() != static_cast<Eigen::Index>(config.axes.size()) || !(rate_hz > 0) ||
+      !all_positive(design, table.size()) || !all_positive(start, table.size()))
+    return out;
+  const MeasuredGroups groups = measured_groups(config);
+  if (groups.equations() == 0) out.status = RefineStatus::missing_sensors;
+  if (groups.equations() > 0 && !accel_abs.allFinite()) out.status = RefineStatus::bad_samples;
+  if (out.status != RefineStatus::bad_input) return out;
+  const Spectrum spectrum =
+      spectrum_of(accel_abs, groups.delay, rate_hz, groups_band(groups, start, rate_hz));
+  GroupLikelihood likelihood(groups, spectrum, EndTerms::sampled);
+  if (2 * likelihood.observations() <=
+      static_cast<double>(likelihood.end_unknowns()) + 2.0 * table.size()) {
+    out.status = RefineStatus::too_short;
+    return out;
+  }
+  return Refiner(likelihood, groups.noise_known, table, design, options)
+      .run(start.cwiseQuotient(design));
 }
 
 const char* status_word(RefineStatus status) {

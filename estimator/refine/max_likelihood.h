@@ -7,6 +7,7 @@
 
 #include "estimator/refine/cramer_rao.h"
 #include "estimator/refine/spectrum.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
@@ -55,6 +56,12 @@ struct Refinement {
 /// accel_abs: instants x axes, m/s^2; design, start: > 0. Source: (31)-(38).
 Refinement refine_max_likelihood(const Structure& structure, const std::vector<SensorAxis>& axes,
                                  double rate_hz, const Eigen::MatrixXd& accel_abs,
+                                 const Eigen::VectorXd& design, const Eigen::VectorXd& start,
+                                 const RefineOptions& options = {});
+
+/// The same of any layout: config.parameters() are estimated, groups of stories where floors have
+/// no sensor of their own. design, start: in that order, > 0.
+Refinement refine_max_likelihood(const PipelineConfig& config, const Eigen::MatrixXd& accel_abs,
                                  const Eigen::VectorXd& design, const Eigen::VectorXd& start,
                                  const RefineOptions& options = {});
 

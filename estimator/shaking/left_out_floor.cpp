@@ -44,11 +44,13 @@ bool along(const Structure& s, const SensorAxis& axis, Direction direction) {
   return (axis.frame >= 0 ? s.direction(axis.frame) : axis.direction) == direction;
 }
 
-/// Axes of a floor along a direction.
-std::vector<Index> axes_of(const PipelineConfig& c, int floor, Direction direction) {
+/// Accelerometers of a floor along a direction; `used`: without those for a check.
+std::vector<Index> axes_of(const PipelineConfig& c, int floor, Direction direction,
+                           bool used = false) {
   std::vector<Index> out;
   for (std::size_t a = 0; a < c.axes.size(); ++a)
-    if (c.axes[a].story == floor && along(c.structure, c.axes[a], direction))
+    if (c.axes[a].story == floor && !c.axes[a].is_force && !(used && c.axes[a].check) &&
+        along(c.structure, c.axes[a], direction))
       out.push_back(static_cast<Index>(a));
   return out;
 }
@@ -69,8 +71,9 @@ VectorXd mean_of(const PipelineConfig& c, const MatrixXd& accel, const std::vect
 /// What each axis of the floor would measure, by what moves elsewhere.
 MatrixXd predicted(const PipelineConfig& c, const VectorXd& theta, const MatrixXd& accel,
                    int floor) {
-  std::vector<std::uint8_t> present;
-  for (const SensorAxis& axis : c.axes) present.push_back(axis.story != floor);
+  std::vector<std::uint8_t> present = identifying(c.axes);
+  for (std::size_t a = 0; a < present.size(); ++a)
+    if (c.axes[a].story == floor && !c.axes[a].is_force) present[a] = 0;
   FloorMotion motion(c);
   motion.tune(theta, present);
   MatrixXd weights = MatrixXd::Zero(accel.cols(), c.structure.frames());
@@ -173,9 +176,10 @@ std::vector<LeftOutFloor> leave_floors_out(const PipelineConfig& c, const Vector
       std::vector<double> places;
       std::vector<VectorXd> values;
       for (const int other : floors) {
-        if (other == floor) continue;
+        const std::vector<Index> used = axes_of(c, other, direction, true);
+        if (other == floor || used.empty()) continue;
         places.push_back(height[static_cast<std::size_t>(other)]);
-        values.push_back(mean_of(c, accel, axes_of(c, other, direction), direction));
+        values.push_back(mean_of(c, accel, used, direction));
       }
       const VectorXd weights = spline_weights(places, height[at]);
       VectorXd spline = VectorXd::Zero(accel.rows());

@@ -105,6 +105,24 @@ TEST(DemoView, SurvivesBytesThatAreNoMessage) {
   EXPECT_EQ(view.finish(), 1);
 }
 
+TEST(DemoView, HoldsABuildingWithoutPanelsByItsFrames) {
+  parameter_table_t table = example_table();
+  table.kind = {0, 2};
+  table.name[1] = "cx_1_y1";
+  EXPECT_EQ(outcome(&table, example_estimate(20190, 1)).exit_code, 0);
+  EXPECT_EQ(outcome(&table, example_estimate(20210, 1)).exit_code, 1);
+}
+
+TEST(Demo, OfTwentyStoriesLosesAGroup) {
+  const DemoBuilding tall = demo_building(20);
+  const auto before = truth_of(tall.scenario, tall.scenario.truth);
+  const auto after = truth_of(tall.scenario, after_loss(tall));
+  ASSERT_EQ(before.size(), 32u);
+  for (const auto& [name, value] : before)
+    EXPECT_NEAR(after.at(name) / value, name == tall.loses ? 1 - tall.loss_ratio : 1, 1e-12)
+        << name;
+}
+
 TEST(Demo, ItsTruthIsNotItsDesign) {
   const Scenario s = demo_scenario();
   EXPECT_EQ(s.config.pipeline.axes.size(), 10u);

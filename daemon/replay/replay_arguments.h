@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace framewatch::daemon {
+
+struct ReplayArguments;
+
+/// Whether one of the outputs is named -.
+bool writes_standard_output(const ReplayArguments& arguments);
+
+/// What can be said before any file is read.
+std::vector<std::string> argument_problems(const ReplayArguments& arguments);
+
+}  // namespace framewatch::daemon
