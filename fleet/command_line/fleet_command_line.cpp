@@ -1,0 +1,17 @@
+#include "fleet/command_line/fleet_command_line.h"
+
+#include "daemon/command_line/command_line.h"
+#include "daemon/command_line/command_list.h"
+
+namespace framewatch::fleet {
+
+int run_fleet_command_line(int argc, const char* const* argv) {
+  const daemon::Program program{"framewatch fleet",
+                                "framewatch fleet: many buildings, each with its own framewatch.",
+                                "`framewatch uplink` is `framewatch fleet uplink`.",
+                                {daemon::add_help},
+                                {"uplink", "worker", "serve"}};
+  return daemon::run_program(program, argc, argv);
+}
+
+}  // namespace framewatch::fleet
