@@ -2,6 +2,7 @@
 
 #include "daemon/command_line/command_line.h"
 #include "daemon/command_line/command_list.h"
+#include "fleet/command_line/fleet_commands.h"
 
 namespace framewatch::fleet {
 
@@ -9,7 +10,7 @@ int run_fleet_command_line(int argc, const char* const* argv) {
   const daemon::Program program{"framewatch fleet",
                                 "framewatch fleet: many buildings, each with its own framewatch.",
                                 "`framewatch uplink` is `framewatch fleet uplink`.",
-                                {daemon::add_help},
+                                {add_manifest, add_task, daemon::add_help},
                                 {"uplink", "worker", "serve"}};
   return daemon::run_program(program, argc, argv);
 }

@@ -1,9 +1,5 @@
 #pragma once
 
-namespace framewatch::daemon {
-class CommandList;
-}
-
 namespace framewatch::fleet {
 
 /// What `framewatch fleet ...` and `framewatch uplink` do; returns the exit status of the program.
