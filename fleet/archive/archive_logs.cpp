@@ -1,6 +1,7 @@
 #include "fleet/archive/archive_logs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kLongestRawLog_us = 86'400'000'000;  // it ends every day at least
 constexpr std::size_t kMostTasks = 100'000;
+constexpr std::int64_t kFollows_us = 2 * 3'600'000'000;  // a later one may not be the next
 constexpr std::int64_t kMargin_us = 10'000'000;  // after its end: windows are late, nodes uneven
 
 /// As a task finds it, from whatever folder.
@@ -39,6 +41,16 @@ std::optional<std::int64_t> raw_start_us(const std::string& path) {
   const std::string name = fs::path(path).filename().string();
   const bool raw = name.ends_with(".lcmlog") || name.ends_with(".lcmlog.zst");
   return raw ? daemon::read_utc_stamp(name) : std::nullopt;
+}
+
+/// Times of the samples in a log, from them; problems if it cannot be read.
+std::vector<std::string> read_times(const daemon::Config& config, ArchiveLog& log) {
+  daemon::ReplaySurvey survey(config, true);
+  survey.add(log.path);
+  if (!survey.problems().empty() || !survey.any_sample()) return survey.problems();
+  log.start_us = survey.first_us();
+  log.end_us = log.start_us + std::llround(survey.measured_seconds() * 1e6) + 1;
+  return {};
 }
 
 void add_folder(const std::string& folder, std::vector<ArchiveLog>& out,
@@ -64,12 +76,10 @@ void add_file(const std::string& path, const daemon::Config& config, std::vector
     out.push_back({absolute(path), *start_us, *start_us + kLongestRawLog_us});
     return;
   }
-  daemon::ReplaySurvey survey(config, true);
-  survey.add(path);
-  problems.insert(problems.end(), survey.problems().begin(), survey.problems().end());
-  if (!survey.problems().empty() || !survey.any_sample()) return;
-  const auto length_us = static_cast<std::int64_t>(survey.measured_seconds() * 1e6);
-  out.push_back({absolute(path), survey.first_us(), survey.first_us() + length_us + 1});
+  ArchiveLog log{absolute(path)};
+  const std::vector<std::string> found = read_times(config, log);
+  problems.insert(problems.end(), found.begin(), found.end());
+  if (found.empty() && log.end_us > log.start_us) out.push_back(log);
 }
 
 std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us) {
@@ -100,6 +110,10 @@ std::vector<ArchiveLog> archive_logs(const std::vector<std::string>& places,
     if (out[i].path == out[i - 1].path) problems.push_back(out[i].path + ": is named twice");
     out[i - 1].end_us = std::min(out[i - 1].end_us, out[i].start_us + daemon::kSecond_us);
   }
+  // A damaged one keeps its day: its task says what is wrong.
+  for (ArchiveLog& log : out)
+    if (log.end_us - log.start_us > kFollows_us && raw_start_us(log.path))
+      (void)read_times(config, log);
   return out;
 }
 

@@ -17,9 +17,9 @@ struct ArchiveLog {
 };
 
 /// The logs that `places` name, in order of time: files, and directories of a history (or their
-/// folder of raw logs). Raw logs say by their names when they begin, and end with the next or after
-/// a day; other logs are read. Logs that `run` is still writing are left out. Problems are added,
-/// "place: rule".
+/// folder of raw logs). Raw logs say by their names when they begin, and end with the next, where
+/// that follows; other logs are read. Logs that `run` is still writing are left out. Problems are
+/// added, "place: rule".
 std::vector<ArchiveLog> archive_logs(const std::vector<std::string>& places,
                                      const daemon::Config& config,
                                      std::vector<std::string>& problems);

@@ -40,8 +40,8 @@ bool is_key(std::string_view key) {
 
 }  // namespace
 
-std::string making_of(const std::string& program_sha256, const std::string& config_sha256) {
-  return program_sha256.substr(0, kKeyPart) + "-" + config_sha256.substr(0, kKeyPart);
+std::string making_of(const std::string& program, const std::string& config_sha256) {
+  return program.substr(0, kKeyPart) + "-" + config_sha256.substr(0, kKeyPart);
 }
 
 std::string task_key(const std::string& making, const ArchiveTask& task,

@@ -21,7 +21,7 @@ struct ArchiveTask {
 };
 
 /// The key's part that says by what and how an output is made: program and configuration.
-std::string making_of(const std::string& program_sha256, const std::string& config_sha256);
+std::string making_of(const std::string& program, const std::string& config_sha256);
 /// The whole key: `making`, and what of which time is read. `log_sha256` as task.logs.
 std::string task_key(const std::string& making, const ArchiveTask& task,
                      const std::vector<std::string>& log_sha256);

@@ -8,14 +8,14 @@
 #include <fmt/core.h>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/base/file_digest.h"
 #include "daemon/config/config.h"
 #include "fleet/archive/archive_logs.h"
+#include "fleet/archive/program_identity.h"
 
 namespace framewatch::fleet {
 namespace {
 
-constexpr const char* kName = "fleet manifest";
+constexpr const char* kManifest = "fleet manifest";
 
 /// Names go into a file of lines and tabs.
 std::string problem_of_name(const std::string& name) {
@@ -25,10 +25,6 @@ std::string problem_of_name(const std::string& name) {
 }
 
 }  // namespace
-
-std::string program_sha256() {
-  return daemon::sha256_of_file("/proc/self/exe");
-}
 
 int manifest(const ManifestArguments& a) {
   std::vector<daemon::ConfigProblem> wrong;
@@ -46,19 +42,19 @@ int manifest(const ManifestArguments& a) {
                                    a.hours, longest_s));
   std::vector<ArchiveLog> logs = archive_logs(a.places, *config, problems);
   if (problems.empty()) add_digests(logs, problems);
-  const std::string program = program_sha256();
+  const std::string program = program_identity();
   if (program.empty()) problems.push_back("/proc/self/exe: cannot be read");
-  for (const std::string& problem : problems) daemon::refuse(kName, problem);
+  for (const std::string& problem : problems) daemon::refuse(kManifest, problem);
   if (!problems.empty()) return daemon::kBadInput;
 
   const ArchivePlan plan{a.config, a.folder, a.hours * std::int64_t{3600},
                          std::llround(a.warm_up_s), making_of(program, config->sha256)};
   std::string text;
   for (const ArchiveTask& task : plan_tasks(plan, logs)) text += manifest_line(task);
-  if (text.empty()) return daemon::refuse(kName, "no log holds a sample");
+  if (text.empty()) return daemon::refuse(kManifest, "no log holds a sample");
   std::error_code error;
   std::filesystem::create_directories(a.folder, error);
-  if (error) return daemon::refuse(kName, a.folder + ": " + error.message());
+  if (error) return daemon::refuse(kManifest, a.folder + ": " + error.message());
   (void)std::fputs(text.c_str(), stdout);
   return 0;
 }

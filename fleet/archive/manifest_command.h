@@ -15,7 +15,4 @@ struct ManifestArguments {
 /// framewatch fleet manifest: tasks to standard output, one a line.
 int manifest(const ManifestArguments& arguments);
 
-/// Digest of this program's file, empty when it cannot be read.
-std::string program_sha256();
-
 }  // namespace framewatch::fleet

@@ -19,8 +19,8 @@
 #include "daemon/config/config.h"
 #include "drivers/base/text_output.h"
 #include "fleet/archive/archive_task.h"
-#include "fleet/archive/manifest_command.h"
 #include "fleet/archive/parameter_means.h"
+#include "fleet/archive/program_identity.h"
 #include "fleet/archive/reidentify.h"
 
 namespace framewatch::fleet {
@@ -28,7 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kName = "fleet task";
+constexpr const char* kTask = "fleet task";
 
 std::string host_name() {
   std::array<char, 256> name{};
@@ -67,7 +67,7 @@ bool is_done(const ArchiveTask& task) {
 /// Does the tasks of one manifest, whose configurations are read once.
 class Tasks {
  public:
-  Tasks() : program_(program_sha256()) {}
+  Tasks() : program_(program_identity()) {}
 
   /// False when it failed.
   bool run(const ArchiveTask& task) {
@@ -113,7 +113,7 @@ class Tasks {
   }
 
   bool fail(const ArchiveTask& task, const std::string& problem) {
-    daemon::refuse(kName, fmt::format("task {}: {}", task.number, problem));
+    daemon::refuse(kTask, fmt::format("task {}: {}", task.number, problem));
     Json line = line_of(task, "failed");
     line["problem"] = problem;
     say(line);
@@ -136,12 +136,12 @@ class Tasks {
 int task(const TaskArguments& a) {
   std::string problem;
   const auto all = read_manifest(a.manifest, problem);
-  if (!all) return daemon::refuse(kName, problem);
+  if (!all) return daemon::refuse(kTask, problem);
   const auto count = static_cast<int>(all->size());
   for (const int number : a.numbers)
     if (number < 1 || number > count)
       return daemon::refuse(
-          kName, fmt::format("{}: has the tasks 1 to {}, not {}", a.manifest, count, number));
+          kTask, fmt::format("{}: has the tasks 1 to {}, not {}", a.manifest, count, number));
   Tasks tasks;
   bool good = true;
   for (const int number : a.numbers)

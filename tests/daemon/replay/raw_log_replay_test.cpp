@@ -17,6 +17,7 @@
 #include "daemon/replay/stored_samples.h"
 #include "drivers/base/encoded.h"
 #include "drivers/lcm/count_block.h"
+#include "drivers/lcm/message_check.h"
 #include "tests/daemon/replay/replay_fixture.h"
 #include "tests/support/history_fixture.h"
 

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "daemon/base/clocks.h"
+#include "daemon/history/history_keeper.h"
+#include "daemon/history/raw_history.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
@@ -74,7 +76,7 @@ TEST(ArchiveLogs, AHistorysDirectoryIsItsClosedRawLogs) {
     EXPECT_TRUE(logs[0].path.ends_with("20261122T010000Z.lcmlog.zst"));
     EXPECT_EQ(logs[0].start_us, kStart_us + kHour_us);
     EXPECT_EQ(logs[0].end_us, kStart_us + 2 * kHour_us + kSecond_us);  // names are rounded down
-    EXPECT_EQ(logs[1].end_us, kStart_us + 26 * kHour_us);
+    EXPECT_EQ(logs[1].end_us, kStart_us + 26 * kHour_us);              // it cannot be read
     add_digests(logs, problems);
     EXPECT_TRUE(problems.empty());
     EXPECT_EQ(logs[0].sha256.size(), 64u);
@@ -90,6 +92,24 @@ TEST(ArchiveLogs, OtherLogsAreReadForTheirTime) {
   EXPECT_TRUE(problems.empty());
   ASSERT_EQ(logs.size(), 1u);
   EXPECT_NEAR(static_cast<double>(logs[0].end_us - logs[0].start_us), 12e6, 0.1e6);
+}
+
+TEST(ArchiveLogs, ARawLogThatNoOtherFollowsIsReadForItsEnd) {
+  const test::TemporaryDirectory directory;
+  daemon::Config config = test::table_with_history(directory.path("h"));
+  config.history->compress = false;
+  {
+    daemon::HistoryKeeper keeper(*config.history);
+    daemon::RawHistory raw(config, [&](auto log) { keeper.retire(std::move(log)); });
+    for (int i = 0; i < 500; ++i)
+      raw.sample({estimator::from_microseconds(kStart_us + i * 10'000), 0, 0.1});
+    raw.finish();
+  }
+  std::vector<std::string> problems;
+  const auto logs = archive_logs({directory.path("h")}, config, problems);
+  ASSERT_EQ(logs.size(), 1u);
+  EXPECT_EQ(logs[0].start_us, kStart_us);
+  EXPECT_EQ(logs[0].end_us, kStart_us + 499 * 10'000 + 1);
 }
 
 TEST(ArchiveLogs, EveryProblemIsToldAtOnce) {

@@ -15,7 +15,7 @@
 #include "daemon/replay/history_output.h"
 #include "daemon/replay/replay_survey.h"
 #include "fleet/archive/archive_logs.h"
-#include "fleet/archive/manifest_command.h"
+#include "fleet/archive/program_identity.h"
 #include "tests/support/child.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/shell.h"
@@ -69,7 +69,7 @@ class FleetTask : public testing::Test {
     EXPECT_TRUE(problems.empty());
     fs::create_directories(directory_.path("out"));
     tasks_ = plan_tasks({config_, directory_.path("out"), kTask_s, 3600,
-                         making_of(program_sha256(), config->sha256)},
+                         making_of(program_identity(), config->sha256)},
                         logs);
     write_manifest();
   }
@@ -245,10 +245,11 @@ TEST_F(FleetTask, KilledAtAnyTimeItGivesTheSameOutputInTheEnd) {
   for (const auto& entry : fs::directory_iterator(directory_.path("killed")))
     names.push_back(entry.path().filename().string());
   EXPECT_EQ(names.size(), 2u);  // no partial file
-  for (const std::string& name : names)
-    if (name.ends_with(".sqlite"))
-      EXPECT_EQ(test::read_file(directory_.path("killed/" + name)),
-                test::read_file(directory_.path("undisturbed/" + name)));
+  for (const std::string& name : names) {
+    if (!name.ends_with(".sqlite")) continue;
+    EXPECT_EQ(test::read_file(directory_.path("killed/" + name)),
+              test::read_file(directory_.path("undisturbed/" + name)));
+  }
 }
 
 TEST_F(FleetTask, TheManifestCommandSaysEverythingThatIsWrong) {
