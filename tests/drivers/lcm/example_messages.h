@@ -16,6 +16,7 @@
 #include <framewatch/watch_t.hpp>
 
 #include "tests/drivers/lcm/example_estimates.h"
+#include "tests/drivers/lcm/example_fleet.h"
 
 // One message of every type in lcmtypes/: those of tests/golden/every_type.lcmlog, in its order.
 namespace framewatch::drivers::examples {
@@ -278,6 +279,8 @@ void for_each(Visit visit) {
   visit("FRAMEWATCH_ACKNOWLEDGED", acknowledged());
   visit("FRAMEWATCH_WATCH", watch());
   visit("FRAMEWATCH_RECEPTION", reception());
+  visit("FRAMEWATCH_SUMMARY", summary());
+  visit("FRAMEWATCH_UPLINK", uplink_status());
 }
 
 }  // namespace framewatch::drivers::examples
