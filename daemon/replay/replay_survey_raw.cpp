@@ -1,11 +1,15 @@
 #include <algorithm>
 #include <utility>
 
+#include <framewatch/accel_counts_t.hpp>
+#include <framewatch/channel_table_t.hpp>
+
 #include <fmt/core.h>
 
 #include "daemon/replay/replay_survey.h"
 #include "drivers/lcm/count_block.h"
 #include "drivers/lcm/message_check.h"
+#include "drivers/lcm/message_types.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -40,9 +44,13 @@ void ReplaySurvey::look_at_counts(const drivers::LogEvent& event, LogSeen& seen)
   if (seen.malformed_counts++ > 0) return;
   seen.first_malformed_offset = event.offset;
   const bool is_table = event.channel == drivers::kCountsTableChannel;
-  const std::string why =
-      drivers::why_not(is_table ? "channel_table_t" : "accel_counts_t", event.data);
-  seen.malformed = event.channel + ": " + (why.empty() ? "comes before its channel table" : why);
+  const bool whole = drivers::is_well_formed(
+      event.data, is_table ? channel_table_t::getHash() : accel_counts_t::getHash());
+  seen.malformed =
+      event.channel + ": " +
+      (!whole     ? drivers::why_not(is_table ? "channel_table_t" : "accel_counts_t", event.data)
+       : is_table ? "names too many channels"
+                  : "no table of its channels before it, or a resolution that is none");
 }
 
 void ReplaySurvey::judge_raw_log(const std::string& path, const LogSeen& seen) {

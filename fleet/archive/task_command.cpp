@@ -22,6 +22,7 @@
 #include "fleet/archive/parameter_means.h"
 #include "fleet/archive/program_identity.h"
 #include "fleet/archive/reidentify.h"
+#include "fleet/archive/task_lock.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -71,6 +72,9 @@ class Tasks {
 
   /// False when it failed.
   bool run(const ArchiveTask& task) {
+    TaskLock lock;
+    if (const std::string problem = lock.take(task.out + ".lock"); !problem.empty())
+      return fail(task, task.out + ".lock: " + problem);
     if (is_done(task)) return say(line_of(task, "done_before"));
     const auto began = std::chrono::steady_clock::now();
     const double cpu_s = daemon::process_usage().cpu_s;

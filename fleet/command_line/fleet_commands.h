@@ -22,4 +22,7 @@ void add_authority(daemon::CommandList& commands);
 void add_enroll(daemon::CommandList& commands);
 void add_revoke(daemon::CommandList& commands);
 
+// centre_commands.cpp: what the hub does with what buildings say.
+void add_worker(daemon::CommandList& commands);
+
 }  // namespace framewatch::fleet

@@ -1,5 +1,7 @@
 #include "fleet/archive/task_command.h"
 
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <sstream>
@@ -16,6 +18,7 @@
 #include "daemon/replay/replay_survey.h"
 #include "fleet/archive/archive_logs.h"
 #include "fleet/archive/program_identity.h"
+#include "fleet/archive/task_lock.h"
 #include "tests/support/child.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/shell.h"
@@ -252,12 +255,32 @@ TEST_F(FleetTask, KilledAtAnyTimeItGivesTheSameOutputInTheEnd) {
   }
 }
 
+TEST_F(FleetTask, WhoComesSecondWaitsAndFindsItDone) {
+  std::atomic<bool> has_run = false;
+  std::thread second;
+  {
+    TaskLock first;
+    ASSERT_EQ(first.take(tasks_[0].out + ".lock"), "");
+    second = std::thread([&] {
+      TaskLock lock;
+      EXPECT_EQ(lock.take(tasks_[0].out + ".lock"), "");
+      has_run = true;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    EXPECT_FALSE(has_run);
+  }
+  second.join();
+  EXPECT_TRUE(fs::is_empty(directory_.path("out")));
+  TaskLock nowhere;
+  EXPECT_NE(nowhere.take(directory_.path("none/x.lock")), "");
+}
+
 TEST_F(FleetTask, TheManifestCommandSaysEverythingThatIsWrong) {
   const test::ShellResult said =
       test::shell(directory_, "$F fleet manifest building.toml out none.lcmlog nor.lcmlog");
   EXPECT_EQ(said.status, 2);
   EXPECT_EQ(said.out, "");
-  EXPECT_NE(said.err.find("framewatch fleet manifest: none.lcmlog"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("none.lcmlog: No such file"), std::string::npos) << said.err;
   EXPECT_NE(said.err.find("nor.lcmlog"), std::string::npos) << said.err;
   const test::ShellResult bad =
       test::shell(directory_, "$F fleet manifest none.toml out rec.lcmlog");
