@@ -1,8 +1,12 @@
 # framewatch_room(<folder> [LINKS <library>...] [PUBLIC <library>...]): the sources of one folder as a
 # library named as the folder, "_" for "/". Rooms are declared lowest first: each sees those declared
 # before it and no others, which tests/purity checks include by include. PUBLIC: libraries that whoever
-# uses the room sees too.
+# uses the room sees too. Where FRAMEWATCH_LEAVE_OUT is set, the room only has its place in the order.
 function(framewatch_room folder)
+  set_property(GLOBAL APPEND PROPERTY FRAMEWATCH_ROOM_ORDER ${folder})
+  if(FRAMEWATCH_LEAVE_OUT)
+    return()
+  endif()
   cmake_parse_arguments(ARG "" "" "LINKS;PUBLIC" ${ARGN})
   string(REPLACE "/" "_" room ${folder})
   get_property(lower GLOBAL PROPERTY FRAMEWATCH_HIGHEST_ROOM)

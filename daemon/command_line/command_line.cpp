@@ -1,5 +1,7 @@
 #include "daemon/command_line/command_line.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
@@ -7,73 +9,83 @@
 #include "daemon/base/last_resort.h"
 #include "daemon/base/terminal_colour.h"
 #include "daemon/command_line/command_list.h"
+#include "daemon/command_line/fleet_program.h"
 #include "daemon/command_line/option_entries.h"
 
 namespace framewatch::daemon {
 
 namespace {
 
-/// What systemd starts again after a failure.
-bool is_service(const std::string& command) {
-  return command == "run" || command == "serve" || command == "record";
+void say(const Program& program, const std::string& problem) {
+  fmt::print(stderr, "{} {}\n", toned(Tone::bad, program.name + ":", stderr), problem);
 }
 
-void say(const std::string& problem) {
-  fmt::print(stderr, "{} {}\n", toned(Tone::bad, "framewatch:", stderr), problem);
+/// What messages call a command: "run"; "fleet task" of the program "framewatch fleet".
+std::string said_name(const Program& program, const std::string& command) {
+  const std::size_t space = program.name.find(' ');
+  return space == std::string::npos ? command : program.name.substr(space + 1) + " " + command;
 }
 
-int bad_usage(const CLI::App& app, const CLI::ParseError& error) {
+int bad_usage(const Program& program, const CLI::App& app, const CLI::ParseError& error) {
   const auto chosen = app.get_subcommands();
   if (chosen.empty()) {
-    say("which command? `framewatch help` lists them");
+    say(program, fmt::format("which command? `{} help` lists them", program.name));
     return kBadInput;
   }
   const std::string name = chosen.front()->get_name();
-  refuse(name, error.what());
-  fmt::print(stderr, "`framewatch help {}` says how it is used\n", name);
+  refuse(said_name(program, name), error.what());
+  fmt::print(stderr, "`{} help {}` says how it is used\n", program.name, name);
   return kBadInput;
 }
 
-int parse_and_run(int argc, const char* const* argv) {
-  CLI::App app{
-      "framewatch: stiffness and damping of every frame and floor panel of a building,\n"
-      "from its accelerometers, while it moves."};
-  app.name("framewatch");
+int parse_and_run(const Program& program, int argc, const char* const* argv) {
+  CLI::App app{program.description};
+  app.name(program.name);
   app.require_subcommand(1);
   app.set_version_flag("--version", FRAMEWATCH_VERSION);
-
-  app.footer(
-      "A file called - is standard input where one is read, standard output where one is written.");
-
+  app.footer(program.footer);
   CommandList commands(app);
-  for (const auto add :  // in the order in which --help lists them
-       {add_demo,        add_run,    add_replay,   add_diff,   add_repair,    add_refine,
-        add_diagnose,    add_adopt,  add_init,     add_check,  add_convert,   add_simulate,
-        add_reproduce,   add_report, add_serve,    add_record, add_history,   add_status,
-        add_acknowledge, add_tell,   add_selftest, add_help,   add_completion})
-    add(commands);
+  for (const auto add : program.commands) add(commands);
 
   const std::vector<std::string> problems =
-      misspelt(command_entries(app), std::vector<std::string>(argv + 1, argv + argc));
-  for (const std::string& problem : problems) say(problem);
+      misspelt(program.name, command_entries(app), std::vector<std::string>(argv + 1, argv + argc));
+  for (const std::string& problem : problems) say(program, problem);
   if (!problems.empty()) return kBadInput;
 
   try {
     app.parse(argc, argv);
     const std::string command = app.get_subcommands().front()->get_name();
-    now_runs(command, is_service(command));
+    const auto& services = program.services;
+    now_runs(said_name(program, command),
+             std::find(services.begin(), services.end(), command) != services.end());
     return commands.run_chosen();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    return bad_usage(app, error);
+    return bad_usage(program, app, error);
   }
 }
 
 }  // namespace
 
-int run_command_line(int argc, const char* const* argv) {
+int run_program(const Program& program, int argc, const char* const* argv) {
   prepare_last_resort();
-  return run_to_the_end([&] { return parse_and_run(argc, argv); });
+  return run_to_the_end([&] { return parse_and_run(program, argc, argv); });
+}
+
+int run_command_line(int argc, const char* const* argv) {
+  if (argc > 1 && is_of_fleet(argv[1])) return become_fleet_program(argc, argv);
+  const Program program{
+      "framewatch",
+      "framewatch: stiffness and damping of every frame and floor panel of a building,\n"
+      "from its accelerometers, while it moves.",
+      "A file called - is standard input where one is read, standard output where one is written.",
+      {add_demo,     add_run,      add_replay,    add_diff,        add_repair,
+       add_refine,   add_diagnose, add_adopt,     add_init,        add_check,
+       add_convert,  add_simulate, add_reproduce, add_report,      add_serve,
+       add_record,   add_history,  add_status,    add_acknowledge, add_tell,
+       add_selftest, add_fleet,    add_uplink,    add_help,        add_completion},
+      {"run", "serve", "record"}};
+  return run_program(program, argc, argv);
 }
 
 }  // namespace framewatch::daemon

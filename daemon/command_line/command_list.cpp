@@ -12,6 +12,10 @@
 
 namespace framewatch::daemon {
 
+std::string CommandList::program() const {
+  return app_.get_name();
+}
+
 CLI::App* CommandList::add(const std::string& name, const std::string& purpose) {
   return app_.add_subcommand(name, purpose);
 }

@@ -21,6 +21,9 @@ class CommandList {
  public:
   explicit CommandList(CLI::App& app) : app_(app) {}
 
+  /// The program as it is called: framewatch, or framewatch fleet.
+  [[nodiscard]] std::string program() const;
+
   /// A command without options yet.
   CLI::App* add(const std::string& name, const std::string& purpose);
 
@@ -87,6 +90,10 @@ void add_replay(CommandList& commands);
 void add_diff(CommandList& commands);
 void add_repair(CommandList& commands);
 void add_refine(CommandList& commands);
+
+// fleet_program.cpp: listed here, done by framewatch-fleet.
+void add_fleet(CommandList& commands);
+void add_uplink(CommandList& commands);
 
 // model_commands.cpp: configurations and models.
 void add_init(CommandList& commands);

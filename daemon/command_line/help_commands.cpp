@@ -28,11 +28,12 @@ int help(const CLI::App& app, const HelpArguments& a) {
                 : app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
     return 0;
   }
-  if (const std::string why = no_such_command(commands, a.command); !why.empty())
+  if (const std::string why = no_such_command(app.get_name(), commands, a.command); !why.empty())
     return refuse("help", why);
   const auto entry = std::find_if(commands.begin(), commands.end(),
                                   [&](const CommandEntry& c) { return c.name == a.command; });
-  print(a.man ? command_man_page(*entry) : app.get_subcommand(a.command)->help(app.get_name()));
+  print(a.man ? command_man_page(app.get_name(), *entry)
+              : app.get_subcommand(a.command)->help(app.get_name()));
   return 0;
 }
 
@@ -41,10 +42,10 @@ int help(const CLI::App& app, const HelpArguments& a) {
 void add_help(CommandList& commands) {
   HelpArguments& arguments = commands.arguments<HelpArguments>();
   CLI::App* command = commands.add("help", "how the program, or one of its commands, is used");
-  command->footer(
-      "Examples:\n"
-      "  framewatch help replay\n"
-      "  framewatch help replay --man | man -l -");
+  command->footer(commands.program() == "framewatch" ? "Examples:\n"
+                                                       "  framewatch help replay\n"
+                                                       "  framewatch help replay --man | man -l -"
+                                                     : "");
   command->add_option("COMMAND", arguments.command, "the command; none: the list of commands");
   command->add_flag("--man", arguments.man, "as a manual page, in the language of man(7)");
   commands.set_action(command,

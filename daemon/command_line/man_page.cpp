@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cctype>
 #include <sstream>
 
@@ -32,8 +33,8 @@ std::string heading(const std::string& name) {
                      FRAMEWATCH_VERSION);
 }
 
-std::string synopsis(const CommandEntry& command) {
-  std::string out = fmt::format(".B framewatch {}\n.RI [ OPTION ...]\n", command.name);
+std::string synopsis(const std::string& program, const CommandEntry& command) {
+  std::string out = fmt::format(".B {} {}\n.RI [ OPTION ...]\n", program, command.name);
   for (const OptionEntry& option : command.options) {
     if (!option.is_argument) continue;
     const std::string more = option.takes_many ? " ..." : "";
@@ -122,10 +123,12 @@ std::string program_man_page(const std::vector<CommandEntry>& commands) {
   return out + kStreams + kRest;
 }
 
-std::string command_man_page(const CommandEntry& command) {
-  std::string out = heading("framewatch-" + command.name) +
-                    fmt::format(".SH NAME\nframewatch\\-{} \\- {}\n.SH SYNOPSIS\n{}.SH OPTIONS\n",
-                                command.name, roff(command.purpose), synopsis(command));
+std::string command_man_page(const std::string& program, const CommandEntry& command) {
+  std::string name = program + " " + command.name;
+  std::replace(name.begin(), name.end(), ' ', '-');
+  std::string out =
+      heading(name) + fmt::format(".SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}.SH OPTIONS\n", roff(name),
+                                  roff(command.purpose), synopsis(program, command));
   for (const OptionEntry& option : command.options) out += option_item(option);
   return out + footer_sections(command.footer) + ".SH SEE ALSO\n.BR framewatch (1)\n";
 }

@@ -23,7 +23,8 @@ std::string meant(const std::string& word, const std::vector<std::string>& known
   return list.empty() ? "" : fmt::format("did you mean {}?", list);
 }
 
-std::string no_such_option(const CommandEntry& command, const std::string& word) {
+std::string no_such_option(const std::string& program, const CommandEntry& command,
+                           const std::string& word) {
   std::vector<std::string> known{"--help"};
   for (const OptionEntry& option : command.options)
     if (!option.is_argument) known.push_back(option.name);
@@ -35,7 +36,7 @@ std::string no_such_option(const CommandEntry& command, const std::string& word)
   const std::string advice = meant(dashed, known);
   return fmt::format(
       "there is no option {}: {}", printable(word),
-      !advice.empty() ? advice : fmt::format("framewatch help {} lists them", command.name));
+      !advice.empty() ? advice : fmt::format("{} help {} lists them", program, command.name));
 }
 
 bool is_option(const std::string& argument) {
@@ -45,16 +46,18 @@ bool is_option(const std::string& argument) {
 
 }  // namespace
 
-std::string no_such_command(const std::vector<CommandEntry>& commands, const std::string& word) {
+std::string no_such_command(const std::string& program, const std::vector<CommandEntry>& commands,
+                            const std::string& word) {
   std::vector<std::string> known;
   for (const CommandEntry& command : commands) known.push_back(command.name);
   if (std::find(known.begin(), known.end(), word) != known.end()) return {};
   const std::string advice = meant(word, known);
   return fmt::format("there is no command {}: {}", printable(word),
-                     !advice.empty() ? advice : "framewatch help lists them");
+                     !advice.empty() ? advice : program + " help lists them");
 }
 
-std::vector<std::string> misspelt(const std::vector<CommandEntry>& commands,
+std::vector<std::string> misspelt(const std::string& program,
+                                  const std::vector<CommandEntry>& commands,
                                   const std::vector<std::string>& arguments) {
   CommandEntry chosen;
   chosen.options.emplace_back().name = "--version";
@@ -62,10 +65,11 @@ std::vector<std::string> misspelt(const std::vector<CommandEntry>& commands,
   for (const std::string& argument : arguments) {
     if (argument == "--") break;
     if (is_option(argument)) {
-      const std::string why = no_such_option(chosen, argument.substr(0, argument.find('=')));
+      const std::string why =
+          no_such_option(program, chosen, argument.substr(0, argument.find('=')));
       if (!why.empty()) out.push_back(why);
     } else if (chosen.name.empty()) {
-      const std::string why = no_such_command(commands, argument);
+      const std::string why = no_such_command(program, commands, argument);
       if (!why.empty()) return {why};
       chosen = *std::find_if(commands.begin(), commands.end(),
                              [&](const CommandEntry& c) { return c.name == argument; });

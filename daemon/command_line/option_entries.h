@@ -37,14 +37,17 @@ std::string completion_script(const std::string& shell, const std::vector<Comman
 
 /// The manual page framewatch(1), in the language of man(7).
 std::string program_man_page(const std::vector<CommandEntry>& commands);
-/// The manual page of one command, framewatch-<command>(1).
-std::string command_man_page(const CommandEntry& command);
+/// The manual page of one command of `program`, as it is called (framewatch):
+/// framewatch-<command>(1).
+std::string command_man_page(const std::string& program, const CommandEntry& command);
 
 /// What in the arguments of the program is no command, or no option of the command, each with what
-/// was probably meant. Empty when there is nothing of the kind.
-std::vector<std::string> misspelt(const std::vector<CommandEntry>& commands,
+/// was probably meant. Empty when there is nothing of the kind. `program`: as it is called.
+std::vector<std::string> misspelt(const std::string& program,
+                                  const std::vector<CommandEntry>& commands,
                                   const std::vector<std::string>& arguments);
 /// The same of a word that should be a command.
-std::string no_such_command(const std::vector<CommandEntry>& commands, const std::string& word);
+std::string no_such_command(const std::string& program, const std::vector<CommandEntry>& commands,
+                            const std::string& word);
 
 }  // namespace framewatch::daemon

@@ -25,12 +25,14 @@ void add_replay(CommandList& commands) {
   commands.reads_files(
       command
           ->add_option("LOG", arguments.inputs,
-                       "LCM event logs, plain or .zst, and record files (CSV), in order of time")
+                       "LCM event logs, plain or .zst, raw logs of a history, and record files\n"
+                       "(CSV), in order of time")
           ->required());
   add_record_options(command, arguments.record);
   command
       ->add_option("--out", arguments.out,
-                   "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5)")
+                   "file for the estimates: .lcmlog, .csv, .csv.gz or .mat (MATLAB 5); .sqlite:\n"
+                   "their summaries, the tables of a history")
       ->type_name("FILE");
   command->add_flag("--boxplot", arguments.boxplot, "boxplot statistics in .csv and .mat too");
   command

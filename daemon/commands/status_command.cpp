@@ -9,7 +9,6 @@
 
 #include <fmt/core.h>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
@@ -17,6 +16,7 @@
 #include "daemon/base/printable.h"
 #include "daemon/base/terminal_colour.h"
 #include "daemon/base/utc_time.h"
+#include "daemon/commands/status_json.h"
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/sections.h"
@@ -181,6 +181,19 @@ void print_known(const Heard& h, const Config& config, std::int64_t now_us) {
   }
 }
 
+void print_hub(const Heard& h, std::int64_t now_us) {
+  if (!h.uplink) return;
+  const uplink_status_t& s = *h.uplink;
+  const std::int64_t waiting = s.events_waiting + s.summaries_waiting + s.pieces_waiting;
+  const std::string newest =
+      s.acknowledged_us == 0
+          ? "nothing acknowledged yet"
+          : fmt::format("newest acknowledged {} ago",
+                        span_text(1e-6 * static_cast<double>(now_us - s.acknowledged_us)));
+  line("hub", fmt::format("{} wait, {}{}", waiting, newest,
+                          s.connected != 0 ? "" : ", no connection: " + s.link_trouble));
+}
+
 void print_can(const Heard& h) {
   if (!h.can) return;
   for (std::size_t b = 0; b < h.can->interface.size(); ++b)
@@ -206,77 +219,9 @@ void print_text(const Heard& h, const Config& config, const std::vector<std::str
   print_can(h);
   print_history(h);
   print_actions(h);
+  print_hub(h, now_us);
   print_known(h, config, now_us);
   for (const std::string& sentence : odd) line("odd", sentence);
-}
-
-void print_json(const Heard& h, const Config& config, const std::vector<std::string>& odd,
-                const std::optional<UnitState>& unit, std::int64_t now_us) {
-  const service_t& s = *h.service;
-  nlohmann::json out{{"well", odd.empty()},
-                     {"odd", odd},
-                     {"version", s.version},
-                     {"config", s.config},
-                     {"config_sha256", s.config_sha256},
-                     {"config_on_disk_sha256", sha256_of_file(config.path)},
-                     {"started_us", s.started_us},
-                     {"starts", s.starts},
-                     {"unclean_starts", s.unclean_starts},
-                     {"resumed", s.resumed != 0},
-                     {"silent_s", silent_s(s, now_us)},
-                     {"state_written_us", s.state_written_us},
-                     {"disk_free_bytes", s.disk_free_bytes},
-                     {"resident_bytes", s.resident_bytes},
-                     {"reloads", s.reloads},
-                     {"reloads_refused", s.reloads_refused}};
-  if (h.status) {
-    out["windows"] = h.status->windows;
-    out["latency_s"] = h.status->latency_s;
-    out["lost"] = total(h.status->lost);
-    out["rejected"] = total(h.status->rejected);
-  }
-  if (h.reception)
-    out["dropped"] = {{"elsewhere", h.reception->datagrams_elsewhere},
-                      {"malformed", h.reception->datagrams_malformed},
-                      {"overflowed", h.reception->datagrams_overflowed},
-                      {"unfinished", h.reception->messages_unfinished},
-                      {"queue_full", h.reception->messages_dropped}};
-  if (h.watch) {
-    const watch_t& w = *h.watch;
-    out["watch"] = {{"baseline", w.baseline},
-                    {"baseline_std_error", w.baseline_std_error},
-                    {"baseline_degc", w.baseline_degc},
-                    {"quiet_learned_ratio", w.quiet_learned_ratio},
-                    {"quiet_baseline", w.quiet_baseline},
-                    {"quiet_std_error", w.quiet_std_error},
-                    {"per_degc", w.per_degc},
-                    {"per_degc_std_error", w.per_degc_std_error},
-                    {"per_log_amplitude", w.per_log_amplitude},
-                    {"per_log_amplitude_std_error", w.per_log_amplitude_std_error},
-                    {"temperature_degc", w.temperature_degc}};
-  }
-  if (unit)
-    out["systemd"] = {{"active", unit->active},
-                      {"sub", unit->sub},
-                      {"result", unit->result},
-                      {"restarts", unit->restarts}};
-  out["events"] = nlohmann::json::array();
-  for (std::size_t i = 0; i < s.event_id.size(); ++i) {
-    const auto at = acknowledgement_of(h, s.event_id[i]);
-    nlohmann::json known;
-    if (at)
-      known = {{"time_us", h.acknowledged->since_us[*at]},
-               {"who", h.acknowledged->who[*at]},
-               {"comment", h.acknowledged->comment[*at]}};
-    out["events"].push_back({{"id", s.event_id[i]},
-                             {"since_us", s.event_since_us[i]},
-                             {"severity", s.event_severity[i]},
-                             {"kind", s.event_kind[i]},
-                             {"place", s.event_place[i]},
-                             {"message", s.event_message[i]},
-                             {"acknowledged", known}});
-  }
-  fmt::print("{}\n", out.dump(2, ' ', true, nlohmann::json::error_handler_t::replace));
 }
 
 /// Where the daemon is heard, from a file that is wrong: as far as it says so.
@@ -334,7 +279,7 @@ int status_command(const StatusArguments& a) {
                     problems.front().where, problems.front().message));
   if (const std::string why = unit ? unit_oddity(*unit) : ""; !why.empty()) odd.push_back(why);
   if (a.json)
-    print_json(heard, *config, odd, unit, now_us);
+    fmt::print("{}\n", status_json(heard, *config, odd, unit, now_us));
   else
     print_text(heard, *config, odd, unit, now_us);
   return odd.empty() ? 0 : kNotWell;

@@ -21,6 +21,7 @@ void place_all_files(Config& config) {
   if (config.history) place_files("history", beside, *config.history);
   if (config.event_report) place_files("event_report", beside, *config.event_report);
   if (config.actions) place_files("actions", beside, *config.actions);
+  if (config.fleet) place_files("fleet", beside, *config.fleet);
 }
 
 }  // namespace

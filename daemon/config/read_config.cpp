@@ -74,6 +74,7 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.history = read_history(document, problems);
   config.event_report = read_event_report(document, problems);
   config.actions = read_actions(document, problems);
+  config.fleet = read_fleet(document, config.history.has_value(), problems);
   if (problems.size() == before)
     for (const std::string& rule : estimator::problems(config.pipeline))
       problems.push_back({{}, rule});

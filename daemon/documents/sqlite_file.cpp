@@ -119,6 +119,19 @@ bool SqliteFile::is_file(const std::string& path) {
 }
 
 bool SqliteFile::open(const std::string& path) {
+  // auto_vacuum has to be set before the first table.
+  return open_to_write(path,
+                       "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL;"
+                       "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
+}
+
+bool SqliteFile::open_new(const std::string& path) {
+  return open_to_write(path,
+                       "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = MEMORY;"
+                       "PRAGMA synchronous = OFF; PRAGMA foreign_keys = ON;");
+}
+
+bool SqliteFile::open_to_write(const std::string& path, const std::string& settings) {
   if (!is_file(path)) return false;
   sqlite3* file = nullptr;
   const int opened =
@@ -132,10 +145,7 @@ bool SqliteFile::open(const std::string& path) {
     return false;
   }
   sqlite3_busy_timeout(file, kPatience_ms);
-  // auto_vacuum has to be set before the first table.
-  if (execute("PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL;"
-              "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;"))
-    return true;
+  if (execute(settings)) return true;
   file_.reset();
   return false;
 }

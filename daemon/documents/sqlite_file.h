@@ -61,6 +61,9 @@ class SqliteFile {
 
   /// Opens with a write-ahead log; a committed transaction is on the disk (synchronous = FULL).
   [[nodiscard]] bool open(const std::string& path);
+  /// Fills an empty file that counts only when it is whole: fast, and lost with the machine's
+  /// power.
+  [[nodiscard]] bool open_new(const std::string& path);
   [[nodiscard]] bool open_to_read(const std::string& path);
   bool is_open() const { return file_ != nullptr; }
   void close() { file_.reset(); }
@@ -79,6 +82,7 @@ class SqliteFile {
  private:
   static void close_file(sqlite3* file);
   bool is_file(const std::string& path);
+  bool open_to_write(const std::string& path, const std::string& settings);
   bool fail();
 
   std::unique_ptr<sqlite3, void (*)(sqlite3*)> file_;

@@ -97,7 +97,7 @@ bool is_csv(const std::string& path) {
 std::string problem_of_output_name(const std::string& path) {
   if (path.ends_with(".lcmlog") || path.ends_with(".mat") || is_csv(path)) return {};
   return path +
-         ": the output's name must end in .lcmlog, .csv, .csv.gz or .mat, or be - "
+         ": the output's name must end in .lcmlog, .csv, .csv.gz, .mat or .sqlite, or be - "
          "(standard output, CSV)";
 }
 

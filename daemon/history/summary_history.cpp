@@ -1,14 +1,9 @@
 #include "daemon/history/summary_history.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
-#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/event_t.hpp>
-#include <framewatch/parameter_table_t.hpp>
-#include <framewatch/status_t.hpp>
-#include <framewatch/window_estimate_t.hpp>
 
 #include <fmt/core.h>
 
@@ -17,7 +12,6 @@
 #include "daemon/history/history_files.h"
 #include "daemon/history/summary_query.h"
 #include "drivers/base/caught.h"
-#include "drivers/lcm/message_check.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -30,13 +24,8 @@ constexpr std::chrono::hours kPrune{1};
 
 SummaryHistory::SummaryHistory(const Config& config)
     : config_(config),
-      estimate_(config.lcm.prefix + "ESTIMATE"),
-      table_(config.lcm.prefix + "PARAMETERS"),
-      status_(config.lcm.prefix + "STATUS"),
-      event_(config.lcm.prefix + "EVENT"),
-      acknowledged_(config.lcm.prefix + "ACKNOWLEDGED"),
       store_(*config.history),
-      collector_(kSecond_us * config.history->summary_s.front()),
+      intake_(config.lcm.prefix, config.history->summary_s.front(), [this] { commit(); }),
       next_commit_(Clock::now()),
       next_prune_(next_commit_),
       thread_([this] { work(); }) {}
@@ -51,16 +40,12 @@ SummaryHistory::~SummaryHistory() {
 }
 
 void SummaryHistory::message(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
-  const auto kind = channel == estimate_       ? Kind::estimate
-                    : channel == table_        ? Kind::table
-                    : channel == status_       ? Kind::status
-                    : channel == event_        ? Kind::event
-                    : channel == acknowledged_ ? Kind::acknowledged
-                                               : std::optional<Kind>();
+  const auto kind = intake_.kind_of(channel);
   if (!kind) return;
   const std::lock_guard<std::mutex> lock(mutex_);
   if (queued_ + bytes.size() > kQueueBytes) {
-    counters_.dropped += *kind != Kind::table && *kind != Kind::status;
+    counters_.dropped +=
+        *kind != SummaryIntake::Kind::table && *kind != SummaryIntake::Kind::status;
     return;
   }
   queued_ += bytes.size();
@@ -88,7 +73,7 @@ void SummaryHistory::work() {
       for (const Message& message : messages) take(message);
       const bool due = Clock::now() >= next_commit_;
       // Sensors that fall silent in the middle of a period leave nothing uncommitted.
-      if (last || (due && waiting_.empty())) end_period();
+      if (last || (due && waiting().empty())) end_period();
       if (last || due) commit();
     });
   }
@@ -106,61 +91,23 @@ void SummaryHistory::guarded(std::size_t messages, const std::function<void()>& 
 }
 
 void SummaryHistory::take(const Message& message) {
-  switch (message.kind) {
-    case Kind::estimate:
-      if (const auto e = drivers::decoded<window_estimate_t>(message.bytes)) {
-        if (collector_.ends_before(*e)) end_period();
-        collector_.add(*e);
-        newest_us_ = std::max(newest_us_, e->window_end_us);
-      }
-      break;
-    case Kind::table:
-      if (const auto t = drivers::decoded<parameter_table_t>(message.bytes)) {
-        if (collector_.ends_before(*t)) {
-          end_period();
-          commit();
-          waiting_.periods.clear();
-        }
-        collector_.add(*t);
-      }
-      break;
-    case Kind::status:
-      if (const auto s = drivers::decoded<status_t>(message.bytes)) {
-        if (collector_.ends_before(*s)) end_period();
-        collector_.add(*s);
-      }
-      break;
-    case Kind::event:
-      if (auto e = drivers::decoded<event_t>(message.bytes)) {
-        waiting_.events.push_back(std::move(*e));
-        next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
-      }
-      break;
-    case Kind::acknowledged:
-      if (auto a = drivers::decoded<acknowledged_t>(message.bytes)) {
-        waiting_.acknowledged.push_back(std::move(*a));
-        next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
-      }
-      break;
-  }
+  const SummaryIntake::Taken taken = intake_.take(message.kind, message.bytes);
+  if (taken.period) next_commit_ = std::min(next_commit_, Clock::now());
+  if (taken.news) next_commit_ = std::min(next_commit_, Clock::now() + kAgain);
 }
 
 void SummaryHistory::end_period() {
-  if (collector_.empty()) return;
-  waiting_.parameters = collector_.parameters();
-  waiting_.channels = collector_.channels();
-  waiting_.periods.push_back(collector_.take());
-  next_commit_ = std::min(next_commit_, Clock::now());
+  if (intake_.end_period()) next_commit_ = std::min(next_commit_, Clock::now());
 }
 
 std::string SummaryHistory::store_waiting() {
   if (!store_.is_open()) {
     if (std::string problem = store_.open(); !problem.empty()) return problem;
     for (const auto& [start_us, last_us] : store_.open_periods())
-      collector_.taken(start_us, last_us);
+      intake_.collector().taken(start_us, last_us);
   }
   if (store_.corrupt()) return "the database is corrupt";
-  return waiting_.empty() ? "" : store_.add(waiting_);
+  return waiting().empty() ? "" : store_.add(waiting());
 }
 
 /// False when the corrupt database stays where it is.
@@ -176,7 +123,7 @@ bool SummaryHistory::begin_anew(const std::string& reason) {
     log(LogLevel::error, fmt::format("history: {} is corrupt ({}): it is now {}, a new one is "
                                      "begun with {} of its events",
                                      database, reason, aside.path, readable.size()));
-    waiting_.events.insert(waiting_.events.begin(), readable.begin(), readable.end());
+    waiting().events.insert(waiting().events.begin(), readable.begin(), readable.end());
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.set_aside = aside;
@@ -189,17 +136,17 @@ void SummaryHistory::commit() {
   std::string problem = store_waiting();
   if (store_.corrupt())
     problem = begin_anew(problem) ? store_waiting() : counters().set_aside.problem;
-  if (waiting_.empty() && problem.empty()) {
+  if (waiting().empty() && problem.empty()) {
     const std::lock_guard<std::mutex> lock(mutex_);
     counters_.trouble.clear();
     return;
   }
   std::int64_t until_us = INT64_MIN;
   if (problem.empty()) {
-    for (const PeriodData& data : waiting_.periods) until_us = std::max(until_us, data.last_us);
-    waiting_.periods.clear();
-    waiting_.events.clear();
-    waiting_.acknowledged.clear();
+    for (const PeriodData& data : waiting().periods) until_us = std::max(until_us, data.last_us);
+    waiting().periods.clear();
+    waiting().events.clear();
+    waiting().acknowledged.clear();
   } else {
     next_commit_ = Clock::now() + kAgain;
     store_.close();  // a disk that comes back may hold another file
@@ -207,10 +154,10 @@ void SummaryHistory::commit() {
   }
   if (store_.repeated() > std::exchange(repeated_said_, store_.repeated()))
     log(LogLevel::notice, "windows of a time that was summarised before are not summarised again");
-  const bool time_known = newest_us_ != INT64_MIN;
+  const bool time_known = intake_.newest_us() != INT64_MIN;
   if (problem.empty() && time_known && Clock::now() >= next_prune_) {
     next_prune_ = Clock::now() + kPrune;
-    problem = store_.prune(std::min(newest_us_, host_clock_us()));
+    problem = store_.prune(std::min(intake_.newest_us(), host_clock_us()));
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.trouble = problem;
@@ -221,17 +168,17 @@ void SummaryHistory::commit() {
 
 void SummaryHistory::bound() {
   std::int64_t dropped = 0;
-  while (waiting_.periods.size() > kMostPeriods) {
-    dropped += waiting_.periods.front().windows;
-    waiting_.periods.erase(waiting_.periods.begin());
+  while (waiting().periods.size() > kMostPeriods) {
+    dropped += waiting().periods.front().windows;
+    waiting().periods.erase(waiting().periods.begin());
   }
-  while (waiting_.events.size() > kMostEvents) {
+  while (waiting().events.size() > kMostEvents) {
     ++dropped;
-    waiting_.events.erase(waiting_.events.begin());
+    waiting().events.erase(waiting().events.begin());
   }
-  while (waiting_.acknowledged.size() > kMostEvents) {
+  while (waiting().acknowledged.size() > kMostEvents) {
     ++dropped;
-    waiting_.acknowledged.erase(waiting_.acknowledged.begin());
+    waiting().acknowledged.erase(waiting().acknowledged.begin());
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   counters_.dropped += dropped;

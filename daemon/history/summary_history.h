@@ -12,6 +12,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/documents/damaged_database.h"
+#include "daemon/estimates/summary_intake.h"
 #include "daemon/history/summary_store.h"
 
 namespace framewatch::daemon {
@@ -47,9 +48,8 @@ class SummaryHistory {
 
  private:
   using Clock = std::chrono::steady_clock;
-  enum class Kind { estimate, table, status, event, acknowledged };
   struct Message {
-    Kind kind;
+    SummaryIntake::Kind kind;
     std::vector<std::uint8_t> bytes;
   };
 
@@ -61,16 +61,15 @@ class SummaryHistory {
   std::string store_waiting();
   bool begin_anew(const std::string& reason);
   void bound();
+  SummaryBatch& waiting() { return intake_.batch(); }
 
   const Config& config_;
-  const std::string estimate_, table_, status_, event_, acknowledged_;  ///< channels
 
   // Of the thread.
   SummaryStore store_;
-  PeriodCollector collector_;
-  SummaryBatch waiting_;
+  SummaryIntake intake_;  ///< kind_of() may be asked by any
   Clock::time_point next_commit_, next_prune_;
-  std::int64_t newest_us_ = INT64_MIN, repeated_said_ = 0;
+  std::int64_t repeated_said_ = 0;
 
   mutable std::mutex mutex_;  ///< guards what is below
   std::condition_variable wake_;

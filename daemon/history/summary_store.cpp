@@ -46,6 +46,13 @@ std::string SummaryStore::open() {
   return problem;
 }
 
+std::string SummaryStore::open_new(const std::string& path) {
+  if (!file_.open_new(path)) return file_.error();
+  std::string problem = upgrade(file_, history_schema());
+  if (!problem.empty()) file_.close();
+  return problem;
+}
+
 std::vector<std::pair<std::int64_t, std::int64_t>> SummaryStore::open_periods() {
   SqliteStatement all = file_.prepare(
       "SELECT start_us, last_us FROM period WHERE period_s = ? AND open = 1 ORDER BY start_us");
@@ -59,9 +66,11 @@ std::string SummaryStore::add(const SummaryBatch& batch) {
   const std::int64_t repeated = repeated_;
   const bool done = file_.transaction([&] {
     if (!add_names(batch)) return false;
-    for (const PeriodData& data : batch.periods) {
-      if (!add_period(data) || !add_channels(data)) return false;
-    }
+    Grown grown;  // longer periods, each of which is summed up once
+    for (const PeriodData& data : batch.periods)
+      if (!add_period(data, grown) || !add_channels(data)) return false;
+    for (const auto& [period_s, start_us] : grown)
+      if (!add_longer(period_s, start_us)) return false;
     for (const event_t& event : batch.events)
       if (!add_event(event)) return false;
     for (const acknowledged_t& acknowledged : batch.acknowledged)
@@ -106,7 +115,7 @@ bool SummaryStore::add_names(const SummaryBatch& batch) {
   return true;
 }
 
-bool SummaryStore::add_period(const PeriodData& data) {
+bool SummaryStore::add_period(const PeriodData& data, Grown& grown) {
   if (data.windows == 0 || data.parameters.size() != parameter_ids_.size()) return true;
   const std::int64_t period_s = settings_.summary_s.front();
   SqliteStatement there =
@@ -157,8 +166,7 @@ bool SummaryStore::add_period(const PeriodData& data) {
     if (!values.run() || !put.run()) return false;
   }
   for (std::size_t i = 1; i < settings_.summary_s.size(); ++i)
-    if (!add_longer(settings_.summary_s[i], start_of(data.start_us, settings_.summary_s[i])))
-      return false;
+    grown.emplace(settings_.summary_s[i], start_of(data.start_us, settings_.summary_s[i]));
   return true;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,22 +12,11 @@
 #include <framewatch/parameter_table_t.hpp>
 
 #include "daemon/documents/sqlite_file.h"
-#include "daemon/estimates/period_data.h"
+#include "daemon/estimates/summary_intake.h"
 #include "daemon/history/history_lock.h"
 #include "daemon/keys/history_options.h"
 
 namespace framewatch::daemon {
-
-/// The content of one commit.
-struct SummaryBatch {
-  parameter_table_t parameters{};     ///< of every period in it
-  std::vector<std::string> channels;  ///< likewise
-  std::vector<PeriodData> periods;
-  std::vector<event_t> events;
-  std::vector<acknowledged_t> acknowledged;
-
-  bool empty() const { return periods.empty() && events.empty() && acknowledged.empty(); }
-};
 
 /// The database of a history as it is written: summaries of the configured periods, channels,
 /// events. Repeated messages count once: windows that ended before
@@ -38,6 +28,9 @@ class SummaryStore {
   /// Opens, or makes, the database and brings it to this program's schema. Empty, or why not:
   /// another program may be writing it.
   std::string open();
+  /// Makes the database in an empty file that nothing else writes, outside of a history, and fast:
+  /// it is to be kept only when it is whole.
+  std::string open_new(const std::string& path);
   bool is_open() const { return file_.is_open(); }
   void close() { file_.close(); }
   /// Whether the file that was opened last is damaged.
@@ -55,7 +48,8 @@ class SummaryStore {
 
  private:
   bool add_names(const SummaryBatch& batch);
-  bool add_period(const PeriodData& data);
+  using Grown = std::set<std::pair<std::int64_t, std::int64_t>>;  ///< length and start
+  bool add_period(const PeriodData& data, Grown& grown);
   bool add_longer(std::int64_t period_s, std::int64_t start_us);
   bool add_channels(const PeriodData& data);
   bool forget_values(std::int64_t newest_us);

@@ -53,6 +53,7 @@ std::span<const Option> gap_options();
 std::span<const Option> history_options();
 std::span<const Option> event_report_options();
 std::span<const Option> action_options();
+std::span<const Option> fleet_options();
 std::span<const Option> scenario_options();
 std::span<const Option> effect_options();  ///< of configuration and scenario files
 std::span<const Option> expectation_options();

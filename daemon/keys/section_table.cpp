@@ -50,6 +50,12 @@ const SectionDescription kSections[] = {
      "Optional: `framewatch run` tells people of events, by a command and a webhook "
      "([telling people](actions.md)).",
      Reach::settings},
+    {"fleet", "[fleet]",
+     "Optional, and only for `framewatch uplink`, which sends what the history holds to the hub of "
+     "many buildings ([many buildings](fleet.md)). `framewatch run` does not look at it; the "
+     "uplink "
+     "reads it when it starts. It takes a [history].",
+     Reach::settings},
     {"scenario", "Scenario files: at the top",
      "`framewatch simulate` reads a scenario: the building as above or `config`, and what happens "
      "to it."},

@@ -19,6 +19,7 @@
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/uplink_status_t.hpp>
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
@@ -72,6 +73,7 @@ void add_can(MetricFamilies& out, const can_status_t& can);
 void add_history(MetricFamilies& out, const history_status_t& history);
 void add_actions(MetricFamilies& out, const action_status_t& actions);
 void add_reception(MetricFamilies& out, const reception_t& reception);
+void add_uplink(MetricFamilies& out, const uplink_status_t& uplink);
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
 /// report: the newest of [event_report], if there is one.
 void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report);

@@ -121,6 +121,33 @@ void add_can(MetricFamilies& out, const can_status_t& s) {
       .value(static_cast<double>(s.dropped));
 }
 
+void add_uplink(MetricFamilies& out, const uplink_status_t& s) {
+  const auto number = [](std::int64_t n) { return static_cast<double>(n); };
+  out.gauge("uplink_connected", "1: a connection to a hub stands.").value(s.connected);
+  out.gauge("uplink_acknowledged_timestamp_seconds",
+            "Host clock of the newest acknowledgement of the hub, Unix time; 0: none yet.")
+      .value(1e-6 * number(s.acknowledged_us));
+  out.gauge("uplink_waiting", "What the hub has not acknowledged, by kind.")
+      .value(number(s.events_waiting), {{"kind", "event"}})
+      .value(number(s.summaries_waiting), {{"kind", "summary"}})
+      .value(number(s.pieces_waiting), {{"kind", "raw"}});
+  out.counter("uplink_acknowledged_total", "Messages that the hub acknowledged.")
+      .value(number(s.acknowledged));
+  out.counter("uplink_sent_again_total", "Messages sent again because nothing came back.")
+      .value(number(s.sent_again));
+  out.counter("uplink_refused_total", "Messages that the hub refused; they are kept.")
+      .value(number(s.refused));
+  out.counter("uplink_sent_bytes_total", "Bytes given to the network.").value(number(s.sent_bytes));
+  out.counter("uplink_commands_total", "Commands of the hub.")
+      .value(number(s.commands_obeyed), {{"result", "obeyed"}})
+      .value(number(s.commands_refused), {{"result", "refused"}});
+  out.gauge("uplink_trouble", "1: history or outbox cannot be read or written.")
+      .value(s.store_trouble.empty() ? 0 : 1);
+  out.gauge("uplink_resident_memory_bytes", "Memory of framewatch uplink.")
+      .value(number(s.resident_bytes));
+  out.counter("uplink_cpu_seconds_total", "Processor time of framewatch uplink.").value(s.cpu_s);
+}
+
 void add_history(MetricFamilies& out, const history_status_t& s) {
   const auto number = [](std::int64_t n) { return static_cast<double>(n); };
   out.counter("history_samples_total", "Raw samples given to the history.")

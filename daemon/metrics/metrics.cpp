@@ -9,6 +9,7 @@
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/uplink_status_t.hpp>
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
@@ -36,7 +37,7 @@ void Metrics::message(const std::string& channel, const void* data, std::size_t 
     return;
   }
   for (const char* wanted : {"SERVICE", "STATUS", "PARAMETERS", "ESTIMATE", "GAP", "WATCH", "CAN",
-                             "HISTORY", "ACTIONS", "RECEPTION"}) {
+                             "HISTORY", "ACTIONS", "RECEPTION", "UPLINK"}) {
     if (name != wanted) continue;
     const std::lock_guard<std::mutex> lock(mutex_);
     Newest& newest = newest_[name];
@@ -54,7 +55,8 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
     const auto service = newest_.find("SERVICE");
     const bool up = service != newest_.end() && now_us - service->second.received_us <= kFresh_us;
     for (const auto& [name, newest] : newest_)
-      if (now_us - newest.received_us <= kFresh_us || (up && name != "ESTIMATE"))
+      if (now_us - newest.received_us <= kFresh_us ||
+          (up && name != "ESTIMATE" && name != "UPLINK"))
         fresh[name] = newest.bytes;
     raised = found_here_;
     report = reports_.look();
@@ -69,6 +71,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   const auto history = drivers::decoded<history_status_t>(fresh["HISTORY"]);
   const auto actions = drivers::decoded<action_status_t>(fresh["ACTIONS"]);
   const auto reception = drivers::decoded<reception_t>(fresh["RECEPTION"]);
+  const auto uplink = drivers::decoded<uplink_status_t>(fresh["UPLINK"]);
   MetricFamilies out;
   out.gauge("up", "1: framewatch run has been heard of in the last 5 s.").value(service ? 1 : 0);
   if (service) {
@@ -90,6 +93,10 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
   if (history) add_history(out, *history);
   if (actions) add_actions(out, *actions);
   if (reception) add_reception(out, *reception);
+  if (config_.fleet)
+    out.gauge("uplink_up", "1: framewatch uplink has been heard of in the last 5 s.")
+        .value(uplink ? 1 : 0);
+  if (uplink) add_uplink(out, *uplink);
   add_events(out, raised.all());
   if (config_.event_report) add_event_report(out, report);
   const ProcessUsage usage = process_usage();

@@ -28,7 +28,7 @@ class Metrics {
   /// The channels of `framewatch serve` that only the metrics need.
   std::vector<std::string> channels() const {
     const std::string& prefix = config_.lcm.prefix;
-    return {prefix + "HISTORY", prefix + "ACTIONS"};
+    return {prefix + "HISTORY", prefix + "ACTIONS", prefix + "UPLINK"};
   }
   void message(const std::string& channel, const void* data, std::size_t size, std::int64_t now_us);
 

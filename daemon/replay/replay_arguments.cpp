@@ -14,9 +14,13 @@ bool writes_standard_output(const ReplayArguments& a) {
   return std::find(outputs.begin(), outputs.end(), drivers::kStandardOutput) != outputs.end();
 }
 
+bool is_history(const std::string& out) {
+  return out.ends_with(".sqlite");
+}
+
 std::vector<std::string> argument_problems(const ReplayArguments& a) {
   std::vector<std::string> found;
-  if (!a.out.empty())
+  if (!a.out.empty() && !is_history(a.out))
     if (const std::string problem = problem_of_output_name(a.out); !problem.empty())
       found.push_back(problem);
   std::vector<std::string> inputs = a.inputs;
@@ -42,8 +46,10 @@ std::vector<std::string> argument_problems(const ReplayArguments& a) {
       a.floors != drivers::kStandardOutput)
     found.push_back("--floors: writes .csv or .csv.gz, not " + a.floors);
   if (!(a.span.to_s > a.span.from_s)) found.push_back("--to: must be later than --from");
-  if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog")))
-    found.push_back("--boxplot: is for --out with .csv or .mat; a log always has them");
+  if (a.boxplot && (a.out.empty() || a.out.ends_with(".lcmlog") || is_history(a.out)))
+    found.push_back("--boxplot: is for --out with .csv or .mat; a log or .sqlite always has them");
+  if (is_history(a.out) && !a.load_state.empty())
+    found.push_back("--load-state: is not for --out with .sqlite, whose periods are whole");
   return found;
 }
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <ratio>
-#include <thread>
 
 #include <framewatch/event_t.hpp>
 
@@ -23,7 +21,9 @@
 #include "daemon/event_report/event_report_files.h"
 #include "daemon/replay/expectation_check.h"
 #include "daemon/replay/floors_output.h"
+#include "daemon/replay/history_output.h"
 #include "daemon/replay/replay_arguments.h"
+#include "daemon/replay/replay_pace.h"
 #include "daemon/replay/replay_summary.h"
 #include "drivers/base/standard_streams.h"
 #include "drivers/base/text_output.h"
@@ -44,32 +44,6 @@ bool judge(const ReplaySurvey& survey) {
     fmt::print(stderr, "framewatch replay: --salvage uses what is intact\n");
   return survey.problems().empty();
 }
-
-/// Waits until an event's time has come, at `speed` times real time. A step back or of more than
-/// kLongest_us, the night between two logs, is not waited for.
-class Pace {
- public:
-  explicit Pace(double speed) : speed_(speed) {}
-  void wait_for(std::int64_t time_us) {
-    if (speed_ <= 0) return;
-    std::int64_t step_us = 0;
-    const bool usual = started_ && !__builtin_sub_overflow(time_us, newest_us_, &step_us) &&
-                       step_us >= 0 && step_us <= kLongest_us;
-    if (usual)
-      due_ += std::chrono::duration_cast<Clock::duration>(
-          std::chrono::duration<double, std::micro>(static_cast<double>(step_us) / speed_));
-    started_ = true;
-    newest_us_ = time_us;
-    std::this_thread::sleep_until(due_);
-  }
-
- private:
-  static constexpr std::int64_t kLongest_us = 10'000'000;
-  double speed_;
-  bool started_ = false;
-  std::int64_t newest_us_ = 0;
-  Clock::time_point due_ = Clock::now();
-};
 
 std::int64_t bytes_of(const std::vector<std::string>& paths) {
   std::int64_t sum = 0;
@@ -168,10 +142,15 @@ class ReplayRun {
         refuse("replay", name.empty() ? error : fmt::format("{}: {}", name, error));
       return error.empty();
     };
-    return (a_.out.empty() ||
-            add(estimate_output(
-                    config_, {a_.out, a_.boxplot, !a_.load_state.empty(), events_before_}, error),
-                a_.out)) &&
+    const auto file = [&]() -> std::unique_ptr<EstimateOutput> {
+      if (!is_history(a_.out))
+        return estimate_output(config_,
+                               {a_.out, a_.boxplot, !a_.load_state.empty(), events_before_}, error);
+      auto history = std::make_unique<HistoryOutput>(config_);
+      if (!history->open(a_.out)) error = history->error();
+      return error.empty() ? std::move(history) : nullptr;
+    };
+    return (a_.out.empty() || add(file(), a_.out)) &&
            (!a_.lcm || add(lcm_estimate_output(config_, a_.lcm_url, error), ""));
   }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config/axis_names.h"
 #include "daemon/config/header_differences.h"
 #include "drivers/base/input_file.h"
 #include "drivers/base/standard_streams.h"
@@ -35,8 +36,10 @@ ReplaySurvey::ReplaySurvey(const Config& config, bool salvage, ReplaySpan span)
       span_(span),
       spanned_(!span.whole()),
       place_(span.from_s > 0 ? Place::before : Place::inside),
+      span_zero_us_(span.zero_us.value_or(std::numeric_limits<std::int64_t>::min())),
       intake_(
-          wanted_axes(config), [](const estimator::AccelSample&) {}, intake_settings(config)) {}
+          wanted_axes(config), [](const estimator::AccelSample&) {}, intake_settings(config)),
+      counts_(axis_names(config)) {}
 
 void ReplaySurvey::fault(std::string message) {
   if (!salvage_) ++faults_;
@@ -161,6 +164,7 @@ void ReplaySurvey::add_log(const std::string& path) {
   const std::int64_t malformed = intake().counters().malformed;
   const std::int64_t backwards = intake().backwards();
   estimation_ != nullptr ? estimation_->log_begins() : intake_.log_begins();
+  counts_.log_begins();
   const std::int64_t damaged_before = damaged_bytes_;
   drivers::LogEvent event;
   for (auto read = reader.next(event); read != drivers::LogRead::end; read = reader.next(event)) {
@@ -240,6 +244,10 @@ void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
   if (seen.newest == nullptr || seen.newest->first != event.channel)
     seen.newest = &*seen.channels.try_emplace(event.channel, 0).first;
   ++seen.newest->second;
+  if (is_of_raw_log(event.channel)) {
+    look_at_counts(event, seen);
+    return;
+  }
   if (left_out(event)) {
     seen.left_out = true;
     return;
@@ -303,7 +311,7 @@ void ReplaySurvey::finish() {
   if (declared_)
     problems_.push_back("--unit, --step and the like are for record files: a log says them itself");
   std::string names;
-  for (const std::string& name : intake().binding().unbound())
+  for (const std::string& name : any_raw_ ? counts_.missing() : intake().binding().unbound())
     names += (names.empty() ? "" : ", ") + name;
   if (!names.empty())
     notes_.push_back(

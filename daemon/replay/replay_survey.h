@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "daemon/config/config.h"
 #include "daemon/documents/record_file_arguments.h"
 #include "daemon/estimation/estimation.h"
+#include "daemon/replay/counts_intake.h"
 #include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
@@ -25,10 +27,11 @@ struct ReplayInput {
   std::vector<int> axis_of_column;  ///< of the record; -1: a column no axis is named after
 };
 
-/// Part of the input, seconds after its first sample; the rest is ignored.
+/// Part of the input, seconds after its first sample, or after a sensor time; the rest is ignored.
 struct ReplaySpan {
   double from_s = 0;
   double to_s = std::numeric_limits<double>::infinity();
+  std::optional<std::int64_t> zero_us = {};  ///< of both; empty: the first sample's
   bool whole() const { return from_s <= 0 && to_s == std::numeric_limits<double>::infinity(); }
 };
 
@@ -65,6 +68,7 @@ class ReplaySurvey {
   std::int64_t damaged_bytes() const { return damaged_bytes_; }
   /// Whether --salvage would leave out all that is wrong.
   bool salvageable() const { return faults_ > 0 && faults_ == problems_.size(); }
+  bool any_sample() const { return any_; }  ///< within the span; else the next two say nothing
   double measured_seconds() const { return static_cast<double>(last_us_ - first_us_) * 1e-6; }
   /// Sensor time of the first sample that was used, microseconds.
   std::int64_t first_us() const { return first_us_; }
@@ -78,8 +82,10 @@ class ReplaySurvey {
     std::pair<const std::string, std::int64_t>* newest = nullptr;  ///< of the last event
     std::int64_t events = 0, samples = 0, first_malformed_offset = -1, backwards_offset = -1;
     std::int64_t infinite_offset = -1, elsewhere_offset = -1, renamed_offset = -1;
-    bool left_out = false;  ///< something lies outside the span
-    std::string malformed;  ///< why the first such message is
+    std::int64_t malformed_counts = 0;  ///< messages of a raw log
+    bool left_out = false;              ///< something lies outside the span
+    bool is_raw = false;                ///< a raw log of a history
+    std::string malformed;              ///< why the first such message is
   };
 
   void add_record(ReplayInput input);
@@ -92,6 +98,8 @@ class ReplaySurvey {
   void add_log(const std::string& path);
   void add_candump(const std::string& path);
   void look_at(const drivers::LogEvent& event, LogSeen& seen);
+  void look_at_counts(const drivers::LogEvent& event, LogSeen& seen);
+  void judge_raw_log(const std::string& path, const LogSeen& seen);
   void judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed);
   void check_rate(const std::string& place, double rate_hz);
   /// False, with the problem, when it is not after the file before it.
@@ -110,6 +118,9 @@ class ReplaySurvey {
   enum class Place { before, inside, after } place_;
   std::int64_t span_zero_us_ = std::numeric_limits<std::int64_t>::min();
   drivers::AccelIntake intake_;  ///< while nobody is fed
+  CountsIntake counts_;
+  bool any_raw_ = false;
+  std::string ignored_;  ///< channels of the last raw log that no axis is named as
   Estimation* estimation_ = nullptr;
   Step step_;
   std::string last_path_;

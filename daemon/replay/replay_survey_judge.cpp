@@ -6,7 +6,6 @@
 
 #include "daemon/base/median.h"
 #include "daemon/replay/replay_survey.h"
-#include "drivers/lcm/count_block.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -27,10 +26,8 @@ std::string list(const std::map<std::string, std::int64_t>& channels) {
 }  // namespace
 
 void ReplaySurvey::judge_log(const std::string& path, const LogSeen& seen, std::int64_t malformed) {
-  if (seen.samples == 0 && seen.channels.contains(drivers::kCountsChannel)) {
-    problems_.push_back(path +
-                        ": is a raw log of a history; `framewatch history CONFIG --raw OUT.lcmlog` "
-                        "makes one to replay");
+  if (seen.is_raw) {
+    judge_raw_log(path, seen);
     return;
   }
   const std::string malformed_text = fmt::format(

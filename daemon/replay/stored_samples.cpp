@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config/axis_names.h"
+#include "daemon/replay/counts_intake.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/can/can_log.h"
 #include "drivers/lcm/lcm_log.h"
@@ -21,14 +23,18 @@ void push_record(const ReplayInput& input, const drivers::AccelIntake::Sink& sin
   }
 }
 
-std::string push_log(const std::string& path, drivers::AccelIntake& intake) {
+std::string push_log(const Config& config, const std::string& path, drivers::AccelIntake& intake,
+                     const drivers::AccelIntake::Sink& sink) {
   intake.log_begins();
+  CountsIntake counts(axis_names(config));
   drivers::LcmLogReader reader;
   drivers::LogEvent event;
   auto read = reader.open(path) ? reader.next(event) : drivers::LogRead::error;
   for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
        read = reader.next(event))
-    if (read == drivers::LogRead::event)
+    if (read == drivers::LogRead::event && is_of_raw_log(event.channel))
+      counts.message(event.channel, event.data, sink);
+    else if (read == drivers::LogRead::event)
       intake.message(event.channel, event.data.data(), event.data.size(), {}, event.timestamp_us);
   return read == drivers::LogRead::end ? "" : fmt::format("{}: {}", path, reader.error());
 }
@@ -56,7 +62,7 @@ std::string push_stored_samples(const Config& config, const ReplayInput& input,
     push_candump(config, input.path, sink);
     return {};
   }
-  if (!input.is_record) return push_log(input.path, intake);
+  if (!input.is_record) return push_log(config, input.path, intake, sink);
   push_record(input, sink);
   return {};
 }

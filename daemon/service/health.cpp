@@ -23,6 +23,7 @@ constexpr double kLoss_ratio = 1e-3;
 constexpr double kLate_ratio = 1e-2;
 constexpr std::int64_t kLittleDisk_bytes = 1'000'000'000;
 constexpr double kYoung_s = 600;
+constexpr double kHubSilent_s = 3600;
 constexpr int kCanActive = 0;
 
 double seconds_between(std::int64_t from_us, std::int64_t to_us) {
@@ -117,6 +118,22 @@ void of_history(const history_status_t& s, std::vector<std::string>& out) {
   if (!s.summary_trouble.empty()) out.push_back("summaries are not stored: " + s.summary_trouble);
 }
 
+void of_uplink(const Heard& heard, const Config& config, std::int64_t now_us,
+               std::vector<std::string>& out) {
+  if (!config.fleet) return;
+  if (!heard.uplink) {
+    out.push_back("nothing is heard of framewatch uplink: systemctl status framewatch-uplink");
+    return;
+  }
+  const uplink_status_t& s = *heard.uplink;
+  if (!s.store_trouble.empty())
+    out.push_back("what waits for the hub cannot be read or noted: " + s.store_trouble);
+  if (const double silent = seconds_between(std::max(s.acknowledged_us, s.started_us), now_us);
+      silent > kHubSilent_s)
+    out.push_back(fmt::format("the hub has acknowledged nothing for {}{}", span_text(silent),
+                              s.link_trouble.empty() ? "" : ": " + s.link_trouble));
+}
+
 void of_reception(const Heard& heard, std::vector<std::string>& out) {
   if (!heard.first_reception) return;
   if (heard.reception->datagrams_overflowed > heard.first_reception->datagrams_overflowed)
@@ -148,7 +165,7 @@ void of_can(const can_status_t& can, std::vector<std::string>& out) {
 std::vector<std::string> Heard::channels() const {
   std::vector<std::string> out;
   for (const char* name : {"SERVICE", "STATUS", "ESTIMATE", "GAP", "WATCH", "CAN", "HISTORY",
-                           "ACTIONS", "ACKNOWLEDGED", "RECEPTION"})
+                           "ACTIONS", "ACKNOWLEDGED", "RECEPTION", "UPLINK"})
     out.push_back(prefix_ + name);
   return out;
 }
@@ -183,6 +200,8 @@ void Heard::message(const std::string& channel, const void* data, std::size_t si
       if (reception && !first_reception) first_reception = reception;
       reception = std::move(found);
     }
+  } else if (name == "UPLINK") {
+    if (auto found = drivers::decoded<uplink_status_t>(bytes)) uplink = std::move(found);
   } else if (name == "ACTIONS") {
     if (auto found = drivers::decoded<action_status_t>(bytes)) actions = std::move(found);
   }
@@ -241,6 +260,7 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   if (heard.watch) of_watch(*heard.watch, config, out);
   if (heard.history) of_history(*heard.history, out);
   if (heard.actions) of_actions(*heard.actions, out);
+  of_uplink(heard, config, now_us, out);
   of_reception(heard, out);
   of_process(s, config, now_us, out);
   return out;

@@ -15,6 +15,7 @@
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/uplink_status_t.hpp>
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
@@ -43,6 +44,7 @@ class Heard {
   std::optional<action_status_t> actions;
   std::optional<reception_t> first_reception, reception;
   std::optional<acknowledged_t> acknowledged;
+  std::optional<uplink_status_t> uplink;
 
  private:
   std::string prefix_;

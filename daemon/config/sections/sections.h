@@ -2,7 +2,7 @@
 
 // The sections of a configuration, each read by a source of its own: structure.cpp, design.cpp,
 // channels.cpp, estimator.cpp, lcm.cpp, commands.cpp, watch.cpp, gap.cpp, history.cpp,
-// event_report.cpp, actions.cpp.
+// event_report.cpp, actions.cpp, fleet.cpp.
 
 #include <optional>
 #include <string>
@@ -55,5 +55,8 @@ std::optional<EventReportSettings> read_event_report(const TomlValue& document,
                                                      std::vector<TextProblem>& problems);
 std::optional<ActionSettings> read_actions(const TomlValue& document,
                                            std::vector<TextProblem>& problems);
+/// has_history: whether there is a section [history], without which nothing can wait for the hub.
+std::optional<FleetSettings> read_fleet(const TomlValue& document, bool has_history,
+                                        std::vector<TextProblem>& problems);
 
 }  // namespace framewatch::daemon

@@ -9,6 +9,7 @@
 #include "daemon/keys/channel_options.h"
 #include "daemon/keys/command_options.h"
 #include "daemon/keys/event_report_options.h"
+#include "daemon/keys/fleet_options.h"
 #include "daemon/keys/gap_options.h"
 #include "daemon/keys/history_options.h"
 #include "daemon/keys/lcm_options.h"
@@ -42,6 +43,7 @@ struct Config {
   std::optional<ActionSettings> actions;            ///< none: nobody is notified
   std::vector<estimator::Effect> effects;  ///< that the building has beyond the linear model
   std::vector<ConfigProblem> doubts;       ///< allowed, and hardly meant; the person is told
+  std::optional<FleetSettings> fleet;      ///< of framewatch uplink; none: there is no hub
 };
 
 }  // namespace framewatch::daemon

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 #include <sstream>
 #include <string>
@@ -31,7 +32,12 @@ class Usage : public testing::Test {
     }
     return out;
   }
-  std::vector<std::string> commands() { return listed("", "Subcommands:"); }
+  /// But those of framewatch-fleet.
+  std::vector<std::string> commands() {
+    std::vector<std::string> out = listed("", "Subcommands:");
+    std::erase_if(out, [](const std::string& c) { return c == "fleet" || c == "uplink"; });
+    return out;
+  }
 
   test::TemporaryDirectory directory_;
 };
@@ -81,6 +87,23 @@ TEST_F(Usage, HelpOfACommandIsItsHelp) {
   EXPECT_EQ(shell("$F help chek").err,
             "framewatch help: there is no command chek: did you mean check?\n");
   EXPECT_EQ(shell("$F help chek").status, kBadInput);
+}
+
+TEST_F(Usage, FleetIsAProgramOfItsOwn) {
+  const auto all = listed("", "Subcommands:");
+  EXPECT_EQ(std::count(all.begin(), all.end(), "fleet"), 1);
+  const ShellResult alone = shell(
+      "cp $F framewatch; for c in fleet uplink; do PATH=/usr/bin:/bin ./framewatch $c x; done");
+  EXPECT_EQ(alone.status, kBadInput);
+  EXPECT_EQ(alone.err,
+            "framewatch fleet: needs the program framewatch-fleet, which is not here (Debian "
+            "package framewatch-fleet)\n"
+            "framewatch uplink: needs the program framewatch-fleet, which is not here (Debian "
+            "package framewatch-fleet)\n");
+  // Whatever lies beside the program, or in PATH, gets the words that follow.
+  test::write_file(directory_.path("framewatch-fleet"), "#!/bin/sh\necho \"$@\"\n");
+  EXPECT_EQ(shell("chmod +x framewatch-fleet; ./framewatch fleet task m 1").out, "task m 1\n");
+  EXPECT_EQ(shell("./framewatch uplink b.toml").out, "uplink b.toml\n");
 }
 
 TEST_F(Usage, WhatStandardOutputDoesNotTakeIsAFailure) {

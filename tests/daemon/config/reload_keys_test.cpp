@@ -14,7 +14,9 @@ namespace reload_keys_test {
 const std::string kEverySection =
     std::string(test::kGoodConfig) +
     "noise_mps2_per_rthz = 0.5\n[estimator]\n[lcm]\n[watch]\n[gap]\n[history]\ndirectory = \"h\"\n"
-    "[actions]\ncommand = [\"mail\"]\nwebhook = \"http://here/\"\n";
+    "[actions]\ncommand = [\"mail\"]\nwebhook = \"http://here/\"\n"
+    "[fleet]\nbuilding = \"a\"\nhubs = [\"tls://a:1\"]\ncertificate = \"c\"\nkey = \"k\"\n"
+    "ca = \"ca\"\n";
 
 /// The settings of a section; null when the test does not know it.
 const void* settings_of(const Config& c, std::string_view section) {
@@ -25,6 +27,7 @@ const void* settings_of(const Config& c, std::string_view section) {
   if (section == "gap") return &*c.gap;
   if (section == "history") return &*c.history;
   if (section == "actions") return &*c.actions;
+  if (section == "fleet") return &*c.fleet;
   return nullptr;
 }
 
@@ -41,6 +44,8 @@ std::string with(const Option& o, const std::string& value) {
 /// Values that rules between keys ask for.
 std::string value_for(const Option& o) {
   if (o.key == "webhook") return "\"http://there/\"";
+  if (o.key == "hubs") return "[\"tls://there:1\"]";
+  if (o.key == "accept") return "[\"raw\"]";
   return test::another_value(o);
 }
 

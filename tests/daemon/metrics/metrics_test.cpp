@@ -13,6 +13,7 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/uplink_status_t.hpp>
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
@@ -196,6 +197,28 @@ TEST(Metrics, SayWhatTheDiskDoesNotTake) {
   expect_line(text, R"(framewatch_history_trouble{kind="summary"} 1)");
   expect_line(text, R"(framewatch_history_trouble{kind="raw"} 0)");
   EXPECT_EQ(text.find("history_disk_free_bytes"), std::string::npos);
+}
+
+TEST(Metrics, SayWhatWaitsForTheHub) {
+  Config config{};
+  config.fleet.emplace();
+  Metrics metrics(config);
+  expect_line(metrics.text(0, {}), "framewatch_uplink_up 0");
+  uplink_status_t uplink{};
+  uplink.connected = 1;
+  uplink.acknowledged_us = 1'700'000'000'000'000;
+  uplink.events_waiting = 3;
+  uplink.store_trouble = "disk I/O error";
+  give(metrics, "FRAMEWATCH_UPLINK", uplink, 0);
+  const std::string text = metrics.text(0, {});
+  expect_line(text, "framewatch_uplink_up 1");
+  expect_line(text, "framewatch_uplink_connected 1");
+  expect_line(text, "framewatch_uplink_acknowledged_timestamp_seconds 1700000000");
+  expect_line(text, R"(framewatch_uplink_waiting{kind="event"} 3)");
+  expect_line(text, "framewatch_uplink_trouble 1");
+  // An uplink that is gone does not look well because the daemon lives.
+  give(metrics, "FRAMEWATCH_SERVICE", service_t{}, Metrics::kFresh_us + 1);
+  expect_line(metrics.text(Metrics::kFresh_us + 1, {}), "framewatch_uplink_up 0");
 }
 
 TEST(Metrics, SayWhetherPeopleAreTold) {

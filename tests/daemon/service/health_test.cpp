@@ -86,6 +86,26 @@ TEST(Health, SaysThatTheThermometerIsSilent) {
   EXPECT_EQ(odd(h, config), "0 oddities");
 }
 
+TEST(Health, SaysThatTheHubIsSilent) {
+  Config config{};
+  Heard h = well(config);
+  EXPECT_EQ(odd(h, config), "0 oddities");
+  config.fleet.emplace();
+  EXPECT_EQ(odd(h, config),
+            "nothing is heard of framewatch uplink: systemctl status framewatch-uplink");
+  h.uplink.emplace();
+  h.uplink->started_us = kNow_us - 8 * 3600 * kSecond_us;
+  h.uplink->acknowledged_us = kNow_us - 3500 * kSecond_us;
+  EXPECT_EQ(odd(h, config), "0 oddities");
+  h.uplink->connected = 1;  // which says nothing
+  h.uplink->acknowledged_us = kNow_us - 3 * 3600 * kSecond_us;
+  EXPECT_EQ(odd(h, config), "the hub has acknowledged nothing for 3 h 0 min");
+  h.uplink->started_us = kNow_us - 60 * kSecond_us;
+  EXPECT_EQ(odd(h, config), "0 oddities");
+  h.uplink->store_trouble = "disk I/O error";
+  EXPECT_EQ(odd(h, config), "what waits for the hub cannot be read or noted: disk I/O error");
+}
+
 TEST(Health, SaysWhatIsOdd) {
   const Config config{};
   Heard h = well(config);

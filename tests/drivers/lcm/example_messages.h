@@ -17,6 +17,7 @@
 #include <framewatch/watch_t.hpp>
 
 #include "tests/drivers/lcm/example_estimates.h"
+#include "tests/drivers/lcm/example_fleet.h"
 
 // One message of every type in lcmtypes/: those of tests/golden/every_type.lcmlog, in its order.
 namespace framewatch::drivers::examples {
@@ -295,6 +296,8 @@ void for_each(Visit visit) {
   visit("FRAMEWATCH_WATCH", watch());
   visit("FRAMEWATCH_RECEPTION", reception());
   visit("FRAMEWATCH_MODEL_FIT", model_fit());
+  visit("FRAMEWATCH_SUMMARY", summary());
+  visit("FRAMEWATCH_UPLINK", uplink_status());
 }
 
 }  // namespace framewatch::drivers::examples

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "fleet/store/fleet_store.h"
+
+namespace framewatch::fleet {
+
+/// What a building may say in an hour; what is more is flooding. It is acknowledged and counted,
+/// and comes again later, when the inventory shows that it lacks.
+class FloodGate {
+ public:
+  static constexpr std::int64_t kMessages = 5000, kBytes = 50'000'000;
+
+  /// Whether a message of `bytes` is within the hour of `hub_us` (UTC).
+  bool takes(const std::string& building, std::size_t bytes, std::int64_t hub_us);
+  /// What did not pass since the last call.
+  std::vector<ReceivedFlood> take_floods();
+
+ private:
+  struct Said {
+    std::int64_t messages = 0, bytes = 0;  ///< in this hour
+    std::int64_t flood_messages = 0, flood_bytes = 0;
+  };
+  std::int64_t hour_us_ = 0;
+  std::map<std::string, Said> said_;
+  std::vector<ReceivedFlood> floods_;  ///< of an hour that is over
+};
+
+}  // namespace framewatch::fleet

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fleet/link/link.h"
+#include "fleet/store/fleet_store.h"
+#include "fleet/worker/flood_gate.h"
+
+namespace framewatch::fleet {
+
+/// Where batches go. `lasting`: the reason lies in the content, so that it would fail again.
+struct StoreOutcome {
+  std::string problem;  ///< empty: stored
+  bool lasting = false;
+};
+using StoreSink = std::function<StoreOutcome(const FleetBatch&)>;
+
+/// The two clocks of a worker.
+struct WorkerTime {
+  std::int64_t steady_us = 0;  ///< never set
+  std::int64_t hub_us = 0;     ///< UTC
+};
+
+/// Takes what buildings said from the hub's consumers, stores it, and acknowledges what is stored:
+/// a message is lost in no case, and what comes twice changes nothing. Any number of workers share
+/// the consumers.
+class Worker {
+ public:
+  static constexpr std::size_t kMostMessages = 500;     ///< of a batch
+  static constexpr std::int64_t kLongest_us = 500'000;  ///< that one is collected
+  static constexpr std::int64_t kPull_us = 5'000'000;   ///< that the hub holds a request
+  static constexpr std::int64_t kShortestPause_us = 1'000'000, kLongestPause_us = 30'000'000;
+
+  struct Counters {
+    std::int64_t stored = 0;                              ///< messages
+    std::int64_t refused = 0, unknown = 0, flooding = 0;  ///< among them
+    std::int64_t batches = 0;
+    std::string trouble;  ///< why the newest batch was not stored
+  };
+
+  Worker(Link& link, StoreSink store);
+
+  /// Does what is due. Waits for nothing but the store.
+  void step(const WorkerTime& now);
+  /// Stores and acknowledges what is collected.
+  void finish(const WorkerTime& now);
+  const Counters& counters() const { return counters_; }
+
+ private:
+  struct Consumer {
+    const char *stream, *name;
+    std::string inbox = {};
+    std::int64_t asked_us = 0;  ///< 0: not asked
+    std::size_t lacking = 0;    ///< messages of the request that have not come
+  };
+
+  void ask(Consumer& consumer, std::int64_t steady_us);
+  void take(Message message, const WorkerTime& now);
+  void store(const WorkerTime& now);
+  void store_one_by_one(const WorkerTime& now);
+  FleetBatch batch_of(const Message* begin, const Message* end, const WorkerTime& now);
+  void acknowledge(const Message& message);
+  void count(const FleetBatch& batch, std::size_t messages);
+
+  Link& link_;
+  StoreSink store_;
+  FloodGate gate_;
+  std::vector<Consumer> consumers_;
+  std::vector<Message> waiting_;
+  std::int64_t since_us_ = 0;  ///< when the oldest of them came
+  std::int64_t connections_ = 0;
+  std::int64_t pause_us_ = 0, pause_until_us_ = 0;
+  Counters counters_;
+};
+
+}  // namespace framewatch::fleet

@@ -1,0 +1,147 @@
+#include "fleet/worker/worker.h"
+
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "fleet/worker/flood_gate.h"
+#include "tests/fleet/worker/worker_fixture.h"
+
+namespace framewatch::fleet {
+namespace worker_test {
+
+constexpr std::int64_t kStep_us = 100'000;
+
+/// A database that fails when it is told to.
+struct Database {
+  std::vector<FleetBatch> batches;
+  std::string problem;
+  std::set<std::int64_t> bad_events;  ///< ids that it does not take
+
+  StoreOutcome store(const FleetBatch& batch) {
+    if (!problem.empty()) return {problem, false};
+    for (const ReceivedEvent& e : batch.events)
+      if (bad_events.contains(e.event.id)) return {"no such number", true};
+    batches.push_back(batch);
+    return {};
+  }
+  std::multiset<std::int64_t> events() const {
+    std::multiset<std::int64_t> out;
+    for (const FleetBatch& batch : batches)
+      for (const ReceivedEvent& e : batch.events) out.insert(e.event.id);
+    return out;
+  }
+};
+
+class WorkerTest : public testing::Test {
+ protected:
+  void pass(std::int64_t us) {
+    for (const std::int64_t until_us = now_.steady_us + us; now_.steady_us < until_us;) {
+      worker_.step(now_);
+      now_.steady_us += kStep_us;
+      now_.hub_us += kStep_us;
+    }
+  }
+
+  HubLink hub_;
+  Database database_;
+  Worker worker_{hub_, [this](const FleetBatch& batch) { return database_.store(batch); }};
+  WorkerTime now_{1'000'000, kHub_us};
+};
+
+TEST_F(WorkerTest, StoresAndThenAcknowledges) {
+  for (int id = 0; id < 100; ++id) hub_.hold(event_message("kobe", id));
+  hub_.hold(summary_message("osaka", 600, kHub_us));
+  pass(400'000);
+  EXPECT_EQ(hub_.held(), 101u);  // the batch is not complete yet
+  pass(1'000'000);
+  EXPECT_EQ(hub_.held(), 0u);
+  EXPECT_EQ(database_.events().size(), 100u);
+  EXPECT_EQ(worker_.counters().stored, 101);
+  EXPECT_EQ(worker_.counters().batches, 1);
+}
+
+TEST_F(WorkerTest, WhileTheDatabaseIsAwayNothingIsAcknowledgedAndNothingLost) {
+  database_.problem = "connection refused";
+  for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
+  pass(20'000'000);
+  EXPECT_EQ(hub_.held(), 10u);
+  EXPECT_EQ(worker_.counters().trouble, "connection refused");
+  const int requests = hub_.requests();
+  hub_.time_is_over();
+  pass(600'000);
+  EXPECT_LE(hub_.requests(), requests + 4);  // it does not ask while it waits
+  database_.problem.clear();
+  hub_.time_is_over();
+  pass(60'000'000);
+  EXPECT_EQ(hub_.held(), 0u);
+  EXPECT_EQ(database_.events().size(), 10u);
+  EXPECT_EQ(worker_.counters().trouble, "");
+}
+
+TEST_F(WorkerTest, OneMessageThatTheDatabaseDoesNotTakeStopsNoOther) {
+  database_.bad_events = {3};
+  for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
+  pass(2'000'000);
+  EXPECT_EQ(hub_.held(), 0u);
+  EXPECT_EQ(database_.events().size(), 9u);
+  std::string reason;
+  for (const FleetBatch& batch : database_.batches)
+    for (const ReceivedOther& other : batch.others) reason = other.reason;
+  EXPECT_EQ(reason, "the database does not take it: no such number");
+  EXPECT_EQ(worker_.counters().refused, 1);
+}
+
+TEST_F(WorkerTest, RefusedMessagesAreAcknowledgedToo) {
+  Message forged = event_message("kobe", 1);
+  forged.subject = "fw.up.osaka.event";
+  hub_.hold(forged);
+  pass(2'000'000);
+  EXPECT_EQ(hub_.held(), 0u);
+  EXPECT_EQ(worker_.counters().refused, 1);
+  EXPECT_TRUE(database_.events().empty());
+}
+
+TEST_F(WorkerTest, AsksAgainAfterANewConnection) {
+  pass(500'000);
+  const int requests = hub_.requests();
+  pass(500'000);
+  EXPECT_EQ(hub_.requests(), requests);
+  hub_.cut();
+  pass(200'000);
+  EXPECT_EQ(hub_.requests(), requests + 4);
+}
+
+TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
+  const auto more = FloodGate::kMessages + 20;
+  for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
+  hub_.hold(event_message("osaka", 1));
+  pass(30'000'000);
+  EXPECT_EQ(hub_.held(), 0u);
+  EXPECT_EQ(database_.events().size(), static_cast<std::size_t>(FloodGate::kMessages) + 1);
+  std::int64_t floods = 0;
+  for (const FleetBatch& batch : database_.batches)
+    for (const ReceivedFlood& flood : batch.floods) {
+      EXPECT_EQ(flood.building, "kobe");
+      floods += flood.messages;
+    }
+  EXPECT_EQ(floods, 20);
+}
+
+TEST(FloodGateTest, EveryHourBeginsAnew) {
+  FloodGate gate;
+  for (std::int64_t i = 0; i < FloodGate::kMessages; ++i) EXPECT_TRUE(gate.takes("a", 1, kHub_us));
+  EXPECT_FALSE(gate.takes("a", 7, kHub_us));
+  EXPECT_TRUE(gate.takes("b", 1, kHub_us));
+  EXPECT_FALSE(gate.takes("c", FloodGate::kBytes + 1, kHub_us));
+  EXPECT_TRUE(gate.takes("a", 1, kHub_us + 3'600'000'000));
+  const auto floods = gate.take_floods();
+  ASSERT_EQ(floods.size(), 2u);  // of the hour that is over
+  EXPECT_EQ(floods[0].bytes, 7);
+  EXPECT_EQ(floods[0].hour_us, kHub_us);
+  EXPECT_TRUE(gate.take_floods().empty());
+}
+
+}  // namespace worker_test
+}  // namespace framewatch::fleet
