@@ -1,5 +1,6 @@
 #include "daemon/base/child_process.h"
 
+#include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,7 +10,8 @@
 namespace framewatch::daemon {
 
 std::optional<ChildProcess> ChildProcess::start(std::vector<std::string> arguments,
-                                                std::string& error) {
+                                                std::string& error, const std::string& program,
+                                                const std::string& errors) {
   std::string name = "framewatch";
   std::vector<char*> pointers{name.data()};
   for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -17,9 +19,12 @@ std::optional<ChildProcess> ChildProcess::start(std::vector<std::string> argumen
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
+  if (!errors.empty())
+    ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors.c_str(),
+                                       O_WRONLY | O_CREAT | O_TRUNC, 0600);
   pid_t pid = 0;
   const int failure =
-      ::posix_spawn(&pid, "/proc/self/exe", &actions, nullptr, pointers.data(), environ);
+      ::posix_spawn(&pid, program.c_str(), &actions, nullptr, pointers.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   if (failure == 0) return ChildProcess(pid);
   error = std::strerror(failure);

@@ -6,8 +6,20 @@ class CommandList;
 
 namespace framewatch::fleet {
 
+// Commands of framewatch-fleet: each add_<command> declares one with its options.
+
 // archive_commands.cpp: archives identified anew.
 void add_manifest(daemon::CommandList& commands);
 void add_task(daemon::CommandList& commands);
+
+// uplink_commands.cpp, hub_commands.cpp: of a building.
+void add_uplink(daemon::CommandList& commands);
+void add_request(daemon::CommandList& commands);
+
+// hub_commands.cpp: of the hub.
+void add_setup(daemon::CommandList& commands);
+void add_authority(daemon::CommandList& commands);
+void add_enroll(daemon::CommandList& commands);
+void add_revoke(daemon::CommandList& commands);
 
 }  // namespace framewatch::fleet

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <framewatch/acknowledge_t.hpp>
+
+#include "daemon/base/log.h"
+#include "daemon/keys/fleet_options.h"
+#include "fleet/message/message.h"
+#include "fleet/uplink/sent_store.h"
+
+namespace framewatch::fleet {
+
+/// Obeys the commands of the hub that [fleet] accept names, once each, and keeps who asked for what
+/// in the journal. An answer is JSON: {"ok": true} or {"ok": false, "why": "..."}.
+class CommandDesk {
+ public:
+  static constexpr std::size_t kMostBytes = 65536, kMostRaw = 8;
+  static constexpr std::int64_t kMostRaw_bytes = 256'000'000;
+  /// Empty: the daemon has obeyed; else why not.
+  using Acknowledge = std::function<std::string(const acknowledge_t& request)>;
+
+  /// All must outlive this.
+  CommandDesk(const daemon::FleetSettings& settings, SentStore& store, Acknowledge acknowledge)
+      : settings_(settings), store_(store), acknowledge_(std::move(acknowledge)) {}
+
+  /// What to answer; obeys. `verb`: of the subject. host_us: this machine's clock.
+  std::string obey(std::string_view verb, const Message& command, std::int64_t host_us);
+
+  /// Whether something else is to be sent than before; once.
+  bool changed_what_waits() { return std::exchange(changed_, false); }
+  std::int64_t obeyed() const { return obeyed_; }
+  std::int64_t refused() const { return refused_; }
+
+ private:
+  std::string check(std::string_view verb, const Message& command, std::int64_t host_us) const;
+  std::string carry_out(std::string_view verb, const Message& command);
+  std::string acknowledge(const Message& command);
+  std::string raw(const Message& command);
+
+  const daemon::FleetSettings& settings_;
+  SentStore& store_;
+  Acknowledge acknowledge_;
+  daemon::RateLimitedLog warnings_{daemon::LogLevel::warning};
+  bool changed_ = false;
+  std::int64_t obeyed_ = 0, refused_ = 0;
+};
+
+}  // namespace framewatch::fleet

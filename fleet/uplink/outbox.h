@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <framewatch/event_t.hpp>
+
+#include "daemon/documents/sqlite_file.h"
+#include "fleet/message/key.h"
+#include "fleet/uplink/sent_store.h"
+
+namespace framewatch::fleet {
+
+/// A closed period of the history, and how many windows it has.
+struct ClosedPeriod {
+  SummaryKey key;
+  std::int64_t windows = 0;
+};
+
+/// What the history holds and the hub has not acknowledged: a set difference, with no cursor in
+/// time that a clock could jump over.
+struct Waiting {
+  std::vector<event_t> events;        ///< the oldest, by their time
+  std::vector<ClosedPeriod> periods;  ///< the newest first, of one time the longest first
+  std::int64_t event_count = 0, period_count = 0;  ///< of all that wait
+};
+
+/// Reads the history that `framewatch run` writes, and never writes it.
+class Outbox {
+ public:
+  static constexpr std::size_t kMostEvents = 1024, kMostPeriods = 1024;
+
+  /// directory: of the history. summary_s: its periods, ascending; those of the first go to the hub
+  /// on request and around events, if there are others.
+  Outbox(std::string directory, std::vector<std::int64_t> summary_s)
+      : directory_(std::move(directory)), summary_s_(std::move(summary_s)) {}
+
+  /// Whether the history has changed since the last look(), or may have.
+  bool has_news();
+  /// Empty, or why it cannot be read; then `out` is unchanged.
+  std::string look(SentStore& sent, Waiting& out);
+  /// Sensor time that the history's newest window ended; empty while there is none.
+  std::optional<std::int64_t> newest_us() const { return newest_us_; }
+  daemon::SqliteFile& history() { return file_; }
+
+ private:
+  std::string open();
+  void look_for_events(SentStore& sent, Waiting& out);
+  void look_for_periods(SentStore& sent, std::int64_t period_s, const TimeRange& time,
+                        Waiting& out);
+  std::vector<TimeRange> wanted_minutes(SentStore& sent);
+
+  std::string directory_;
+  std::vector<std::int64_t> summary_s_;
+  daemon::SqliteFile file_;
+  std::uint64_t device_ = 0, number_ = 0;  ///< of the file that is open
+  std::int64_t version_ = -1;
+  std::optional<std::int64_t> newest_us_;
+};
+
+/// Ranges in order of time, those that touch made one.
+std::vector<TimeRange> united(std::vector<TimeRange> ranges);
+
+}  // namespace framewatch::fleet

@@ -1,0 +1,137 @@
+#include "fleet/uplink/raw_sender.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "fleet/message/subject.h"
+
+namespace framewatch::fleet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kLookForRequests_us = 1'000'000;
+constexpr const char* kEnding = ".mseed";
+
+std::int64_t size_of(const std::string& path) {
+  std::error_code none;
+  const auto size = fs::file_size(path, none);
+  return none ? -1 : static_cast<std::int64_t>(size);
+}
+
+}  // namespace
+
+RawSender::RawSender(std::string directory, std::string building, double kbit_s, SentStore& store,
+                     std::unique_ptr<RawExporter> exporter)
+    : directory_(std::move(directory)),
+      building_(std::move(building)),
+      bytes_us_(kbit_s * 1e3 / 8 / 1e6),
+      store_(store),
+      exporter_(std::move(exporter)) {}
+
+/// A file that is whole from before goes on; one that is made anew is sent from its beginning.
+void RawSender::begin() {
+  const std::vector<RawRequest> all = store_.raw_requests();
+  if (all.empty()) return;
+  request_ = all.front();
+  path_ = (fs::path(directory_) / (request_.request + kEnding)).string();
+  if (size_of(path_) > 0) return begin_sending();
+  std::error_code none;
+  fs::create_directories(directory_, none);
+  if (!store_.raw_is_done(request_.request) || !store_.add_raw(request_)) return;
+  if (const std::string why = exporter_->begin(request_, path_); !why.empty()) return finish(why);
+  state_ = State::exporting;
+}
+
+void RawSender::begin_sending() {
+  const std::int64_t size = size_of(path_);
+  if (size <= 0) return finish("the file of raw samples is gone");
+  if (size > request_.most_bytes)
+    return finish(fmt::format("it would be {} bytes, more than the {} that were allowed", size,
+                              request_.most_bytes));
+  done_.assign(static_cast<std::size_t>((size + kPiece_bytes - 1) / kPiece_bytes), false);
+  for (const std::int64_t piece : store_.pieces_acknowledged(request_.request))
+    if (piece >= 0 && piece < static_cast<std::int64_t>(done_.size()))
+      done_[static_cast<std::size_t>(piece)] = true;
+  state_ = State::sending;
+  if (std::find(done_.begin(), done_.end(), false) == done_.end()) finish("");
+}
+
+/// outcome: empty: every piece has arrived.
+void RawSender::finish(const std::string& outcome) {
+  trouble_ = outcome;
+  (void)store_.conclude(request_.request,
+                        outcome.empty() ? fmt::format("done: {} pieces", done_.size()) : outcome);
+  if (!store_.raw_is_done(request_.request)) return;
+  std::error_code none;
+  fs::remove(path_, none);
+  done_.clear();
+  state_ = State::idle;
+}
+
+std::optional<Outgoing> RawSender::piece(std::int64_t number, const std::string& config_sha256) {
+  std::ifstream file(path_, std::ios::binary);
+  Bytes bytes(static_cast<std::size_t>(kPiece_bytes));
+  file.seekg(number * kPiece_bytes);
+  file.read(reinterpret_cast<char*>(bytes.data()), kPiece_bytes);
+  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+  if (bytes.empty()) {
+    finish("the file of raw samples cannot be read");
+    return std::nullopt;
+  }
+  Outgoing out;
+  out.message = packed(up_subject(building_, "raw." + request_.request),
+                       raw_key(building_, request_.request, number), "mseed", std::move(bytes),
+                       config_sha256);
+  out.message.headers[header::kPiece] = fmt::format("{}", number);
+  out.message.headers[header::kPieces] = fmt::format("{}", done_.size());
+  out.message.headers[header::kFile] = fs::path(path_).filename().string();
+  out.request = request_.request;
+  out.piece = number;
+  return out;
+}
+
+std::optional<Outgoing> RawSender::next(std::int64_t steady_us, const std::string& config_sha256,
+                                        const SendWindow& window) {
+  if (state_ == State::idle && steady_us >= look_us_) {
+    look_us_ = steady_us + kLookForRequests_us;
+    begin();
+  }
+  if (state_ == State::exporting) {
+    const std::optional<std::string> outcome = exporter_->ended();
+    if (outcome && outcome->empty())
+      begin_sending();
+    else if (outcome)
+      finish(*outcome);
+  }
+  if (state_ != State::sending || window.pieces() >= kUnderWay || steady_us < next_us_)
+    return std::nullopt;
+  for (std::size_t i = 0; i < done_.size(); ++i) {
+    const auto number = static_cast<std::int64_t>(i);
+    if (done_[i] || window.has(raw_key(building_, request_.request, number))) continue;
+    auto out = piece(number, config_sha256);
+    if (out)
+      next_us_ = steady_us + std::llround(static_cast<double>(out->message.size()) / bytes_us_);
+    return out;
+  }
+  return std::nullopt;
+}
+
+void RawSender::acknowledged(const Outgoing& piece) {
+  if (!store_.piece_acknowledged(piece.request, piece.piece)) return;
+  if (state_ != State::sending || piece.request != request_.request) return;
+  if (const auto at = static_cast<std::size_t>(piece.piece); at < done_.size()) done_[at] = true;
+  if (std::find(done_.begin(), done_.end(), false) == done_.end()) finish("");
+}
+
+std::int64_t RawSender::waiting() const {
+  return std::count(done_.begin(), done_.end(), false);
+}
+
+}  // namespace framewatch::fleet

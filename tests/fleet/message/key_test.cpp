@@ -1,0 +1,38 @@
+#include "fleet/message/key.h"
+
+#include <gtest/gtest.h>
+
+namespace framewatch::fleet {
+namespace key_test {
+
+TEST(Key, IsMadeOfContent) {
+  event_t e{};
+  e.kind = "stiffness_change";
+  e.id = 7;
+  e.time_us = 1'700'000'000'000'001;
+  e.state = 2;
+  EXPECT_EQ(message_key("kobe-03", event_key(e)),
+            "kobe-03/event/stiffness_change/7/1700000000000001/2");
+  EXPECT_EQ(message_key("kobe-03", SummaryKey{600, -600'000'000}),
+            "kobe-03/summary/600/-600000000");
+  EXPECT_EQ(raw_key("kobe-03", "r17", 3), "kobe-03/raw/r17/3");
+}
+
+TEST(Key, AKindThatIsNoWordMakesNoOtherKey) {
+  const std::string key = message_key("a", EventKey{"x/1\r\nNats-Msg-Id: y%", 2, 3, 0});
+  EXPECT_EQ(key, "a/event/x%2F1%0D%0ANats-Msg-Id:%20y%25/2/3/0");
+  EXPECT_NE(message_key("a", EventKey{"x", 1, 2, 0}), message_key("a", EventKey{"x/1", 2, 0, 0}));
+}
+
+TEST(Key, PartsSayWhoseItIs) {
+  const auto parts = key_parts("kobe-03/summary/600/0");
+  ASSERT_TRUE(parts);
+  EXPECT_EQ(parts->building, "kobe-03");
+  EXPECT_EQ(parts->kind, "summary");
+  for (const char* bad :
+       {"", "kobe", "kobe/", "/event/x", "kobe//x", "kobe/event", "kobe/event/", "Kobe/event/x"})
+    EXPECT_FALSE(key_parts(bad)) << bad;
+}
+
+}  // namespace key_test
+}  // namespace framewatch::fleet

@@ -1,0 +1,119 @@
+#include "fleet/uplink/send_window.h"
+
+#include <gtest/gtest.h>
+
+namespace framewatch::fleet {
+namespace send_window_test {
+
+constexpr std::int64_t kSecond_us = 1'000'000;
+
+Outgoing numbered(int number, std::size_t size = 10) {
+  Outgoing out;
+  out.message.subject = "fw.up.a.event";
+  out.message.headers[header::kKey] = "a/event/" + std::to_string(number);
+  out.message.bytes.assign(size, 0);
+  out.event = EventKey{"x", number, 0, 1};
+  return out;
+}
+
+TEST(SendWindow, WhatIsNotAcknowledgedGoesOutAgainAfterTwoSeconds) {
+  SendWindow w;
+  w.add(numbered(1), 0);
+  EXPECT_EQ(w.due(0), (std::vector<std::int64_t>{1}));
+  EXPECT_TRUE(w.due(SendWindow::kAgain_us - 1).empty());
+  w.add(numbered(2), SendWindow::kSilent_us);
+  EXPECT_EQ(w.due(SendWindow::kSilent_us), (std::vector<std::int64_t>{2}));
+  ASSERT_TRUE(w.acknowledged(2, SendWindow::kSilent_us + 1));
+  EXPECT_EQ(w.due(SendWindow::kAgain_us), (std::vector<std::int64_t>{1}));
+  EXPECT_EQ(w.sent_again(), 1);
+}
+
+TEST(SendWindow, WhileNothingIsAcknowledgedOnlyTheOldestGoesOutOnceASecond) {
+  SendWindow w;
+  for (int i = 1; i <= 100; ++i) w.add(numbered(i), 0);
+  EXPECT_EQ(w.due(0).size(), 100U);
+  std::size_t sent = 0;
+  for (std::int64_t t = SendWindow::kAgain_us; t < 62 * kSecond_us; t += 10'000) {
+    EXPECT_FALSE(w.takes(t));
+    for (const std::int64_t number : w.due(t)) {
+      EXPECT_EQ(number, 1);
+      ++sent;
+    }
+  }
+  EXPECT_EQ(sent, 60U);
+  ASSERT_TRUE(w.acknowledged(1, 62 * kSecond_us));
+  EXPECT_TRUE(w.takes(62 * kSecond_us));
+  EXPECT_EQ(w.due(62 * kSecond_us).size(), 99U);
+}
+
+TEST(SendWindow, AnEarthquakeAfterHoursWithoutANewsGoesOutAtOnce) {
+  SendWindow w;
+  w.add(numbered(1), 0);
+  (void)w.due(0);
+  ASSERT_TRUE(w.acknowledged(1, 1000));
+  for (int i = 2; i <= 50; ++i) {
+    ASSERT_TRUE(w.takes(7200 * kSecond_us));
+    w.add(numbered(i), 7200 * kSecond_us);
+  }
+  EXPECT_EQ(w.due(7200 * kSecond_us).size(), 49U);
+}
+
+TEST(SendWindow, IsBoundedInMessagesAndBytes) {
+  SendWindow w;
+  int n = 0;
+  while (w.takes(0)) w.add(numbered(++n), 0);
+  EXPECT_EQ(w.messages(), SendWindow::kMostMessages);
+  SendWindow heavy;
+  while (heavy.takes(0)) heavy.add(numbered(++n, 1 << 20), 0);
+  EXPECT_LE(heavy.messages(), 5U);
+}
+
+TEST(SendWindow, AMessageThatAloneIsNotAcknowledgedGoesOutMoreAndMoreSeldom) {
+  SendWindow w;
+  w.add(numbered(1), 0);
+  (void)w.due(0);
+  std::size_t sent = 0;
+  int n = 1;
+  for (std::int64_t t = kSecond_us; t <= 600 * kSecond_us; t += kSecond_us) {
+    w.add(numbered(++n), t);
+    for (const std::int64_t number : w.due(t)) sent += number == 1 ? 1 : 0;
+    ASSERT_TRUE(w.acknowledged(n, t));
+  }
+  EXPECT_GE(sent, 10U);  // once a minute
+  EXPECT_LE(sent, 20U);
+}
+
+TEST(SendWindow, ARefusedMessageWaitsAndHoldsUpNobody) {
+  SendWindow w;
+  w.add(numbered(1), 0);
+  w.add(numbered(2), 0);
+  (void)w.due(0);
+  ASSERT_TRUE(w.refused(1, 1000, 60 * kSecond_us));
+  EXPECT_EQ(w.due(5 * kSecond_us), (std::vector<std::int64_t>{2}));
+  ASSERT_TRUE(w.acknowledged(2, 5 * kSecond_us));
+  EXPECT_TRUE(w.due(6 * kSecond_us).empty());
+  EXPECT_EQ(w.due(61 * kSecond_us), (std::vector<std::int64_t>{1}));
+}
+
+TEST(SendWindow, AnAnswerThatComesTwiceOrLateSettlesOnce) {
+  SendWindow w;
+  w.add(numbered(1), 0);
+  EXPECT_TRUE(w.has("a/event/1"));
+  EXPECT_TRUE(w.acknowledged(1, 1));
+  EXPECT_FALSE(w.has("a/event/1"));
+  EXPECT_FALSE(w.acknowledged(1, 2));
+  EXPECT_FALSE(w.acknowledged(99, 3));
+  EXPECT_FALSE(w.refused(1, 4, 1));
+  EXPECT_EQ(w.bytes(), 0U);
+}
+
+TEST(SendWindow, ANewConnectionGetsEverythingThatTheOldOneHad) {
+  SendWindow w;
+  for (int i = 1; i <= 3; ++i) w.add(numbered(i), 0);
+  (void)w.due(0);
+  w.reconnected(kSecond_us);
+  EXPECT_EQ(w.due(kSecond_us).size(), 3U);
+}
+
+}  // namespace send_window_test
+}  // namespace framewatch::fleet

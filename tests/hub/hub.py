@@ -1,0 +1,220 @@
+"""Three nats-servers of this test's own, as deploy/fleet/ describes them, and buildings with a history at them."""
+import os
+import re
+import shutil
+import signal
+import socket
+import sqlite3
+import subprocess
+import time
+import urllib.request
+
+
+def free_ports(count):
+    held = [socket.socket() for _ in range(count)]
+    for one in held:
+        one.bind(("127.0.0.1", 0))
+    ports = [one.getsockname()[1] for one in held]
+    for one in held:
+        one.close()
+    return ports
+
+
+class Process:
+    """A process that this test began, and ends."""
+
+    every = []
+
+    def __init__(self, arguments, log, **more):
+        self.log = open(log, "ab")
+        self.child = subprocess.Popen(arguments, stdout=self.log, stderr=self.log, stdin=subprocess.DEVNULL, **more)
+        Process.every.append(self)
+
+    def tell(self, number):
+        if self.child.poll() is None:
+            self.child.send_signal(number)
+
+    def end(self, number=signal.SIGTERM):
+        self.tell(signal.SIGCONT)
+        self.tell(number)
+        try:
+            self.child.wait(30)
+        except subprocess.TimeoutExpired:
+            self.child.kill()
+            self.child.wait()
+        self.log.close()
+        Process.every.remove(self)
+        return self.child.returncode
+
+    @classmethod
+    def end_all(cls):
+        for one in list(cls.every):
+            one.end(signal.SIGKILL)
+
+
+class Hub:
+    def __init__(self, root, program, folder):
+        self.root, self.program, self.folder = root, program, folder
+        self.certificates = f"{folder}/hub"
+        os.makedirs(self.certificates)
+        ports = free_ports(9)
+        self.client, self.cluster, self.http = ports[0:3], ports[3:6], ports[6:9]
+        servers = [f"--server=hub{i}=localhost,127.0.0.1" for i in (1, 2, 3)]
+        self.fleet("authority", *servers)
+        routes = ", ".join(f'"nats://127.0.0.1:{port}"' for port in self.cluster)
+        for i in range(3):
+            with open(f"{root}/deploy/fleet/hub{i + 1}.conf") as file:
+                text = file.read()
+            for old, new in ((r'"0\.0\.0\.0:4222"', f'"127.0.0.1:{self.client[i]}"'),
+                             (r'"127\.0\.0\.1:8222"', f'"127.0.0.1:{self.http[i]}"'),
+                             (r'"10\.0\.0\.\d:6222"', f'"127.0.0.1:{self.cluster[i]}"'),
+                             (r'routes: \[.*\]', f"routes: [ {routes} ]"),
+                             (r'"/var/lib/nats"', f'"{folder}/store{i + 1}"'),
+                             (r'"/run/nats-server/hub', f'"{self.certificates}/hub'),
+                             (r'"/etc/framewatch-hub/', f'"{self.certificates}/')):
+                text, count = re.subn(old, new, text)
+                assert count in (1, 6), (old, count)
+            with open(f"{self.certificates}/hub{i + 1}.conf", "w") as file:
+                file.write(text)
+        shutil.copy(f"{root}/deploy/fleet/accounts.conf", self.certificates)
+        self.servers = [None, None, None]
+
+    def fleet(self, command, *arguments, good=(0,)):
+        done = subprocess.run([self.program, "fleet", command, "--dir", self.certificates, *arguments],
+                              capture_output=True, text=True, timeout=120)
+        if done.returncode not in good:
+            raise RuntimeError(f"fleet {command}: {done.stdout}{done.stderr}")
+        return done
+
+    def urls(self):
+        return [f"tls://localhost:{port}" for port in self.client]
+
+    def start(self, *numbers):
+        for i in numbers or (0, 1, 2):
+            self.servers[i] = Process(["nats-server", "-c", f"{self.certificates}/hub{i + 1}.conf"],
+                                      f"{self.folder}/hub{i + 1}.log")
+
+    def kill(self, *numbers):
+        for i in numbers or (0, 1, 2):
+            self.servers[i].end(signal.SIGKILL)
+
+    def wait(self, timeout_s=90, patience_s=15):
+        """Until every server is well. Debian's 2.9.10 at times says for ever of a consumer that nobody uses that it is
+        not current; after some seconds it is enough that JetStream runs."""
+        begin = time.monotonic()
+        for i in range(3):
+            while True:
+                waited_s = time.monotonic() - begin
+                only = "?js-server-only=true" if waited_s > patience_s else ""
+                try:
+                    with urllib.request.urlopen(f"http://127.0.0.1:{self.http[i]}/healthz{only}", timeout=5):
+                        break
+                except OSError:
+                    if waited_s > timeout_s:
+                        raise RuntimeError(f"hub{i + 1} is not well") from None
+                    time.sleep(0.2)
+
+    def pid_files(self):
+        return [argument for i in (1, 2, 3) for argument in ("--reload", f"{self.certificates}/hub{i}.pid")]
+
+    def enroll(self, name):
+        key, request = f"{self.certificates}/{name}.key", f"{self.certificates}/{name}.csr"
+        subprocess.run([self.program, "fleet", "request", name, "--key", key, "--out", request], check=True,
+                       stdout=subprocess.DEVNULL)
+        running = [] if self.servers[0] is None else self.pid_files()
+        self.fleet("enroll", name, request, "--out", f"{self.certificates}/{name}.pem", *running)
+
+    def copy_stores(self):
+        """As a disk is some seconds before its power fails."""
+        for i in (1, 2, 3):
+            shutil.rmtree(f"{self.folder}/old{i}", ignore_errors=True)
+            subprocess.run(["cp", "-r", f"{self.folder}/store{i}", f"{self.folder}/old{i}"], check=False,
+                           stderr=subprocess.DEVNULL)
+
+    def put_back_stores(self):
+        for i in (1, 2, 3):
+            shutil.rmtree(f"{self.folder}/store{i}")
+            os.rename(f"{self.folder}/old{i}", f"{self.folder}/store{i}")
+
+
+class Building:
+    """A building whose history this test writes: events, as many as it wants."""
+
+    def __init__(self, hub, name, ports=None, history=True):
+        self.hub, self.name = hub, name
+        self.folder = f"{hub.folder}/{name}"
+        os.makedirs(f"{self.folder}/history", exist_ok=True)
+        self.config = f"{self.folder}/building.toml"
+        (lcm,) = free_ports(1)
+        self.url = f"udpm://239.255.76.67:{lcm}?ttl=0"
+        hubs = ", ".join(f'"tls://localhost:{port}"' for port in (ports or hub.client))
+        with open(f"{hub.root}/configs/table_two_story.toml") as file:
+            text = file.read()
+        assert "\n[lcm]" not in text
+        with open(self.config, "w") as file:
+            file.write(f'{text}\n[lcm]\nurl = "{self.url}"\n[commands]\ndirectory = "."\n[history]\n'
+                       f'directory = "history"\n[watch]\nlearn_s = 5\n[fleet]\nbuilding = "{name}"\nhubs = [{hubs}]\n'
+                       f'certificate = "{hub.certificates}/{name}.pem"\nkey = "{hub.certificates}/{name}.key"\n'
+                       f'ca = "{hub.certificates}/ca.pem"\naccept = ["acknowledge", "raw", "resend", "minutes"]\n')
+        self.uplink = None
+        self.events = 0
+        if history:
+            self.database = self.make_history()
+
+    def make_history(self):
+        """The tables are `framewatch run`'s: it makes them, and ends."""
+        child = subprocess.Popen([self.hub.program, "run", self.config, "--quiet"], stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL)
+        path = f"{self.folder}/history/history.sqlite"
+        for _ in range(300):
+            time.sleep(0.1)
+            try:
+                if sqlite3.connect(path).execute("PRAGMA user_version").fetchone()[0] > 0:
+                    break
+            except sqlite3.Error:
+                pass
+        child.terminate()
+        child.wait()
+        return sqlite3.connect(path, isolation_level=None)
+
+    def add_events(self, count):
+        first = self.events
+        rows = [("gap", i, 1_700_000_000_000_000 + i, 1, 0, 0, "", 1.0, 0.1, "", "message " * 20, "")
+                for i in range(first, first + count)]
+        self.database.execute("BEGIN")
+        self.database.executemany("INSERT INTO event VALUES (?,?,?,?,?,?,?,?,?,?,?,?)", rows)
+        self.database.execute("COMMIT")
+        self.events += count
+
+    def start(self):
+        self.uplink = Process([self.hub.program, "uplink", self.config, "--quiet"], f"{self.folder}/uplink.log")
+
+    def stop(self, number=signal.SIGTERM):
+        self.uplink.end(number)
+        self.uplink = None
+
+    def keys(self):
+        rows = self.read("history.sqlite", "SELECT kind, id, time_us, state FROM event")
+        return {f"{self.name}/event/{k}/{i}/{t}/{s}" for k, i, t, s in rows}
+
+    def read(self, file, query):
+        database = sqlite3.connect(f"file:{self.folder}/history/{file}?mode=ro", uri=True, timeout=30)
+        try:
+            return database.execute(query).fetchall()
+        finally:
+            database.close()
+
+    def acknowledged(self):
+        try:
+            return self.read("uplink.sqlite", "SELECT count(*) FROM sent_event")[0][0]
+        except sqlite3.Error:
+            return 0
+
+    def until_acknowledged(self, timeout_s=120):
+        """Seconds until everything is; raises when it is not in time."""
+        begin = time.monotonic()
+        while self.acknowledged() < len(self.keys()):
+            if time.monotonic() - begin > timeout_s:
+                raise RuntimeError(f"{self.name}: {self.acknowledged()} of {len(self.keys())} after {timeout_s} s")
+            time.sleep(0.1)
+        return time.monotonic() - begin

@@ -1,0 +1,90 @@
+"""What the certificate of a building may do at a real server, and what not."""
+import json
+import subprocess
+import time
+
+from nats_client import Client, Denied
+
+DENIED = "Permissions Violation"
+
+
+def denied(client, act):
+    client.errors.clear()
+    act(client)
+    client.round_trip()
+    return any(DENIED in error for error in client.errors)
+
+
+def check(hub, one):
+    """Problems, in words. `one` is a building with its uplink running; b1 and b2 are enrolled."""
+    problems = []
+
+    def must(good, what):
+        print(f"  {'yes' if good else 'NO '}  {what}")
+        if not good:
+            problems.append(what)
+
+    thief = Client(hub.client[0], hub.certificates, "b1")
+    must(not denied(thief, lambda c: c.publish("fw.up.b1.event", b"x", {"Nats-Msg-Id": "b1/event/x/1/1/1"})),
+         "a building writes its own")
+    for what, act in (
+            ("writing another's event", lambda c: c.publish("fw.up.b2.event", b"x")),
+            ("writing what the page says", lambda c: c.publish("framewatch.b1", b"x")),
+            ("commanding another", lambda c: c.publish("fw.down.b2.acknowledge", b"x")),
+            ("commanding all", lambda c: c.publish("fw.down.all.minutes", b"x")),
+            ("asking for a stream's content", lambda c: c.publish("$JS.API.STREAM.MSG.GET.FW_EVENT", b'{"seq":1}')),
+            ("deleting a stream", lambda c: c.publish("$JS.API.STREAM.DELETE.FW_EVENT", b"")),
+            ("reading another's events", lambda c: c.subscribe("fw.up.b2.>")),
+            ("reading everything", lambda c: c.subscribe(">")),
+            ("reading another's answers", lambda c: c.subscribe("_INBOX_b2.>")),
+            ("hearing another's commands", lambda c: c.subscribe("fw.down.b2.>"))):
+        must(denied(thief, act), f"{what} is refused")
+    worker = Client(hub.client[0], hub.certificates, "worker")
+    must(denied(worker, lambda c: c.publish("fw.down.b1.raw", b"x")), "the worker commands nothing but resend")
+
+    page = Client(hub.client[1], hub.certificates, "page")
+
+    def command(building, verb, text, request, until_s=60):
+        return page.request(f"fw.down.{building}.{verb}", text,
+                            {"Fw-Who": "Ada", "Fw-Request": request, "Fw-Until": int(time.time()) + until_s})
+
+    must(command(one.name, "ping", b"", "p1") == b'{"ok":true}', "the page's ping is answered")
+    begin = time.monotonic()
+    gone = command("b99", "ping", b"", "p2")
+    must(not gone and time.monotonic() - begin < 2, "of a building that is away the page hears so at once")
+    stretch = json.dumps({"from_us": 0, "to_us": 1}).encode()
+    must(command(one.name, "resend", stretch, "r1") == b'{"ok":true}', "the page's resend is obeyed")
+    must(b'"ok":false' in (command(one.name, "resend", stretch, "r2", -5) or b""), "a command that is late is refused")
+    must(b'"ok":false' in (command(one.name, "raw", stretch, "../x") or b""), "a request that is no name is refused")
+    must(b'"ok":false' in (command(one.name, "reboot", b"", "r4") or b""), "a verb that nobody knows is refused")
+    return problems
+
+
+def revoke(hub, one):
+    """Seconds until a revoked building is out, and problems."""
+    held = Client(hub.client[0], hub.certificates, one.name)
+    begin = time.monotonic()
+    hub.fleet("revoke", one.name, *hub.pid_files())
+    try:
+        held.until(lambda: False, 30)
+        return 30, ["a revoked building stays connected"]
+    except Denied:
+        seconds = time.monotonic() - begin
+    try:
+        Client(hub.client[0], hub.certificates, one.name)
+        return seconds, ["a revoked building is let in"]
+    except (Denied, OSError):
+        return seconds, []
+
+
+def strangers(hub):
+    """A certificate of another authority, and a client without any."""
+    other = f"{hub.folder}/other"
+    subprocess.run(["mkdir", "-p", other], check=True)
+    subprocess.run([hub.program, "fleet", "authority", "--dir", other], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cp", f"{hub.certificates}/ca.pem", other], check=True)
+    try:
+        Client(hub.client[0], other, "operator")
+        return ["a certificate of another authority is let in"]
+    except (Denied, OSError):
+        return []
