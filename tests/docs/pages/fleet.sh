@@ -1,0 +1,15 @@
+# A hub's certificates and one building, in an empty folder.
+before() {
+  command -v openssl >/dev/null || lacks "no openssl"
+  framewatch fleet help >/dev/null || lacks "framewatch-fleet is not built (deploy/install-deps --with fleet)"
+}
+expected='
+^hub: the authority, 3 servers, operator, worker, page and admin; 0 buildings
+^ca.key$
+^hub3.pem$
+^users.conf$
+^fleet.key stays here; fleet.csr goes to who runs the hub
+^kobe-03: fleet.pem goes back to the building, with hub/ca.pem
+^copy hub/users.conf to every server
+^kobe-03 is not let in any more
+'
