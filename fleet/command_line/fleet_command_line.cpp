@@ -12,7 +12,7 @@ int run_fleet_command_line(int argc, const char* const* argv) {
                                 "`framewatch uplink` is `framewatch fleet uplink`.",
                                 {add_manifest, add_task, add_uplink, add_setup, add_authority,
                                  add_request, add_enroll, add_revoke, add_worker, daemon::add_help},
-                                {"uplink", "worker"}};
+                                {"uplink", "worker", "serve"}};
   return daemon::run_program(program, argc, argv);
 }
 

@@ -37,7 +37,7 @@ users: [
 )";
 
 /// Replaces a file as a whole. Empty, or why not.
-std::string put(const std::string& path, const std::string& text) {
+std::string replace_file(const std::string& path, const std::string& text) {
   drivers::PartialFile file;
   if (!file.open(path)) return fmt::format("{}: {}", path, file.error());
   std::FILE* stream = file.stream();
@@ -107,8 +107,9 @@ void UsersFile::remove(const std::string& building) {
 std::string UsersFile::write() const {
   std::string list;
   for (const std::string& b : buildings_) list += b + "\n";
-  std::string problem = put(users_path(), users_text(buildings_));
-  if (problem.empty()) problem = put((std::filesystem::path(directory_) / kList).string(), list);
+  std::string problem = replace_file(users_path(), users_text(buildings_));
+  if (problem.empty())
+    problem = replace_file((std::filesystem::path(directory_) / kList).string(), list);
   return problem;
 }
 

@@ -6,18 +6,16 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
 #include <mutex>
 #include <random>
 #include <thread>
 #include <utility>
 
-#include <nats/nats.h>
-
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
 #include "drivers/base/descriptor.h"
+#include "fleet/link/nats_objects.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -31,60 +29,12 @@ constexpr std::chrono::milliseconds kLook{2};
 constexpr int kLooks = 1000;
 constexpr int kHeldWhileAway_bytes = 64 * 1024;
 
-template <class Type, void (*destroy)(Type*)>
-struct Destroyer {
-  void operator()(Type* object) const { destroy(object); }
-};
-using Options = std::unique_ptr<natsOptions, Destroyer<natsOptions, natsOptions_Destroy>>;
-using Connection =
-    std::unique_ptr<natsConnection, Destroyer<natsConnection, natsConnection_Destroy>>;
-using Subscription =
-    std::unique_ptr<natsSubscription, Destroyer<natsSubscription, natsSubscription_Destroy>>;
-using NatsMessage = std::unique_ptr<natsMsg, Destroyer<natsMsg, natsMsg_Destroy>>;
-
 std::string letters(std::size_t count) {
   static constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
   std::random_device chance;
   std::string out;
   for (std::size_t i = 0; i < count; ++i) out += kLetters[chance() % 36];
   return out;
-}
-
-Message message_of(natsMsg* from) {
-  Message out;
-  out.subject = natsMsg_GetSubject(from);
-  if (const char* reply = natsMsg_GetReply(from)) out.reply = reply;
-  if (const int size = natsMsg_GetDataLength(from); size > 0) {
-    const char* data = natsMsg_GetData(from);
-    out.bytes.assign(data, data + size);
-  }
-  const char** names = nullptr;
-  int count = 0;
-  if (natsMsgHeader_Keys(from, &names, &count) == NATS_OK) {
-    for (int i = 0; i < count; ++i)
-      if (const char* value = nullptr; natsMsgHeader_Get(from, names[i], &value) == NATS_OK)
-        out.headers[names[i]] = value;
-    std::free(names);  // NOLINT: the library's rule
-  }
-  return out;
-}
-
-NatsMessage nats_message(const Message& from) {
-  natsMsg* made = nullptr;
-  if (natsMsg_Create(&made, from.subject.c_str(), from.reply.empty() ? nullptr : from.reply.c_str(),
-                     reinterpret_cast<const char*>(from.bytes.data()),
-                     static_cast<int>(from.bytes.size())) != NATS_OK)
-    return nullptr;
-  NatsMessage out(made);
-  for (const auto& [name, value] : from.headers)
-    if (natsMsgHeader_Set(out.get(), name.c_str(), value.c_str()) != NATS_OK) return nullptr;
-  return out;
-}
-
-std::string last_error(natsStatus status) {
-  const char* detail = nats_GetLastError(nullptr);
-  const std::string text = natsStatus_GetText(status);
-  return detail == nullptr || *detail == '\0' ? text : fmt::format("{}: {}", text, detail);
 }
 
 }  // namespace
@@ -103,8 +53,8 @@ struct NatsLink::State {
   std::vector<Message> waiting;
   std::string trouble;
 
-  Connection connection;  ///< last but one: its threads see everything above
-  std::vector<Subscription> subscriptions;
+  NatsConnection connection;  ///< last but one: its threads see everything above
+  std::vector<NatsSubscription> subscriptions;
 
   void ring() {
     const std::uint64_t one = 1;
@@ -167,7 +117,7 @@ struct NatsLink::State {
 std::string NatsLink::State::connect() {
   natsOptions* made = nullptr;
   if (const natsStatus s = natsOptions_Create(&made); s != NATS_OK) return last_error(s);
-  const Options options(made);
+  const NatsOptions options(made);
   std::vector<const char*> urls;
   for (const std::string& url : settings.hubs) urls.push_back(url.c_str());
   const auto set = [&](natsStatus status, const std::string& what) {

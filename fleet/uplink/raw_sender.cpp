@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kLook_us = 1'000'000;
+constexpr std::int64_t kLookForRequests_us = 1'000'000;
 constexpr const char* kEnding = ".mseed";
 
 std::int64_t size_of(const std::string& path) {
@@ -100,7 +100,7 @@ std::optional<Outgoing> RawSender::piece(std::int64_t number, const std::string&
 std::optional<Outgoing> RawSender::next(std::int64_t steady_us, const std::string& config_sha256,
                                         const SendWindow& window) {
   if (state_ == State::idle && steady_us >= look_us_) {
-    look_us_ = steady_us + kLook_us;
+    look_us_ = steady_us + kLookForRequests_us;
     begin();
   }
   if (state_ == State::exporting) {
