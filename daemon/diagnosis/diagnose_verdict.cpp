@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -104,15 +106,35 @@ std::string verdict_sentence(const DiagnoseOutput& o) {
          ", and no known effect explains it.";
 }
 
+const char* gap_unit(const DiagnoseOutput& o) {
+  if (o.plant.prescribed) return "N";
+  for (const estimator::RecordSegment& s : o.segments)
+    for (Eigen::Index a = 0; a < o.plant.axis_count(); ++a)
+      if (s.is_displaced(a)) return "m";
+  return "m/s^2";
+}
+
+std::string denominator_words(const DiagnoseOutput& o) {
+  const std::string_view unit = gap_unit(o);
+  const Eigen::VectorXd& w = o.segments.front().w;
+  return fmt::format("the rms of the measured {} from {:.3g} to {:.3g} Hz{}",
+                     unit == "N"   ? "force"
+                     : unit == "m" ? "displacement"
+                                   : "acceleration of the floors",
+                     w[0] / (2 * M_PI), w[w.size() - 1] / (2 * M_PI),
+                     unit == "m/s^2" ? ", all channels together" : "");
+}
+
 std::string gap_sentence(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   const bool held_out = o.holdout_from < d.before.size() && o.holdout_from < d.after.size();
   const std::size_t from = held_out ? o.holdout_from : 0;
   return fmt::format(
       "In the {} simulation and measurement differ by {} before and {} after; noise "
-      "alone would make {}.",
+      "alone would make {} (of {}).",
       held_out ? "held-out records" : "records", gap_percent(estimator::mean_gap(d.before, from)),
-      gap_percent(estimator::mean_gap(d.after, from)), gap_percent(mean_floor(d.before, from)));
+      gap_percent(estimator::mean_gap(d.after, from)), gap_percent(mean_floor(d.before, from)),
+      denominator_words(o));
 }
 
 std::string diagnosis_text(const DiagnoseOutput& o) {

@@ -15,6 +15,10 @@ std::string verdict_sentence(const DiagnoseOutput& output);
 /// after, beside its floor.
 std::string gap_sentence(const DiagnoseOutput& output);
 
+/// What every overall gap is a share of, and its unit.
+std::string denominator_words(const DiagnoseOutput& output);
+const char* gap_unit(const DiagnoseOutput& output);
+
 /// "something like bouc wen at story 1, frame y1 (gradual yielding)".
 std::string effect_words(const DiagnoseOutput& output, const estimator::FoundEffect& effect);
 

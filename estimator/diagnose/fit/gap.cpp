@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/diagnose/fit/model_error.h"
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"
 
@@ -41,6 +42,12 @@ void clip_difference(const RecordSegment& segment, const VectorXcd& measured, In
   difference.row(axis) = band_of(reading - cut, segment, 1).transpose();
 }
 
+/// Rms of a signal in the band, mean over `axes`; power: sum of |spectrum|^2 over bins and axes.
+double rms_of(double power, Index axes, const RecordSegment& segment) {
+  const double intervals = static_cast<double>(segment.intervals());
+  return std::sqrt(2 * power / static_cast<double>(std::max<Index>(1, axes))) / intervals;
+}
+
 /// Gap of the force, where a component's motion is prescribed and the force measured.
 Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segment,
               const Whitened& system) {
@@ -66,6 +73,7 @@ Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segme
   out.axis[axis] = out.overall = out.worst = std::sqrt(error / std::max(power, 1e-300));
   out.floor[axis] = out.overall_floor = std::sqrt(noise / std::max(power, 1e-300));
   out.worst_axis = static_cast<int>(axis);
+  out.measured_rms = rms_of(power, 1, segment);
   return out;
 }
 
@@ -131,10 +139,19 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
   out.floor = (is_base.array() > 0).select(0.0, out.floor.array());
   out.overall = std::sqrt(error.sum() / std::max(power.sum(), 1e-300));
   out.overall_floor = std::sqrt(noise.sum() / std::max(power.sum(), 1e-300));
+  out.measured_rms = rms_of(power.sum(), (is_base.array() == 0).count(), segment);
   Index worst = 0;
   out.worst = out.axis.maxCoeff(&worst);
   out.worst_axis = static_cast<int>(worst);
   return out;
+}
+
+std::optional<Gap> free_run_gap(const Plant& plant, const Model& model,
+                                const RecordSegment& segment, std::size_t record, int ratio) {
+  const RecordSegment even = with_model_error(plant, {segment}, 1).front();
+  const Whitened system = whiten(plant, model, even, record, Forcing::simulated, {}, ratio);
+  if (!system.good) return std::nullopt;
+  return gap_of(plant, model, segment, system);
 }
 
 }  // namespace framewatch::estimator

@@ -44,22 +44,38 @@ const char* verdict_word(Verdict verdict) {
   return "unexplained";
 }
 
-std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
-  std::vector<Gap> out;
-  for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
-    const RecordSegment& s = fitter.segments()[r];
-    const Whitened system =
-        whiten(fitter.plant(), model, s, r, Forcing::simulated, {}, fitter.ratio(r));
-    if (system.good) out.push_back(gap_of(fitter.plant(), model, s, system));
-  }
-  return out;
-}
-
 double mean_gap(const std::vector<Gap>& gaps, std::size_t from) {
   double error = 0;
   for (std::size_t r = from; r < gaps.size(); ++r) error += gaps[r].overall;
   return gaps.size() > from ? error / static_cast<double>(gaps.size() - from) : 0;
 }
+
+namespace {
+
+/// The model without the effects from `first` on.
+Model with_first(const Model& model, const std::vector<FoundEffect>& effects, std::size_t first,
+                 const Plant& plant) {
+  Model out = model;
+  const Model none = initial_model(plant);
+  std::vector<int> leaving;
+  for (std::size_t i = first; i < effects.size(); ++i) {
+    const FoundEffect& e = effects[i];
+    const int axis = e.chosen.place.channel;
+    if (e.index >= 0) {
+      leaving.push_back(e.index);
+    } else if (e.ramp_mps3.empty()) {
+      std::erase(out.free_gain, axis);
+      std::erase(out.free_clock, axis);
+      out.gain[axis] = none.gain[axis];
+      out.clock_s[axis] = none.clock_s[axis];
+    }
+  }
+  std::sort(leaving.rbegin(), leaving.rend());
+  for (const int index : leaving) out.effects.erase(out.effects.begin() + index);
+  return out;
+}
+
+}  // namespace
 
 void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
   const std::vector<RecordSegment>& segments = fitter.segments();
@@ -67,20 +83,30 @@ void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
       segments.begin(),
       segments.begin() + static_cast<long>(std::min(holdout_from, segments.size())));
   const Fitter train(fitter.plant(), seen, fitter.tolerances());
-  const auto of_train = [&](const Model& start) {
-    const FitResult fitted = train.fit(start, {}, thorough(start, kTrainSteps));
-    return gaps_of(fitter, fitted.good ? fitted.model : start);
+  const auto of_train = [&](const std::vector<Model>& starts) {
+    return gaps_of(fitter, judged_fit(train, starts, kTrainSteps).model);
   };
-  out.before = of_train(out.linear);
+  out.before = of_train(linear_starts(fitter.plant(), out.linear));
   if (out.effects.empty()) {
     out.after = out.before;
     return;
   }
-  out.after = of_train(out.model);
+  out.after = of_train({out.model});
   const std::vector<Gap> all = gaps_of(fitter, out.model);
   if (mean_gap(out.after, holdout_from) > kUndetermined * mean_gap(all, holdout_from)) {
     out.after = all;
     out.after_of_all = true;
+  }
+  double gap = mean_gap(out.before, holdout_from);
+  for (std::size_t i = 0; i < out.effects.size(); ++i) {
+    FoundEffect& effect = out.effects[i];
+    effect.before = gap;
+    if (i + 1 == out.effects.size())
+      gap = mean_gap(out.after, holdout_from);
+    else if (effect.ramp_mps3.empty())
+      gap = mean_gap(of_train({with_first(out.model, out.effects, i + 1, fitter.plant())}),
+                     holdout_from);
+    effect.after = gap;
   }
 }
 
