@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "estimator/diagnose/fit/axis_readings.h"
 #include "estimator/diagnose/fit/model_error.h"
@@ -83,14 +84,17 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
            const Whitened& system) {
   const Index n = plant.equations(), axes = plant.axis_count(), bins = system.bins();
   const MatrixXd back = plant.motion.transpose() * inverse(plant.motion * plant.motion.transpose());
+  std::vector<Index> bases;
   MatrixXd seen = MatrixXd::Zero(axes, n);  // motion of the coordinates -> axes
   VectorXd is_base = VectorXd::Zero(axes);
   for (Index a = 0; a < axes; ++a) {
     const SensorAxis& axis = plant.axes[static_cast<std::size_t>(a)];
-    if (plant.is_input(a))
+    if (plant.is_input(a)) {
       is_base[a] = 1;
-    else
+      bases.push_back(a);
+    } else {
       seen.row(a) = plant.constraint.row(plant.structure.dof(axis.story, axis.frame));
+    }
   }
   if (plant.prescribed) return force_gap(plant, model, segment, system);
   Gap out;
@@ -113,11 +117,11 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
     if (pushed.cols() > 0)
       subtract_forces(
           pushed, system.operation[at] * variance.asDiagonal() * system.operation[at].adjoint(), e);
-    const MatrixXcd own = system.operation[at] * back.cast<Complex>();
+    const MatrixXcd operation = system.operation[at];
+    const MatrixXcd own = operation * back.cast<Complex>();
     const ComplexLu solver(own);
     const VectorXcd difference = solver.solve(e);
-    const MatrixXcd from_base =
-        solver.solve(MatrixXcd(system.operation[at] * is_base.cast<Complex>().asDiagonal()));
+    const MatrixXcd from_base = solver.solve(MatrixXcd(operation(Eigen::all, bases)));
     out.difference.col(b) = seen.cast<Complex>() * difference;
     const MatrixXcd carried = seen.cast<Complex>() * from_base;
     // The gap of an axis that measures displacement is one of displacement.
@@ -125,7 +129,7 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
     for (Index a = 0; a < axes; ++a)
       if (segment.is_displaced(a)) square[a] *= std::pow(segment.w[b], -4);
     out.difference.col(b).array() *= square.array().sqrt();
-    noise += square.cwiseProduct(carried.cwiseAbs2() * variance + variance);
+    noise += square.cwiseProduct(carried.cwiseAbs2() * variance(bases) + variance);
     power += square.cwiseProduct(system.calibrated.col(b).cwiseAbs2());
   }
   for (const ModelEffect& effect : model.effects)

@@ -22,14 +22,15 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
   const Index n = equations();
   scale_ = VectorXd::Ones(kEndTerms * n + 2 * static_cast<Index>(hidden_.size()));
   RowMatrix sum = RowMatrix::Zero(ends(), ends());
-  RowMatrix forces, transposed, square, along, turned;
+  RowMatrix square(2 * n, 2 * n), along, turned;
   for (Index b = 0; b < bins(); ++b) {
-    put_unit_forces(b, false, forces);
-    put_unit_forces(b, true, transposed);
-    multiply(transposed, forces, square);
-    along.setZero(ends(), square.cols());
+    const MatrixXcd inner = metric(b);  // of unit forces, real ones and then those of value -j
+    square.topLeftCorner(n, n) = square.bottomRightCorner(n, n) = inner.real();
+    square.topRightCorner(n, n) = inner.imag();
+    square.bottomLeftCorner(n, n) = -inner.imag();
+    along.setZero(ends(), 2 * n);
     add_shares(b, square, along);
-    turned = along.leftCols(2 * n).transpose();
+    turned = along.transpose();
     add_shares(b, turned, sum);
   }
   scale_ = sum.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
@@ -37,6 +38,11 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
   MatrixXd regular = square_;
   regular.diagonal().array() += 1e-12;
   factor_ = Ldlt(regular);
+}
+
+MatrixXcd Weights::metric(Index bin) const {
+  const MatrixXcd& w = whitener(bin);
+  return w.adjoint() * w;
 }
 
 void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const {

@@ -31,6 +31,9 @@ class Weights {
     return whitener_[static_cast<std::size_t>(bin)];
   }
 
+  /// Inverse of the equations' noise covariance in a bin: whitener^H whitener.
+  Eigen::MatrixXcd metric(Eigen::Index bin) const;
+
   /// Number of end terms. Their columns, each of unit length, are E: rows x ends().
   Eigen::Index ends() const { return scale_.size(); }
   /// E'E.

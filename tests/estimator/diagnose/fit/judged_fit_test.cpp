@@ -114,7 +114,7 @@ struct Case {
 
 TEST(JudgedFit, IsAsGoodAsTheBestFreeRunOfItsClass) {
   constexpr double kFarAboveNoise = 30;
-  for (const double k3 : {4e11, -6e10}) {
+  for (const double k3 : {2e11, 8e11}) {
     const Case c(Small().record({test::cubic_spring(2, k3).simulated}, 1));
     const Fitter fitter(c.plant, c.segments, kExact);
     const FitResult noise = fitter.fit(initial_model(c.plant), {}, {});
