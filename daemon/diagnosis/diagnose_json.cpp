@@ -109,6 +109,8 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
     one.update(Json{{"holdout_nrmse_before", json_value(f.before)},
                     {"holdout_nrmse_after", json_value(f.after)},
                     {"explained_share", json_value(f.chosen.fraction)},
+                    {"share_of_gap", json_value(share_of_gap(o, f.before - f.after))},
+                    {"grade", grade_word(grade_of(f))},
                     {"confidence", json_value(f.confidence)},
                     {"approximate", f.approximate},
                     {"alternatives", Json::array()},
@@ -124,6 +126,15 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
   out["candidates_rejected"] = Json::array();
   for (const estimator::Trial& t : d.rejected)
     out["candidates_rejected"].push_back(trial_json(o, t));
+  out["leading"] = Json::array();
+  for (const estimator::LeadingLaw& l : d.leading) {
+    Json one = trial_json(o, l.trial);
+    one.update(Json{{"grade", "leading"},
+                    {"holdout_nrmse_before", json_value(l.before)},
+                    {"holdout_nrmse_after", json_value(l.after)},
+                    {"share_of_gap", json_value(share_of_gap(o, l.before - l.after))}});
+    out["leading"].push_back(one);
+  }
   out["where"] = Json::array();
   for (const estimator::WhereEntry& w : d.where)
     out["where"].push_back(

@@ -80,6 +80,23 @@ std::string confidence_words(const estimator::FoundEffect& f) {
       how, 100 * f.confidence, 100 * f.chosen.fraction);
 }
 
+double share_of_gap(const DiagnoseOutput& o, double fall) {
+  const double before = estimator::mean_gap(o.diagnosis.before, o.holdout_from);
+  return before > 0 ? fall / before : 0;
+}
+
+std::string leading_sentence(const DiagnoseOutput& o) {
+  if (o.diagnosis.leading.empty()) return "";
+  const estimator::LeadingLaw& best = o.diagnosis.leading.front();
+  estimator::FoundEffect found;
+  found.chosen = best.trial;
+  return fmt::format(
+      "Of the known effects the leading one is {}: with it the held-out gap falls from {} to {}. "
+      "It "
+      "is not established: more is left than it should leave.",
+      effect_words(o, found), gap_percent(best.before), gap_percent(best.after));
+}
+
 std::string verdict_sentence(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   std::string missing;
@@ -141,7 +158,10 @@ std::string diagnosis_text(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   std::string out = verdict_sentence(o) + "\n  " + gap_sentence(o) + "\n";
   for (const estimator::FoundEffect& f : d.effects)
-    out += fmt::format("  {}: {}\n", effect_words(o, f), confidence_words(f));
+    out += fmt::format("  {}, {}: {}; it takes {:.0f} % of the gap\n", grade_word(grade_of(f)),
+                       effect_words(o, f), confidence_words(f),
+                       100 * share_of_gap(o, f.before - f.after));
+  if (const std::string text = leading_sentence(o); !text.empty()) out += "  " + text + "\n";
   if (!d.reason.empty()) out += "  " + d.reason + "\n";
   return out;
 }

@@ -1,5 +1,7 @@
 #include "estimator/diagnose/fit/bin_products.h"
 
+#include <algorithm>
+
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/kernels.h"
 
@@ -20,7 +22,6 @@ BinProducts::BinProducts(const Linearised& at, std::size_t record, const std::ve
   for (Index e = 0; e < plant.element_count(); ++e)
     elements_.push_back(of_force(plant.building.act.col(e)));
   axes_.resize(static_cast<std::size_t>(plant.axis_count()));
-  for (Index i = 0; i < n; ++i) equations_.push_back({{i, 1, 0}});
   const Index directions = plant.element_count() + plant.axis_count() + n;
   const Index width = padded(static_cast<int>(own));
   for (RowMatrix* m : {&under_.real, &under_.imaginary}) m->setZero(1, n);
@@ -29,13 +30,6 @@ BinProducts::BinProducts(const Linearised& at, std::size_t record, const std::ve
   at_equations_ = RowMatrix::Zero(2 * n, width);
   size_real_ = size_imaginary_ = Eigen::VectorXd::Zero(own);
   whitened_effects_.resize(n, static_cast<Index>(effects_.size()));
-}
-
-const BinProducts::Direction& BinProducts::direction(Index k) const {
-  auto at = static_cast<std::size_t>(k);
-  if (at < elements_.size()) return elements_[at];
-  at -= elements_.size();
-  return at < axes_.size() ? axes_[at] : equations_[at - axes_.size()];
 }
 
 void BinProducts::put_axes(Index bin) {
@@ -66,28 +60,33 @@ void BinProducts::put_effects(Index bin) {
   under_effects_.noalias() = system_.weights->whitener(bin).adjoint() * whitened_effects_;
 }
 
-void BinProducts::put_products(Index k) {
-  under_.real.setZero();
-  under_.imaginary.setZero();
-  for (const Entry& e : direction(k))
-    for (Index j = 0; j < metric_.rows(); ++j) {
-      // The metric is Hermitian: its columns lie together in memory.
-      const double x = metric_(j, e.equation).real(), y = -metric_(j, e.equation).imag();
-      under_.real(0, j) += e.real * x + e.imaginary * y;
-      under_.imaginary(0, j) += e.real * y - e.imaginary * x;
-    }
+void BinProducts::put_products(Index equation) {
+  const Index n = metric_.rows();
+  // The metric is Hermitian: its columns lie together in memory.
+  under_.real.row(0) = metric_.col(equation).real();
+  under_.imaginary.row(0) = -metric_.col(equation).imag();
   const double *x = under_.real.data(), *y = under_.imaginary.data();
   double *real = products_.real.data(), *imaginary = products_.imaginary.data();
-  for (const std::vector<Direction>* list : {&elements_, &axes_, &equations_})
-    for (const Direction& one : *list) {
-      double r = 0, i = 0;
-      for (const Entry& e : one) {
-        r += x[e.equation] * e.real - y[e.equation] * e.imaginary;
-        i += x[e.equation] * e.imaginary + y[e.equation] * e.real;
-      }
-      *real++ = r;
-      *imaginary++ = i;
+  for (const Direction& element : elements_) {
+    double r = 0, i = 0;
+    for (const Entry& e : element) {
+      r += x[e.equation] * e.real;
+      i += y[e.equation] * e.real;
     }
+    *real++ = r;
+    *imaginary++ = i;
+  }
+  for (const Direction& axis : axes_) {
+    double r = 0, i = 0;
+    for (const Entry& e : axis) {
+      r += x[e.equation] * e.real - y[e.equation] * e.imaginary;
+      i += x[e.equation] * e.imaginary + y[e.equation] * e.real;
+    }
+    *real++ = r;
+    *imaginary++ = i;
+  }
+  std::copy(x, x + n, real);
+  std::copy(y, y + n, imaginary);
 }
 
 void BinProducts::compute(Index bin) {
@@ -99,34 +98,51 @@ void BinProducts::compute(Index bin) {
     size_real_[static_cast<Index>(c)] = size.real();
     size_imaginary_[static_cast<Index>(c)] = size.imag();
   }
-  const Index n = metric_.rows(), own = size_real_.size();
-  for (Index k = 0; k < all_.real.rows(); ++k) {
-    put_products(k);
+  const Index n = metric_.rows(), own = size_real_.size(), first = all_.real.rows() - n;
+  const double *sr = size_real_.data(), *si = size_imaginary_.data();
+  for (Index i = 0; i < n; ++i) {
+    put_products(i);
     const double *x = products_.real.data(), *y = products_.imaginary.data();
-    double *real = &all_.real(k, 0), *imaginary = &all_.imaginary(k, 0);
+    double *real = &all_.real(first + i, 0), *imaginary = &all_.imaginary(first + i, 0);
     for (Index c = 0; c < own; ++c) {
       const Index d = direction_of_[static_cast<std::size_t>(c)];
       if (d < 0) continue;
-      real[c] = x[d] * size_real_[c] - y[d] * size_imaginary_[c];
-      imaginary[c] = x[d] * size_imaginary_[c] + y[d] * size_real_[c];
+      real[c] = x[d] * sr[c] - y[d] * si[c];
+      imaginary[c] = x[d] * si[c] + y[d] * sr[c];
     }
-    for (std::size_t i = 0; i < effects_.size(); ++i) {
-      const auto column = under_effects_.col(static_cast<Index>(i));
-      double r = 0, m = 0;
-      for (const Entry& e : direction(k)) {
-        const Complex z = column[e.equation];
-        r += e.real * z.real() + e.imaginary * z.imag();
-        m += e.real * z.imag() - e.imaginary * z.real();
-      }
-      real[effects_[i]] = r;
-      imaginary[effects_[i]] = m;
+    for (std::size_t k = 0; k < effects_.size(); ++k) {
+      real[effects_[k]] = under_effects_(i, static_cast<Index>(k)).real();
+      imaginary[effects_[k]] = under_effects_(i, static_cast<Index>(k)).imag();
     }
   }
   at_equations_.topRows(n) = all_.real.bottomRows(n);
   at_equations_.bottomRows(n) = -all_.imaginary.bottomRows(n);
 }
 
-void BinProducts::add_square(RowMatrix& sum) const {
+void BinProducts::put_others() {
+  const Index first = all_.real.rows() - metric_.rows();
+  Index k = 0;
+  for (const std::vector<Direction>* list : {&elements_, &axes_})
+    for (const Direction& one : *list) {
+      all_.real.row(k).setZero();
+      all_.imaginary.row(k).setZero();
+      for (const Entry& e : one) {
+        const auto x = all_.real.row(first + e.equation);
+        const auto y = all_.imaginary.row(first + e.equation);
+        if (e.imaginary == 0) {
+          all_.real.row(k) += e.real * x;
+          all_.imaginary.row(k) += e.real * y;
+        } else {
+          all_.real.row(k) += e.real * x + e.imaginary * y;
+          all_.imaginary.row(k) += e.real * y - e.imaginary * x;
+        }
+      }
+      ++k;
+    }
+}
+
+void BinProducts::add_square(RowMatrix& sum) {
+  put_others();
   const Index own = size_real_.size();
   for (Index u = 0; u < own; ++u) {
     const Index k = direction_of_[static_cast<std::size_t>(u)];

@@ -18,7 +18,7 @@ class BinProducts {
 
   void compute(Eigen::Index bin);
   /// Adds the products of the columns with each other to the upper triangle of `sum`.
-  void add_square(RowMatrix& sum) const;
+  void add_square(RowMatrix& sum);
   /// The columns under the metric, at the equations: real parts, then imaginary parts with opposite
   /// sign; 2 equations x columns, padded. As Weights::add_shares() takes them.
   const RowMatrix& at_equations() const { return at_equations_; }
@@ -44,21 +44,22 @@ class BinProducts {
     RowMatrix real, imaginary;
   };
 
-  const Direction& direction(Eigen::Index k) const;
   void put_axes(Eigen::Index bin);
   void put_effects(Eigen::Index bin);
-  /// The products of direction k with every direction.
-  void put_products(Eigen::Index k);
+  /// The products of a unit force on one equation with every direction.
+  void put_products(Eigen::Index equation);
+  /// The products of elements and axes with the columns, from those of the equations.
+  void put_others();
 
   const Linearised& at_;
   const Whitened& system_;
   const Columns& columns_;
   std::vector<Eigen::Index> kept_, direction_of_;  ///< of every column; -1: of an effect
-  std::vector<Direction> elements_, axes_, equations_;
+  std::vector<Direction> elements_, axes_;
   Eigen::MatrixXcd metric_;
-  Complexes under_;     ///< one direction under the metric: 1 x equations
+  Complexes under_;     ///< one equation's row of the metric
   Complexes products_;  ///< 1 x directions
-  Complexes all_;       ///< directions x columns
+  Complexes all_;       ///< directions (elements, axes, equations) x columns
   Eigen::VectorXd size_real_, size_imaginary_;
   std::vector<Eigen::Index> effects_;  ///< columns without a direction
   Eigen::MatrixXcd whitened_effects_, under_effects_;

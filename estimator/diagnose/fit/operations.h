@@ -9,8 +9,8 @@
 
 namespace framewatch::estimator {
 
-/// The operations D of every bin of a segment, equations x axes, docs/equations.md (31). They are
-/// made when they are asked for: of a tall building they would fill memories.
+/// The operations D of every bin of a segment, equations x axes, docs/equations.md (31). Of a large
+/// building they are made when they are asked for: they would fill memories.
 class Operations {
  public:
   Operations() = default;
@@ -21,12 +21,22 @@ class Operations {
         stiffness_(std::move(stiffness)),
         damping_(std::move(damping)),
         additions_(std::move(additions)),
-        w_(std::move(w)) {}
+        w_(std::move(w)) {
+    constexpr Eigen::Index kMostKept = 1'000'000;  // numbers
+    const Eigen::Index bins = w_.size();
+    if (mass_.size() * bins > kMostKept) return;
+    for (Eigen::Index b = 0; b < bins; ++b) kept_.push_back(made(b));
+  }
 
   bool empty() const { return w_.size() == 0; }
   Eigen::Index equations() const { return mass_.rows(); }
   Eigen::MatrixXcd operator[](std::size_t bin) const {
-    const double w = w_[static_cast<Eigen::Index>(bin)];
+    return kept_.empty() ? made(static_cast<Eigen::Index>(bin)) : kept_[bin];
+  }
+
+ private:
+  Eigen::MatrixXcd made(Eigen::Index bin) const {
+    const double w = w_[bin];
     Eigen::MatrixXcd out(mass_.rows(), mass_.cols());
     out.real() = mass_ - stiffness_ / (w * w);
     out.imag() = damping_ / -w;
@@ -34,10 +44,10 @@ class Operations {
     return out;
   }
 
- private:
   Eigen::MatrixXd mass_, stiffness_, damping_;
   std::vector<LinearOperation> additions_;
   Eigen::VectorXd w_;
+  std::vector<Eigen::MatrixXcd> kept_;
 };
 
 }  // namespace framewatch::estimator

@@ -13,6 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kEndTerms = 4;
+constexpr Index kSmall = 24;  ///< equations below which products need no blocks
 
 Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
                  std::vector<HiddenOscillator> hidden)
@@ -42,6 +43,7 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
 
 MatrixXcd Weights::metric(Index bin) const {
   const MatrixXcd& w = whitener(bin);
+  if (w.rows() < kSmall) return w.adjoint().lazyProduct(w);
   return w.adjoint() * w;
 }
 

@@ -96,6 +96,8 @@ class Search {
     set_errors(fitter_, out_.model, now.motion, out_.known);
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
     set_gaps(fitter_, options_.holdout_from, out_);
+    if (ramps.empty() && withdraw_worse(options_.holdout_from, out_)) set_models(out_.linear);
+    set_leading(fitter_, options_.holdout_from, out_);
     judge(fitter_, out_);
     return out_;
   }

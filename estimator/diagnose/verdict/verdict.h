@@ -19,6 +19,21 @@ double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
 /// models fitted to the segments before `holdout_from` alone, as they are judged (judged_fit).
 void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out);
 
+/// Sets Diagnosis::leading from its rejected trials; after set_gaps().
+void set_leading(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out);
+
+/// Takes every name back whose model is worse than none: a gap above 100 % in any record, or, held
+/// out, above the one before by more than a tenth. Whether it did.
+bool withdraw_worse(std::size_t holdout_from, Diagnosis& out);
+
+/// How far a name is to be trusted.
+enum class Grade {
+  established,  ///< nothing else comes near, and nothing but noise is left beside it
+  leading,      ///< the best of several, or of what is left something else is the cause
+};
+Grade grade_of(const FoundEffect& effect);
+const char* grade_word(Grade grade);
+
 /// Sets Diagnosis::verdict and reason.
 void judge(const Fitter& fitter, Diagnosis& out);
 
