@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kEndTerms = 4;
-constexpr Index kSmall = 24;  ///< equations below which products need no blocks
+constexpr Index kSmall = 24;  ///< equations below which the kernels do not pay
 
 Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
                  std::vector<HiddenOscillator> hidden)
@@ -43,8 +43,18 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
 
 MatrixXcd Weights::metric(Index bin) const {
   const MatrixXcd& w = whitener(bin);
-  if (w.rows() < kSmall) return w.adjoint().lazyProduct(w);
-  return w.adjoint() * w;
+  const Index n = w.rows();
+  if (n < kSmall) return w.adjoint().lazyProduct(w);
+  RowGram gram(2 * n);
+  auto rows = gram.rows(n);
+  rows.leftCols(n) = w.real();
+  rows.rightCols(n) = w.imag();
+  gram.add();
+  const MatrixXd sum = gram.sum(), cross = sum.topRightCorner(n, n);
+  MatrixXcd out(n, n);
+  out.real() = sum.topLeftCorner(n, n) + sum.bottomRightCorner(n, n);
+  out.imag() = cross - cross.transpose();
+  return out;
 }
 
 void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const {
@@ -118,13 +128,6 @@ VectorXd Weights::without_ends(const VectorXd& rows) const {
     out.segment(2 * n * b, 2 * n).noalias() -= forces.leftCols(2 * n) * shared(b, size);
   }
   return out;
-}
-
-void AlongEnds::add(Index bin, const RowMatrix& rows) {
-  if (sum_.size() == 0) sum_ = RowMatrix::Zero(weights_.ends(), rows.cols());
-  weights_.put_unit_forces(bin, true, forces_);
-  multiply(forces_, rows, along_);
-  weights_.add_shares(bin, along_, sum_);
 }
 
 }  // namespace framewatch::estimator

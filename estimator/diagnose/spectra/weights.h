@@ -62,19 +62,4 @@ class Weights {
   Ldlt factor_;
 };
 
-/// E' rows, summed over bins.
-class AlongEnds {
- public:
-  explicit AlongEnds(const Weights& weights) : weights_(weights) {}
-
-  /// rows of one bin, always of as many columns, a multiple of kLane.
-  void add(Eigen::Index bin, const RowMatrix& rows);
-  /// ends x columns.
-  const RowMatrix& sum() const { return sum_; }
-
- private:
-  const Weights& weights_;
-  RowMatrix forces_, along_, sum_;
-};
-
 }  // namespace framewatch::estimator
