@@ -1,5 +1,6 @@
 #include "estimator/diagnose/fit/judged_fit.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
