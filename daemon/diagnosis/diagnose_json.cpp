@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/diagnosis/diagnose_verdict.h"
 #include "daemon/documents/json_values.h"
 #include "daemon/simulation/effect_json.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
@@ -38,6 +39,13 @@ Json gap_json(const DiagnoseOutput& o, const std::vector<estimator::Gap>& gaps, 
 
 Json both(const DiagnoseOutput& o, const std::vector<estimator::Gap>& gaps, bool floor) {
   return {{"train", gap_json(o, gaps, false, floor)}, {"holdout", gap_json(o, gaps, true, floor)}};
+}
+
+/// What every overall gap is a share of.
+Json denominator_json(const DiagnoseOutput& o) {
+  Json rms = Json::array();
+  for (const estimator::Gap& g : o.diagnosis.before) rms.push_back(json_value(g.measured_rms));
+  return {{"of", denominator_words(o)}, {"unit", gap_unit(o)}, {"rms_of_records", rms}};
 }
 
 /// Name, place, parameters.
@@ -91,6 +99,7 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
   out["gap"] = {{"before", both(o, d.before, false)},
                 {"after", both(o, d.after, false)},
                 {"noise_floor", both(o, d.before, true)},
+                {"denominator", denominator_json(o)},
                 {"after_is_of_a_model_fitted_to", d.after_of_all ? "all records" : "train"},
                 {"misfit_ratio_before", json_value(d.ratio_before)},
                 {"misfit_ratio_after", json_value(d.ratio_after)}};
@@ -100,6 +109,8 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
     one.update(Json{{"holdout_nrmse_before", json_value(f.before)},
                     {"holdout_nrmse_after", json_value(f.after)},
                     {"explained_share", json_value(f.chosen.fraction)},
+                    {"share_of_gap", json_value(share_of_gap(o, f.before - f.after))},
+                    {"grade", grade_word(grade_of(f))},
                     {"confidence", json_value(f.confidence)},
                     {"approximate", f.approximate},
                     {"alternatives", Json::array()},
@@ -115,6 +126,15 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
   out["candidates_rejected"] = Json::array();
   for (const estimator::Trial& t : d.rejected)
     out["candidates_rejected"].push_back(trial_json(o, t));
+  out["leading"] = Json::array();
+  for (const estimator::LeadingLaw& l : d.leading) {
+    Json one = trial_json(o, l.trial);
+    one.update(Json{{"grade", "leading"},
+                    {"holdout_nrmse_before", json_value(l.before)},
+                    {"holdout_nrmse_after", json_value(l.after)},
+                    {"share_of_gap", json_value(share_of_gap(o, l.before - l.after))}});
+    out["leading"].push_back(one);
+  }
   out["where"] = Json::array();
   for (const estimator::WhereEntry& w : d.where)
     out["where"].push_back(

@@ -61,8 +61,9 @@ std::string gap_section(const DiagnoseOutput& o) {
             "to all records."
           : "Both models were fitted to the training records alone.";
   return "<h2>Gap between simulation and measurement</h2>\n"
-         "<p>Free run from the measured motion of the base alone. " +
-         fitted + "</p>\n" + html_table({"record", "before", "after", "noise floor"}, rows) +
+         "<p>Free run from the measured motion of the base alone, as a share of " +
+         html_text(denominator_words(o)) + ". " + fitted + "</p>\n" +
+         html_table({"record", "before", "after", "noise floor"}, rows) +
          html_figure(plots, "Gap per channel, over what the sensors' noise alone would make.");
 }
 
@@ -291,8 +292,13 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
                      html_text(gap_sentence(o)) + "</p>\n";
   std::string items;
   for (const estimator::FoundEffect& f : d.effects)
-    items += "<li>" + html_text(with_capital(effect_words(o, f)) + ": " + confidence_words(f)) +
-             ".</li>\n";
+    items += "<li>" +
+             html_text(with_capital(effect_words(o, f)) + ": " + grade_word(grade_of(f)) + ", " +
+                       confidence_words(f)) +
+             fmt::format("; it takes {:.0f} % of the gap.</li>\n",
+                         100 * share_of_gap(o, f.before - f.after));
+  if (const std::string text = leading_sentence(o); !text.empty())
+    items += "<li>" + html_text(text) + "</li>\n";
   for (const LawMotion& m : motions)
     if (const std::string text = meaning(o, m); !text.empty())
       items += "<li>" + html_text(text) + "</li>\n";

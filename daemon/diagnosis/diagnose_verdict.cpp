@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string_view>
 
 #include <fmt/core.h>
 
@@ -78,6 +80,23 @@ std::string confidence_words(const estimator::FoundEffect& f) {
       how, 100 * f.confidence, 100 * f.chosen.fraction);
 }
 
+double share_of_gap(const DiagnoseOutput& o, double fall) {
+  const double before = estimator::mean_gap(o.diagnosis.before, o.holdout_from);
+  return before > 0 ? fall / before : 0;
+}
+
+std::string leading_sentence(const DiagnoseOutput& o) {
+  if (o.diagnosis.leading.empty()) return "";
+  const estimator::LeadingLaw& best = o.diagnosis.leading.front();
+  estimator::FoundEffect found;
+  found.chosen = best.trial;
+  return fmt::format(
+      "Of the known effects the leading one is {}: with it the held-out gap falls from {} to {}. "
+      "It "
+      "is not established: more is left than it should leave.",
+      effect_words(o, found), gap_percent(best.before), gap_percent(best.after));
+}
+
 std::string verdict_sentence(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   std::string missing;
@@ -104,22 +123,45 @@ std::string verdict_sentence(const DiagnoseOutput& o) {
          ", and no known effect explains it.";
 }
 
+const char* gap_unit(const DiagnoseOutput& o) {
+  if (o.plant.prescribed) return "N";
+  for (const estimator::RecordSegment& s : o.segments)
+    for (Eigen::Index a = 0; a < o.plant.axis_count(); ++a)
+      if (s.is_displaced(a)) return "m";
+  return "m/s^2";
+}
+
+std::string denominator_words(const DiagnoseOutput& o) {
+  const std::string_view unit = gap_unit(o);
+  const Eigen::VectorXd& w = o.segments.front().w;
+  return fmt::format("the rms of the measured {} from {:.3g} to {:.3g} Hz{}",
+                     unit == "N"   ? "force"
+                     : unit == "m" ? "displacement"
+                                   : "acceleration of the floors",
+                     w[0] / (2 * M_PI), w[w.size() - 1] / (2 * M_PI),
+                     unit == "m/s^2" ? ", all channels together" : "");
+}
+
 std::string gap_sentence(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   const bool held_out = o.holdout_from < d.before.size() && o.holdout_from < d.after.size();
   const std::size_t from = held_out ? o.holdout_from : 0;
   return fmt::format(
       "In the {} simulation and measurement differ by {} before and {} after; noise "
-      "alone would make {}.",
+      "alone would make {} (of {}).",
       held_out ? "held-out records" : "records", gap_percent(estimator::mean_gap(d.before, from)),
-      gap_percent(estimator::mean_gap(d.after, from)), gap_percent(mean_floor(d.before, from)));
+      gap_percent(estimator::mean_gap(d.after, from)), gap_percent(mean_floor(d.before, from)),
+      denominator_words(o));
 }
 
 std::string diagnosis_text(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   std::string out = verdict_sentence(o) + "\n  " + gap_sentence(o) + "\n";
   for (const estimator::FoundEffect& f : d.effects)
-    out += fmt::format("  {}: {}\n", effect_words(o, f), confidence_words(f));
+    out += fmt::format("  {}, {}: {}; it takes {:.0f} % of the gap\n", grade_word(grade_of(f)),
+                       effect_words(o, f), confidence_words(f),
+                       100 * share_of_gap(o, f.before - f.after));
+  if (const std::string text = leading_sentence(o); !text.empty()) out += "  " + text + "\n";
   if (!d.reason.empty()) out += "  " + d.reason + "\n";
   return out;
 }

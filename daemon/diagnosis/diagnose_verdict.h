@@ -15,8 +15,18 @@ std::string verdict_sentence(const DiagnoseOutput& output);
 /// after, beside its floor.
 std::string gap_sentence(const DiagnoseOutput& output);
 
+/// What every overall gap is a share of, and its unit.
+std::string denominator_words(const DiagnoseOutput& output);
+const char* gap_unit(const DiagnoseOutput& output);
+
 /// "something like bouc wen at story 1, frame y1 (gradual yielding)".
 std::string effect_words(const DiagnoseOutput& output, const estimator::FoundEffect& effect);
+
+/// Part of the held-out gap before, 0..1, that a fall of the gap is.
+double share_of_gap(const DiagnoseOutput& output, double fall);
+
+/// What the best law does that was not named; empty where there is none.
+std::string leading_sentence(const DiagnoseOutput& output);
 
 /// How sure its name is.
 std::string confidence_words(const estimator::FoundEffect& effect);

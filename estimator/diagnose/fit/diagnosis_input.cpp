@@ -17,7 +17,11 @@ using Eigen::VectorXd;
 constexpr double kBandLow = 0.4, kBandHigh = 1.6;  ///< of the lowest and highest natural frequency
 constexpr double kComponentBandLow = 0.1;  ///< displacement is accurate at far lower frequencies
 constexpr double kHighest = 0.4;           ///< of the sampling rate
-constexpr int kDesignFits = 2;             ///< of a building that has no design
+/// Bins times equations^1.5, about the work of a fit: the band of a large building ends where it
+/// has so many, but includes the lowest modes.
+constexpr double kMostWork = 4e5;
+constexpr double kLowestModes = 5;  ///< times the lowest natural frequency
+constexpr int kDesignFits = 2;      ///< of a building that has no design
 constexpr double kLeastOfGuess = 0.01;
 constexpr double kLeastSignal = 5;  ///< rms of a floor's motion in the band over its noise
 
@@ -34,8 +38,11 @@ std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& 
     for (Index i = 0; i < plant.axis_count(); ++i)
       noise[i] =
           plant.axes[static_cast<std::size_t>(i)].noise_density * std::sqrt(record.rate_hz / 2);
-    const Band band{(component.any() ? kComponentBandLow : kBandLow) * hz.front(),
-                    std::min(kHighest * record.rate_hz, kBandHigh * hz.back())};
+    const double low = (component.any() ? kComponentBandLow : kBandLow) * hz.front();
+    const double bins = kMostWork / std::pow(static_cast<double>(plant.equations()), 1.5);
+    const double seconds = static_cast<double>(record.accel.rows() - record.lead) / record.rate_hz;
+    const double most = std::max(low + bins / seconds, kLowestModes * hz.front());
+    const Band band{low, std::min({kHighest * record.rate_hz, kBandHigh * hz.back(), most})};
     out.push_back(make_segment(record.accel, record.rate_hz, noise, band, displaced, record.lead));
   }
   return out;

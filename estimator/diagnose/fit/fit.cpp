@@ -84,6 +84,7 @@ std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<Matr
 Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
                              bool through_run) const {
   Linearised out;
+  out.plant = &plant_;
   out.unknowns = unknowns_of(plant_, model, tolerances_);
   out.systems = std::move(systems);
   const auto count = static_cast<Index>(out.unknowns.size());

@@ -1,11 +1,11 @@
 #include "estimator/diagnose/fit/fit_columns.h"
 
 #include <cmath>
+#include <utility>
 
 #include "estimator/diagnose/fit/run_columns.h"
 #include "estimator/diagnose/model/linear_operation.h"
 #include "estimator/numeric/complex.h"
-#include "estimator/numeric/kernels.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -86,76 +86,66 @@ Acting acting(const Plant& plant, const Model& model, const RecordSegment& segme
   return {};
 }
 
-/// Sets the columns of stiffnesses, dampings, masses, gains and clocks; other columns are zero.
-void set_linear_columns(const Plant& plant, const Model& model, const RecordSegment& segment,
-                        const Whitened& system, const std::vector<Unknown>& unknowns,
-                        RowMatrix& out) {
-  const Index n = plant.equations(), elements = plant.element_count(), axes = plant.axis_count();
-  const auto count = static_cast<Index>(unknowns.size());
-  std::vector<Index> direction(unknowns.size(), 0);
-  MatrixXd re = MatrixXd::Zero(count, system.bins()), im = re;  // of the sizes
-  for (Index u = 0; u < count; ++u) {
-    const Acting one = acting(plant, model, segment, system, unknowns[static_cast<std::size_t>(u)]);
-    if (one.direction < 0) continue;
-    direction[static_cast<std::size_t>(u)] = one.direction;
-    re.row(u) = one.size.real().transpose();
-    im.row(u) = one.size.imag().transpose();
-  }
-  // Columns: elements, axes, coordinates. Rows: real parts of the forces, then imaginary parts with
-  // opposite sign.
-  RowMatrix acting_along = RowMatrix::Zero(2 * n, padded(static_cast<int>(elements + axes + n)));
-  acting_along.topLeftCorner(n, elements) = plant.building.act;
-  acting_along.block(0, elements + axes, n, n).setIdentity();
-  RowMatrix forces, whitened;
-  for (Index b = 0; b < system.bins(); ++b) {
-    const MatrixXcd& operation = system.operation[static_cast<std::size_t>(b)];
-    acting_along.block(0, elements, n, axes) = operation.real();
-    acting_along.block(n, elements, n, axes) = -operation.imag();
-    system.weights->put_unit_forces(b, false, forces);
-    multiply(forces, acting_along, whitened);
-    for (Index i = 0; i < n; ++i) {
-      const double *x = &whitened(i, 0), *y = &whitened(n + i, 0);
-      double *real = &out(2 * n * b + i, 0), *imag = &out(2 * n * b + n + i, 0);
-      const double *a = re.col(b).data(), *c = im.col(b).data();
-      for (Index u = 0; u < count; ++u) {
-        const Index k = direction[static_cast<std::size_t>(u)];
-        real[u] = x[k] * a[u] - y[k] * c[u];
-        imag[u] = x[k] * c[u] + y[k] * a[u];
-      }
-    }
-  }
+/// The same as whitened rows.
+VectorXd along(const Plant& plant, const Whitened& system, const Acting& one) {
+  const Index elements = plant.element_count(), axes = plant.axis_count();
+  if (one.direction >= elements && one.direction < elements + axes)
+    return whiten_axis(system, one.direction - elements, one.size);
+  const VectorXd direction =
+      one.direction < elements
+          ? VectorXd(plant.building.act.col(one.direction))
+          : VectorXd(VectorXd::Unit(plant.equations(), one.direction - elements - axes));
+  return whiten_rows(system, direction, one.size);
 }
 
 }  // namespace
 
-RowMatrix columns_of(const Plant& plant, const Model& model, const RecordSegment& segment,
-                     std::size_t record, const Whitened& system,
-                     const std::vector<Unknown>& unknowns, int ratio, bool through_run) {
-  RowMatrix out(system.residual.size(), static_cast<Index>(unknowns.size()));
-  set_linear_columns(plant, model, segment, system, unknowns, out);
+Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& segment,
+                   std::size_t record, const Whitened& system, const std::vector<Unknown>& unknowns,
+                   int ratio, bool through_run) {
+  Columns out;
+  out.size = MatrixXcd::Zero(system.bins(), static_cast<Index>(unknowns.size()));
+  std::vector<VectorXd> effects;
   const bool runs = through_run && !system.tracks.empty() && !plant.prescribed;
-  for (Index u = 0; u < out.cols(); ++u) {
-    const Unknown& unknown = unknowns[static_cast<std::size_t>(u)];
+  for (std::size_t u = 0; u < unknowns.size(); ++u) {
+    const Unknown& unknown = unknowns[u];
     const bool parameter =
         unknown.kind == Kind::parameter || unknown.kind == Kind::record_parameter;
-    if (unknown.kind == Kind::record_parameter &&
-        static_cast<std::size_t>(unknown.record) != record) {
-      out.col(u).setZero();
+    const bool elsewhere = unknown.kind == Kind::record_parameter &&
+                           static_cast<std::size_t>(unknown.record) != record;
+    std::optional<VectorXd> run;
+    if (runs && !elsewhere && moves_run(plant, model, unknown))
+      run = run_column(plant, model, segment, record, system, unknown, ratio);
+    Acting one;
+    if (!parameter) one = acting(plant, model, segment, system, unknown);
+    out.direction.push_back(parameter || run ? -1 : one.direction);
+    out.row.push_back(-1);
+    if (out.direction.back() >= 0) {
+      out.size.col(static_cast<Index>(u)) = one.size;
       continue;
     }
-    std::optional<VectorXd> run;
-    if (runs && moves_run(plant, model, unknown))
-      run = run_column(plant, model, segment, record, system, unknown, ratio);
+    out.row.back() = static_cast<Index>(effects.size());
     const bool of_law =
         parameter && model.effects[static_cast<std::size_t>(unknown.index)].element_law();
-    if (parameter && !(of_law && run))
-      out.col(u) = parameter_column(plant, model, segment, record, system, unknown, ratio);
-    if (of_law && run)
-      out.col(u) = *run;
-    else if (run)
-      out.col(u) += *run;
+    VectorXd column = VectorXd::Zero(system.residual.size());
+    if (!parameter)
+      column = along(plant, system, one);
+    else if (!elsewhere && !(of_law && run))
+      column = parameter_column(plant, model, segment, record, system, unknown, ratio);
+    if (run) column += *run;
+    effects.push_back(std::move(column));
   }
+  out.effects.resize(system.residual.size(), static_cast<Index>(effects.size()));
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    out.effects.col(static_cast<Index>(i)) = effects[i];
   return out;
+}
+
+VectorXd whole_column(const Plant& plant, const Whitened& system, const Columns& columns,
+                      Index unknown) {
+  const auto at = static_cast<std::size_t>(unknown);
+  if (columns.direction[at] < 0) return columns.effects.col(columns.row[at]);
+  return along(plant, system, {columns.direction[at], columns.size.col(unknown)});
 }
 
 }  // namespace framewatch::estimator

@@ -7,10 +7,27 @@
 
 namespace framewatch::estimator {
 
-/// Derivatives of a whitened segment by the unknowns: rows x unknowns. ratio: steps per sample of
-/// the laws; through_run: with the derivatives of the free run's motion.
-RowMatrix columns_of(const Plant& plant, const Model& model, const RecordSegment& segment,
-                     std::size_t record, const Whitened& system,
-                     const std::vector<Unknown>& unknowns, int ratio, bool through_run);
+/// Derivatives of a segment's equations by the unknowns. That of the linear building or of an axis
+/// is a direction times a spectrum, the same direction for many; that of an effect is kept as
+/// whitened rows.
+struct Columns {
+  /// Of every unknown: index among the elements, then the axes, then the coordinates; -1: of an
+  /// effect.
+  std::vector<Eigen::Index> direction;
+  Eigen::MatrixXcd size;          ///< bins x unknowns: the spectrum along the direction
+  std::vector<Eigen::Index> row;  ///< of every unknown in `effects`; -1: it has a direction
+  Eigen::MatrixXd effects;        ///< whitened rows x unknowns of effects
+
+  Eigen::Index count() const { return static_cast<Eigen::Index>(direction.size()); }
+};
+
+/// ratio: steps per sample of the laws; through_run: with the derivatives of the free run's motion.
+Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& segment,
+                   std::size_t record, const Whitened& system, const std::vector<Unknown>& unknowns,
+                   int ratio, bool through_run);
+
+/// One column as whitened rows.
+Eigen::VectorXd whole_column(const Plant& plant, const Whitened& system, const Columns& columns,
+                             Eigen::Index unknown);
 
 }  // namespace framewatch::estimator

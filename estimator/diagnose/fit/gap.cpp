@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/diagnose/fit/model_error.h"
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"
 
@@ -41,6 +43,12 @@ void clip_difference(const RecordSegment& segment, const VectorXcd& measured, In
   difference.row(axis) = band_of(reading - cut, segment, 1).transpose();
 }
 
+/// Rms of a signal in the band, mean over `axes`; power: sum of |spectrum|^2 over bins and axes.
+double rms_of(double power, Index axes, const RecordSegment& segment) {
+  const double intervals = static_cast<double>(segment.intervals());
+  return std::sqrt(2 * power / static_cast<double>(std::max<Index>(1, axes))) / intervals;
+}
+
 /// Gap of the force, where a component's motion is prescribed and the force measured.
 Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segment,
               const Whitened& system) {
@@ -66,6 +74,7 @@ Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segme
   out.axis[axis] = out.overall = out.worst = std::sqrt(error / std::max(power, 1e-300));
   out.floor[axis] = out.overall_floor = std::sqrt(noise / std::max(power, 1e-300));
   out.worst_axis = static_cast<int>(axis);
+  out.measured_rms = rms_of(power, 1, segment);
   return out;
 }
 
@@ -75,14 +84,17 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
            const Whitened& system) {
   const Index n = plant.equations(), axes = plant.axis_count(), bins = system.bins();
   const MatrixXd back = plant.motion.transpose() * inverse(plant.motion * plant.motion.transpose());
+  std::vector<Index> bases;
   MatrixXd seen = MatrixXd::Zero(axes, n);  // motion of the coordinates -> axes
   VectorXd is_base = VectorXd::Zero(axes);
   for (Index a = 0; a < axes; ++a) {
     const SensorAxis& axis = plant.axes[static_cast<std::size_t>(a)];
-    if (plant.is_input(a))
+    if (plant.is_input(a)) {
       is_base[a] = 1;
-    else
+      bases.push_back(a);
+    } else {
       seen.row(a) = plant.constraint.row(plant.structure.dof(axis.story, axis.frame));
+    }
   }
   if (plant.prescribed) return force_gap(plant, model, segment, system);
   Gap out;
@@ -105,11 +117,11 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
     if (pushed.cols() > 0)
       subtract_forces(
           pushed, system.operation[at] * variance.asDiagonal() * system.operation[at].adjoint(), e);
-    const MatrixXcd own = system.operation[at] * back.cast<Complex>();
+    const MatrixXcd operation = system.operation[at];
+    const MatrixXcd own = operation * back.cast<Complex>();
     const ComplexLu solver(own);
     const VectorXcd difference = solver.solve(e);
-    const MatrixXcd from_base =
-        solver.solve(MatrixXcd(system.operation[at] * is_base.cast<Complex>().asDiagonal()));
+    const MatrixXcd from_base = solver.solve(MatrixXcd(operation(Eigen::all, bases)));
     out.difference.col(b) = seen.cast<Complex>() * difference;
     const MatrixXcd carried = seen.cast<Complex>() * from_base;
     // The gap of an axis that measures displacement is one of displacement.
@@ -117,7 +129,7 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
     for (Index a = 0; a < axes; ++a)
       if (segment.is_displaced(a)) square[a] *= std::pow(segment.w[b], -4);
     out.difference.col(b).array() *= square.array().sqrt();
-    noise += square.cwiseProduct(carried.cwiseAbs2() * variance + variance);
+    noise += square.cwiseProduct(carried.cwiseAbs2() * variance(bases) + variance);
     power += square.cwiseProduct(system.calibrated.col(b).cwiseAbs2());
   }
   for (const ModelEffect& effect : model.effects)
@@ -131,10 +143,19 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
   out.floor = (is_base.array() > 0).select(0.0, out.floor.array());
   out.overall = std::sqrt(error.sum() / std::max(power.sum(), 1e-300));
   out.overall_floor = std::sqrt(noise.sum() / std::max(power.sum(), 1e-300));
+  out.measured_rms = rms_of(power.sum(), (is_base.array() == 0).count(), segment);
   Index worst = 0;
   out.worst = out.axis.maxCoeff(&worst);
   out.worst_axis = static_cast<int>(worst);
   return out;
+}
+
+std::optional<Gap> free_run_gap(const Plant& plant, const Model& model,
+                                const RecordSegment& segment, std::size_t record, int ratio) {
+  const RecordSegment even = with_model_error(plant, {segment}, 1).front();
+  const Whitened system = whiten(plant, model, even, record, Forcing::simulated, {}, ratio);
+  if (!system.good) return std::nullopt;
+  return gap_of(plant, model, segment, system);
 }
 
 }  // namespace framewatch::estimator

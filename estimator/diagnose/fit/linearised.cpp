@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -11,33 +12,21 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-void put_rows(const Linearised& at, std::size_t record, const std::vector<Index>& kept, Index bin,
-              Eigen::Block<RowMatrix> out) {
-  const Whitened& system = at.systems[record];
-  const Index rows = out.rows(), count = static_cast<Index>(kept.size());
-  for (Index i = 0; i < rows; ++i) {
-    const double* from = &at.columns[record](rows * bin + i, 0);
-    double* to = &out(i, 0);
-    for (Index u = 0; u < count; ++u) to[u] = from[kept[static_cast<std::size_t>(u)]];
-  }
-  out.rightCols(1) = system.residual.segment(rows * bin, rows);
-}
-
 MatrixXd square_of(const Linearised& at, std::size_t record, const std::vector<Index>& kept) {
-  const Whitened& system = at.systems[record];
-  const Weights& weights = *system.weights;
+  const Weights& weights = *at.systems[record].weights;
   const Index own = static_cast<Index>(kept.size()) + 1, ends = weights.ends();
-  RowGram gram(own);
-  AlongEnds along(weights);
-  for (Index b = 0; b < system.bins(); ++b) {
-    put_rows(at, record, kept, b, gram.rows(2 * weights.equations()));
-    gram.add();
-    along.add(b, gram.written());
+  BinProducts products(at, record, kept);
+  RowMatrix square = RowMatrix::Zero(own, own);
+  RowMatrix along = RowMatrix::Zero(ends, products.at_equations().cols());
+  for (Index b = 0; b < at.systems[record].bins(); ++b) {
+    products.compute(b);
+    products.add_square(square);
+    weights.add_shares(b, products.at_equations(), along);
   }
   MatrixXd out(own + ends, own + ends);
-  out.topLeftCorner(own, own) = gram.sum();
-  out.bottomLeftCorner(ends, own) = along.sum().leftCols(own);
-  out.topRightCorner(own, ends) = along.sum().leftCols(own).transpose();
+  out.topLeftCorner(own, own) = square.selfadjointView<Eigen::Upper>();
+  out.bottomLeftCorner(ends, own) = along.leftCols(own);
+  out.topRightCorner(own, ends) = along.leftCols(own).transpose();
   out.bottomRightCorner(ends, ends) = weights.ends_square();
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "estimator/diagnose/fit/fit_columns.h"
 #include "estimator/diagnose/fit/unknowns.h"
 #include "estimator/diagnose/fit/whitened.h"
 
@@ -11,18 +12,16 @@ namespace framewatch::estimator {
 
 /// The whitened equations of all segments around one model.
 struct Linearised {
+  const Plant* plant = nullptr;
   std::vector<Unknown> unknowns;
-  std::vector<Whitened> systems;   ///< of each segment
-  std::vector<RowMatrix> columns;  ///< of each segment: d(rows)/d(unknowns)
+  std::vector<Whitened> systems;  ///< of each segment
+  std::vector<Columns> columns;   ///< of each segment: d(rows)/d(unknowns)
   /// Ratio of misfit to its expectation under noise, at least 1. The prior is weighted with it, so
   /// that a model that does not fit cannot use masses, gains and clocks to make up for it.
   double level = 1;
   Eigen::VectorXd prior, pull;  ///< level / (2 sigma^2); the same times (centre - value)
 };
 
-/// Rows of one bin: the columns of the unknowns `kept`, then the residual.
-void put_rows(const Linearised& at, std::size_t record, const std::vector<Eigen::Index>& kept,
-              Eigen::Index bin, Eigen::Block<RowMatrix> out);
 /// Gram matrix of the unknowns `kept`, the residual and the end terms, in this order.
 Eigen::MatrixXd square_of(const Linearised& at, std::size_t record,
                           const std::vector<Eigen::Index>& kept);

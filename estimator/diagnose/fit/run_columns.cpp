@@ -1,6 +1,7 @@
 #include "estimator/diagnose/fit/run_columns.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace framewatch::estimator {
 namespace {
@@ -11,23 +12,36 @@ using Eigen::VectorXd;
 using Kind = Unknown::Kind;
 
 constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
+/// Equations of a large building: there only frames at the law and next to it move its run enough
+/// for what their runs cost.
+constexpr Index kLarge = 40;
+
+bool is_near(const EffectPlace& law, int story, int frame) {
+  return law.frame == frame && std::abs(law.story - story) <= 1;
+}
 
 }  // namespace
 
 bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
   if (unknown.kind == Kind::parameter || unknown.kind == Kind::record_parameter) return true;
   const Structure& s = plant.structure;
-  int frame = -1;  // none: of all directions
+  int frame = -1, story = 0;  // none: of all directions
   if (unknown.kind == Kind::theta) {
     if (unknown.index >= plant.element_count()) return false;
     frame = plant.table[unknown.index].frame;
     if (frame < 0) return false;
+    story = plant.table[unknown.index].story;
   } else if (unknown.kind == Kind::mass) {
-    if (plant.equations() == s.degrees_of_freedom()) frame = unknown.index % s.frames();
+    if (plant.equations() == s.degrees_of_freedom()) {
+      frame = unknown.index % s.frames();
+      story = unknown.index / s.frames() + 1;
+    }
   } else {
     return false;
   }
   return std::any_of(model.effects.begin(), model.effects.end(), [&](const ModelEffect& e) {
+    if (plant.equations() > kLarge && frame >= 0)
+      return e.element_law() && is_near(e.place, story, frame);
     return e.element_law() &&
            (e.place.frame < 0 || frame < 0 || s.direction(e.place.frame) == s.direction(frame));
   });

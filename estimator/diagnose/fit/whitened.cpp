@@ -42,7 +42,7 @@ VectorXd whiten_rows(const Whitened& s, const VectorXd& direction, const VectorX
 }
 
 VectorXd whiten_axis(const Whitened& s, Index axis, const VectorXcd& signal) {
-  const Index n = s.operation.empty() ? 0 : s.operation[0].rows();
+  const Index n = s.operation.equations();
   VectorXd out(2 * n * signal.size());
   for (Index b = 0; b < signal.size(); ++b) {
     const auto at = static_cast<std::size_t>(b);
@@ -153,18 +153,11 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
       (1 + model.mass_change.array()).matrix().asDiagonal() * plant.building.mass + plant.push;
   const MatrixXd stiffness = act * theta.head(elements).asDiagonal() * sense;
   const MatrixXd damping = act * theta.tail(elements).asDiagonal() * sense;
-  out.operation.resize(static_cast<std::size_t>(bins));
-  for (Index b = 0; b < bins; ++b) {
-    const double w = segment.w[b];
-    MatrixXcd& d = out.operation[static_cast<std::size_t>(b)];
-    d.resize(n, plant.axis_count());
-    d.real() = mass - stiffness / (w * w);
-    d.imag() = damping / -w;
-    for (const LinearOperation& l : additions) l.add_to(w, d);
-  }
+  out.operation = Operations(mass, stiffness, damping, std::move(additions), segment.w);
   if (!weights) {
     std::vector<MatrixXcd> own =
-        whiteners(out.operation, noise_of(model, segment), kArbitrary * pushed);
+        whiteners([&](Index b) { return out.operation[static_cast<std::size_t>(b)]; },
+                  noise_of(model, segment), kArbitrary * pushed);
     if (own.empty()) return out;
     weights = std::make_shared<const Weights>(std::move(own), segment.w, std::move(hidden));
   }

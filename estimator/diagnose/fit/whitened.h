@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/fit/law_tracks.h"
+#include "estimator/diagnose/fit/operations.h"
 #include "estimator/diagnose/model/model.h"
 #include "estimator/diagnose/spectra/record_segment.h"
 #include "estimator/diagnose/spectra/weights.h"
@@ -20,7 +21,7 @@ inline constexpr double kNearNoise = 1.5;
 /// sensors put into them: docs/equations.md (33).
 struct Whitened {
   bool good = false;
-  std::vector<Eigen::MatrixXcd> operation;  ///< D of every bin, equations x axes
+  Operations operation;  ///< D of every bin
   std::shared_ptr<const Weights> weights;
   Eigen::MatrixXcd calibrated;          ///< axes x bins: spectra without the axes' errors
   Eigen::MatrixXcd motion;              ///< the likeliest motion: less noise where the model fits

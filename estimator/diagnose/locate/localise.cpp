@@ -5,6 +5,8 @@
 #include <complex>
 #include <span>
 
+#include "estimator/diagnose/fit/bin_products.h"
+#include "estimator/numeric/complex.h"
 namespace framewatch::estimator {
 namespace {
 
@@ -13,8 +15,11 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kConverged = 1e-3;   ///< change of the misfit, relative
-constexpr std::size_t kTogether = 8;  ///< lists that are processed in one pass over the rows
+constexpr double kConverged = 1e-3;  ///< change of the misfit, relative
+/// Of a direction's square, below which it depends on those before it.
+constexpr double kIndependent = 1e-12;
+/// Lists that are processed in one pass over the bins: so many numbers of their squares, but a few.
+constexpr std::size_t kNumbersTogether = 8'000'000, kFewestTogether = 8, kMostTogether = 64;
 
 /// Which unknowns a step may change; masses, gains and clocks within tolerance only if
 /// `tolerances`.
@@ -30,28 +35,81 @@ std::vector<Index> moving(const Linearised& at, bool tolerances) {
   return out;
 }
 
+/// Products of the orthonormal directions of a list of places, whitened, with the columns and with
+/// unit forces on the equations; directions x either.
+struct Along {
+  MatrixXcd columns, equations;
+};
+
+Complex product(const Eigen::RowVectorXcd& equations, const BinProducts::Direction& direction) {
+  Complex out = 0;
+  for (const BinProducts::Entry& e : direction)
+    out += equations[e.equation] * Complex(e.real, e.imaginary);
+  return out;
+}
+
+Along along_places(const BinProducts& products, const std::vector<CandidatePlace>& places) {
+  std::vector<BinProducts::Direction> directions;
+  for (const CandidatePlace& place : places) {
+    if (place.kind == CandidatePlace::Kind::axis)
+      directions.push_back(products.of_axis(place.axis));
+    for (Index c = 0; c < place.directions.cols(); ++c)
+      directions.push_back(products.of_force(place.directions.col(c)));
+  }
+  Along out;
+  const auto count = static_cast<Index>(directions.size());
+  for (Index i = 0; i < count; ++i) {
+    const BinProducts::Direction& direction = directions[static_cast<std::size_t>(i)];
+    const Eigen::RowVectorXcd equations = products.under_metric(direction),
+                              columns = products.with_columns(direction);
+    if (i == 0) {
+      out.equations = MatrixXcd::Zero(count, equations.size());
+      out.columns = MatrixXcd::Zero(count, columns.size());
+    }
+    out.equations.row(i) = equations;
+    out.columns.row(i) = columns;
+    const double before = product(equations, direction).real();
+    double square = before;
+    // equations.row(k) force: the product of the orthonormal direction k with this one.
+    for (Index k = 0; k < i; ++k) {
+      const Complex with = product(out.equations.row(k), direction);
+      out.equations.row(i) -= std::conj(with) * out.equations.row(k);
+      out.columns.row(i) -= std::conj(with) * out.columns.row(k);
+      square -= std::norm(with);
+    }
+    const double scale = square > kIndependent * before ? 1 / std::sqrt(square) : 0.0;
+    out.equations.row(i) *= scale;
+    out.columns.row(i) *= scale;
+  }
+  return out;
+}
+
 /// For each list: the Gram matrix of the unknowns, the residual and the end terms with the whitened
 /// directions of the list's places projected out.
 std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std::size_t record,
                               const std::vector<Index>& kept,
                               std::span<const std::vector<CandidatePlace>> lists) {
   const Whitened& system = at.systems[record];
-  const Index n = system.weights->equations();
+  const Index n = system.weights->equations(), ends = system.weights->ends();
   std::vector<RowGram> along(lists.size(), RowGram(square.cols()));
-  const Index own = static_cast<Index>(kept.size()) + 1;
-  RowGram here(own);
-  RowMatrix part;
+  BinProducts products(at, record, kept);
+  RowMatrix forces, shares;
   for (Index b = 0; b < system.bins(); ++b) {
-    put_rows(at, record, kept, b, here.rows(2 * n));
+    products.compute(b);
     for (std::size_t i = 0; i < lists.size(); ++i) {
-      const MatrixXcd basis = candidate_basis(system, b, lists[i]);
-      RowMatrix directions(2 * basis.cols(), 2 * n);
-      directions << basis.real().transpose(), basis.imag().transpose(), -basis.imag().transpose(),
-          basis.real().transpose();
-      auto rows = along[i].rows(directions.rows());
-      multiply(directions, here.written(), part);
-      rows.leftCols(own) = part.leftCols(own);
-      rows.rightCols(rows.cols() - own) = system.weights->times_ends(b, directions);
+      const Along places = along_places(products, lists[i]);
+      const Index count = places.columns.rows(), own = places.columns.cols();
+      auto rows = along[i].rows(2 * count);
+      rows.topLeftCorner(count, own) = places.columns.real();
+      rows.bottomLeftCorner(count, own) = places.columns.imag();
+      forces.resize(2 * n, 2 * count);
+      forces.topLeftCorner(n, count) = places.equations.real().transpose();
+      forces.topRightCorner(n, count) = places.equations.imag().transpose();
+      forces.bottomLeftCorner(n, count) = places.equations.imag().transpose();
+      forces.bottomRightCorner(n, count) = -places.equations.real().transpose();
+      shares.setZero(ends, 2 * count);
+      system.weights->add_shares(b, forces, shares);
+      rows.rightCols(ends) = shares.transpose();
       along[i].add();
     }
   }
@@ -162,11 +220,14 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     whole(kept) = step;
     one.model = fitter.moved(model, at.unknowns, whole);
   };
-  const std::size_t groups = (lists.size() + kTogether - 1) / kTogether;
+  const auto numbers = static_cast<std::size_t>(squares.empty() ? 1 : squares.front().size());
+  const std::size_t at_once =
+      std::clamp(kNumbersTogether / numbers, kFewestTogether, kMostTogether);
+  const std::size_t groups = (lists.size() + at_once - 1) / at_once;
   run_all(parallel, static_cast<int>(groups), [&](int group) {
-    const std::size_t first = static_cast<std::size_t>(group) * kTogether;
+    const std::size_t first = static_cast<std::size_t>(group) * at_once;
     const std::span together =
-        std::span(lists).subspan(first, std::min(kTogether, lists.size() - first));
+        std::span(lists).subspan(first, std::min(at_once, lists.size() - first));
     const std::vector<Reduced> reduced = reduce(fitter, at, model, kept, squares, together);
     for (std::size_t i = 0; i < reduced.size(); ++i) store(first + i, reduced[i]);
   });

@@ -14,6 +14,7 @@ constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor
 constexpr std::size_t kContenders = 3, kMostContenders = 5;
 constexpr std::size_t kMostAsLikely = 16;
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
+constexpr std::size_t kAxesOfPairs = 24;
 constexpr int kSteps = 8, kPairSteps = 6;
 constexpr int kTrialSteps = 3;     ///< before the ratios are compared
 constexpr double kWideMargin = 2;  ///< times the margin: places above it then are not iterated on
@@ -125,10 +126,14 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
                                        const Parallel& parallel) {
   const std::vector<CandidatePlace> all = of_one_direction(once);
   std::vector<std::vector<CandidatePlace>> lists;
+  // Two exchanged axes stand out among the axes, each for itself.
+  std::vector<char> leading_axis(all.size(), 0);
+  std::size_t axes = 0;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].kind == CandidatePlace::Kind::axis) leading_axis[i] = axes++ < kAxesOfPairs;
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = i + 1; j < all.size(); ++j)
-      if (i < kPairLeaders ||
-          (all[i].kind == CandidatePlace::Kind::axis && all[j].kind == CandidatePlace::Kind::axis))
+      if (i < kPairLeaders || (leading_axis[i] && leading_axis[j]))
         lists.push_back({all[i], all[j]});
   return best_lists(fitter, now, lists, parallel);
 }

@@ -13,6 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr Index kEndTerms = 4;
+constexpr Index kSmall = 24;  ///< equations below which the kernels do not pay
 
 Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
                  std::vector<HiddenOscillator> hidden)
@@ -22,14 +23,15 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
   const Index n = equations();
   scale_ = VectorXd::Ones(kEndTerms * n + 2 * static_cast<Index>(hidden_.size()));
   RowMatrix sum = RowMatrix::Zero(ends(), ends());
-  RowMatrix forces, transposed, square, along, turned;
+  RowMatrix square(2 * n, 2 * n), along, turned;
   for (Index b = 0; b < bins(); ++b) {
-    put_unit_forces(b, false, forces);
-    put_unit_forces(b, true, transposed);
-    multiply(transposed, forces, square);
-    along.setZero(ends(), square.cols());
+    const MatrixXcd inner = metric(b);  // of unit forces, real ones and then those of value -j
+    square.topLeftCorner(n, n) = square.bottomRightCorner(n, n) = inner.real();
+    square.topRightCorner(n, n) = inner.imag();
+    square.bottomLeftCorner(n, n) = -inner.imag();
+    along.setZero(ends(), 2 * n);
     add_shares(b, square, along);
-    turned = along.leftCols(2 * n).transpose();
+    turned = along.transpose();
     add_shares(b, turned, sum);
   }
   scale_ = sum.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
@@ -37,6 +39,22 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
   MatrixXd regular = square_;
   regular.diagonal().array() += 1e-12;
   factor_ = Ldlt(regular);
+}
+
+MatrixXcd Weights::metric(Index bin) const {
+  const MatrixXcd& w = whitener(bin);
+  const Index n = w.rows();
+  if (n < kSmall) return w.adjoint().lazyProduct(w);
+  RowGram gram(2 * n);
+  auto rows = gram.rows(n);
+  rows.leftCols(n) = w.real();
+  rows.rightCols(n) = w.imag();
+  gram.add();
+  const MatrixXd sum = gram.sum(), cross = sum.topRightCorner(n, n);
+  MatrixXcd out(n, n);
+  out.real() = sum.topLeftCorner(n, n) + sum.bottomRightCorner(n, n);
+  out.imag() = cross - cross.transpose();
+  return out;
 }
 
 void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const {
@@ -110,13 +128,6 @@ VectorXd Weights::without_ends(const VectorXd& rows) const {
     out.segment(2 * n * b, 2 * n).noalias() -= forces.leftCols(2 * n) * shared(b, size);
   }
   return out;
-}
-
-void AlongEnds::add(Index bin, const RowMatrix& rows) {
-  if (sum_.size() == 0) sum_ = RowMatrix::Zero(weights_.ends(), rows.cols());
-  weights_.put_unit_forces(bin, true, forces_);
-  multiply(forces_, rows, along_);
-  weights_.add_shares(bin, along_, sum_);
 }
 
 }  // namespace framewatch::estimator

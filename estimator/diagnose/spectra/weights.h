@@ -31,6 +31,9 @@ class Weights {
     return whitener_[static_cast<std::size_t>(bin)];
   }
 
+  /// Inverse of the equations' noise covariance in a bin: whitener^H whitener.
+  Eigen::MatrixXcd metric(Eigen::Index bin) const;
+
   /// Number of end terms. Their columns, each of unit length, are E: rows x ends().
   Eigen::Index ends() const { return scale_.size(); }
   /// E'E.
@@ -57,21 +60,6 @@ class Weights {
   Eigen::VectorXd scale_;  ///< of the columns
   Eigen::MatrixXd square_;
   Ldlt factor_;
-};
-
-/// E' rows, summed over bins.
-class AlongEnds {
- public:
-  explicit AlongEnds(const Weights& weights) : weights_(weights) {}
-
-  /// rows of one bin, always of as many columns, a multiple of kLane.
-  void add(Eigen::Index bin, const RowMatrix& rows);
-  /// ends x columns.
-  const RowMatrix& sum() const { return sum_; }
-
- private:
-  const Weights& weights_;
-  RowMatrix forces_, along_, sum_;
 };
 
 }  // namespace framewatch::estimator

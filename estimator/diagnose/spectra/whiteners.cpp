@@ -59,9 +59,10 @@ void add_pushed(const MatrixXd& pushed, Index k, SideBySide& covariance) {
 
 }  // namespace
 
-std::vector<MatrixXcd> whiteners(const std::vector<MatrixXcd>& operation, const MatrixXd& noise,
-                                 const MatrixXd& pushed) {
-  const Index n = operation.front().rows(), axes = operation.front().cols(), bins = noise.cols();
+std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operation,
+                                 const MatrixXd& noise, const MatrixXd& pushed) {
+  const MatrixXcd first_of_all = operation(0);
+  const Index n = first_of_all.rows(), axes = first_of_all.cols(), bins = noise.cols();
   std::vector<MatrixXcd> out;
   SideBySide d(n, axes), matrix(n, n);
   Eigen::Matrix<double, kBins, Eigen::Dynamic> variance(kBins, axes);
@@ -69,7 +70,7 @@ std::vector<MatrixXcd> whiteners(const std::vector<MatrixXcd>& operation, const 
     const Index here = std::min<Index>(kBins, bins - first);
     for (Index k = 0; k < kBins; ++k) {  // the last bin fills up the block
       const Index b = first + std::min(k, here - 1);
-      d.put(operation[static_cast<std::size_t>(b)], k);
+      d.put(operation(b), k);
       variance.row(k) = noise.col(b).transpose();
     }
     kernels::in_use->noise_covariance(d.data(), variance.data(), static_cast<int>(n),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -11,8 +12,8 @@ namespace framewatch::estimator {
 /// operation: D of every bin, equations x axes; noise: variances S, axes x bins; pushed: covariance
 /// of arbitrary forces, equations x equations, in units of the mean variance of an equation; or
 /// empty.
-std::vector<Eigen::MatrixXcd> whiteners(const std::vector<Eigen::MatrixXcd>& operation,
-                                        const Eigen::MatrixXd& noise,
-                                        const Eigen::MatrixXd& pushed);
+std::vector<Eigen::MatrixXcd> whiteners(
+    const std::function<Eigen::MatrixXcd(Eigen::Index)>& operation, const Eigen::MatrixXd& noise,
+    const Eigen::MatrixXd& pushed);
 
 }  // namespace framewatch::estimator

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "estimator/diagnose/fit/judged_fit.h"
+#include "estimator/diagnose/fit/model_error.h"
 #include "estimator/diagnose/trials/declared.h"
 #include "estimator/diagnose/trials/implausible_masses.h"
 #include "estimator/diagnose/trials/known_effects.h"
@@ -87,14 +89,15 @@ class Search {
     for (int round = 0; round < options_.rounds && more; ++round) more = one_round(now, round);
     report("what stays", 0.92);
     if (!out_.effects.empty()) polish(now);
-    out_.model = now.model;
-    out_.declared = declared_model(plant_, segments_, now.model, {&out_.known, &out_.effects});
     out_.ratio_after = ratio(now);
+    set_models(now.model);
     mark_approximate(now.model);
-    set_errors(fitter_, now.model, now.motion, out_.effects);
-    set_errors(fitter_, now.model, now.motion, out_.known);
+    set_errors(fitter_, out_.model, now.motion, out_.effects);
+    set_errors(fitter_, out_.model, now.motion, out_.known);
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
     set_gaps(fitter_, options_.holdout_from, out_);
+    if (ramps.empty() && withdraw_worse(options_.holdout_from, out_)) set_models(out_.linear);
+    set_leading(fitter_, options_.holdout_from, out_);
     judge(fitter_, out_);
     return out_;
   }
@@ -150,6 +153,22 @@ class Search {
       report(what, from + 0.2 * share);
     };
     return context;
+  }
+
+  /// The models of the result. Where more than noise is left they are fitted to what they are
+  /// judged by.
+  void set_models(const Model& model) {
+    out_.model = model;
+    std::vector<RecordSegment> segments = segments_;
+    if (out_.ratio_before > kNearNoise)
+      out_.linear = judged_fit(fitter_, linear_starts(plant_, out_.linear), kPolishSteps).model;
+    if (out_.ratio_after > kNearNoise) {
+      const JudgedFit judged =
+          judged_fit(fitter_, {out_.effects.empty() ? out_.linear : model}, kPolishSteps);
+      out_.model = judged.model;
+      segments = with_model_error(plant_, segments_, std::min(judged.gap, 1.0));
+    }
+    out_.declared = declared_model(plant_, segments, out_.model, {&out_.known, &out_.effects});
   }
 
   bool one_round(FitResult& now, int round) {
@@ -225,8 +244,6 @@ class Search {
     const Trial& best = trials.front();
     FoundEffect found;
     found.chosen = best;
-    found.before = mean_gap(gaps_of(fitter_, now.model), options_.holdout_from);
-    found.after = mean_gap(gaps_of(fitter_, best.model), options_.holdout_from);
     found.alternatives = without_duplicates(trials);
     found.alternatives.erase(found.alternatives.begin());
     for (const Trial& t : found.alternatives)
@@ -287,7 +304,6 @@ class Search {
       Model start = now.model;
       start.effects.erase(start.effects.begin() + index);
       if (!replaced_by(start, now)) continue;
-      out_.effects[i + 1].before = out_.effects[i].before;
       out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(i));
       for (FoundEffect& e : out_.effects) e.index -= e.index > index;
       out_.effects.back().chosen.model = now.model;
@@ -309,7 +325,7 @@ Diagnosis diagnose(const Plant& plant, const std::vector<RecordSegment>& segment
   std::vector<RecordSegment> straight = segments;
   const std::vector<FoundEffect> ramps = remove_ramps(plant, options, straight);
   Diagnosis out = Search(plant, straight, options).run(ramps);
-  add_ramps_to_gaps(straight, options.holdout_from, out);
+  add_ramps_to_gaps(plant, straight, options.holdout_from, out);
   return out;
 }
 

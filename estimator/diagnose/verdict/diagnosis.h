@@ -27,6 +27,13 @@ struct WhereEntry {
   double peak = 0;  ///< of that signal: N, of an axis m/s^2
 };
 
+/// The best of the laws that were tried and not named: the free run with it, fitted to the training
+/// records, disagrees less with every record than without.
+struct LeadingLaw {
+  Trial trial;
+  double before = 0, after = 0;  ///< held-out gap without and with it
+};
+
 struct Diagnosis {
   Verdict verdict = Verdict::unexplained;
   std::string reason;
@@ -41,6 +48,7 @@ struct Diagnosis {
   std::vector<WhereEntry> where;             ///< the likeliest places, best first
   std::vector<WhereEntry> map;               ///< every place, without the signal
   std::vector<Trial> rejected;               ///< trials of the last round, if none was adopted
+  std::vector<LeadingLaw> leading;           ///< where nothing was named, best first
   double ratio_before = 0, ratio_after = 0;  ///< misfit over its expectation
 };
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/fit/model_error.h"
 #include "estimator/diagnose/model/bias.h"
+#include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::estimator {
 
@@ -41,39 +43,39 @@ std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions
   return out;
 }
 
-void add_ramps_to_gaps(const std::vector<RecordSegment>& segments, std::size_t holdout_from,
-                       Diagnosis& d) {
-  for (FoundEffect& found : d.effects) {
-    if (found.ramp_mps3.empty()) continue;
-    found.before = found.after = 0;
-    std::size_t held = 0;
-    for (std::size_t r = 0; r < d.before.size(); ++r) {
-      const RecordSegment& s = segments[r];
-      const Index axis = found.chosen.place.channel;
-      const double length = std::max(s.seconds() - found.ramp_from_s[r], 0.0);
-      const double share = length / s.seconds();
-      // Of slope max(t - from, 0) about its mean.
-      const double square =
-          std::pow(found.ramp_mps3[r] * length, 2) * share * (1.0 / 3 - share / 4);
-      const double intervals = static_cast<double>(s.intervals());
-      const double power = 2 * s.spectrum.row(axis).squaredNorm() / (intervals * intervals);
-      Gap& gap = d.before[r];
-      gap.axis[axis] = std::hypot(gap.axis[axis], std::sqrt(square / std::max(power, 1e-300)));
-      if (gap.axis[axis] > gap.worst) {
-        gap.worst = gap.axis[axis];
-        gap.worst_axis = static_cast<int>(axis);
-      }
-      const double all = 2 * s.spectrum.squaredNorm() / (intervals * intervals);
-      gap.overall = std::hypot(gap.overall, std::sqrt(square / std::max(all, 1e-300)));
-      if (r < holdout_from) continue;
-      ++held;
-      found.before += gap.overall;
-      found.after += d.after[r].overall;
-    }
-    if (held > 0) {
-      found.before /= static_cast<double>(held);
-      found.after /= static_cast<double>(held);
-    }
+namespace {
+
+/// outputs: axes that Gap::overall is of.
+void add_ramp(const RecordSegment& s, Index axis, double slope, double from_s, Index outputs,
+              Gap& gap) {
+  const double length = std::max(s.seconds() - from_s, 0.0), share = length / s.seconds();
+  // Of slope max(t - from, 0) about its mean.
+  const double square = std::pow(slope * length, 2) * share * (1.0 / 3 - share / 4);
+  const double intervals = static_cast<double>(s.intervals());
+  const double power = 2 * s.spectrum.row(axis).squaredNorm() / (intervals * intervals);
+  const double all = static_cast<double>(outputs) * gap.measured_rms * gap.measured_rms;
+  gap.axis[axis] = std::hypot(gap.axis[axis], std::sqrt(square / std::max(power, 1e-300)));
+  if (gap.axis[axis] > gap.worst) {
+    gap.worst = gap.axis[axis];
+    gap.worst_axis = static_cast<int>(axis);
+  }
+  gap.overall = std::hypot(gap.overall, std::sqrt(square / std::max(all, 1e-300)));
+}
+
+}  // namespace
+
+void add_ramps_to_gaps(const Plant& plant, const std::vector<RecordSegment>& segments,
+                       std::size_t holdout_from, Diagnosis& d) {
+  Index outputs = 0;
+  for (Index a = 0; a < plant.axis_count(); ++a) outputs += is_output(plant, a);
+  // The last one first: what it leaves is the gap that the search began with.
+  for (auto found = d.effects.rbegin(); found != d.effects.rend(); ++found) {
+    if (found->ramp_mps3.empty()) continue;
+    found->after = mean_gap(d.before, holdout_from);
+    for (std::size_t r = 0; r < d.before.size(); ++r)
+      add_ramp(segments[r], found->chosen.place.channel, found->ramp_mps3[r], found->ramp_from_s[r],
+               outputs, d.before[r]);
+    found->before = mean_gap(d.before, holdout_from);
   }
 }
 

@@ -12,7 +12,7 @@ std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions
                                       std::vector<RecordSegment>& segments);
 
 /// Adds the ramps, which lie below the band, to the gap before the diagnosis.
-void add_ramps_to_gaps(const std::vector<RecordSegment>& segments, std::size_t holdout_from,
-                       Diagnosis& diagnosis);
+void add_ramps_to_gaps(const Plant& plant, const std::vector<RecordSegment>& segments,
+                       std::size_t holdout_from, Diagnosis& diagnosis);
 
 }  // namespace framewatch::estimator

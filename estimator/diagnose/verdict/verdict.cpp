@@ -11,6 +11,11 @@ constexpr double kNearFloor = 2.5;     ///< NRMSE over its floor
 constexpr double kAtFloor = 1.15;      ///< the same
 constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
 constexpr int kTrainSteps = 8;
+constexpr std::size_t kLeading = 3;  ///< rejected laws whose free run is fitted
+constexpr int kLeadingSteps = 4;
+constexpr double kLeads = 0.9;     ///< gap with a law over the one without
+constexpr double kNoWorse = 1.02;  ///< the same of any record
+constexpr double kWorse = 1.1;     ///< held-out gap with what was found over the one without
 /// Of the misfit beyond noise that is left at most when each record is fitted separately.
 constexpr double kApart = 0.25;
 
@@ -44,44 +49,134 @@ const char* verdict_word(Verdict verdict) {
   return "unexplained";
 }
 
-std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
-  std::vector<Gap> out;
-  for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
-    const RecordSegment& s = fitter.segments()[r];
-    const Whitened system =
-        whiten(fitter.plant(), model, s, r, Forcing::simulated, {}, fitter.ratio(r));
-    if (system.good) out.push_back(gap_of(fitter.plant(), model, s, system));
-  }
-  return out;
-}
-
 double mean_gap(const std::vector<Gap>& gaps, std::size_t from) {
   double error = 0;
   for (std::size_t r = from; r < gaps.size(); ++r) error += gaps[r].overall;
   return gaps.size() > from ? error / static_cast<double>(gaps.size() - from) : 0;
 }
 
+namespace {
+
+std::vector<RecordSegment> training(const Fitter& fitter, std::size_t holdout_from) {
+  const std::vector<RecordSegment>& all = fitter.segments();
+  return {all.begin(), all.begin() + static_cast<long>(std::min(holdout_from, all.size()))};
+}
+
+/// The model without the effects from `first` on.
+Model with_first(const Model& model, const std::vector<FoundEffect>& effects, std::size_t first,
+                 const Plant& plant) {
+  Model out = model;
+  const Model none = initial_model(plant);
+  std::vector<int> leaving;
+  for (std::size_t i = first; i < effects.size(); ++i) {
+    const FoundEffect& e = effects[i];
+    const int axis = e.chosen.place.channel;
+    if (e.index >= 0) {
+      leaving.push_back(e.index);
+    } else if (e.ramp_mps3.empty()) {
+      std::erase(out.free_gain, axis);
+      std::erase(out.free_clock, axis);
+      out.gain[axis] = none.gain[axis];
+      out.clock_s[axis] = none.clock_s[axis];
+    }
+  }
+  std::sort(leaving.rbegin(), leaving.rend());
+  for (const int index : leaving) out.effects.erase(out.effects.begin() + index);
+  return out;
+}
+
+}  // namespace
+
 void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
-  const std::vector<RecordSegment>& segments = fitter.segments();
-  const std::vector<RecordSegment> seen(
-      segments.begin(),
-      segments.begin() + static_cast<long>(std::min(holdout_from, segments.size())));
+  const std::vector<RecordSegment> seen = training(fitter, holdout_from);
   const Fitter train(fitter.plant(), seen, fitter.tolerances());
-  const auto of_train = [&](const Model& start) {
-    const FitResult fitted = train.fit(start, {}, thorough(start, kTrainSteps));
-    return gaps_of(fitter, fitted.good ? fitted.model : start);
+  const auto of_train = [&](const std::vector<Model>& starts) {
+    return gaps_of(fitter, judged_fit(train, starts, kTrainSteps).model);
   };
-  out.before = of_train(out.linear);
+  out.before = of_train(linear_starts(fitter.plant(), out.linear));
   if (out.effects.empty()) {
     out.after = out.before;
     return;
   }
-  out.after = of_train(out.model);
+  out.after = of_train({out.model});
   const std::vector<Gap> all = gaps_of(fitter, out.model);
   if (mean_gap(out.after, holdout_from) > kUndetermined * mean_gap(all, holdout_from)) {
     out.after = all;
     out.after_of_all = true;
   }
+  double gap = mean_gap(out.before, holdout_from);
+  for (std::size_t i = 0; i < out.effects.size(); ++i) {
+    FoundEffect& effect = out.effects[i];
+    effect.before = gap;
+    if (i + 1 == out.effects.size())
+      gap = mean_gap(out.after, holdout_from);
+    else if (effect.ramp_mps3.empty())
+      gap = mean_gap(of_train({with_first(out.model, out.effects, i + 1, fitter.plant())}),
+                     holdout_from);
+    effect.after = gap;
+  }
+}
+
+namespace {
+
+bool is_arbitrary(const Model& model) {
+  return std::any_of(model.effects.begin(), model.effects.end(),
+                     [](const ModelEffect& e) { return e.form == LawForm::broadband; });
+}
+
+/// Whether no record is worse.
+bool no_worse(const std::vector<Gap>& before, const std::vector<Gap>& after) {
+  if (after.size() < before.size()) return false;
+  for (std::size_t r = 0; r < before.size(); ++r)
+    if (after[r].overall > kNoWorse * before[r].overall || after[r].overall > 1) return false;
+  return true;
+}
+
+}  // namespace
+
+void set_leading(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
+  if (!out.effects.empty() || out.ratio_after < kNearNoise) return;
+  const std::vector<RecordSegment> seen = training(fitter, holdout_from);
+  const Fitter train(fitter.plant(), seen, fitter.tolerances());
+  std::size_t tried = 0;
+  for (const Trial& t : out.rejected) {
+    if (t.outcome != TrialOutcome::fitted || is_arbitrary(t.model)) continue;
+    if (tried++ == kLeading) break;
+    const std::vector<Gap> gaps =
+        gaps_of(fitter, judged_fit(train, {t.model}, kLeadingSteps).model);
+    if (!no_worse(out.before, gaps)) continue;
+    const LeadingLaw law{t, mean_gap(out.before, holdout_from), mean_gap(gaps, holdout_from)};
+    if (law.after < kLeads * law.before) out.leading.push_back(law);
+  }
+  std::stable_sort(out.leading.begin(), out.leading.end(),
+                   [](const LeadingLaw& a, const LeadingLaw& b) { return a.after < b.after; });
+}
+
+bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
+  if (out.effects.empty()) return false;
+  const double before = mean_gap(out.before, holdout_from),
+               after = mean_gap(out.after, holdout_from);
+  const bool beyond =
+      std::any_of(out.after.begin(), out.after.end(), [](const Gap& g) { return g.overall > 1; });
+  if (!beyond && after <= kWorse * before) return false;
+  for (const FoundEffect& e : out.effects) out.rejected.push_back(e.chosen);
+  out.effects.clear();
+  out.reason = "the model with what was found is worse than the one without";
+  out.after = out.before;
+  out.after_of_all = false;
+  out.ratio_after = out.ratio_before;
+  return true;
+}
+
+Grade grade_of(const FoundEffect& effect) {
+  constexpr double kSure = 0.95;
+  return effect.confidence >= kSure && !effect.approximate && effect.like.empty()
+             ? Grade::established
+             : Grade::leading;
+}
+
+const char* grade_word(Grade grade) {
+  return grade == Grade::established ? "established" : "leading";
 }
 
 void judge(const Fitter& fitter, Diagnosis& out) {
@@ -105,7 +200,13 @@ void judge(const Fitter& fitter, Diagnosis& out) {
   }
   const double fraction =
       (out.ratio_before - out.ratio_after) / std::max(out.ratio_before - 1, 1e-9);
-  out.verdict = fits || (fraction > kExplainsAll && gap < kNearFloor * floor)
+  // An arbitrary force does as well as any law: it explains nothing.
+  const bool surrogate =
+      std::any_of(out.effects.begin(), out.effects.end(), [&](const FoundEffect& e) {
+        return e.index >= 0 &&
+               out.model.effects[static_cast<std::size_t>(e.index)].form == LawForm::broadband;
+      });
+  out.verdict = !surrogate && (fits || (fraction > kExplainsAll && gap < kNearFloor * floor))
                     ? Verdict::explained
                     : Verdict::partly_explained;
 }

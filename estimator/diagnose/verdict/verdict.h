@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/verdict/diagnosis.h"
 
 namespace framewatch::estimator {
@@ -12,15 +12,27 @@ const char* verdict_word(Verdict verdict);
 /// Ratio of misfit to its expectation below which a model is adequate.
 constexpr double kAdequate = 1.25;
 
-/// Gap of a model's free run of each segment; segments whose run diverges are left out.
-std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model);
-
 /// Mean NRMSE over the segments from `from` on; 0 when there is none.
 double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
 
-/// Sets Diagnosis::before and after: gaps of models fitted without the segments from `holdout_from`
-/// on.
+/// Sets Diagnosis::before and after, and before and after of its effects in their order: gaps of
+/// models fitted to the segments before `holdout_from` alone, as they are judged (judged_fit).
 void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out);
+
+/// Sets Diagnosis::leading from its rejected trials; after set_gaps().
+void set_leading(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out);
+
+/// Takes every name back whose model is worse than none: a gap above 100 % in any record, or, held
+/// out, above the one before by more than a tenth. Whether it did.
+bool withdraw_worse(std::size_t holdout_from, Diagnosis& out);
+
+/// How far a name is to be trusted.
+enum class Grade {
+  established,  ///< nothing else comes near, and nothing but noise is left beside it
+  leading,      ///< the best of several, or of what is left something else is the cause
+};
+Grade grade_of(const FoundEffect& effect);
+const char* grade_word(Grade grade);
 
 /// Sets Diagnosis::verdict and reason.
 void judge(const Fitter& fitter, Diagnosis& out);

@@ -68,12 +68,12 @@ TEST_P(FitColumns, AreTheDerivativesOfTheResidual) {
   ASSERT_TRUE(at.good);
   at.motion = at.calibrated;
   const std::vector<Unknown> unknowns = unknowns_of(plant, model, {});
-  const RowMatrix columns = columns_of(plant, model, segment, 0, at, unknowns, ratio, false);
-  ASSERT_EQ(columns.cols(), static_cast<Index>(unknowns.size()));
+  const Columns columns = columns_of(plant, model, segment, 0, at, unknowns, ratio, false);
+  ASSERT_EQ(columns.count(), static_cast<Index>(unknowns.size()));
   for (std::size_t u = 0; u < unknowns.size(); ++u) {
     if (held(effect, plant, unknowns[u])) continue;
     const VectorXd expected = difference(plant, model, segment, at, unknowns[u], ratio);
-    const VectorXd column = columns.col(static_cast<Index>(u));
+    const VectorXd column = whole_column(plant, at, columns, static_cast<Index>(u));
     EXPECT_GT(expected.norm(), 0) << u;
     const bool linear = unknowns[u].kind < Unknown::Kind::parameter;
     EXPECT_LT((column - expected).norm(), (linear ? kTolerance : kOfOneSide) * expected.norm())
@@ -128,7 +128,9 @@ TEST(FitColumnsOfRecords, OnlyARecordsOwnValuesMoveIt) {
   for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
     const bool other =
         at.unknowns[u].kind == Unknown::Kind::record_parameter && at.unknowns[u].record == 1;
-    EXPECT_EQ(at.columns[0].col(static_cast<Index>(u)).isZero(0), other);
+    const VectorXd column =
+        whole_column(plant, at.systems[0], at.columns[0], static_cast<Index>(u));
+    EXPECT_EQ(column.isZero(0), other);
     others += other;
   }
   EXPECT_EQ(others, 2);

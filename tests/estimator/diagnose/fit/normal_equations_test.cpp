@@ -1,3 +1,4 @@
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -26,18 +27,34 @@ struct Case {
   Linearised at = fitter.linearise(model, fitter.systems(model, {}, Forcing::measured));
 };
 
+MatrixXd whole_columns(const Linearised& at, std::size_t record) {
+  const Columns& columns = at.columns[record];
+  MatrixXd out(at.systems[record].residual.size(), columns.count());
+  for (Index u = 0; u < out.cols(); ++u)
+    out.col(u) = whole_column(*at.plant, at.systems[record], columns, u);
+  return out;
+}
+
 /// Columns without what end terms explain, one by one.
 MatrixXd without_ends_of(const Linearised& at, std::size_t record) {
-  MatrixXd out = at.columns[record];
+  MatrixXd out = whole_columns(at, record);
   for (Index u = 0; u < out.cols(); ++u)
     out.col(u) = at.systems[record].weights->without_ends(out.col(u));
+  return out;
+}
+
+MatrixXd ends_of(const Weights& weights) {
+  const Index rows = 2 * weights.equations();
+  MatrixXd out(rows * weights.bins(), weights.ends());
+  for (Index b = 0; b < weights.bins(); ++b)
+    out.middleRows(rows * b, rows) = weights.times_ends(b, RowMatrix::Identity(rows, rows));
   return out;
 }
 
 TEST(NormalEquations, AreThoseOfTheRowsWithoutEndTerms) {
   const Case c;
   const NormalEquations equations = normal_equations(c.at);
-  MatrixXd normal = MatrixXd::Zero(c.at.columns[0].cols(), c.at.columns[0].cols());
+  MatrixXd normal = MatrixXd::Zero(c.at.columns[0].count(), c.at.columns[0].count());
   VectorXd gradient = VectorXd::Zero(normal.cols());
   double misfit = 0;
   for (std::size_t r = 0; r < 2; ++r) {
@@ -58,17 +75,40 @@ TEST(NormalEquations, SquareHoldsUnknownsResidualAndEnds) {
   const Whitened& system = c.at.systems[1];
   ASSERT_EQ(square.cols(), 4 + system.weights->ends());
   MatrixXd own(system.residual.size(), 4);
-  for (Index i = 0; i < 3; ++i) own.col(i) = c.at.columns[1].col(kept[static_cast<std::size_t>(i)]);
+  const MatrixXd whole = whole_columns(c.at, 1);
+  for (Index i = 0; i < 3; ++i) own.col(i) = whole.col(kept[static_cast<std::size_t>(i)]);
   own.col(3) = system.residual;
   const MatrixXd expected = own.transpose() * own;
   EXPECT_LT((square.topLeftCorner(4, 4) - expected).norm(), kRelative * expected.norm());
   EXPECT_TRUE(square.isApprox(square.transpose(), kRelative));
   EXPECT_EQ(square.bottomRightCorner(system.weights->ends(), system.weights->ends()),
             system.weights->ends_square());
-  // Rows of one bin are those unknowns' and the residual's.
-  RowGram gram(4);
-  put_rows(c.at, 1, kept, 5, gram.rows(8));
-  EXPECT_EQ(gram.written().leftCols(4), RowMatrix(own.middleRows(40, 8)));
+  EXPECT_LT((square.bottomLeftCorner(system.weights->ends(), 4) -
+             ends_of(*system.weights).transpose() * own)
+                .norm(),
+            kRelative * own.norm());
+}
+
+TEST(NormalEquations, EffectsAmongTheUnknownsHaveTheirPlaces) {
+  Case c;
+  c.model = test::with_effects(c.model, {test::cubic_spring(1, 1e11).modelled});
+  const Linearised at =
+      c.fitter.linearise(c.model, c.fitter.systems(c.model, {}, Forcing::measured));
+  const MatrixXd whole = whole_columns(at, 0);
+  const Index effect = whole.cols() - 1;
+  ASSERT_LT(at.columns[0].direction[static_cast<std::size_t>(effect)], 0);
+  ASSERT_GE(at.columns[0].direction.front(), 0);
+  const std::vector<Index> kept{2, effect, 12, 5};  // before and behind it
+  MatrixXd own(whole.rows(), 5);
+  for (Index i = 0; i < 4; ++i) own.col(i) = whole.col(kept[static_cast<std::size_t>(i)]);
+  own.col(4) = at.systems[0].residual;
+  const MatrixXd expected = own.transpose() * own;
+  const MatrixXd square = square_of(at, 0, kept).topLeftCorner(5, 5);
+  for (Index i = 0; i < 5; ++i)
+    for (Index j = 0; j < 5; ++j)
+      EXPECT_NEAR(square(i, j), expected(i, j),
+                  kRelative * std::sqrt(expected(i, i) * expected(j, j)))
+          << i << " " << j;
 }
 
 TEST(NormalEquations, EndsAreEliminated) {

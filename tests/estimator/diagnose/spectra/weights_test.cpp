@@ -67,17 +67,19 @@ TEST(Weights, EndTermsAreThoseOfTheEquations) {
   ASSERT_EQ(weights.ends(), ends.cols());
   EXPECT_LT((weights.ends_square() - ends.transpose() * ends).cwiseAbs().maxCoeff(), kRounding);
   const RowMatrix all = RowMatrix::Identity(2 * kEquations, 2 * kEquations);
-  AlongEnds along(weights);
-  RowMatrix rows(2 * kEquations, kernels::kBins);
+  RowMatrix sum = RowMatrix::Zero(ends.cols(), kernels::kBins);
+  RowMatrix rows(2 * kEquations, kernels::kBins), forces, along;
   MatrixXd wanted = MatrixXd::Zero(ends.cols(), rows.cols());
   for (Index b = 0; b < kBins; ++b) {
     const MatrixXd here = ends.middleRows(2 * kEquations * b, 2 * kEquations);
     EXPECT_LT((weights.times_ends(b, all) - here).cwiseAbs().maxCoeff(), kRounding);
     for (Index i = 0; i < rows.size(); ++i) rows.data()[i] = some.random.normal();
-    along.add(b, rows);
+    weights.put_unit_forces(b, true, forces);
+    multiply(forces, rows, along);
+    weights.add_shares(b, along, sum);
     wanted += here.transpose() * rows;
   }
-  EXPECT_LT((along.sum() - wanted).cwiseAbs().maxCoeff(), kRounding * kBins);
+  EXPECT_LT((sum - wanted).cwiseAbs().maxCoeff(), kRounding * kBins);
 }
 
 TEST(Weights, EndTermsAreProjectedOut) {
@@ -118,6 +120,19 @@ TEST(Weights, UnitForcesAreTheWhitenerInRealParts) {
     EXPECT_EQ(forces.leftCols(2 * kEquations), expected);
     EXPECT_EQ(transposed.leftCols(2 * kEquations), expected.transpose());
     EXPECT_TRUE(forces.rightCols(forces.cols() - 2 * kEquations).isZero(0));
+  }
+}
+
+TEST(Weights, MetricIsTheInverseOfTheCovariance) {
+  constexpr double kExact = 1e-12;
+  for (const Index equations : {3, 30}) {  // with and without the kernels
+    Random random(static_cast<std::uint64_t>(equations));
+    MatrixXcd whitener = MatrixXcd::Zero(equations, equations);
+    for (Index i = 0; i < equations; ++i)
+      for (Index j = 0; j <= i; ++j) whitener(i, j) = Complex(random.normal(), random.normal());
+    const MatrixXcd expected = whitener.adjoint() * whitener;
+    const Weights weights({whitener, whitener}, Eigen::Vector2d(1, 2), {});
+    EXPECT_LT((weights.metric(1) - expected).cwiseAbs().maxCoeff(), kExact * expected.norm());
   }
 }
 

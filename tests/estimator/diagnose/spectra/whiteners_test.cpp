@@ -1,6 +1,7 @@
 #include "estimator/diagnose/spectra/whiteners.h"
 
 #include <complex>
+#include <functional>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -34,6 +35,10 @@ struct Equations {
     }
   }
 
+  std::function<MatrixXcd(Index)> of_bin() const {
+    return [this](Index bin) { return operation[static_cast<std::size_t>(bin)]; };
+  }
+
   MatrixXcd covariance(Index bin) const {
     const MatrixXcd& d = operation[static_cast<std::size_t>(bin)];
     return d * noise.col(bin).asDiagonal() * d.adjoint();
@@ -51,7 +56,7 @@ double miss(const MatrixXcd& whitener, const MatrixXcd& covariance) {
 TEST(Whiteners, NoiseOfEveryBinGetsUnitCovariance) {
   for (const Index bins : kBinCounts) {
     const Equations e(bins);
-    const std::vector<MatrixXcd> all = whiteners(e.operation, e.noise, {});
+    const std::vector<MatrixXcd> all = whiteners(e.of_bin(), e.noise, {});
     ASSERT_EQ(all.size(), static_cast<std::size_t>(bins));
     for (Index b = 0; b < bins; ++b)
       EXPECT_LT(miss(all[static_cast<std::size_t>(b)], e.covariance(b)), kRounding)
@@ -61,7 +66,7 @@ TEST(Whiteners, NoiseOfEveryBinGetsUnitCovariance) {
 
 TEST(Whiteners, AreLowerTrianglesWithAPositiveDiagonal) {
   const Equations e(9);
-  for (const MatrixXcd& w : whiteners(e.operation, e.noise, {})) {
+  for (const MatrixXcd& w : whiteners(e.of_bin(), e.noise, {})) {
     EXPECT_TRUE(w.isLowerTriangular(0.0));
     EXPECT_GT(w.diagonal().real().minCoeff(), 0);
     EXPECT_EQ(w.diagonal().imag().cwiseAbs().maxCoeff(), 0);
@@ -70,7 +75,7 @@ TEST(Whiteners, AreLowerTrianglesWithAPositiveDiagonal) {
 
 TEST(Whiteners, OfOneEquationIsOneOverItsDeviation) {
   const Equations e(3, 1, 2);
-  const std::vector<MatrixXcd> all = whiteners(e.operation, e.noise, {});
+  const std::vector<MatrixXcd> all = whiteners(e.of_bin(), e.noise, {});
   for (std::size_t b = 0; b < all.size(); ++b)
     EXPECT_NEAR(all[b](0, 0).real(),
                 1 / std::sqrt(e.covariance(static_cast<Index>(b))(0, 0).real()), kRounding);
@@ -81,7 +86,7 @@ TEST(Whiteners, PushedForcesAddTheirCovariance) {
   const Equations e(9);
   const Eigen::Vector3d at(0, 1, 0.5);
   const MatrixXd pushed = kSize * at * at.transpose();
-  const std::vector<MatrixXcd> all = whiteners(e.operation, e.noise, pushed);
+  const std::vector<MatrixXcd> all = whiteners(e.of_bin(), e.noise, pushed);
   ASSERT_EQ(all.size(), 9U);
   for (Index b = 0; b < 9; ++b) {
     const MatrixXcd sensors = e.covariance(b);
@@ -99,14 +104,14 @@ TEST(Whiteners, ThereAreNoneWhereAnEquationHasNoNoise) {
     Equations silent(11), dependent(11, 2), unknown(11);
     const auto at = static_cast<std::size_t>(bad);
     silent.operation[at].row(1).setZero();
-    EXPECT_TRUE(whiteners(silent.operation, silent.noise, {}).empty()) << bad;
+    EXPECT_TRUE(whiteners(silent.of_bin(), silent.noise, {}).empty()) << bad;
     unknown.operation[at](2, 2) = kNan;
-    EXPECT_TRUE(whiteners(unknown.operation, unknown.noise, {}).empty()) << bad;
+    EXPECT_TRUE(whiteners(unknown.of_bin(), unknown.noise, {}).empty()) << bad;
     unknown = Equations(11);
     unknown.noise(3, bad) = kNan;
-    EXPECT_TRUE(whiteners(unknown.operation, unknown.noise, {}).empty()) << bad;
+    EXPECT_TRUE(whiteners(unknown.of_bin(), unknown.noise, {}).empty()) << bad;
     dependent.noise.col(bad).setZero();
-    EXPECT_TRUE(whiteners(dependent.operation, dependent.noise, {}).empty()) << bad;
+    EXPECT_TRUE(whiteners(dependent.of_bin(), dependent.noise, {}).empty()) << bad;
   }
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/verdict/verdict.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 

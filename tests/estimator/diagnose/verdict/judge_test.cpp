@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/verdict/verdict.h"
+#include "tests/estimator/diagnose/exact_record.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {
@@ -107,6 +108,104 @@ TEST(Judge, RecordsThatFitApartAreOfDifferentBuildings) {
   d.reason = "known";
   judge(recorded.fitter, d);
   EXPECT_EQ(d.reason, "known");
+}
+
+TEST(Judge, AnArbitraryForceExplainsNothing) {
+  Diagnosis d;
+  d.ratio_before = 101;
+  d.ratio_after = 1;
+  d.before = {gap_with(10)};
+  d.after = {gap_with(1)};
+  d.effects.emplace_back();
+  d.effects[0].index = 0;
+  d.model.effects.emplace_back();
+  EXPECT_EQ(judged(d), Verdict::explained);
+  d.model.effects[0].form = LawForm::broadband;
+  EXPECT_EQ(judged(d), Verdict::partly_explained);
+}
+
+TEST(Withdraw, NamesWhoseModelIsWorseThanNone) {
+  struct Found {
+    const char* what;
+    double before, after, held_before, held_after;
+    bool withdrawn;
+  };
+  const Found all[] = {
+      {"better", .5, .1, .5, .2, false},
+      {"as good, within chance", .5, .1, .01, .0105, false},
+      {"worse where it is held out", .5, .1, .2, .23, true},
+      {"beyond 100 % in a record that it was fitted to", 1.2, 1.1, .5, .2, true},
+  };
+  for (const Found& f : all) {
+    Diagnosis d;
+    d.before = {gap_with(f.before), gap_with(f.held_before)};
+    d.after = {gap_with(f.after), gap_with(f.held_after)};
+    d.ratio_before = 9;
+    d.ratio_after = 2;
+    d.effects.emplace_back();
+    EXPECT_EQ(withdraw_worse(1, d), f.withdrawn) << f.what;
+    EXPECT_EQ(d.effects.empty(), f.withdrawn) << f.what;
+    EXPECT_EQ(d.rejected.size(), f.withdrawn ? 1U : 0U) << f.what;
+    EXPECT_EQ(d.reason.empty(), !f.withdrawn) << f.what;
+    EXPECT_DOUBLE_EQ(d.after[1].overall, f.withdrawn ? f.held_before : f.held_after) << f.what;
+    EXPECT_DOUBLE_EQ(d.ratio_after, f.withdrawn ? 9 : 2) << f.what;
+  }
+  Diagnosis none;
+  EXPECT_FALSE(withdraw_worse(1, none));
+}
+
+TEST(Grade, OnlyASureNameWithNothingBesideItIsEstablished) {
+  FoundEffect e;
+  e.confidence = 0.99;
+  EXPECT_EQ(grade_of(e), Grade::established);
+  e.approximate = true;
+  EXPECT_EQ(grade_of(e), Grade::leading);
+  e.approximate = false;
+  e.like = {EffectKind::bouc_wen};
+  EXPECT_EQ(grade_of(e), Grade::leading);
+  e.like.clear();
+  e.confidence = 0.9;
+  EXPECT_EQ(grade_of(e), Grade::leading);
+  EXPECT_STREQ(grade_word(Grade::established), "established");
+  EXPECT_STREQ(grade_word(Grade::leading), "leading");
+}
+
+/// A stiff spring that hardens, and two trials: its law, and one at another frame.
+TEST(Leading, IsTheLawWhoseFreeRunDisagreesLess) {
+  const test::Small small;
+  const test::EffectTwins twins = test::cubic_spring(2, 4e11);
+  const Recorded recorded(test::records_with({twins.simulated}, {1, 2}));
+  Diagnosis d;
+  d.linear = d.model = recorded.linear().model;
+  d.ratio_before = d.ratio_after = 100;
+  set_gaps(recorded.fitter, 1, d);
+  const auto trial = [&](const ModelEffect& effect, LawForm form) {
+    Trial t;
+    t.model = test::with_effects(d.linear, {effect});
+    t.model.effects[0].form = form;
+    t.kind = EffectKind::cubic_stiffness;
+    t.place = effect.place;
+    return t;
+  };
+  const ModelEffect elsewhere = test::cubic_spring(0, 1e8).modelled;
+  d.rejected = {trial(elsewhere, LawForm::power), trial(twins.modelled, LawForm::power),
+                trial(twins.modelled, LawForm::broadband)};
+  set_leading(recorded.fitter, 1, d);
+  ASSERT_FALSE(d.leading.empty());
+  EXPECT_EQ(d.leading.front().trial.place, twins.modelled.place);
+  EXPECT_LT(d.leading.front().after, 0.2 * d.leading.front().before);
+  EXPECT_DOUBLE_EQ(d.leading.front().before, mean_gap(d.before, 1));
+  for (const LeadingLaw& law : d.leading)
+    EXPECT_NE(law.trial.model.effects[0].form, LawForm::broadband);
+  // What fits leaves nothing to lead, and a name needs no leader.
+  d.leading.clear();
+  d.ratio_after = 1;
+  set_leading(recorded.fitter, 1, d);
+  EXPECT_TRUE(d.leading.empty());
+  d.ratio_after = 100;
+  d.effects.emplace_back();
+  set_leading(recorded.fitter, 1, d);
+  EXPECT_TRUE(d.leading.empty());
 }
 
 TEST(Judge, VerdictsHaveTheWordsOfTheReport) {

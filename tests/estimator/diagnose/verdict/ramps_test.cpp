@@ -87,6 +87,12 @@ TEST(Ramps, ARampCountsInTheGapBeforeByItsPower) {
   gap.axis = gap.floor = Eigen::VectorXd::Constant(axes, kBefore);
   gap.overall = gap.worst = kBefore;
   gap.worst_axis = 0;
+  const RecordSegment& s = recorded.segments[1];
+  // The base's axes, the last two, are no outputs.
+  const Eigen::Index outputs = axes - 2;
+  gap.measured_rms =
+      std::sqrt(2 * s.spectrum.topRows(outputs).squaredNorm() / static_cast<double>(outputs)) /
+      static_cast<double>(s.intervals());
   Diagnosis d;
   d.before = {gap, gap};
   gap.overall = kAfter;
@@ -97,9 +103,8 @@ TEST(Ramps, ARampCountsInTheGapBeforeByItsPower) {
   ramp.ramp_mps3 = {0, kRamp_mps3};
   ramp.ramp_from_s = {0, kFrom_s};
   d.effects[1].before = 0.5;
-  add_ramps_to_gaps(recorded.segments, 1, d);
+  add_ramps_to_gaps(recorded.plant, recorded.segments, 1, d);
   // The mean square of the ramp about its mean, sample by sample, over that of the reading.
-  const RecordSegment& s = recorded.segments[1];
   Eigen::VectorXd rise(s.intervals());
   for (Eigen::Index i = 0; i < rise.size(); ++i)
     rise[i] = kRamp_mps3 * std::max(static_cast<double>(i) / s.rate_hz - kFrom_s, 0.0);
@@ -113,14 +118,14 @@ TEST(Ramps, ARampCountsInTheGapBeforeByItsPower) {
   };
   constexpr double kOff = 0.01;
   const double of_axis = std::hypot(kBefore, std::sqrt(square / reading(kChannel, 1)));
-  const double of_all = std::hypot(kBefore, std::sqrt(square / reading(0, axes)));
+  const double of_all = std::hypot(kBefore, std::sqrt(square / reading(0, outputs)));
   EXPECT_NEAR(d.before[1].axis[kChannel] / of_axis, 1, kOff);
   EXPECT_NEAR(d.before[1].overall / of_all, 1, kOff);
   EXPECT_EQ(d.before[1].worst_axis, kChannel);
   EXPECT_DOUBLE_EQ(d.before[0].overall, kBefore);
-  // The effect has the means of what is held out; other effects keep theirs.
+  // What it leaves is the gap that the search begins with; other effects keep theirs.
   EXPECT_DOUBLE_EQ(ramp.before, d.before[1].overall);
-  EXPECT_DOUBLE_EQ(ramp.after, kAfter);
+  EXPECT_DOUBLE_EQ(ramp.after, kBefore);
   EXPECT_DOUBLE_EQ(d.effects[1].before, 0.5);
 }
 

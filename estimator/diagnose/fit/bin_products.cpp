@@ -1,0 +1,190 @@
+#include "estimator/diagnose/fit/bin_products.h"
+
+#include <algorithm>
+
+#include "estimator/numeric/complex.h"
+#include "estimator/numeric/kernels.h"
+
+namespace framewatch::estimator {
+
+using Eigen::Index;
+using Eigen::RowVectorXcd;
+
+BinProducts::BinProducts(const Linearised& at, std::size_t record, const std::vector<Index>& kept)
+    : at_(at), system_(at.systems[record]), columns_(at.columns[record]), kept_(kept) {
+  const Plant& plant = *at.plant;
+  const Index n = plant.equations(), own = static_cast<Index>(kept.size()) + 1;
+  for (const Index u : kept)
+    direction_of_.push_back(columns_.direction[static_cast<std::size_t>(u)]);
+  direction_of_.push_back(-1);
+  for (Index c = 0; c < own; ++c)
+    if (direction_of_[static_cast<std::size_t>(c)] < 0) effects_.push_back(c);
+  for (Index e = 0; e < plant.element_count(); ++e)
+    elements_.push_back(of_force(plant.building.act.col(e)));
+  axes_.resize(static_cast<std::size_t>(plant.axis_count()));
+  const Index directions = plant.element_count() + plant.axis_count() + n;
+  const Index width = padded(static_cast<int>(own));
+  for (RowMatrix* m : {&under_.real, &under_.imaginary}) m->setZero(1, n);
+  for (RowMatrix* m : {&products_.real, &products_.imaginary}) m->setZero(1, directions);
+  for (RowMatrix* m : {&all_.real, &all_.imaginary}) m->setZero(directions, width);
+  at_equations_ = RowMatrix::Zero(2 * n, width);
+  size_real_ = size_imaginary_ = Eigen::VectorXd::Zero(own);
+  whitened_effects_.resize(n, static_cast<Index>(effects_.size()));
+}
+
+void BinProducts::put_axes(Index bin) {
+  const Eigen::MatrixXcd operation = system_.operation[static_cast<std::size_t>(bin)];
+  for (Index a = 0; a < operation.cols(); ++a) {
+    Direction& axis = axes_[static_cast<std::size_t>(a)];
+    axis.clear();
+    for (Index i = 0; i < operation.rows(); ++i)
+      if (operation(i, a) != Complex(0, 0))
+        axis.push_back({i, operation(i, a).real(), operation(i, a).imag()});
+  }
+}
+
+void BinProducts::put_effects(Index bin) {
+  const Index n = metric_.rows();
+  for (std::size_t i = 0; i < effects_.size(); ++i) {
+    const auto c = static_cast<std::size_t>(effects_[i]);
+    auto column = whitened_effects_.col(static_cast<Index>(i));
+    if (c == kept_.size()) {
+      column.real() = system_.residual.segment(2 * n * bin, n);
+      column.imag() = system_.residual.segment(2 * n * bin + n, n);
+    } else {
+      const auto rows = columns_.effects.col(columns_.row[static_cast<std::size_t>(kept_[c])]);
+      column.real() = rows.segment(2 * n * bin, n);
+      column.imag() = rows.segment(2 * n * bin + n, n);
+    }
+  }
+  under_effects_.noalias() = system_.weights->whitener(bin).adjoint() * whitened_effects_;
+}
+
+void BinProducts::put_products(Index equation) {
+  const Index n = metric_.rows();
+  // The metric is Hermitian: its columns lie together in memory.
+  under_.real.row(0) = metric_.col(equation).real();
+  under_.imaginary.row(0) = -metric_.col(equation).imag();
+  const double *x = under_.real.data(), *y = under_.imaginary.data();
+  double *real = products_.real.data(), *imaginary = products_.imaginary.data();
+  for (const Direction& element : elements_) {
+    double r = 0, i = 0;
+    for (const Entry& e : element) {
+      r += x[e.equation] * e.real;
+      i += y[e.equation] * e.real;
+    }
+    *real++ = r;
+    *imaginary++ = i;
+  }
+  for (const Direction& axis : axes_) {
+    double r = 0, i = 0;
+    for (const Entry& e : axis) {
+      r += x[e.equation] * e.real - y[e.equation] * e.imaginary;
+      i += x[e.equation] * e.imaginary + y[e.equation] * e.real;
+    }
+    *real++ = r;
+    *imaginary++ = i;
+  }
+  std::copy(x, x + n, real);
+  std::copy(y, y + n, imaginary);
+}
+
+void BinProducts::compute(Index bin) {
+  metric_ = system_.weights->metric(bin);
+  put_axes(bin);
+  put_effects(bin);
+  for (std::size_t c = 0; c < kept_.size(); ++c) {
+    const Complex size = columns_.size(bin, kept_[c]);
+    size_real_[static_cast<Index>(c)] = size.real();
+    size_imaginary_[static_cast<Index>(c)] = size.imag();
+  }
+  const Index n = metric_.rows(), own = size_real_.size(), first = all_.real.rows() - n;
+  const double *sr = size_real_.data(), *si = size_imaginary_.data();
+  for (Index i = 0; i < n; ++i) {
+    put_products(i);
+    const double *x = products_.real.data(), *y = products_.imaginary.data();
+    double *real = &all_.real(first + i, 0), *imaginary = &all_.imaginary(first + i, 0);
+    for (Index c = 0; c < own; ++c) {
+      const Index d = direction_of_[static_cast<std::size_t>(c)];
+      if (d < 0) continue;
+      real[c] = x[d] * sr[c] - y[d] * si[c];
+      imaginary[c] = x[d] * si[c] + y[d] * sr[c];
+    }
+    for (std::size_t k = 0; k < effects_.size(); ++k) {
+      real[effects_[k]] = under_effects_(i, static_cast<Index>(k)).real();
+      imaginary[effects_[k]] = under_effects_(i, static_cast<Index>(k)).imag();
+    }
+  }
+  at_equations_.topRows(n) = all_.real.bottomRows(n);
+  at_equations_.bottomRows(n) = -all_.imaginary.bottomRows(n);
+}
+
+void BinProducts::put_others() {
+  const Index first = all_.real.rows() - metric_.rows();
+  Index k = 0;
+  for (const std::vector<Direction>* list : {&elements_, &axes_})
+    for (const Direction& one : *list) {
+      all_.real.row(k).setZero();
+      all_.imaginary.row(k).setZero();
+      for (const Entry& e : one) {
+        const auto x = all_.real.row(first + e.equation);
+        const auto y = all_.imaginary.row(first + e.equation);
+        if (e.imaginary == 0) {
+          all_.real.row(k) += e.real * x;
+          all_.imaginary.row(k) += e.real * y;
+        } else {
+          all_.real.row(k) += e.real * x + e.imaginary * y;
+          all_.imaginary.row(k) += e.real * y - e.imaginary * x;
+        }
+      }
+      ++k;
+    }
+}
+
+void BinProducts::add_square(RowMatrix& sum) {
+  put_others();
+  const Index own = size_real_.size();
+  for (Index u = 0; u < own; ++u) {
+    const Index k = direction_of_[static_cast<std::size_t>(u)];
+    if (k < 0) continue;
+    sum.row(u).segment(u, own - u) +=
+        size_real_[u] * all_.real.row(k).segment(u, own - u) +
+        size_imaginary_[u] * all_.imaginary.row(k).segment(u, own - u);
+    for (const Index v : effects_)
+      if (v < u)
+        sum(v, u) += size_real_[u] * all_.real(k, v) + size_imaginary_[u] * all_.imaginary(k, v);
+  }
+  for (std::size_t i = 0; i < effects_.size(); ++i)
+    for (std::size_t j = i; j < effects_.size(); ++j)
+      sum(effects_[i], effects_[j]) += whitened_effects_.col(static_cast<Index>(i))
+                                           .dot(whitened_effects_.col(static_cast<Index>(j)))
+                                           .real();
+}
+
+BinProducts::Direction BinProducts::of_force(const Eigen::VectorXd& force) {
+  Direction out;
+  for (Index i = 0; i < force.size(); ++i)
+    if (force[i] != 0) out.push_back({i, force[i], 0});
+  return out;
+}
+
+RowVectorXcd BinProducts::under_metric(const Direction& direction) const {
+  RowVectorXcd out = RowVectorXcd::Zero(metric_.cols());
+  for (const Entry& e : direction)
+    out += Complex(e.real, -e.imaginary) * metric_.col(e.equation).adjoint();
+  return out;
+}
+
+RowVectorXcd BinProducts::with_columns(const Direction& direction) const {
+  const Index first = all_.real.rows() - metric_.rows(), own = size_real_.size();
+  RowVectorXcd out = RowVectorXcd::Zero(own);
+  for (const Entry& e : direction) {
+    const auto x = all_.real.row(first + e.equation).leftCols(own);
+    const auto y = all_.imaginary.row(first + e.equation).leftCols(own);
+    out.real() += e.real * x + e.imaginary * y;
+    out.imag() += e.real * y - e.imaginary * x;
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/diagnose/fit/linearised.h"
+
+namespace framewatch::estimator {
+
+/// Inner products of the whitened columns of one bin, made from those of the few directions that
+/// the columns have (Columns). Of a tall building that is a tenth of the work of the columns
+/// themselves, and none of their memory.
+class BinProducts {
+ public:
+  /// Of the unknowns `kept`, then the residual.
+  BinProducts(const Linearised& at, std::size_t record, const std::vector<Eigen::Index>& kept);
+
+  void compute(Eigen::Index bin);
+  /// Adds the products of the columns with each other to the upper triangle of `sum`.
+  void add_square(RowMatrix& sum);
+  /// The columns under the metric, at the equations: real parts, then imaginary parts with opposite
+  /// sign; 2 equations x columns, padded. As Weights::add_shares() takes them.
+  const RowMatrix& at_equations() const { return at_equations_; }
+
+  /// Where a direction of forces is not zero.
+  struct Entry {
+    Eigen::Index equation;
+    double real, imaginary;
+  };
+  using Direction = std::vector<Entry>;
+  static Direction of_force(const Eigen::VectorXd& force);
+  /// Of an axis' reading, in this bin.
+  const Direction& of_axis(Eigen::Index axis) const {
+    return axes_[static_cast<std::size_t>(axis)];
+  }
+  /// direction^H metric: equations.
+  Eigen::RowVectorXcd under_metric(const Direction& direction) const;
+  /// Its product with every column: direction^H metric column.
+  Eigen::RowVectorXcd with_columns(const Direction& direction) const;
+
+ private:
+  struct Complexes {
+    RowMatrix real, imaginary;
+  };
+
+  void put_axes(Eigen::Index bin);
+  void put_effects(Eigen::Index bin);
+  /// The products of a unit force on one equation with every direction.
+  void put_products(Eigen::Index equation);
+  /// The products of elements and axes with the columns, from those of the equations.
+  void put_others();
+
+  const Linearised& at_;
+  const Whitened& system_;
+  const Columns& columns_;
+  std::vector<Eigen::Index> kept_, direction_of_;  ///< of every column; -1: of an effect
+  std::vector<Direction> elements_, axes_;
+  Eigen::MatrixXcd metric_;
+  Complexes under_;     ///< one equation's row of the metric
+  Complexes products_;  ///< 1 x directions
+  Complexes all_;       ///< directions (elements, axes, equations) x columns
+  Eigen::VectorXd size_real_, size_imaginary_;
+  std::vector<Eigen::Index> effects_;  ///< columns without a direction
+  Eigen::MatrixXcd whitened_effects_, under_effects_;
+  RowMatrix at_equations_;
+};
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,96 @@
+#include "estimator/diagnose/fit/judged_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "estimator/diagnose/fit/model_error.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kDiverged = std::numeric_limits<double>::infinity();
+constexpr int kRounds = 6;      ///< in which the weights follow the gap
+constexpr double kMore = 0.99;  ///< gap over the one of the round before: it goes on
+constexpr double kLargest = 1;  ///< error of a model for its weights
+constexpr int kFirstSteps = 4;  ///< of every start, before the best is fitted on
+constexpr double kClose = 1.1;  ///< gap over the best one's: a start that is fitted on as well
+
+struct Start {
+  Model model;
+  double gap = kDiverged;
+};
+
+/// The free run of a model fitted with its own error in the weights; unchanged where that is worse.
+void fit_free_run(const Fitter& fitter, int steps, Start& at) {
+  const std::vector<RecordSegment> segments =
+      with_model_error(fitter.plant(), fitter.segments(), std::min(at.gap, kLargest));
+  const Fitter weighted(fitter.plant(), segments, fitter.tolerances());
+  const FitResult fit = weighted.fit(at.model, {}, thorough(at.model, steps));
+  if (!fit.good) return;
+  const double gap = rms_gap(fitter, fit.model);
+  if (gap < at.gap) at = {fit.model, gap};
+}
+
+void fit_to_the_end(const Fitter& fitter, int steps, Start& at) {
+  for (int round = 0; round < kRounds; ++round) {
+    const double before = at.gap;
+    fit_free_run(fitter, steps, at);
+    if (at.gap > kMore * before) return;
+  }
+}
+
+}  // namespace
+
+std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
+  std::vector<Gap> out;
+  for (std::size_t r = 0; r < fitter.segments().size(); ++r)
+    if (auto gap = free_run_gap(fitter.plant(), model, fitter.segments()[r], r, fitter.ratio(r)))
+      out.push_back(std::move(*gap));
+  return out;
+}
+
+double rms_gap(const Fitter& fitter, const Model& model) {
+  const std::vector<Gap> gaps = gaps_of(fitter, model);
+  if (gaps.empty() || gaps.size() < fitter.segments().size()) return kDiverged;
+  double sum = 0;
+  for (const Gap& g : gaps) sum += g.overall * g.overall;
+  return std::sqrt(sum / static_cast<double>(gaps.size()));
+}
+
+std::vector<Model> linear_starts(const Plant& plant, const Model& model) {
+  Model damped = model;
+  const auto elements = plant.element_count();
+  damped.theta.tail(elements) = model.theta.tail(elements).cwiseMax(plant.design.tail(elements));
+  Model design = model;
+  design.theta = plant.design;
+  return {model, damped, design};
+}
+
+JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps) {
+  const Model& first = starts.front();
+  const FitResult noise = fitter.fit(first, {}, thorough(first, steps));
+  const Model& fitted = noise.good ? noise.model : first;
+  JudgedFit out{fitted, rms_gap(fitter, fitted), false};
+  out.near_noise = noise.good && noise.total_misfit() < kNearNoise * fitter.expected(noise.model);
+  if (out.near_noise) return out;
+
+  std::vector<Start> all{{out.model, out.gap}};
+  for (const Model& model : starts) all.push_back({model, rms_gap(fitter, model)});
+  for (Start& s : all) fit_free_run(fitter, kFirstSteps, s);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Start& a, const Start& b) { return a.gap < b.gap; });
+  Start best = all.front();
+  for (const Start& s : all) {
+    if (!(s.gap < kClose * all.front().gap)) break;
+    Start on = s;
+    fit_to_the_end(fitter, steps, on);
+    if (on.gap < best.gap) best = std::move(on);
+  }
+  out.model = std::move(best.model);
+  out.gap = best.gap;
+  return out;
+}
+
+}  // namespace framewatch::estimator
