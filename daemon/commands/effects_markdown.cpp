@@ -63,6 +63,8 @@ const char* place_name(estimator::PlaceKind kind) {
       return "floor";
     case estimator::PlaceKind::building:
       return "building";
+    case estimator::PlaceKind::whole_frame:
+      return "whole frame";
     case estimator::PlaceKind::channel:
       return "channel";
     case estimator::PlaceKind::channel_pair:

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/model/hysteretic_force.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr double kDissipates = 0.15;     ///< dissipation() below which a law counts as elastic
+constexpr double kNear = 1e-6;           ///< of a bound
 constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
 
 /// Energy dissipated in a cycle to the peak deformation, over that of the box around its loop.
@@ -34,7 +36,6 @@ double highest_hz(const Fitter& fitter) {
 
 /// A parameter at its bound means that another law acts.
 bool at_bound(const LawParameter& parameter) {
-  constexpr double kNear = 1e-6;
   return parameter.value <= parameter.low + kNear || parameter.value >= parameter.high - kNear;
 }
 
@@ -80,9 +81,12 @@ bool may_be_named(const TrialContext& c, const Trial& t) {
     const ModelEffect& effect = t.model.effects[e];
     if (has_wrong_sign(effect)) return false;
     if (effect.form == LawForm::resonator && is_no_oscillator(c, effect)) return false;
-    if (effect.form == LawForm::pinched &&
-        (dissipation(effect) < kDissipates || effect.parameters[5].plain() < kNarrowestSlip ||
-         at_bound(effect.parameters[4]) || at_bound(effect.parameters[5])))
+    const bool slips = effect.form == LawForm::pinched || effect.form == LawForm::slip_lock;
+    if (slips && (dissipation(effect) < kDissipates ||
+                  effect.parameters[HysteresisIndex::width].plain() < kNarrowestSlip ||
+                  effect.parameters[HysteresisIndex::slip].value <=
+                      effect.parameters[HysteresisIndex::slip].low + kNear ||
+                  at_bound(effect.parameters[HysteresisIndex::width])))
       return false;
   }
   return !is_excluded(c, t.kind) && !(t.second && is_excluded(c, t.second->first));
