@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/diagnose/model/initial_motion.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/modal_system.h"
 #include "estimator/diagnose/model/run_system.h"
@@ -182,7 +183,16 @@ FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& se
 
   VectorXd now = VectorXd::Zero(parts.inputs.cols());
   VectorXd law_forces = now;
-  for (Index i = -lead; i < steps; ++i) {
+  Index first = -lead;
+  if (const auto moving = initial_motion(plant, model, segment)) {
+    const Index n = plant.equations();
+    VectorXd y = VectorXd::Zero(parts.mass.rows()), v = y;
+    y.head(n) = moving->displacement;
+    v.head(n) = moving->velocity;
+    system.start(y, v);
+    first += moving->sample * ratio + 1;
+  }
+  for (Index i = first; i < steps; ++i) {
     const double t = step_s * static_cast<double>(i);
     now.head(ground.rows()) = ground.col(lead + i);
     forces.set_harmonics(t, now);

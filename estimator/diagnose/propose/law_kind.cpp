@@ -18,7 +18,7 @@ constexpr int kCells = 15;
 constexpr int kLeastCount = 3;         ///< samples of a cell that is shown
 constexpr int kTimes = 8;              ///< supports of a stiffness that varies in time
 constexpr double kNearlyAll = 0.93;    ///< of the best share, that a simpler kind must explain
-constexpr double kFollows = 0.5;       ///< share below which no kind explains the force
+constexpr double kKindFollows = 0.5;       ///< share below which no kind explains the force
 constexpr double kBeyondChance = 1.3;  ///< misfit of a linear element over noise
 constexpr double kAsImpact = 0.7;      ///< of the powers' rest, that contacts must leave at most
 
@@ -145,7 +145,7 @@ class KindSearch {
 
   static LawKind simplest(const std::array<double, 7>& share) {
     const double best = *std::max_element(share.begin(), share.end());
-    if (best < kFollows) return LawKind::external;
+    if (best < kKindFollows) return LawKind::external;
     for (const LawKind kind : {LawKind::elastic, LawKind::dissipative, LawKind::impact,
                                LawKind::time_varying, LawKind::hysteretic})
       if (share[static_cast<std::size_t>(kind)] >= kNearlyAll * best) return kind;

@@ -57,9 +57,11 @@ TEST(Law, ForcesAreThoseOfTheFormulas) {
 }
 
 TEST(Law, OnlyThoseOfElementsPullThere) {
-  for (const LawForm form : {LawForm::power, LawForm::hysteresis, LawForm::pinched,
-                             LawForm::friction, LawForm::power_damping, LawForm::gap_positive,
-                             LawForm::gap_negative, LawForm::gap_both, LawForm::changing})
+  for (const LawForm form :
+       {LawForm::power, LawForm::saturating, LawForm::hysteresis, LawForm::sliders,
+        LawForm::pinched, LawForm::slip_lock, LawForm::friction, LawForm::power_damping,
+        LawForm::amplitude, LawForm::gap_positive, LawForm::gap_negative, LawForm::gap_both,
+        LawForm::changing})
     EXPECT_TRUE(is_element_law(form)) << static_cast<int>(form);
   for (const LawForm form :
        {LawForm::mass, LawForm::resonator, LawForm::spring, LawForm::damper, LawForm::rocking,
@@ -108,6 +110,9 @@ TEST(Law, HysteresisIsThatOfTheSimulator) {
     EffectKind kind;
   };
   for (const Case& c : {Case{LawForm::hysteresis, {1, 0.5}, EffectKind::bouc_wen},
+                        Case{LawForm::hysteresis, {1, 0.5, 0.02, 0.03}, EffectKind::bouc_wen},
+                        Case{LawForm::sliders, {0.8, 0.02}, EffectKind::bilinear_hysteresis},
+                        Case{LawForm::pinched, {1, 0.5, 0.9, 0.4, 0.1, 3}, EffectKind::pinching},
                         Case{LawForm::hysteresis, {2, 0.7}, EffectKind::bouc_wen},
                         Case{LawForm::hysteresis, {6, 0.5}, EffectKind::bouc_wen},
                         Case{LawForm::hysteresis, {40, 0.5}, EffectKind::bilinear_hysteresis},
