@@ -36,6 +36,7 @@ of the element. In a panel, numbers per metre of d are so of this d.
 | crossing | `story`, `node`: `"x1y1"`, both directions |
 | floor | `story` |
 | building | `direction` |
+| whole frame | `frame`: all its stories |
 | channel | `channel` |
 | two channels | `channel`, `with_channel` |
 

@@ -40,11 +40,10 @@ const EffectParameter kHystereticStiffness =
 const EffectParameter kYieldDeformation =
     positive("dy_m", "m", "largest elastic deformation z of the hysteretic part");
 const EffectParameter kSmoothness =
-    within("exponent", "", 2.0, 1, 50, "n: sharpness of yielding, 1 round");
-const EffectParameter kUnloading =
-    within("beta", "", 0.5, 0.5, 1,
-           "share of the loop's shape that dissipates; 0.5: unloading "
-           "is linear");
+    within("exponent", "", 2.0, 0.5, 60, "n: sharpness of yielding, 1 round");
+const EffectParameter kUnloading = within(
+    "beta", "", 0.5, 0, 10,
+    "share of the loop's shape that dissipates; 0.5: unloading is linear, more: it stiffens");
 
 const EffectParameter kStrengthLoss =
     within("strength_loss", "", 0.0, 0, 10,
