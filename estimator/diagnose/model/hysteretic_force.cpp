@@ -96,6 +96,58 @@ double advanced_z(const LawValues& values, double from, double d, double d_now, 
   return z;
 }
 
+namespace {
+
+enum Memory : std::size_t { kReversal_m, kReversalZ, kDirection, kLargest_m, kSmallest_m };
+
+double direction_of(const std::vector<double>& memory, double d, double d_now) {
+  return d_now > d ? 1.0 : d_now < d ? -1.0 : memory[kDirection];
+}
+
+}  // namespace
+
+double spread_like(double sharpness) {
+  return std::clamp(2.5 / sharpness, 0.05, 0.95);
+}
+
+std::vector<double> no_reversal(const LawValues& values) {
+  const double dy = values.p[AsymptoteIndex::dy];
+  return {0, 0, 0, dy, -dy};
+}
+
+void turn(std::vector<double>& memory, double z, double d, double d_now) {
+  const double direction = direction_of(memory, d, d_now);
+  if (direction == memory[kDirection]) return;
+  if (memory[kDirection] != 0) {
+    memory[kReversal_m] = d;
+    memory[kReversalZ] = z;
+    memory[kLargest_m] = std::max(memory[kLargest_m], d);
+    memory[kSmallest_m] = std::min(memory[kSmallest_m], d);
+  }
+  memory[kDirection] = direction;
+}
+
+double asymptotic_z(const LawValues& values, const std::vector<double>& memory, double z, double d,
+                    double d_now) {
+  using A = AsymptoteIndex;
+  constexpr double kHalf = 0.15, kLeastSharpness = 0.3, kNoWay = 1e-9;
+  std::vector<double> now = memory;
+  turn(now, z, d, d_now);
+  const double direction = now[kDirection], dy = values.p[A::dy];
+  const double way = direction - now[kReversalZ];
+  if (direction == 0 || std::abs(way) < kNoWay) return z;
+  const double corner = now[kReversal_m] + way * dy;
+  const double beyond =
+      std::abs((direction > 0 ? now[kLargest_m] : now[kSmallest_m]) - corner) / dy;
+  const double sharpness =
+      std::max(values.p[A::sharpness] * (1 - values.p[A::loss] * beyond / (kHalf + beyond)),
+               kLeastSharpness);
+  const double x = std::max((d_now - now[kReversal_m]) / (way * dy), 0.0);
+  const double bent = x > 1 ? 1 / std::pow(1 + std::pow(1 / x, sharpness), 1 / sharpness)
+                            : x / std::pow(1 + std::pow(x, sharpness), 1 / sharpness);
+  return now[kReversalZ] + way * bent;
+}
+
 double slider_force(const LawValues& values, const std::vector<double>& at, double d, double work) {
   const double weaker = weaker_of(values, work);
   double sum = 0;

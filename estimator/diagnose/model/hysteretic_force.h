@@ -30,6 +30,25 @@ struct SliderIndex {
   static constexpr int kCount = 10;
 };
 
+/// Indices of the parameters of LawForm::asymptotic: from every reversal (d_r, z_r) on
+///   z = z_r + (s - z_r) x / (1 + x^R)^(1/R), x = (d - d_r) / ((s - z_r) dy), s the direction,
+/// R = R0 (1 - loss q / (0.15 + q)), q how far the largest deformation on that side was beyond the
+/// point x = 1, in units of dy. Source: Menegotto and Pinto 1973.
+struct AsymptoteIndex {
+  enum : std::size_t { kh, dy, sharpness, loss };
+};
+
+/// Spread of sliders that yield about as roundly as a curve of that sharpness.
+double spread_like(double sharpness);
+
+/// The memory of such a law that has not moved yet.
+std::vector<double> no_reversal(const LawValues& values);
+/// z after a step from (z, d) to d_now.
+double asymptotic_z(const LawValues& values, const std::vector<double>& memory, double z, double d,
+                    double d_now);
+/// Ends that step.
+void turn(std::vector<double>& memory, double z, double d, double d_now);
+
 /// x^p, x >= 0; quick for small whole p.
 double power_of(double x, double p);
 

@@ -40,7 +40,8 @@ bool is_contact(LawForm form) {
 }
 
 LawMotion::LawMotion(const LawValues& values) : values_(values) {
-  if (values.form == LawForm::sliders) sliders_.assign(SliderIndex::kCount, 0.0);
+  if (values.form == LawForm::sliders) memory_.assign(SliderIndex::kCount, 0.0);
+  if (values.form == LawForm::asymptotic) memory_ = no_reversal(values);
 }
 
 double LawMotion::force(double d, double v, double t) const {
@@ -59,7 +60,9 @@ double LawMotion::plain_force(double d, double v, double t) const {
     case LawForm::slip_lock:
       return p[0] * p[1] * advanced_z(values_, z_, d_, d, work_);
     case LawForm::sliders:
-      return p[0] * slider_force(values_, sliders_, d, work_);
+      return p[0] * slider_force(values_, memory_, d, work_);
+    case LawForm::asymptotic:
+      return p[0] * p[1] * asymptotic_z(values_, memory_, z_, d_, d);
     case LawForm::friction:
       return friction(p, v);
     case LawForm::power_damping:
@@ -84,10 +87,14 @@ void LawMotion::accept(double d, double, double) {
   if (is_hysteretic(values_.form)) {
     const double dy = values_.p[HysteresisIndex::dy];
     if (values_.form == LawForm::sliders) {
-      const double force = slider_force(values_, sliders_, d, work_) / dy;
+      const double force = slider_force(values_, memory_, d, work_) / dy;
       work_ += 0.5 * (z_ + force) * (d - d_) / dy;
-      move_sliders(values_, sliders_, d, work_);
+      move_sliders(values_, memory_, d, work_);
       z_ = force;
+    } else if (values_.form == LawForm::asymptotic) {
+      const double z = asymptotic_z(values_, memory_, z_, d_, d);
+      turn(memory_, z_, d_, d);
+      z_ = z;
     } else {
       const double z = advanced_z(values_, z_, d_, d, work_);
       work_ += 0.5 * (z_ + z) * (d - d_) / dy;

@@ -15,6 +15,7 @@ enum class LawForm {
   saturating,     ///< a d0 tanh(d/d0)
   hysteresis,     ///< kh z, Bouc-Wen of any sharpness and sign: hysteretic_force.h
   sliders,        ///< kh z, springs in series with sliders that give way one after the other
+  asymptotic,     ///< kh z, a curve from every reversal toward yielding: hysteretic_force.h
   pinched,        ///< hysteresis with a slip zone about zero force
   slip_lock,      ///< hysteresis with a slip zone about zero deformation
   friction,       ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0)
@@ -74,7 +75,7 @@ class LawMotion {
 
   LawValues values_;
   double z_ = 0, d_ = 0, work_ = 0;
-  std::vector<double> sliders_;
+  std::vector<double> memory_;  ///< of sliders, or of the last reversal
 };
 
 /// Force of a law under a known motion: d, v at even steps of step_s.

@@ -18,7 +18,7 @@ constexpr int kCells = 15;
 constexpr int kLeastCount = 3;         ///< samples of a cell that is shown
 constexpr int kTimes = 8;              ///< supports of a stiffness that varies in time
 constexpr double kNearlyAll = 0.93;    ///< of the best share, that a simpler kind must explain
-constexpr double kKindFollows = 0.5;       ///< share below which no kind explains the force
+constexpr double kKindFollows = 0.5;   ///< share below which no kind explains the force
 constexpr double kBeyondChance = 1.3;  ///< misfit of a linear element over noise
 constexpr double kAsImpact = 0.7;      ///< of the powers' rest, that contacts must leave at most
 

@@ -46,6 +46,23 @@ LawStarts bouc_wen(const LawScale& s, double exponent) {
   return out;
 }
 
+/// Round hysteresis that loses strength and stiffness with work.
+LawStarts degrading(const LawScale& s) {
+  LawStarts out{F::hysteresis, EffectKind::bouc_wen, {}};
+  for (const double exponent : {1.0, 2.0})
+    for (const double loss : {0.02, 0.1})
+      for (const double yield : shrinking(0.8, 0.04, 0.65)) {
+        out.shapes.push_back(hysteretic(s, yield, exponent, 0.5));
+        add_losses(out.shapes.back());
+        for (const std::size_t i :
+             {+HysteresisIndex::strength_loss, +HysteresisIndex::stiffness_loss}) {
+          out.shapes.back()[i].value = loss;
+          out.shapes.back()[i].free = true;
+        }
+      }
+  return out;
+}
+
 /// Hysteresis that hardens: without an end of z.
 LawStarts hardening(const LawScale& s) {
   LawStarts out{F::hysteresis, EffectKind::bouc_wen, {}};
@@ -65,6 +82,19 @@ LawStarts sliders(const LawScale& s) {
           {linear_parameter(1, 0.01 * s.stiffness),
            logarithmic_parameter(yield * s.deformation, 1e-4 * s.deformation, 5 * s.deformation),
            bounded_parameter(spread, 0.02, 0, 0.98), held(0, 0.005, 0, kMostLoss)});
+  return out;
+}
+
+/// Sharp at first, round after yielding, as steel; and equally round always.
+LawStarts asymptotic(const LawScale& s) {
+  LawStarts out{F::asymptotic, EffectKind::bilinear_hysteresis, {}};
+  for (const bool steel : {true, false})
+    for (const double yield : shrinking(0.9, 0.02, 0.65))
+      out.shapes.push_back(
+          {linear_parameter(1, 0.01 * s.stiffness),
+           logarithmic_parameter(yield * s.deformation, 1e-4 * s.deformation, 5 * s.deformation),
+           logarithmic_parameter(steel ? 15 : 4, 0.5, 60),
+           bounded_parameter(steel ? 0.9 : 0, 0.02, 0, 0.99, steel)});
   return out;
 }
 
@@ -165,8 +195,8 @@ std::vector<LawStarts> plain_starts(const LawScale& s) {
 }
 
 std::vector<LawStarts> hysteretic_starts(const LawScale& s, bool pinching) {
-  std::vector<LawStarts> out{bouc_wen(s, 1), bouc_wen(s, 2), bouc_wen(s, kBilinear), hardening(s),
-                             sliders(s)};
+  std::vector<LawStarts> out{bouc_wen(s, 1), bouc_wen(s, 2), bouc_wen(s, kBilinear), degrading(s),
+                             hardening(s),   sliders(s),     asymptotic(s)};
   if (pinching)
     for (LawStarts& one :
          std::vector<LawStarts>{slip_about_force(s), slip_that_opens(s), slip_lock(s)})
@@ -198,6 +228,9 @@ void free_shape(ModelEffect& effect) {
       break;
     case F::sliders:
       release(SliderIndex::loss);
+      break;
+    case F::asymptotic:
+      release(AsymptoteIndex::loss);
       break;
     case F::gap_positive:
     case F::gap_negative:

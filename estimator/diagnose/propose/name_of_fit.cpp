@@ -10,6 +10,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kQuadratic = 2.45;  ///< exponent below which a spring counts as quadratic
+constexpr double kNoPower = 0.25;    ///< exponent of the rate below which it is friction
 constexpr double kRigid = 0.02;  ///< yield deformation below which it is friction, of the largest
 
 EffectKind elastic_name(double exponent) {
@@ -50,6 +51,7 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) 
       return effect.parameters[2].plain() > 20 ? EffectKind::bilinear_hysteresis
                                                : EffectKind::bouc_wen;
     case LawForm::sliders:
+    case LawForm::asymptotic:
       return effect.parameters[1].plain() < kRigid * effect.deformation
                  ? EffectKind::coulomb_friction
                  : EffectKind::bilinear_hysteresis;
@@ -59,7 +61,8 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) 
     case LawForm::friction:
       return EffectKind::coulomb_friction;
     case LawForm::power_damping:
-      return EffectKind::quadratic_damping;
+      return effect.parameters[1].plain() < kNoPower ? EffectKind::coulomb_friction
+                                                     : EffectKind::quadratic_damping;
     case LawForm::amplitude:
       return EffectKind::amplitude_dependence;
     case LawForm::gap_positive:

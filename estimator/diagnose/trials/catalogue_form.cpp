@@ -80,6 +80,7 @@ void set_hysteresis(const ModelEffect& e, Effect& out) {
     out.set("spread", std::max(p[SliderIndex::spread], 1e-3));
     out.set("strength_loss", value_or(p, SliderIndex::loss, 0));
   }
+  if (e.form == LawForm::asymptotic) out.set("spread", spread_like(p[AsymptoteIndex::sharpness]));
   if (out.kind == EffectKind::bilinear_hysteresis) return;
   const bool plain = e.form == LawForm::hysteresis;
   out.set("exponent", p[H::exponent]);
@@ -106,6 +107,10 @@ void set_friction(const ModelEffect& e, Effect& out) {
     return;
   }
   out.set("fc_n", p(0));
+  if (e.form == LawForm::power_damping) {
+    out.set("v0_mps", 0.01 * e.rate);
+    return;
+  }
   out.set("v0_mps", p(1));
   if (e.parameters.size() < 4) return;
   out.set("static_ratio", p(2));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/model/hysteretic_force.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -22,6 +24,20 @@ void as_power(ModelEffect& effect) {
 }
 
 void fix_exponent(EffectKind kind, ModelEffect& effect) {
+  if (kind == EffectKind::coulomb_friction && effect.form == LawForm::power_damping) {
+    effect.form = LawForm::friction;
+    effect.parameters[1] =
+        logarithmic_parameter(0.01 * effect.rate, 1e-4 * effect.rate, 0.3 * effect.rate);
+    return;
+  }
+  if (effect.form == LawForm::asymptotic) {
+    const double spread = spread_like(effect.parameters[AsymptoteIndex::sharpness].plain());
+    effect.form = LawForm::sliders;
+    effect.parameters.resize(2);
+    effect.parameters.push_back(bounded_parameter(spread, 0.02, 0, 0.98));
+    effect.parameters.push_back(bounded_parameter(0, 0.005, 0, 5, false));
+    return;
+  }
   const bool elastic =
       kind == EffectKind::cubic_stiffness || kind == EffectKind::quadratic_stiffness;
   if (elastic && effect.form != LawForm::power) as_power(effect);

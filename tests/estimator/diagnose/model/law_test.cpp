@@ -59,9 +59,9 @@ TEST(Law, ForcesAreThoseOfTheFormulas) {
 TEST(Law, OnlyThoseOfElementsPullThere) {
   for (const LawForm form :
        {LawForm::power, LawForm::saturating, LawForm::hysteresis, LawForm::sliders,
-        LawForm::pinched, LawForm::slip_lock, LawForm::friction, LawForm::power_damping,
-        LawForm::amplitude, LawForm::gap_positive, LawForm::gap_negative, LawForm::gap_both,
-        LawForm::changing})
+        LawForm::asymptotic, LawForm::pinched, LawForm::slip_lock, LawForm::friction,
+        LawForm::power_damping, LawForm::amplitude, LawForm::gap_positive, LawForm::gap_negative,
+        LawForm::gap_both, LawForm::changing})
     EXPECT_TRUE(is_element_law(form)) << static_cast<int>(form);
   for (const LawForm form :
        {LawForm::mass, LawForm::resonator, LawForm::spring, LawForm::damper, LawForm::rocking,
