@@ -40,7 +40,7 @@ MatrixXd orthonormal(MatrixXd x) {
 /// ends of NeededSignal. along: per bin, the whitened direction of the place.
 MatrixXd ends_of(const Whitened& system, const RecordSegment& s,
                  const std::vector<VectorXcd>& along, const VectorXd& weight) {
-  const Index n = system.operation.front().rows();
+  const Index n = system.operation.equations();
   const double middle = std::sqrt(s.w[0] * s.w[s.w.size() - 1]);
   std::vector<VectorXcd> columns(static_cast<std::size_t>(4 * n), VectorXcd(s.bins()));
   for (Index b = 0; b < s.bins(); ++b) {
