@@ -222,6 +222,7 @@ void free_shape(ModelEffect& effect) {
       break;
     case F::pinched:
     case F::slip_lock:
+      if (p[H::exponent].plain() > kSmooth) return;
       for (const std::size_t i :
            {+H::exponent, +H::beta, +H::offset, +H::pinched_strength, +H::pinched_stiffness})
         release(i);

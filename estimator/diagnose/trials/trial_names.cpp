@@ -10,7 +10,6 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kDissipates = 0.15;     ///< dissipation() below which a law counts as elastic
-constexpr double kNear = 1e-6;           ///< of a bound
 constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
 
 /// Energy dissipated in a cycle to the peak deformation, over that of the box around its loop.
@@ -36,6 +35,7 @@ double highest_hz(const Fitter& fitter) {
 
 /// A parameter at its bound means that another law acts.
 bool at_bound(const LawParameter& parameter) {
+  constexpr double kNear = 1e-6;
   return parameter.value <= parameter.low + kNear || parameter.value >= parameter.high - kNear;
 }
 
@@ -84,8 +84,7 @@ bool may_be_named(const TrialContext& c, const Trial& t) {
     const bool slips = effect.form == LawForm::pinched || effect.form == LawForm::slip_lock;
     if (slips && (dissipation(effect) < kDissipates ||
                   effect.parameters[HysteresisIndex::width].plain() < kNarrowestSlip ||
-                  effect.parameters[HysteresisIndex::slip].value <=
-                      effect.parameters[HysteresisIndex::slip].low + kNear ||
+                  at_bound(effect.parameters[HysteresisIndex::slip]) ||
                   at_bound(effect.parameters[HysteresisIndex::width])))
       return false;
   }
