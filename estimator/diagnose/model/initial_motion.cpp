@@ -15,13 +15,27 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr Index kFewestSamples = 64;
-constexpr double kTaper = 0.05;  ///< of the record, at either end
-constexpr Index kOfLead = 4;     ///< the lead's share before the initial instant, 1 over it
+constexpr double kTaper = 0.05;    ///< of the record, at either end
+constexpr Index kFirstShare = 20;  ///< of the lead, 1 over it: where it begins
+constexpr double kMoving = 0.1;
+constexpr Index kOfLead = 4;  ///< the lead's share before the initial instant, 1 over it
 
 double taper(Index i, Index size) {
   const double edge = kTaper * static_cast<double>(size);
   const double at = static_cast<double>(std::min(i, size - 1 - i)) / edge;
   return at < 1 ? 0.5 - 0.5 * std::cos(M_PI * at) : 1.0;
+}
+
+/// Whether the floors move at the begin: rms of the readings there over that of the lead.
+bool begins_in_motion(const Plant& plant, const RecordSegment& segment) {
+  const Index first = std::max<Index>(1, segment.lead.rows() / kFirstShare);
+  double begin = 0, all = 0;
+  for (Index a = 0; a < plant.axis_count(); ++a) {
+    if (plant.is_input(a)) continue;
+    begin += segment.lead.col(a).head(first).squaredNorm() / static_cast<double>(first);
+    all += segment.lead.col(a).squaredNorm() / static_cast<double>(segment.lead.rows());
+  }
+  return begin > kMoving * kMoving * all;
 }
 
 }  // namespace
@@ -31,6 +45,7 @@ std::optional<InitialMotion> initial_motion(const Plant& plant, const Model& mod
   const Index lead = segment.lead.rows();
   const Index size = smooth_size(lead + segment.accel.rows());
   if (lead == 0 || size < kFewestSamples || segment.w.size() == 0) return std::nullopt;
+  if (!begins_in_motion(plant, segment)) return std::nullopt;
   InitialMotion out;
   out.sample = std::max(lead / kOfLead, static_cast<Index>(kTaper * static_cast<double>(size)) + 1);
   if (out.sample >= lead) return std::nullopt;

@@ -17,7 +17,7 @@ struct InitialMotion {
 
 /// As measured: readings integrated within the segment's band, a quarter of the lead after its
 /// begin, so that a record that begins in motion need not be simulated from rest. Empty without a
-/// lead.
+/// lead, and where it begins at rest: then a run from rest is exact.
 std::optional<InitialMotion> initial_motion(const Plant& plant, const Model& model,
                                             const RecordSegment& segment);
 
