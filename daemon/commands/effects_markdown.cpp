@@ -36,6 +36,7 @@ of the element. In a panel, numbers per metre of d are so of this d.
 | crossing | `story`, `node`: `"x1y1"`, both directions |
 | floor | `story` |
 | building | `direction` |
+| whole frame | `frame`: all its stories |
 | channel | `channel` |
 | two channels | `channel`, `with_channel` |
 
@@ -63,6 +64,8 @@ const char* place_name(estimator::PlaceKind kind) {
       return "floor";
     case estimator::PlaceKind::building:
       return "building";
+    case estimator::PlaceKind::whole_frame:
+      return "whole frame";
     case estimator::PlaceKind::channel:
       return "channel";
     case estimator::PlaceKind::channel_pair:

@@ -10,6 +10,7 @@
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
 #include "estimator/diagnose/model/free_run.h"
+#include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
@@ -116,15 +117,16 @@ std::vector<LawMotion> law_motions(const DiagnoseOutput& o) {
     if (f.index < 0) continue;
     const estimator::ModelEffect& e = o.diagnosis.model.effects[static_cast<std::size_t>(f.index)];
     if (!e.element_law()) continue;
+    const std::vector<estimator::ActiveLaw> laws = active_laws(o.plant, o.diagnosis.model);
     std::size_t law = 0;
-    for (int i = 0; i < f.index; ++i)
-      law += o.diagnosis.model.effects[static_cast<std::size_t>(i)].element_law();
+    while (laws[law].effect != static_cast<std::size_t>(f.index)) ++law;
+    const int element = laws[law].port.element;
+    if (element < 0) continue;
     const std::size_t r = o.segments.size() - 1;
     const int ratio = steps_per_sample(o.plant, o.segments[r].rate_hz);
     const estimator::FreeRun run = free_run(o.plant, o.diagnosis.model, o.segments[r], r, ratio);
     if (!run.good || run.tracks[law].d.size() == 0) continue;
     const estimator::LawTrack& track = run.tracks[law];
-    const int element = element_of(o.plant, e.place);
     const double k = o.diagnosis.model.theta[element];
     out.push_back({place_text(e.place, o.plant.structure, o.plant.axes),
                    e.place.kind == estimator::PlaceKind::frame ? e.place.story : 0,

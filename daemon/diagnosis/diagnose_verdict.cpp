@@ -21,6 +21,7 @@ constexpr std::array kPlainNames = {
     "yielding with slip about zero",
     "dry friction",
     "a damping that grows with speed",
+    "a frame that softens or damps as it moves more",
     "a stop on one side",
     "play between two stops",
     "the pull of the weight on the leaning building",

@@ -26,6 +26,8 @@ const char* kind_text(const estimator::EffectPlace& p,
       return "floor";
     case estimator::PlaceKind::building:
       return "building";
+    case estimator::PlaceKind::whole_frame:
+      return "whole_frame";
     case estimator::PlaceKind::channel:
     case estimator::PlaceKind::channel_pair:
       return axes[static_cast<std::size_t>(p.channel)].story > 0 ? "channel" : "base";

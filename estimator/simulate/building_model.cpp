@@ -140,16 +140,41 @@ LinearModel linear_model(const Structure& structure, const ParameterTable& table
   return model;
 }
 
+Eigen::VectorXd PlacedLaw::deformation(const LinearModel& model) const {
+  if (element >= 0) return model.linear[static_cast<std::size_t>(element)].b;
+  Eigen::VectorXd b = Eigen::VectorXd::Unit(model.mass.size(), between[0]);
+  if (between.size() > 1) b[between[1]] = -1;
+  return b;
+}
+
 std::vector<PlacedLaw> placed_laws(const Structure& s, const ParameterTable& table,
+                                   const Eigen::VectorXd& theta,
                                    const std::vector<Effect>& effects) {
   std::vector<PlacedLaw> out;
   for (const Effect& e : effects) {
+    if (e.kind == amplitude_dependence) {
+      for (int story = 1; story <= s.stories; ++story)
+        for (int f = 0; f < s.frames(); ++f) {
+          const bool own = e.place.kind == PlaceKind::whole_frame
+                               ? f == e.place.frame
+                               : s.direction(f) == e.place.direction;
+          const int element = table.frame_stiffness(story, f);
+          if (own) out.push_back({element, make_amplitude_law(e, theta[element]), {}});
+        }
+      continue;
+    }
     std::unique_ptr<ElementLaw> law = make_law(e, s);
     if (!law) continue;
+    if (e.place.kind == PlaceKind::node_pair) {
+      out.push_back({-1, std::move(law), {s.dof(e.place.story, e.place.frame)}});
+      if (e.place.to_story > 0)
+        out.back().between.push_back(s.dof(e.place.to_story, e.place.frame));
+      continue;
+    }
     const int element = e.place.kind == PlaceKind::panel
                             ? table.panel_stiffness(e.place.story, e.place.panel)
                             : table.frame_stiffness(e.place.story, e.place.frame);
-    out.push_back({element, std::move(law)});
+    out.push_back({element, std::move(law), {}});
   }
   return out;
 }
@@ -168,7 +193,7 @@ bool stands(const Structure& s, const ParameterTable& table, const Eigen::Vector
   for (const Effect& e : effects) {
     const bool losing = e.kind == stiffness_drop || e.kind == stiffness_drift;
     const std::vector<PlacedLaw> placed =
-        losing || e.kind == p_delta ? placed_laws(s, table, {e}) : std::vector<PlacedLaw>{};
+        losing || e.kind == p_delta ? placed_laws(s, table, theta, {e}) : std::vector<PlacedLaw>{};
     for (const PlacedLaw& p : placed) {
       const bool gaining = losing && e.value("dk_npm") > 0;
       const Eigen::VectorXd& b = model.linear[static_cast<std::size_t>(p.element)].b;

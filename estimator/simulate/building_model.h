@@ -19,10 +19,15 @@ namespace framewatch::estimator {
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects);
 
-/// A law on an element of LinearModel::linear.
+/// A law on an element of LinearModel::linear, or between floors.
 struct PlacedLaw {
-  int element;
+  int element;  ///< -1: `between`
   std::unique_ptr<ElementLaw> law;
+  /// Degrees of freedom whose displacements are added and subtracted; the second may be missing.
+  std::vector<int> between;
+
+  /// b of the deformation b'y. size: of y.
+  Eigen::VectorXd deformation(const LinearModel& model) const;
 };
 
 struct PlacedForce {
@@ -32,6 +37,7 @@ struct PlacedForce {
 
 /// The laws of `effects`, in their order.
 std::vector<PlacedLaw> placed_laws(const Structure& structure, const ParameterTable& table,
+                                   const Eigen::VectorXd& theta,
                                    const std::vector<Effect>& effects);
 std::vector<PlacedForce> placed_forces(const Structure& structure,
                                        const std::vector<Effect>& effects);

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/simulate/hysteretic_law.h"
+
 namespace framewatch::estimator {
 namespace {
-
-double sign(double x) {
-  return x > 0 ? 1 : x < 0 ? -1 : 0;
-}
 
 /// f(d) alone, without memory.
 class ElasticLaw : public ElementLaw {
@@ -17,34 +15,55 @@ class ElasticLaw : public ElementLaw {
     using enum EffectKind;
     if (kind_ == cubic_stiffness) stiffness_ = e.value("k3_npm3");
     if (kind_ == quadratic_stiffness) stiffness_ = e.value("k2_npm2");
-    if (kind_ == one_sided_gap || kind_ == two_sided_gap) {
-      stiffness_ = e.value("kg_npm");
-      gap_ = e.value("gap_m");
-    }
-    if (kind_ == one_sided_gap) side_ = e.value("side");
   }
   double force(double, double d, double, std::span<const double>) const override {
-    switch (kind_) {
-      case EffectKind::cubic_stiffness:
-        return stiffness_ * d * d * d;
-      case EffectKind::quadratic_stiffness:
-        return stiffness_ * d * std::abs(d);
-      case EffectKind::one_sided_gap:
-        return side_ * stiffness_ * std::max(side_ * d - gap_, 0.0);
-      default:
-        return stiffness_ * (std::max(d - gap_, 0.0) - std::max(-d - gap_, 0.0));
-    }
-  }
-  double stiffness_bound() const override {
-    const bool contact = kind_ == EffectKind::one_sided_gap || kind_ == EffectKind::two_sided_gap;
-    return contact ? stiffness_ : 0;
+    return stiffness_ * d * (kind_ == EffectKind::cubic_stiffness ? d * d : std::abs(d));
   }
 
  private:
   EffectKind kind_;
   double stiffness_ = 0;
-  double gap_ = 0;
-  double side_ = 1;
+};
+
+/// A clearance that closes; then a spring and a dashpot that only push.
+class Contact : public ElementLaw {
+ public:
+  explicit Contact(const Effect& e)
+      : stiffness_(e.value("kg_npm")), gap_(e.value("gap_m")), damping_(e.value("cg_nspm")) {
+    if (e.kind != EffectKind::one_sided_gap) return;
+    up_ = e.value("side") > 0;
+    down_ = !up_;
+  }
+  double force(double, double d, double v, std::span<const double>) const override {
+    return (up_ ? push(d, v) : 0) - (down_ ? push(-d, -v) : 0);
+  }
+  double stiffness_bound() const override { return stiffness_; }
+  double damping_bound() const override { return damping_; }
+
+ private:
+  double push(double d, double v) const {
+    return d > gap_ ? std::max(stiffness_ * (d - gap_) + damping_ * v, 0.0) : 0;
+  }
+
+  double stiffness_, gap_, damping_;
+  bool up_ = true, down_ = true;
+};
+
+/// One story of amplitude_dependence.
+class AmplitudeDependence : public ElementLaw {
+ public:
+  AmplitudeDependence(const Effect& e, double stiffness)
+      : softening_(stiffness * e.value("softening")),
+        at_m_(e.value("at_m")),
+        exponent_(e.value("exponent")),
+        damping_(stiffness * e.value("damping_s2pm")) {}
+  double force(double, double d, double v, std::span<const double>) const override {
+    return damping_ * v * std::abs(v) -
+           softening_ * d * std::pow(std::abs(d) / at_m_, exponent_ - 1);
+  }
+
+ private:
+  double softening_, at_m_, exponent_, damping_;
 };
 
 class QuadraticDamping : public ElementLaw {
@@ -60,61 +79,19 @@ class QuadraticDamping : public ElementLaw {
 
 class Friction : public ElementLaw {
  public:
-  explicit Friction(const Effect& e) : force_(e.value("fc_n")), v0_(e.value("v0_mps")) {}
+  explicit Friction(const Effect& e)
+      : force_(e.value("fc_n")),
+        v0_(e.value("v0_mps")),
+        static_(e.value("static_ratio")),
+        stribeck_(e.value("stribeck_mps")) {}
   double force(double, double, double v, std::span<const double>) const override {
-    return force_ * std::tanh(v / v0_);
+    const double more = static_ * std::exp(-(v / stribeck_) * (v / stribeck_));
+    return force_ * (1 + more) * std::tanh(v / v0_);
   }
-  double damping_bound() const override { return force_ / v0_; }
+  double damping_bound() const override { return force_ * (1 + std::max(static_, 0.0)) / v0_; }
 
  private:
-  double force_, v0_;
-};
-
-/// A spring in series with a slider. The slider's position is what it remembers: exact while the
-/// deformation is monotonic within a step.
-class Bilinear : public ElementLaw {
- public:
-  explicit Bilinear(const Effect& e) : kh_(e.value("kh_npm")), dy_(e.value("dy_m")) {}
-  double force(double, double d, double, std::span<const double>) const override {
-    return kh_ * std::clamp(d - slider_, -dy_, dy_);
-  }
-  void begin_step(double, double d) override { slider_ = d - std::clamp(d - slider_, -dy_, dy_); }
-  double stiffness_bound() const override { return kh_; }
-  double remembered() const override { return slider_; }
-  void remember(double slider) override { slider_ = slider; }
-
- private:
-  double kh_, dy_;
-  double slider_ = 0;
-};
-
-/// Bouc-Wen, and with a slip zone pinching. z is the state, in m.
-class BoucWen : public ElementLaw {
- public:
-  explicit BoucWen(const Effect& e)
-      : kh_(e.value("kh_npm")),
-        dy_(e.value("dy_m")),
-        exponent_(e.value("exponent")),
-        beta_(e.value("beta")) {
-    if (e.kind != EffectKind::pinching) return;
-    slip_ = e.value("slip_ratio");
-    width_ = e.value("slip_width") * dy_;
-  }
-  int states() const override { return 1; }
-  double force(double, double, double, std::span<const double> z) const override {
-    return kh_ * z[0];
-  }
-  void rates(double, double v, std::span<const double> z, std::span<double> rate) const override {
-    const double yielded = std::pow(std::abs(z[0]) / dy_, exponent_);
-    const double slip = slip_ > 0 ? slip_ * std::exp(-z[0] * z[0] / (width_ * width_)) : 0;
-    rate[0] = (1 - slip) * v * (1 - yielded * (beta_ * sign(v * z[0]) + 1 - beta_));
-  }
-  double stiffness_bound() const override { return kh_; }
-
- private:
-  double kh_, dy_, exponent_, beta_;
-  double slip_ = 0;
-  double width_ = 1;
+  double force_, v0_, static_, stribeck_;
 };
 
 /// dk d from t0 on; it begins with a step of the integration.
@@ -171,19 +148,25 @@ void ElementLaw::rates(double, double, std::span<const double>, std::span<double
 
 void ElementLaw::begin_step(double, double) {}
 
+std::unique_ptr<ElementLaw> make_amplitude_law(const Effect& e, double stiffness) {
+  return std::make_unique<AmplitudeDependence>(e, stiffness);
+}
+
 std::unique_ptr<ElementLaw> make_law(const Effect& e, const Structure& s) {
   switch (e.kind) {
     case EffectKind::cubic_stiffness:
     case EffectKind::quadratic_stiffness:
+      return std::make_unique<ElasticLaw>(e);
     case EffectKind::one_sided_gap:
     case EffectKind::two_sided_gap:
-      return std::make_unique<ElasticLaw>(e);
+      return std::make_unique<Contact>(e);
     case EffectKind::bilinear_hysteresis:
-      return std::make_unique<Bilinear>(e);
     case EffectKind::bouc_wen:
     case EffectKind::pinching:
-      return std::make_unique<BoucWen>(e);
+      return make_hysteretic_law(e);
     case EffectKind::coulomb_friction:
+      if (const double ks = e.value("stick_npm"); ks > 0)
+        return make_slider(ks, e.value("fc_n") / ks);
       return std::make_unique<Friction>(e);
     case EffectKind::quadratic_damping:
       return std::make_unique<QuadraticDamping>(e);

@@ -59,7 +59,7 @@ NonlinearBuilding::NonlinearBuilding(const Structure& structure, const Parameter
     : structure_(structure),
       table_(table),
       effects_(effects),
-      laws_(placed_laws(structure, table, effects)),
+      laws_(placed_laws(structure, table, theta, effects)),
       forces_(placed_forces(structure, effects)),
       step_s_(step_s),
       refinement_(refinement) {
@@ -94,8 +94,7 @@ void NonlinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   placed_.clear();
   int first_state = 0;
   for (const PlacedLaw& p : laws_) {
-    const Eigen::VectorXd b =
-        constraint_.transpose() * model.linear[static_cast<std::size_t>(p.element)].b;
+    const Eigen::VectorXd b = constraint_.transpose() * p.deformation(model);
     placed_.push_back({b, -mass_inverse * b, first_state});
     first_state += p.law->states();
   }

@@ -21,6 +21,7 @@ enum class EffectKind {
   pinching,
   coulomb_friction,
   quadratic_damping,
+  amplitude_dependence,
   one_sided_gap,
   two_sided_gap,
   p_delta,
@@ -46,8 +47,8 @@ enum class EffectKind {
 /// Where an effect sits, and which members of EffectPlace say so:
 /// frame: story, frame (a frame story); panel: story, panel; node: story, frame (one degree of
 /// freedom); node_pair: the same and to_story, on the same frame; crossing: story, crossing (both
-/// degrees of freedom there); floor: story; building: direction; channel: channel; channel_pair:
-/// channel, with_channel.
+/// degrees of freedom there); floor: story; building: direction; whole_frame: frame, in all
+/// stories; channel: channel; channel_pair: channel, with_channel.
 enum class PlaceKind {
   frame,
   panel,
@@ -56,6 +57,7 @@ enum class PlaceKind {
   crossing,
   floor,
   building,
+  whole_frame,
   channel,
   channel_pair
 };

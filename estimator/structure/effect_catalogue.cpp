@@ -40,17 +40,26 @@ const EffectParameter kHystereticStiffness =
 const EffectParameter kYieldDeformation =
     positive("dy_m", "m", "largest elastic deformation z of the hysteretic part");
 const EffectParameter kSmoothness =
-    within("exponent", "", 2.0, 1, 50, "n: sharpness of yielding, 1 round");
-const EffectParameter kUnloading =
-    within("beta", "", 0.5, 0.5, 1,
-           "share of the loop's shape that dissipates; 0.5: unloading "
-           "is linear");
+    within("exponent", "", 2.0, 0.5, 60, "n: sharpness of yielding, 1 round");
+const EffectParameter kUnloading = within(
+    "beta", "", 0.5, 0, 10,
+    "share of the loop's shape that dissipates; 0.5: unloading is linear, more: it stiffens");
+
+const EffectParameter kStrengthLoss =
+    within("strength_loss", "", 0.0, 0, 10,
+           "a: strength falls by 1/(1 + a e), e the work of the hysteretic part over kh dy^2");
+const EffectParameter kStiffnessLoss =
+    within("stiffness_loss", "", 0.0, 0, 10, "b: kh falls by 1/(1 + b e) while it loads");
+const EffectParameter kContactDamping =
+    within("cg_nspm", "N*s/m", 0.0, 0, kAny, "cg: dashpot beside the contact's spring");
 
 constexpr std::initializer_list<PlaceKind> kElement = {PlaceKind::frame, PlaceKind::panel};
 constexpr std::initializer_list<PlaceKind> kFrame = {PlaceKind::frame};
 constexpr std::initializer_list<PlaceKind> kNode = {PlaceKind::node};
 constexpr std::initializer_list<PlaceKind> kNodePair = {PlaceKind::node_pair};
 constexpr std::initializer_list<PlaceKind> kBuilding = {PlaceKind::building};
+constexpr std::initializer_list<PlaceKind> kContact = {PlaceKind::frame, PlaceKind::node_pair};
+constexpr std::initializer_list<PlaceKind> kFrames = {PlaceKind::building, PlaceKind::whole_frame};
 constexpr std::initializer_list<PlaceKind> kChannel = {PlaceKind::channel};
 constexpr std::initializer_list<PlaceKind> kChannelPair = {PlaceKind::channel_pair};
 
@@ -73,17 +82,26 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
       {bilinear_hysteresis,
        "bilinear_hysteresis",
        kElement,
-       {kHystereticStiffness, kYieldDeformation},
+       {kHystereticStiffness, kYieldDeformation,
+        within("spread", "", 0.0, 0, 1,
+               "s: the part is ten springs that yield one after the other, between dy (1 - s) and "
+               "dy (1 + s); 0: a single corner"),
+        kStrengthLoss},
        "f = kh z; z' = v while abs(z) < dy or z v < 0, else 0",
        kHystereticSign,
        "Caughey, J. Appl. Mech. 27 (1960)"},
       {bouc_wen,
        "bouc_wen",
        kElement,
-       {kHystereticStiffness, kYieldDeformation, kSmoothness, kUnloading},
-       "f = kh z; z' = v (1 - abs(z/dy)^n (beta sgn(v z) + 1 - beta))",
+       {kHystereticStiffness, kYieldDeformation, kSmoothness, kUnloading, kStrengthLoss,
+        kStiffnessLoss,
+        within("loading", "", 1.0, -1, 1,
+               "g: share of the loop's shape while it loads; -1: it hardens, without an end")},
+       "f = kh z; z' = v/(1 + b e) (1 - (1 + a e) abs(z/dy)^n (beta sgn(v z) + g - beta)); "
+       "e' = z v/dy^2",
        kHystereticSign,
-       "Wen, J. Eng. Mech. Div. 102 (1976), normalised so that z ends at dy"},
+       "Wen, J. Eng. Mech. Div. 102 (1976), normalised so that z ends at dy; losses: Baber and "
+       "Wen, J. Eng. Mech. Div. 107 (1981)"},
       {pinching,
        "pinching",
        kFrame,
@@ -93,11 +111,18 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
         kUnloading,
         within("slip_ratio", "", std::nullopt, 0, 0.99,
                "p: share of the stiffness that is lost where the force is small"),
-        {"slip_width", "", 0.2, 0, 2, true, "w: half width of the slip zone, in units of dy"}},
-       "f = kh z; z' = h v (1 - abs(z/dy)^n (beta sgn(v z) + 1 - beta)); "
-       "h = 1 - p exp(-(z/(w dy))^2)",
+        {"slip_width", "", 0.2, 0, 50, true, "w: half width of the slip zone, in units of dy"},
+        within("slip_offset", "", 0.0, -1, 1, "q: where the slip zone is, in the direction of v"),
+        within("slip_work", "", 0.0, 0, 1e6, "E: work e in which it opens; 0: open from the start"),
+        within("slip_lock", "", 0.0, 0, 1, "1: the slip zone is about zero deformation, not force"),
+        kStrengthLoss,
+        kStiffnessLoss},
+       "f = kh z; z' = h v/(1 + b e) (1 - (1 + a e) abs(z/dy)^n (beta sgn(v z) + 1 - beta)); "
+       "h = 1 - p (1 - exp(-e/E)) exp(-((z/dy sgn(v) - q)/w)^2), or with slip_lock d/dy in place "
+       "of "
+       "z/dy sgn(v) - q; e' = z v/dy^2",
        "As bouc_wen; p = 0 is bouc_wen.",
-       "Baber and Noori, J. Eng. Mech. 111 (1985), slip zone about zero force"},
+       "Baber and Noori, J. Eng. Mech. 111 (1985); Foliente, J. Struct. Eng. 121 (1995)"},
   };
 }
 
@@ -107,10 +132,17 @@ std::vector<EffectDescription> friction_contact_and_weight() {
        "coulomb_friction",
        kElement,
        {not_negative("fc_n", "N", "friction force"),
-        positive("v0_mps", "m/s", "velocity below which the force gives way smoothly")},
-       "f = fc tanh(v/v0)",
+        positive("v0_mps", "m/s", "velocity below which the force gives way smoothly"),
+        within("stick_npm", "N/m", 0.0, 0, kAny,
+               "ks: slope while it sticks, in place of v0 and s; 0: rigid"),
+        within("static_ratio", "", 0.0, -0.9, 10, "s: fc (1 + s) at the onset of sliding"),
+        {"stribeck_mps", "m/s", 1.0, 0, kAny, true, "vs: velocity above which s is gone"}},
+       "f = fc (1 + s exp(-(v/vs)^2)) tanh(v/v0); with ks: f = ks z; z' = v while abs(z) < fc/ks "
+       "or "
+       "z v < 0, else 0",
        "fc > 0 resists the velocity. Dissipates.",
-       "Den Hartog, Trans. ASME 53 (1931), regularised"},
+       "Den Hartog, Trans. ASME 53 (1931), regularised; Armstrong-Helouvry, Dupont and Canudas de "
+       "Wit, Automatica 30 (1994)"},
       {quadratic_damping,
        "quadratic_damping",
        kFrame,
@@ -118,23 +150,39 @@ std::vector<EffectDescription> friction_contact_and_weight() {
        "f = c2 v abs(v)",
        "c2 > 0 resists the velocity. Dissipates.",
        "Nayfeh and Mook, Nonlinear Oscillations, 1979"},
+      {amplitude_dependence,
+       "amplitude_dependence",
+       kFrames,
+       {within("softening", "", std::nullopt, -10, 1,
+               "r: share of their stiffness that all elements lose at the deformation at_m"),
+        positive("at_m", "m", "D: that deformation"),
+        within("exponent", "", 2.0, 1, 9, "p: of the deformation"),
+        within("damping_s2pm", "s^2/m", 0.0, -kAny, kAny, "g: of the squared rate")},
+       "f = k (-r d abs(d/D)^(p - 1) + g v abs(v)) in every story of the frame, or of all frames "
+       "of "
+       "the direction",
+       "r > 0 softens, g > 0 resists the velocity.",
+       "Nayfeh and Mook, Nonlinear Oscillations, 1979"},
       {one_sided_gap,
        "one_sided_gap",
-       kFrame,
+       kContact,
        {not_negative("kg_npm", "N/m", "stiffness in contact"),
         within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact"),
-        within("side", "", 1.0, -1, 1, "s: 1 closes toward positive deformation, -1 negative")},
-       "f = s kg max(s d - g, 0)",
+        within("side", "", 1.0, -1, 1, "s: 1 closes toward positive deformation, -1 negative"),
+        kContactDamping},
+       "f = s max(kg (s d - g) + cg s v, 0) while s d > g; with to_story (0: the ground) d is "
+       "between two floors: a stop",
        "kg > 0 pushes back.",
-       "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988), without dashpot"},
+       "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988)"},
       {two_sided_gap,
        "two_sided_gap",
-       kFrame,
+       kContact,
        {not_negative("kg_npm", "N/m", "stiffness in contact"),
-        within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact")},
-       "f = kg (max(d - g, 0) - max(-d - g, 0))",
+        within("gap_m", "m", std::nullopt, 0, kAny, "g: deformation at first contact"),
+        kContactDamping},
+       "one_sided_gap toward both sides",
        "kg > 0 pushes back. A brace with play.",
-       "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988), without dashpot"},
+       "Anagnostopoulos, Earthquake Eng. Struct. Dyn. 16 (1988)"},
       {p_delta,
        "p_delta",
        kFrame,

@@ -56,6 +56,9 @@ void add_places(PlaceKind kind, const Structure& s, const std::vector<SensorAxis
         if ((direction == Direction::x ? s.n() : s.m()) > 0) out.push_back(place);
       }
       return;
+    case PlaceKind::whole_frame:
+      if (s.stories > 1) add_each(place.frame, s.frames());
+      return;
     case PlaceKind::channel:
       add_each(place.channel, static_cast<int>(axes.size()));
       return;
@@ -109,6 +112,8 @@ std::string place_text(const EffectPlace& p, const Structure& s,
       return "floor " + story;
     case PlaceKind::building:
       return p.direction == Direction::x ? "building along x" : "building along y";
+    case PlaceKind::whole_frame:
+      return "frame " + s.frame_name(p.frame) + ", all stories";
     case PlaceKind::channel:
       return "channel " + channel_name(axes, p.channel);
     case PlaceKind::channel_pair:

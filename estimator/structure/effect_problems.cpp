@@ -59,6 +59,10 @@ class Checker {
         add("direction", "the building has no frame in this direction");
       return;
     }
+    if (kind == PlaceKind::whole_frame) {
+      if (!inside(place_.frame, s_.frames())) add("frame", "no such frame");
+      return;
+    }
     if (place_.story < 1 || place_.story > s_.stories)
       add("story", "must be 1 to " + std::to_string(s_.stories));
     const bool on_frame =

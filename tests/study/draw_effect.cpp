@@ -11,6 +11,10 @@ using enum estimator::EffectKind;
 estimator::EffectPlace random_place(estimator::EffectKind kind, const StudyBuilding& b,
                                     estimator::Random& random) {
   std::vector<estimator::EffectPlace> places = effect_places(kind, b.truth, b.axes);
+  if (kind == one_sided_gap || kind == two_sided_gap)  // seeds make the cases that they always made
+    std::erase_if(places, [](const estimator::EffectPlace& p) {
+      return p.kind == estimator::PlaceKind::node_pair;
+    });
   if (kind == swapped)  // base channels are no mistake one would make with those above
     std::erase_if(places, [&](const estimator::EffectPlace& p) {
       return (b.axes[static_cast<std::size_t>(p.channel)].story == 0) !=
@@ -28,6 +32,22 @@ int element_of(const estimator::EffectPlace& p, const estimator::ParameterTable&
 struct ElementScale {
   double k, d, v;
 };
+
+/// Of all frames that amplitude_dependence acts on: the largest deformation.
+ElementScale frames_scale(const StudyBuilding& b, const Peaks& peaks,
+                          const estimator::EffectPlace& p) {
+  ElementScale out{1, 0, 0};
+  for (int story = 1; story <= b.truth.stories; ++story)
+    for (int f = 0; f < b.truth.frames(); ++f) {
+      const bool own = p.kind == estimator::PlaceKind::whole_frame
+                           ? f == p.frame
+                           : b.truth.direction(f) == p.direction;
+      const int i = b.table().frame_stiffness(story, f);
+      out.d = std::max(out.d, own ? peaks.deformation[i] : 0);
+      out.v = std::max(out.v, own ? peaks.rate[i] : 0);
+    }
+  return out;
+}
 
 double largest_size(estimator::EffectKind kind, bool softening) {
   switch (kind) {
@@ -48,6 +68,7 @@ double largest_size(estimator::EffectKind kind, bool softening) {
       return 6;
     case stiffness_drop:
     case stiffness_drift:
+    case amplitude_dependence:
       return 0.7;
     case tuned_mass_damper:
       return 0.2;
@@ -91,6 +112,8 @@ std::vector<double> element_values(estimator::EffectKind kind, const ElementScal
       return {s * e.k, (0.25 + 0.35 * u[0]) * e.d, u[1] < 0.5 ? -1.0 : 1.0};
     case two_sided_gap:
       return {s * e.k, (0.25 + 0.35 * u[0]) * e.d};
+    case amplitude_dependence:
+      return {s, e.d, 2, 0.5 * s * u[0] * e.d / (e.v * e.v)};
     case stiffness_drop:
       return {-s * e.k, std::round((0.3 + 0.3 * u[0]) * seconds * 100) / 100};
     case stiffness_drift:
@@ -179,22 +202,28 @@ Draw draw_effect(estimator::EffectKind kind, const StudyBuilding& b, const Peaks
   draw.of_channel = of_channel;
   draw.largest = largest_size(kind, sign < 0);
   draw.make = [=](double s, Hidden& hidden) {
-    estimator::Effect e{kind, place, {}};
-    if (place.kind == estimator::PlaceKind::frame || place.kind == estimator::PlaceKind::panel) {
+    estimator::Effect e = make_effect(kind, place);
+    const auto set = [&](const std::vector<double>& values) {
+      std::copy(values.begin(), values.end(), e.values.begin());
+    };
+    using enum estimator::PlaceKind;
+    if (kind == amplitude_dependence) {
+      set(element_values(kind, frames_scale(b, peaks, place), s, sign, u.data(), peaks.seconds));
+    } else if (place.kind == frame || place.kind == panel) {
       const int i = element_of(place, b.table());
       const ElementScale scale{b.theta[i], peaks.deformation[i], peaks.rate[i]};
-      e.values = element_values(kind, scale, s, sign, u.data(), peaks.seconds);
+      set(element_values(kind, scale, s, sign, u.data(), peaks.seconds));
       const bool hysteretic = kind == bilinear_hysteresis || kind == bouc_wen || kind == pinching;
       if (hysteretic) hidden.theta[i] -= e.values[0];  // its share of the frame, not more
-    } else if (place.kind == estimator::PlaceKind::building) {
-      e.values = {rotational_stiffness(b, place, s, kind == base_rocking)};
-    } else if (place.kind == estimator::PlaceKind::floor) {
+    } else if (place.kind == building) {
+      set({rotational_stiffness(b, place, s, kind == base_rocking)});
+    } else if (place.kind == floor) {
       const double k = b.theta[b.table().frame_stiffness(place.story, 0)];
-      e.values = {k / s, 0.002 * k / s};
+      set({k / s, 0.002 * k / s});
     } else if (of_channel) {
-      e.values = channel_values(kind, b, peaks, place, s, sign);
+      set(channel_values(kind, b, peaks, place, s, sign));
     } else {
-      e.values = node_values(kind, b, peaks, place, s, u.data());
+      set(node_values(kind, b, peaks, place, s, u.data()));
     }
     hidden.effects.push_back(e);
   };

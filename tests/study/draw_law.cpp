@@ -97,6 +97,31 @@ std::unique_ptr<estimator::ElementLaw> make_other(const std::string& name, const
                      double) { return -s * e.k * d * 0.5 * (1 + std::tanh((t - at) / 1.5)); },
                  s * e.k);
   }
+  if (name == "tanh softening")  // beside a spring that the building has lost
+    return plain(
+        [=](double, double d, double) { return s * e.k * 0.4 * e.d * std::tanh(d / (0.4 * e.d)); },
+        s * e.k);
+  if (name == "two-slope softening") {
+    const double g = (0.3 + 0.2 * u) * e.d;
+    return plain([=](double, double d, double) { return -s * e.k * (d - std::clamp(d, -g, g)); },
+                 s * e.k);
+  }
+  if (name == "Stribeck friction")
+    return plain(
+        [=](double, double, double v) {
+          const double x = v / (0.15 * e.v);
+          return 0.2 * s * e.k * e.d * (1 + 0.7 / (1 + x * x)) * (2 / M_PI) *
+                 std::atan(v / (0.005 * e.v));
+        },
+        0);
+  if (name == "stop with a dashpot") {
+    const double g = (0.35 + 0.3 * u) * e.d;
+    return plain(
+        [=](double, double d, double v) {
+          return d > g ? s * e.k * std::max(3 * (d - g) + 0.5 * e.d * v / e.v, 0.0) : 0.0;
+        },
+        3 * s * e.k);
+  }
   if (name == "lopsided yield")
     return std::make_unique<Sliders>(std::vector<Sliders::Part>{{s * e.k, 0.12 * e.d, 0.5 * e.d}});
   if (name == "wavy spring")
@@ -115,19 +140,24 @@ std::vector<std::string> accepted(const std::string& name) {
   if (name == "stick and slip") return {"coulomb_friction", "bilinear_hysteresis", "bouc_wen"};
   if (name == "three sliders") return {"bilinear_hysteresis", "bouc_wen"};
   if (name == "smooth drop") return {"stiffness_drop", "stiffness_drift"};
+  if (name == "tanh softening" || name == "two-slope softening")
+    return {"quadratic_stiffness", "cubic_stiffness"};
+  if (name == "Stribeck friction") return {"coulomb_friction"};
+  if (name == "stop with a dashpot") return {"one_sided_gap"};
   return {};
 }
 
 bool takes_over(const std::string& name) {
-  return name == "three sliders" || name == "lopsided yield";
+  return name == "three sliders" || name == "lopsided yield" || name == "tanh softening";
 }
 
 }  // namespace
 
 const std::vector<std::string>& other_forms() {
-  static const std::vector<std::string> kNames{"smooth gap",        "power 2.5",
-                                               "damping power 1.6", "stick and slip",
-                                               "three sliders",     "smooth drop"};
+  static const std::vector<std::string> kNames{
+      "smooth gap",        "power 2.5",          "damping power 1.6", "stick and slip",
+      "three sliders",     "smooth drop",        "tanh softening",    "two-slope softening",
+      "Stribeck friction", "stop with a dashpot"};
   return kNames;
 }
 
@@ -146,7 +176,10 @@ Draw draw_law(const std::string& name, const StudyBuilding& b, const Peaks& peak
   const double u = random.uniform();
   Draw draw;
   draw.name = name;
-  draw.largest = takes_over(name) ? 0.9 : name == "smooth drop" ? 0.7 : 2;
+  draw.largest = takes_over(name)                ? 0.9
+                 : name == "smooth drop"         ? 0.7
+                 : name == "two-slope softening" ? 0.6
+                                                 : 2;
   draw.make = [=](double s, Hidden& hidden) {
     const int i = b.table().frame_stiffness(place.story, place.frame);
     const LawScale e{b.theta[i], peaks.deformation[i], peaks.rate[i], peaks.seconds};

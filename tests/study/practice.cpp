@@ -35,6 +35,8 @@ const std::vector<Word>& words() {
       {"two-sided", {"two_sided_gap"}},
       {"one-sided", {"one_sided_gap"}},
       {"pounding", {"one_sided_gap"}},
+      {"whole frame", {"amplitude_dependence"}},
+      {"amplitude", {"amplitude_dependence"}},
       {"P-delta", {"p_delta"}},
       {"P-Delta", {"p_delta"}},
       {"tuned mass", {"tuned_mass_damper"}},

@@ -40,7 +40,8 @@ Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<estimator:
   options.longest_step_s = anti_alias ? kFine_s : 1 / options.rate_hz;
   std::vector<estimator::PlacedLaw> laws;
   for (const OtherLaw& law : c.hidden.laws)
-    laws.push_back({b.table().frame_stiffness(law.place.story, law.place.frame), law.make(record)});
+    laws.push_back(
+        {b.table().frame_stiffness(law.place.story, law.place.frame), law.make(record), {}});
   estimator::ResponseStream stream(
       std::make_unique<estimator::NonlinearBuilding>(b.truth, b.table(), c.hidden.theta, effects,
                                                      std::move(laws), fine_step_s(options)),

@@ -1,6 +1,6 @@
 #include "tests/support/example_effects.h"
 
-#include <utility>
+#include <algorithm>
 #include <vector>
 
 #include "estimator/structure/natural_frequencies.h"
@@ -63,6 +63,8 @@ std::vector<double> example_values(estimator::EffectKind kind, double size) {
       return {size * 10, 2e-3};
     case quadratic_damping:
       return {size * 1e3};
+    case amplitude_dependence:
+      return {size * 0.3, 4e-3, 2, size * 0.1};
     case one_sided_gap:
       return {size * 3e4, 2e-3, -1};
     case two_sided_gap:
@@ -109,8 +111,8 @@ std::vector<double> example_values(estimator::EffectKind kind, double size) {
 
 estimator::Effect example_effect(estimator::EffectKind kind, const TableModel& model, double size) {
   estimator::Effect e = make_effect(kind, effect_places(kind, model.structure, model.axes).front());
-  if (std::vector<double> values = example_values(kind, size); !values.empty())
-    e.values = std::move(values);
+  const std::vector<double> values = example_values(kind, size);  // others at their defaults
+  std::copy(values.begin(), values.end(), e.values.begin());
   return e;
 }
 

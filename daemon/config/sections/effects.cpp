@@ -29,6 +29,8 @@ std::vector<std::string_view> place_keys(estimator::PlaceKind kind) {
       return {"story"};
     case estimator::PlaceKind::building:
       return {"direction"};
+    case estimator::PlaceKind::whole_frame:
+      return {"frame", "direction"};
     case estimator::PlaceKind::channel:
       return {"channel"};
     case estimator::PlaceKind::channel_pair:
@@ -86,10 +88,14 @@ class EffectReader {
   }
 
   estimator::PlaceKind place_kind(const estimator::EffectDescription& d) const {
-    const bool panel = section_.value("panel") && !section_.value("frame");
-    const bool can_panel =
-        std::find(d.places.begin(), d.places.end(), estimator::PlaceKind::panel) != d.places.end();
-    return panel && can_panel ? estimator::PlaceKind::panel : d.places.front();
+    using enum estimator::PlaceKind;
+    const auto can_be = [&](estimator::PlaceKind kind) {
+      return std::find(d.places.begin(), d.places.end(), kind) != d.places.end();
+    };
+    if (can_be(panel) && section_.value("panel") && !section_.value("frame")) return panel;
+    if (can_be(node_pair) && section_.value("to_story")) return node_pair;
+    if (can_be(whole_frame) && section_.value("frame")) return whole_frame;
+    return d.places.front();
   }
 
   void refuse_other_keys(const estimator::EffectDescription& d, estimator::PlaceKind place) {

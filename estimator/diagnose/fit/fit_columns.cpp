@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/run_columns.h"
+#include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/linear_operation.h"
 #include "estimator/numeric/complex.h"
 
@@ -27,13 +28,17 @@ VectorXd parameter_column(const Plant& plant, const Model& model, const RecordSe
   set_value(moved, unknown, value_of(model, unknown) + 1);
   const ModelEffect& to = moved.effects[at];
   if (e.element_law()) {
-    std::size_t law = 0;
-    for (std::size_t i = 0; i < at; ++i) law += model.effects[i].element_law();
-    const LawTrack& track = system.tracks[law];
-    const VectorXd force =
-        law_force(to.law(record), track.d, track.v, 1 / (segment.rate_hz * ratio)) - track.force;
-    return whiten_rows(system, plant.building.act.col(element_of(plant, e.place)),
-                       band_of(force, segment, ratio));
+    VectorXd out = VectorXd::Zero(system.residual.size());
+    const std::vector<ActiveLaw> laws = active_laws(plant, model);
+    for (std::size_t law = 0; law < laws.size(); ++law) {
+      if (laws[law].effect != at) continue;
+      const LawTrack& track = system.tracks[law];
+      const VectorXd force = law_force(law_at(moved, laws[law], record), track.d, track.v,
+                                       1 / (segment.rate_hz * ratio)) -
+                             track.force;
+      out += whiten_rows(system, laws[law].port.act, band_of(force, segment, ratio));
+    }
+    return out;
   }
   if (e.form == LawForm::harmonic)
     return whiten_rows(system, node_direction(plant, e.place.story, e.place.frame),

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/diagnose/model/law_port.h"
 #include "estimator/numeric/complex.h"
 
 namespace framewatch::estimator {
@@ -61,15 +62,14 @@ std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& 
   std::vector<LawTrack> out;
   if (!any) return out;
   const MatrixXcd driving = motion.size() > 0 ? motion : calibrated(model, segment);
-  for (const ModelEffect& e : model.effects) {
-    if (!e.element_law()) continue;
-    const VectorXcd q =
-        (plant.building.sense.row(element_of(plant, e.place)) * driving).transpose();
+  for (const ActiveLaw& active : active_laws(plant, model)) {
+    const VectorXcd q = (active.port.sense * driving).transpose();
     const VectorXcd d = -q.array() / segment.w.array().square();
     const VectorXcd v = d.array() * segment.w.array() * kJ;
     LawTrack& track =
         out.emplace_back(LawTrack{signal_of(d, segment, ratio), signal_of(v, segment, ratio), {}});
-    track.force = law_force(e.law(record), track.d, track.v, 1 / (segment.rate_hz * ratio));
+    track.force =
+        law_force(law_at(model, active, record), track.d, track.v, 1 / (segment.rate_hz * ratio));
   }
   return out;
 }

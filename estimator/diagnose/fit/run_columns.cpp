@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "estimator/diagnose/model/law_port.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -43,7 +45,9 @@ bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
     if (plant.equations() > kLarge && frame >= 0)
       return e.element_law() && is_near(e.place, story, frame);
     return e.element_law() &&
-           (e.place.frame < 0 || frame < 0 || s.direction(e.place.frame) == s.direction(frame));
+           (frame < 0 || e.place.kind == PlaceKind::panel ||
+            (e.place.frame < 0 ? e.place.direction : s.direction(e.place.frame)) ==
+                s.direction(frame));
   });
 }
 
@@ -57,13 +61,11 @@ std::optional<VectorXd> run_column(const Plant& plant, const Model& model,
   if (!run.good) return std::nullopt;
   VectorXd out = VectorXd::Zero(system.residual.size());
   std::size_t law = 0;
-  for (const ModelEffect& e : model.effects) {
-    if (!e.element_law()) continue;
+  for (const ActiveLaw& active : active_laws(plant, model)) {
     const LawTrack &from = system.tracks[law], &to = run.tracks[law];
     const VectorXcd force = band_of((to.force - from.force) / change, segment, ratio);
     const VectorXcd d = band_of((to.d - from.d) / change, segment, ratio);
-    out += whiten_rows(system, plant.building.act.col(element_of(plant, e.place)),
-                       beyond(system.linear[law], force, d, segment.w));
+    out += whiten_rows(system, active.port.act, beyond(system.linear[law], force, d, segment.w));
     ++law;
   }
   return out;

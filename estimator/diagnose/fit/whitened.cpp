@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/linear_operation.h"
 #include "estimator/diagnose/spectra/whiteners.h"
 #include "estimator/numeric/complex.h"
@@ -115,25 +116,27 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   out.calibrated = calibrated(model, segment);
   out.tracks = std::move(tracks);
 
-  VectorXd theta = model.theta;
   MatrixXcd forces = MatrixXcd::Zero(n, bins);
   MatrixXd pushed;  // covariance of arbitrary forces
   std::vector<HiddenOscillator> hidden;
   std::vector<LinearOperation> additions;
   std::size_t law = 0;
+  MatrixXd stiffness = MatrixXd::Zero(n, plant.axis_count()), damping = stiffness;  // of the laws
+  for (const ActiveLaw& active : active_laws(plant, model)) {
+    const LawTrack& track = out.tracks[law++];
+    if (!track.force.allFinite()) return out;
+    const Equivalent& linear = out.linear.emplace_back(equivalent_of(track));
+    const MatrixXd shape = active.port.act * active.port.sense;
+    stiffness += linear.stiffness * shape;
+    damping += linear.damping * shape;
+    out.force.push_back(band_of(track.force, segment, ratio));
+    forces +=
+        active.port.act *
+        beyond(linear, out.force.back(), band_of(track.d, segment, ratio), segment.w).transpose();
+  }
   for (const ModelEffect& e : model.effects) {
-    if (e.element_law()) {
-      const LawTrack& track = out.tracks[law++];
-      if (!track.force.allFinite()) return out;
-      const Equivalent& linear = out.linear.emplace_back(equivalent_of(track));
-      const int element = element_of(plant, e.place);
-      theta[element] += linear.stiffness;
-      theta[element + elements] += linear.damping;
-      out.force.push_back(band_of(track.force, segment, ratio));
-      forces +=
-          plant.building.act.col(element) *
-          beyond(linear, out.force.back(), band_of(track.d, segment, ratio), segment.w).transpose();
-    } else if (e.form == LawForm::harmonic) {
+    if (e.element_law()) continue;
+    if (e.form == LawForm::harmonic) {
       // A force from outside is on the other side of the equation.
       forces -= node_direction(plant, e.place.story, e.place.frame) *
                 harmonic_bins(e, segment, record).transpose();
@@ -151,8 +154,8 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   const MatrixXd& sense = plant.building.sense;
   const MatrixXd mass =
       (1 + model.mass_change.array()).matrix().asDiagonal() * plant.building.mass + plant.push;
-  const MatrixXd stiffness = act * theta.head(elements).asDiagonal() * sense;
-  const MatrixXd damping = act * theta.tail(elements).asDiagonal() * sense;
+  stiffness += act * model.theta.head(elements).asDiagonal() * sense;
+  damping += act * model.theta.tail(elements).asDiagonal() * sense;
   out.operation = Operations(mass, stiffness, damping, std::move(additions), segment.w);
   if (!weights) {
     std::vector<MatrixXcd> own =

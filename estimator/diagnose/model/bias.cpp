@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "estimator/numeric/solve.h"
 
@@ -12,13 +13,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kPeriods = 4;  ///< of the band's lower end in one mean
+/// Of the band's lower end in one mean: a Hann taper has its zeros from there on.
+constexpr double kPeriods = 2;
+constexpr Index kHops = 4;  ///< in one mean
 constexpr Index kLeastMeans = 12;
 constexpr double kLeastShare = 0.02;  ///< of an axis' rms
 constexpr double kBeyondOthers = 5;   ///< times the median of all axes
 constexpr double kSignificance = 30;  ///< F of two parameters
 constexpr double kOnsetStep = 0.05;   ///< of the segment
 constexpr double kLatestOnset = 0.85;
+constexpr Index kMostCosines = 20;
+constexpr double kFarBetter = 4;  ///< times less is left by a curve than by a ramp
 
 /// Tapered means over overlapping spans, one column per axis, and the middle of each span, s. The
 /// taper suppresses the building's motion.
@@ -30,7 +35,7 @@ struct Means {
 Means means_of(const RecordSegment& s) {
   const double span_s = std::max(1.0, kPeriods * 2 * M_PI / s.w[0]);
   const auto length = std::max<Index>(2, static_cast<Index>(std::lround(span_s * s.rate_hz)));
-  const Index hop = length / 2;
+  const Index hop = std::max<Index>(1, length / kHops);
   const Index count = std::max<Index>(0, (s.accel.rows() - length) / hop + 1);
   VectorXd taper(length);
   for (Index i = 0; i < length; ++i)
@@ -48,6 +53,7 @@ Means means_of(const RecordSegment& s) {
 struct Fit {
   Ramp ramp;
   double significance = 0;
+  double rest = 0;  ///< sum of squares that the ramp leaves of the means
 };
 
 /// Least squares over the onset, of means of one axis.
@@ -65,25 +71,86 @@ Fit fit_of(const Means& means, Index axis, double seconds) {
     const double rest = (y - x * c).squaredNorm();
     if (rest >= least) continue;
     least = rest;
-    best.ramp = {c[1], from, std::sqrt(std::max(total - rest, 0.0) / static_cast<double>(count))};
+    best.ramp = {
+        c[1], from, std::sqrt(std::max(total - rest, 0.0) / static_cast<double>(count)), {}};
+    // Means overlap: independent ones are fewer.
     best.significance =
-        0.5 * (total - rest) / std::max(rest / static_cast<double>(count - 3), 1e-300);
+        0.5 * (total - rest) / kHops / std::max(rest / static_cast<double>(count - 3), 1e-300);
   }
+  best.rest = least;
   return best;
+}
+
+MatrixXd cosines(const VectorXd& time, double seconds, Index count) {
+  MatrixXd out(time.size(), count + 1);
+  for (Index k = 0; k <= count; ++k)
+    out.col(k) = (M_PI * static_cast<double>(k) / seconds * time.array()).cos();
+  return out;
+}
+
+/// The slow curve of an axis where that follows its means far better than a ramp, with its rms.
+void follow(const RecordSegment& s, const Means& means, Index axis, Fit& fit) {
+  const double seconds = s.seconds();
+  const double span_s = kHops * (means.time[1] - means.time[0]);
+  const Index count =
+      std::min({kMostCosines, static_cast<Index>(seconds / span_s), means.time.size() / 2 - 1});
+  if (count < 2) return;
+  const MatrixXd x = cosines(means.time, seconds, count);
+  const VectorXd y = means.value.col(axis), c = LeastSquares(x).solve(y);
+  const double rest = (y - x * c).squaredNorm();
+  const double total = (y.array() - y.mean()).matrix().squaredNorm();
+  const auto left = static_cast<double>(y.size() - count - 1);
+  const double significance =
+      (total - rest) / kHops / static_cast<double>(count) / std::max(rest / left, 1e-300);
+  if (kFarBetter * rest > fit.rest || significance < kSignificance) return;
+  VectorXd time(s.accel.rows());
+  for (Index i = 0; i < time.size(); ++i) time[i] = static_cast<double>(i) / s.rate_hz;
+  VectorXd slow = c;
+  slow[0] = 0;  // the mean is no drift
+  fit.ramp.curve = cosines(time, seconds, count) * slow;
+  fit.ramp.rms = std::sqrt(fit.ramp.curve.squaredNorm() / static_cast<double>(time.size()));
+  fit.significance = significance;
+}
+
+/// The means of an axis without what its direction has in common: slow motion of the ground.
+void remove_common(const Plant& plant, Means& means) {
+  MatrixXd own = means.value;
+  for (Index a = 0; a < plant.axis_count(); ++a) {
+    const Direction along = plant.axes[static_cast<std::size_t>(a)].direction;
+    std::vector<Index> alike;
+    for (Index b = 0; b < plant.axis_count(); ++b)
+      if (plant.axes[static_cast<std::size_t>(b)].direction == along && !plant.is_force(b))
+        alike.push_back(b);
+    if (alike.size() < 3 || plant.is_force(a)) continue;
+    for (Index i = 0; i < means.value.rows(); ++i) {
+      std::vector<double> values;
+      for (const Index b : alike) values.push_back(means.value(i, b));
+      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+      std::nth_element(values.begin(), middle, values.end());
+      own(i, a) -= *middle;
+    }
+  }
+  means.value = own;
 }
 
 }  // namespace
 
 std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index axis) {
-  const Means means = means_of(s);
+  Means means = means_of(s);
   if (means.time.size() < kLeastMeans) return std::nullopt;
+  remove_common(plant, means);
+  const auto fitted = [&](Index a) {
+    Fit fit = fit_of(means, a, s.seconds());
+    follow(s, means, a, fit);
+    return fit;
+  };
   std::vector<double> others;
   for (Index a = 0; a < plant.axis_count(); ++a)
-    if (a != axis) others.push_back(fit_of(means, a, s.seconds()).ramp.rms);
+    if (a != axis) others.push_back(fitted(a).ramp.rms);
   if (others.empty()) return std::nullopt;
   std::nth_element(others.begin(), others.begin() + static_cast<long>(others.size() / 2),
                    others.end());
-  const Fit own = fit_of(means, axis, s.seconds());
+  const Fit own = fitted(axis);
   const double rms =
       std::sqrt(s.accel.col(axis).squaredNorm() / static_cast<double>(s.accel.rows()));
   const bool stands_out = own.significance > kSignificance && own.ramp.rms > kLeastShare * rms &&
@@ -93,8 +160,13 @@ std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index 
 
 RecordSegment without_ramp(const RecordSegment& s, Index axis, const Ramp& ramp) {
   MatrixXd accel = s.accel;
-  for (Index i = 0; i < accel.rows(); ++i)
-    accel(i, axis) -= ramp.slope * std::max(static_cast<double>(i) / s.rate_hz - ramp.from_s, 0.0);
+  if (ramp.curve.size() == accel.rows()) {
+    accel.col(axis) -= ramp.curve;
+  } else {
+    for (Index i = 0; i < accel.rows(); ++i)
+      accel(i, axis) -=
+          ramp.slope * std::max(static_cast<double>(i) / s.rate_hz - ramp.from_s, 0.0);
+  }
   const double step = s.w.size() > 1 ? s.w[1] - s.w[0] : 1;
   const Band band{(s.w[0] - 0.25 * step) / (2 * M_PI),
                   (s.w[s.w.size() - 1] + 0.25 * step) / (2 * M_PI)};

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/diagnose/model/initial_motion.h"
+#include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/modal_system.h"
 #include "estimator/diagnose/model/run_system.h"
 #include "estimator/diagnose/model/upsampled.h"
@@ -81,15 +83,13 @@ class RunForces {
             Index coordinates, Index first_input)
       : record_(record) {
     Index input = first_input;
-    for (const ModelEffect& e : model.effects) {
-      if (e.element_law()) {
-        VectorXd row = VectorXd::Zero(coordinates);
-        row.head(plant.equations()) = plant.building.act.col(element_of(plant, e.place));
-        laws_.push_back({LawMotion(e.law(record)), system.observe(row), input++});
-      } else if (e.form == LawForm::harmonic) {
-        harmonics_.emplace_back(&e, input++);
-      }
+    for (const ActiveLaw& active : active_laws(plant, model)) {
+      VectorXd row = VectorXd::Zero(coordinates);
+      row.head(plant.equations()) = active.port.act;
+      laws_.push_back({LawMotion(law_at(model, active, record)), system.observe(row), input++});
     }
+    for (const ModelEffect& e : model.effects)
+      if (e.form == LawForm::harmonic) harmonics_.emplace_back(&e, input++);
     at_step_.resize(laws_.size());
   }
 
@@ -128,7 +128,7 @@ class RunForces {
   }
 
  private:
-  struct ActiveLaw {
+  struct RunLaw {
     LawMotion motion;
     ModalSystem::Observer seen;
     Index input;
@@ -140,7 +140,7 @@ class RunForces {
 
   /// Force of one law, the forces of the others held.
   void solve(const ModalSystem& system, std::size_t l, double t) {
-    ActiveLaw& law = laws_[l];
+    RunLaw& law = laws_[l];
     double d = system.displacement(law.seen), v = system.velocity(law.seen);
     for (std::size_t other = 0; other < laws_.size(); ++other) {
       if (other == l) continue;
@@ -156,7 +156,7 @@ class RunForces {
   }
 
   std::size_t record_;
-  std::vector<ActiveLaw> laws_;
+  std::vector<RunLaw> laws_;
   std::vector<std::pair<const ModelEffect*, Index>> harmonics_;
   std::vector<Step> at_step_;
 };
@@ -183,7 +183,16 @@ FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& se
 
   VectorXd now = VectorXd::Zero(parts.inputs.cols());
   VectorXd law_forces = now;
-  for (Index i = -lead; i < steps; ++i) {
+  Index first = -lead;
+  if (const auto moving = initial_motion(plant, model, segment)) {
+    const Index n = plant.equations();
+    VectorXd y = VectorXd::Zero(parts.mass.rows()), v = y;
+    y.head(n) = moving->displacement;
+    v.head(n) = moving->velocity;
+    system.start(y, v);
+    first += moving->sample * ratio + 1;
+  }
+  for (Index i = first; i < steps; ++i) {
     const double t = step_s * static_cast<double>(i);
     now.head(ground.rows()) = ground.col(lead + i);
     forces.set_harmonics(t, now);

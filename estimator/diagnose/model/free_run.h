@@ -20,9 +20,10 @@ struct FreeRun {
   std::vector<LawTrack> tracks;  ///< of the model's element laws, in their order
 };
 
-/// Simulates the model under the measured motion of the base alone, from rest at the beginning of
-/// the segment's lead. The linear part is integrated exactly in its complex modes; the forces of
-/// the laws at the end of each step are solved implicitly. record: index of the segment's record.
+/// Simulates the model under the measured motion of the base alone, from rest, or as measured
+/// within the segment's lead (initial_motion). The linear part is integrated exactly in its complex
+/// modes; the forces of the laws at the end of each step are solved implicitly. record: index of
+/// the segment's record.
 FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& segment,
                  std::size_t record, int ratio);
 

@@ -3,26 +3,26 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/model/hysteretic_force.h"
+
 namespace framewatch::estimator {
 namespace {
-
-constexpr double kSharp = 20;          ///< exponent above which hysteresis is computed as bilinear
-constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
-constexpr double kYielded = 1e-12;  ///< change of z below which the rest of a step changes nothing
-constexpr double kMostSlides = 5000;
-
-double power_of(double x, double p) {
-  return p == 1 ? x : p == 2 ? x * x : p == 3 ? x * x * x : std::pow(x, p);
-}
 
 double signed_power(double x, double p) {
   return std::copysign(power_of(std::abs(x), p), x);
 }
 
-/// dz/dd of the normalised Bouc-Wen law.
-double hysteresis_slope(double z, double direction, double n, double beta) {
-  const double level = power_of(std::abs(z), n);
-  return 1 - level * (beta * (z * direction > 0 ? 1.0 : -1.0) + 1 - beta);
+/// Contact toward positive deformation. It only pushes, where its spring hardens.
+double contact(const std::vector<double>& p, double d, double v) {
+  if (d <= p[1]) return 0;
+  const double force = p[0] * (d - p[1]) + value_or(p, 2, 0) * v;
+  return p[0] >= 0 ? std::max(force, 0.0) : force;
+}
+
+double friction(const std::vector<double>& p, double v) {
+  double more = value_or(p, 2, 0);
+  if (more != 0) more *= std::exp(-(v / p[3]) * (v / p[3]));
+  return p[0] * (1 + more) * std::tanh(v / p[1]);
 }
 
 }  // namespace
@@ -31,48 +31,51 @@ bool is_element_law(LawForm form) {
   return form <= LawForm::changing;
 }
 
-// p of hysteresis: kh, dy, n, beta; pinched: also slip ratio and slip width.
-double LawMotion::advanced(double d) const {
-  const double dy = values_.p[1], n = values_.p[2], beta = values_.p[3];
-  const double travel = (d - d_) / dy;
-  if (travel == 0) return z_;
-  const bool pinched = values_.form == LawForm::pinched;
-  if (n > kSharp && !pinched) return std::clamp(z_ + travel, -1.0, 1.0);
-  const double direction = travel > 0 ? 1.0 : -1.0;
-  const auto slope = [&](double z) {
-    const double slip =
-        pinched ? 1 - values_.p[4] * std::exp(-(z / values_.p[5]) * (z / values_.p[5])) : 1.0;
-    return slip * hysteresis_slope(z, direction, n, beta);
-  };
-  const double longest = std::max(kLongestSlide, std::abs(travel) / kMostSlides);
-  double z = z_;
-  for (double left = std::abs(travel); left > 0; left -= longest) {
-    const double at_start = slope(z);
-    if (z * direction > 0 && at_start * left < kYielded) break;
-    const double h = direction * std::min(left, longest);
-    z = std::clamp(z + h * slope(z + 0.5 * h * at_start), -1.0, 1.0);
-  }
-  return z;
+bool is_hysteretic(LawForm form) {
+  return form >= LawForm::hysteresis && form <= LawForm::slip_lock;
+}
+
+bool is_contact(LawForm form) {
+  return form >= LawForm::gap_positive && form <= LawForm::gap_both;
+}
+
+LawMotion::LawMotion(const LawValues& values) : values_(values) {
+  if (values.form == LawForm::sliders) memory_.assign(SliderIndex::kCount, 0.0);
+  if (values.form == LawForm::asymptotic) memory_ = no_reversal(values);
 }
 
 double LawMotion::force(double d, double v, double t) const {
+  return values_.scale * plain_force(d, v, t);
+}
+
+double LawMotion::plain_force(double d, double v, double t) const {
   const std::vector<double>& p = values_.p;
   switch (values_.form) {
     case LawForm::power:
       return p[0] * signed_power(d / values_.deformation, p[1]);
+    case LawForm::saturating:
+      return p[0] * p[1] * std::tanh(d / p[1]);
     case LawForm::hysteresis:
     case LawForm::pinched:
-      return p[0] * p[1] * advanced(d);
+    case LawForm::slip_lock:
+      return p[0] * p[1] * advanced_z(values_, z_, d_, d, work_);
+    case LawForm::sliders:
+      return p[0] * slider_force(values_, memory_, d, work_);
+    case LawForm::asymptotic:
+      return p[0] * p[1] * asymptotic_z(values_, memory_, z_, d_, d);
     case LawForm::friction:
-      return p[0] * std::tanh(v / p[1]);
+      return friction(p, v);
     case LawForm::power_damping:
       return p[0] * signed_power(v / values_.rate, p[1]);
+    case LawForm::amplitude:
+      return p[0] * signed_power(d / values_.deformation, p[1]) +
+             p[2] * signed_power(v / values_.rate, p[3]);
     case LawForm::gap_positive:
-      return p[0] * std::max(d - p[1], 0.0);
+      return contact(p, d, v);
     case LawForm::gap_negative:
-      return -p[0] * std::max(-d - p[1], 0.0);
+      return -contact(p, -d, -v);
     case LawForm::gap_both:
-      return p[0] * (std::max(d - p[1], 0.0) - std::max(-d - p[1], 0.0));
+      return contact(p, d, v) - contact(p, -d, -v);
     case LawForm::changing:
       return p[0] * std::clamp((t - p[1]) / p[2], 0.0, 1.0) * d;
     default:
@@ -81,7 +84,24 @@ double LawMotion::force(double d, double v, double t) const {
 }
 
 void LawMotion::accept(double d, double, double) {
-  if (values_.form == LawForm::hysteresis || values_.form == LawForm::pinched) z_ = advanced(d);
+  if (is_hysteretic(values_.form)) {
+    const double dy = values_.p[HysteresisIndex::dy];
+    if (values_.form == LawForm::sliders) {
+      const double force = slider_force(values_, memory_, d, work_) / dy;
+      work_ += 0.5 * (z_ + force) * (d - d_) / dy;
+      move_sliders(values_, memory_, d, work_);
+      z_ = force;
+    } else if (values_.form == LawForm::asymptotic) {
+      const double z = asymptotic_z(values_, memory_, z_, d_, d);
+      turn(memory_, z_, d_, d);
+      z_ = z;
+    } else {
+      const double z = advanced_z(values_, z_, d_, d, work_);
+      work_ += 0.5 * (z_ + z) * (d - d_) / dy;
+      z_ = z;
+    }
+    work_ = std::max(work_, 0.0);
+  }
   d_ = d;
 }
 

@@ -10,15 +10,20 @@ namespace framewatch::estimator {
 /// fitted values decide between them (name_of_fit). Those with `gap` in the name are mechanical
 /// clearances.
 enum class LawForm {
-  // at an element: restoring force over deformation and rate
+  // restoring force over deformation and rate, at an element, between floors, or of whole frames
   power,          ///< a sgn(d) |d/D|^p
-  hysteresis,     ///< kh z, Bouc-Wen of any sharpness
-  pinched,        ///< the same with a slip zone
-  friction,       ///< fc tanh(v/v0)
+  saturating,     ///< a d0 tanh(d/d0)
+  hysteresis,     ///< kh z, Bouc-Wen of any sharpness and sign: hysteretic_force.h
+  sliders,        ///< kh z, springs in series with sliders that give way one after the other
+  asymptotic,     ///< kh z, a curve from every reversal toward yielding: hysteretic_force.h
+  pinched,        ///< hysteresis with a slip zone about zero force
+  slip_lock,      ///< hysteresis with a slip zone about zero deformation
+  friction,       ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0)
   power_damping,  ///< a sgn(v) |v/V|^p
-  gap_positive,   ///< contact at clearance g: kg max(d - g, 0)
-  gap_negative,   ///< -kg max(-d - g, 0)
-  gap_both,       ///< both
+  amplitude,      ///< a sgn(d) |d/D|^p + b sgn(v) |v/V|^q
+  gap_positive,   ///< contact at clearance g: max(kg (d - g) + cg v, 0) while d > g
+  gap_negative,   ///< the same toward negative deformation
+  gap_both,       ///< both; kg < 0 softens
   changing,       ///< dk clip((t - t0)/T, 0, 1) d, t0 and T of each record
   // at a node, linear
   mass,       ///< dm at a crossing of frames
@@ -37,21 +42,27 @@ enum class LawForm {
   clipped,  ///< the readings of the axis are not used
 };
 
-/// Whether the law is a force at one element.
+/// Whether the law is a force over deformations: of one element, or of every one of a place.
 bool is_element_law(LawForm form);
+/// Whether it remembers its past: hysteresis of any kind.
+bool is_hysteretic(LawForm form);
+/// Whether it is a contact.
+bool is_contact(LawForm form);
 
 /// Parameters of an element law and the scales it is written in.
 struct LawValues {
   LawForm form = LawForm::power;
-  std::vector<double> p;     ///< as named at the form: amplitude first
+  /// As named at the form: amplitude first. Those of hysteresis: hysteretic_force.h.
+  std::vector<double> p;
   double deformation = 1.0;  ///< D, m
   double rate = 1.0;         ///< V, m/s
+  double scale = 1.0;        ///< of the force: share of one element where a place has several
 };
 
 /// An element law in time, with the internal state of hysteresis.
 class LawMotion {
  public:
-  explicit LawMotion(const LawValues& values) : values_(values) {}
+  explicit LawMotion(const LawValues& values);
 
   /// Restoring force, N, at deformation d (m), its rate v (m/s) and time t (s), after a step from
   /// the state of the last accept().
@@ -60,10 +71,11 @@ class LawMotion {
   void accept(double d, double v, double t);
 
  private:
-  double advanced(double d) const;
+  double plain_force(double d, double v, double t) const;
 
   LawValues values_;
-  double z_ = 0, d_ = 0;
+  double z_ = 0, d_ = 0, work_ = 0;
+  std::vector<double> memory_;  ///< of sliders, or of the last reversal
 };
 
 /// Force of a law under a known motion: d, v at even steps of step_s.

@@ -49,7 +49,11 @@ ModalSystem::ModalSystem(const MatrixXd& mass, const MatrixXd& damping, const Ma
   good_ = modes_of_all.good && a.allFinite();
   if (!good_) return;
   const MatrixXcd& vectors = modes_of_all.vectors;
-  const MatrixXcd modal_inputs = ComplexLu(vectors).solve(MatrixXcd(b.cast<Complex>()));
+  const ComplexLu into_modes(vectors);
+  const MatrixXcd modal_inputs = into_modes.solve(MatrixXcd(b.cast<Complex>()));
+  MatrixXd units = MatrixXd::Identity(2 * n, 2 * n);
+  units.bottomRows(n) /= scale;
+  const MatrixXcd modal_units = into_modes.solve(MatrixXcd(units.cast<Complex>()));
   std::vector<Index> kept;
   for (Index i = 0; i < 2 * n; ++i)
     if (modes_of_all.values[i].imag() >= 0) kept.push_back(i);
@@ -58,11 +62,13 @@ ModalSystem::ModalSystem(const MatrixXd& mass, const MatrixXd& damping, const Ma
   turn_.resize(modes);
   first_.resize(modes, inputs.cols());
   last_.resize(modes, inputs.cols());
+  entry_.resize(modes, 2 * n);
   for (Index m = 0; m < modes; ++m) {
     const Complex lambda = modes_of_all.values[kept[static_cast<std::size_t>(m)]];
     const double weight = lambda.imag() > 0 ? 2.0 : 1.0;
     shapes_.col(m) = weight * vectors.col(kept[static_cast<std::size_t>(m)]);
     turn_[m] = std::exp(lambda * step_s);
+    entry_.row(m) = modal_units.row(kept[static_cast<std::size_t>(m)]);
     const auto [one, two] = hold_weights(lambda * step_s);
     last_.row(m) = step_s * two * modal_inputs.row(kept[static_cast<std::size_t>(m)]);
     first_.row(m) = step_s * (one - two) * modal_inputs.row(kept[static_cast<std::size_t>(m)]);
@@ -76,6 +82,13 @@ ModalSystem::ModalSystem(const MatrixXd& mass, const MatrixXd& damping, const Ma
 void ModalSystem::reset() {
   state_ = Eigen::VectorXcd::Zero(turn_.size());
   before_ = state_;
+}
+
+void ModalSystem::start(const VectorXd& displacement, const VectorXd& velocity) {
+  VectorXd motion(2 * coordinates_);
+  motion << displacement, velocity;
+  state_ = entry_ * motion.cast<Complex>();
+  before_.setZero();
 }
 
 void ModalSystem::predict(const VectorXd& now) {

@@ -14,6 +14,8 @@ class ModalSystem {
 
   /// Back to rest.
   void reset();
+  /// To a state of motion: displacements and velocities of the coordinates, without inputs.
+  void start(const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity);
   /// Advances the state by a step with the inputs `now` at its end; inputs that depend on the
   /// motion are zero there.
   void predict(const Eigen::VectorXd& now);
@@ -35,6 +37,7 @@ class ModalSystem {
  private:
   bool good_ = true;
   Eigen::Index coordinates_;
+  Eigen::MatrixXcd entry_;         ///< modes x 2 coordinates: from displacements and velocities
   Eigen::MatrixXcd shapes_;        ///< 2 coordinates x modes, real part taken after weighting
   Eigen::VectorXcd turn_;          ///< factor of each mode over a step
   Eigen::MatrixXcd first_, last_;  ///< modes x inputs: weight of u at the step's start and end

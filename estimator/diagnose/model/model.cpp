@@ -8,7 +8,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 LawValues ModelEffect::law(std::size_t record) const {
-  LawValues out{form, {}, deformation, rate};
+  LawValues out{form, {}, deformation, rate, 1.0};
   for (const LawParameter& parameter : parameters) out.p.push_back(parameter.plain());
   if (record < record_parameters.size())
     for (const LawParameter& parameter : record_parameters[record])

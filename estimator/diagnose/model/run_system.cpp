@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <complex>
 
+#include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/linear_operation.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
@@ -113,12 +114,12 @@ void set_effect_inputs(const Plant& plant, const Model& model, const std::vector
             plant.ground(plant.structure.dof(e.place.story, e.place.frame), driving[i]);
       ++next;
     }
-    if (e.element_law()) {
-      out.inputs.col(column++).head(n) = -plant.building.act.col(element_of(plant, e.place));
-    } else if (e.form == LawForm::harmonic) {
-      out.inputs.col(column++).head(n) = node_direction(plant, e.place.story, e.place.frame);
-    }
   }
+  for (const ActiveLaw& active : active_laws(plant, model))
+    out.inputs.col(column++).head(n) = -active.port.act;
+  for (const ModelEffect& e : model.effects)
+    if (e.form == LawForm::harmonic)
+      out.inputs.col(column++).head(n) = node_direction(plant, e.place.story, e.place.frame);
 }
 
 }  // namespace
@@ -128,8 +129,9 @@ RunSystem run_system(const Plant& plant, const Model& model, const std::vector<I
   Index extra = 0, forces = 0;
   for (const ModelEffect& e : model.effects) {
     extra += e.form == LawForm::resonator;
-    forces += e.element_law() || e.form == LawForm::harmonic;
+    forces += e.form == LawForm::harmonic;
   }
+  forces += static_cast<Index>(active_laws(plant, model).size());
   RunSystem out;
   out.mass = MatrixXd::Zero(n + extra, n + extra);
   out.mass.diagonal().head(n) = plant.mass.array() * (1 + model.mass_change.array());

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
+#include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/scalar_fit.h"
 #include "estimator/diagnose/propose/timed_change.h"
 
@@ -13,8 +13,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXcd;
-
-constexpr double kBilinear = 40;  ///< exponent of hysteresis with a corner
 
 class ElementProposals {
  public:
@@ -29,52 +27,10 @@ class ElementProposals {
 
   std::vector<Proposal> all() {
     const double k = fitter_.plant().design[element_];
-    const double force = k * peak_;
-    using F = LawForm;
-    best(F::power, EffectKind::cubic_stiffness, {1.5, 2, 3, 5}, [&](double p) {
-      return std::vector<LawParameter>{linear_parameter(1, 0.01 * force),
-                                       bounded_parameter(p, 0.02, 1.2, 9)};
-    });
-    std::vector<double> yields;
-    for (double y = 0.9; y > 0.004; y *= 0.7) yields.push_back(y);
-    for (const double n : {1.0, 2.0, kBilinear})
-      best(F::hysteresis, n > 20 ? EffectKind::bilinear_hysteresis : EffectKind::bouc_wen, yields,
-           [&](double y) {
-             return std::vector<LawParameter>{
-                 linear_parameter(1, 0.01 * k),
-                 logarithmic_parameter(y * peak_, 1e-4 * peak_, 3 * peak_),
-                 bounded_parameter(n, 0.05, 0.5, 60, false),
-                 bounded_parameter(0.5, 0.02, 0.1, 1.0, false)};
-           });
-    if (fitter_.plant().table[element_].frame >= 0)
-      for (const double slip : {0.7, 0.9})
-        best(F::pinched, EffectKind::pinching, yields, [&](double y) {
-          return std::vector<LawParameter>{
-              linear_parameter(1, 0.01 * k),
-              logarithmic_parameter(y * peak_, 1e-3 * peak_, 3 * peak_),
-              bounded_parameter(2, 0.05, 0.5, 60, false),
-              bounded_parameter(0.5, 0.02, 0.1, 1.0, false),
-              bounded_parameter(slip, 0.02, 0.3, 0.99),
-              logarithmic_parameter(0.2, 0.05, 1.0)};
-        });
-    best(F::friction, EffectKind::coulomb_friction, {0.1, 0.03, 0.01, 0.003}, [&](double v0) {
-      return std::vector<LawParameter>{
-          linear_parameter(1, 0.01 * force),
-          logarithmic_parameter(v0 * rate_, 1e-4 * rate_, 0.3 * rate_)};
-    });
-    best(F::power_damping, EffectKind::quadratic_damping, {0.4, 1.5, 2, 3}, [&](double p) {
-      return std::vector<LawParameter>{linear_parameter(1, 0.01 * force),
-                                       bounded_parameter(p, 0.02, 0.15, 5)};
-    });
-    std::vector<double> gaps;
-    for (double g = 0.03; g < 0.97; g += g < 0.1 ? 0.03 : 0.07) gaps.push_back(g);
-    for (const F form : {F::gap_positive, F::gap_negative, F::gap_both})
-      best(form, form == F::gap_both ? EffectKind::two_sided_gap : EffectKind::one_sided_gap, gaps,
-           [&](double g) {
-             return std::vector<LawParameter>{
-                 linear_parameter(1, 0.01 * k),
-                 logarithmic_parameter(g * peak_, 1e-3 * peak_, peak_)};
-           });
+    const LawScale scale{k, peak_, rate_};
+    const bool frame = fitter_.plant().table[element_].frame >= 0;
+    for (const LawStarts& family : plain_starts(scale)) best(family);
+    for (const LawStarts& family : hysteretic_starts(scale, frame)) best(family);
     changing(k);
     return std::move(out_);
   }
@@ -108,22 +64,20 @@ class ElementProposals {
     out_.push_back(std::move(p));
   }
 
-  void best(LawForm form, EffectKind kind, const std::vector<double>& grid,
-            const std::function<std::vector<LawParameter>(double)>& parameters) {
+  /// Adds the family with the best of its starts.
+  void best(const LawStarts& family) {
     ScalarFit least;
     ModelEffect chosen;
-    for (const double value : grid) {
-      const ModelEffect effect = effect_of(form, parameters(value));
+    for (const std::vector<LawParameter>& shape : family.shapes) {
+      const ModelEffect effect = effect_of(family.form, shape);
       const ScalarFit fit = fit_of(effect);
-      const bool dissipates = form == LawForm::friction || form == LawForm::power_damping ||
-                              form == LawForm::hysteresis || form == LawForm::pinched;
-      if (dissipates && fit.coefficients[2] < 0) continue;
+      if (resists_velocity(family.form) && fit.coefficients[2] < 0) continue;
       if (fit.misfit < least.misfit) {
         least = fit;
         chosen = effect;
       }
     }
-    if (least.misfit < 1e299) add(std::move(chosen), kind, least);
+    if (least.misfit < 1e299) add(std::move(chosen), family.kind, least);
   }
 
   void changing(double k) {

@@ -1,30 +1,76 @@
 #include "estimator/diagnose/propose/name_of_fit.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
+
+namespace {
+
+constexpr double kQuadratic = 2.45;  ///< exponent below which a spring counts as quadratic
+constexpr double kNoPower = 0.25;    ///< exponent of the rate below which it is friction
+constexpr double kRigid = 0.02;  ///< yield deformation below which it is friction, of the largest
+
+EffectKind elastic_name(double exponent) {
+  return exponent < kQuadratic ? EffectKind::quadratic_stiffness : EffectKind::cubic_stiffness;
+}
+
+}  // namespace
+
+double nearest_exponent(const ModelEffect& effect) {
+  constexpr int kPoints = 200;
+  Eigen::VectorXd d(kPoints);
+  for (int i = 0; i < kPoints; ++i)
+    d[i] = effect.deformation * std::sin(M_PI * (i + 0.5) / kPoints - M_PI / 2);
+  const Eigen::VectorXd force = law_force(effect.law(0), d, Eigen::VectorXd::Zero(kPoints), 1);
+  double least = 1e300, out = 2;
+  for (double p = 1.2; p < 9; p *= 1.05) {
+    LawValues power{LawForm::power, {1, p}, effect.deformation, 1, 1};
+    Eigen::MatrixXd columns(kPoints, 2);
+    columns.col(0) = d;
+    columns.col(1) = law_force(power, d, Eigen::VectorXd::Zero(kPoints), 1);
+    const double rest = (force - columns * LeastSquares(columns).solve(force)).squaredNorm();
+    if (rest >= least) continue;
+    least = rest;
+    out = p;
+  }
+  return out;
+}
 
 EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) {
   switch (effect.form) {
     case LawForm::power:
-      return effect.parameters[1].plain() < 2.45 ? EffectKind::quadratic_stiffness
-                                                 : EffectKind::cubic_stiffness;
+      return elastic_name(effect.parameters[1].plain());
+    case LawForm::saturating:
+      return elastic_name(nearest_exponent(effect));
     case LawForm::hysteresis:
-      if (effect.parameters[1].plain() < 0.02 * effect.deformation)
+      if (effect.parameters[1].plain() < kRigid * effect.deformation)
         return EffectKind::coulomb_friction;
       return effect.parameters[2].plain() > 20 ? EffectKind::bilinear_hysteresis
                                                : EffectKind::bouc_wen;
+    case LawForm::sliders:
+    case LawForm::asymptotic:
+      return effect.parameters[1].plain() < kRigid * effect.deformation
+                 ? EffectKind::coulomb_friction
+                 : EffectKind::bilinear_hysteresis;
     case LawForm::pinched:
+    case LawForm::slip_lock:
       return EffectKind::pinching;
     case LawForm::friction:
       return EffectKind::coulomb_friction;
     case LawForm::power_damping:
-      return EffectKind::quadratic_damping;
+      return effect.parameters[1].plain() < kNoPower ? EffectKind::coulomb_friction
+                                                     : EffectKind::quadratic_damping;
+    case LawForm::amplitude:
+      return EffectKind::amplitude_dependence;
     case LawForm::gap_positive:
     case LawForm::gap_negative:
       return EffectKind::one_sided_gap;
     case LawForm::gap_both:
-      return EffectKind::two_sided_gap;
+      return effect.parameters[0].plain() < 0 ? elastic_name(nearest_exponent(effect))
+                                              : EffectKind::two_sided_gap;
     case LawForm::changing: {
       // The length of a change shows only in records with motion while it goes on.
       double shortest = 1e300;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimator/numeric/complex.h"
 
@@ -9,8 +10,67 @@ namespace framewatch::estimator {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
+
+namespace {
+
+/// weighted: roots of the weights.
+VectorXd real_rows(const VectorXcd& signal, const VectorXd& root) {
+  VectorXd out(2 * signal.size());
+  out << signal.real().cwiseProduct(root), signal.imag().cwiseProduct(root);
+  return out;
+}
+
+/// Orthonormal columns with the span of those of x, those that depend on others left out.
+MatrixXd orthonormal(MatrixXd x) {
+  constexpr double kDependent = 1e-6;
+  Index kept = 0;
+  for (Index c = 0; c < x.cols(); ++c) {
+    VectorXd v = x.col(c);
+    const double before = v.norm();
+    for (int twice = 0; twice < 2; ++twice)
+      v -= x.leftCols(kept) * (x.leftCols(kept).transpose() * v).eval();
+    if (v.norm() > kDependent * before) x.col(kept++) = v.normalized();
+  }
+  return x.leftCols(kept);
+}
+
+/// ends of NeededSignal. along: per bin, the whitened direction of the place.
+MatrixXd ends_of(const Whitened& system, const RecordSegment& s,
+                 const std::vector<VectorXcd>& along, const VectorXd& weight) {
+  const Index n = system.operation.equations();
+  const double middle = std::sqrt(s.w[0] * s.w[s.w.size() - 1]);
+  std::vector<VectorXcd> columns(static_cast<std::size_t>(4 * n), VectorXcd(s.bins()));
+  for (Index b = 0; b < s.bins(); ++b) {
+    const double r = s.w[b] / middle;
+    const Complex factors[] = {1 / (r * r), -kJ / r, 1, kJ * r};
+    const Eigen::RowVectorXcd share =
+        along[static_cast<std::size_t>(b)].adjoint() * system.weights->whitener(b) / weight[b];
+    for (Index term = 0; term < 4; ++term)
+      for (Index i = 0; i < n; ++i)
+        columns[static_cast<std::size_t>(term * n + i)][b] = factors[term] * share[i];
+  }
+  const VectorXd root = weight.cwiseSqrt();
+  MatrixXd out(2 * s.bins(), 4 * n);
+  for (Index c = 0; c < out.cols(); ++c)
+    out.col(c) = real_rows(columns[static_cast<std::size_t>(c)], root);
+  return orthonormal(std::move(out));
+}
+
+}  // namespace
+
+VectorXcd NeededSignal::without_ends(const VectorXcd& signal) const {
+  if (ends.size() == 0) return signal;
+  const VectorXd root = weight.cwiseSqrt();
+  VectorXd rows = real_rows(signal, root);
+  rows -= ends * (ends.transpose() * rows).eval();
+  VectorXcd out(signal.size());
+  out.real() = rows.head(signal.size()).cwiseQuotient(root);
+  out.imag() = rows.tail(signal.size()).cwiseQuotient(root);
+  return out;
+}
 
 std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisation& place) {
   const Plant& plant = fitter.plant();
@@ -28,6 +88,7 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
     one.force.resize(s.bins());
     one.weight.resize(s.bins());
     VectorXcd rest(n);
+    std::vector<VectorXcd> along(static_cast<std::size_t>(s.bins()));
     for (Index b = 0; b < s.bins(); ++b) {
       const auto at = static_cast<std::size_t>(b);
       VectorXcd u =
@@ -41,7 +102,9 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
       rest.imag() = system.residual.segment(2 * n * b + n, n);
       one.weight[b] = std::max(u.squaredNorm(), 1e-300);
       one.force[b] = -u.dot(rest) / one.weight[b];
+      along[at] = u;
     }
+    one.ends = ends_of(system, s, along, one.weight);
     if (candidate.kind == CandidatePlace::Kind::element) {
       const VectorXcd q =
           (plant.building.sense.row(candidate.element) * place.motion[r]).transpose();

@@ -15,6 +15,12 @@ struct NeededSignal {
   Eigen::VectorXd weight;    ///< 1 / variance of it
   Eigen::VectorXcd d;        ///< deformation of the element, m, per bin; empty: not an element
   Eigen::VectorXd d_t, v_t;  ///< deformation and its rate in time, Fitter::ratio() steps a sample
+  /// What motion beyond the segment's ends can add to the force (Weights): an orthonormal basis of
+  /// real parts, then imaginary parts, times the roots of the weights. Empty: nothing.
+  Eigen::MatrixXd ends;
+
+  /// A signal, per bin, without the part that the ends can add.
+  Eigen::VectorXcd without_ends(const Eigen::VectorXcd& signal) const;
 };
 
 /// The signal that the first place of a localisation needs in every record.

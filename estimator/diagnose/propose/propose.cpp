@@ -5,6 +5,7 @@
 
 #include "estimator/diagnose/model/linear_operation.h"
 #include "estimator/diagnose/propose/axis_proposals.h"
+#include "estimator/diagnose/propose/contact_proposals.h"
 #include "estimator/diagnose/propose/element_proposals.h"
 #include "estimator/diagnose/propose/node_proposals.h"
 #include "estimator/diagnose/propose/scalar_fit.h"
@@ -109,6 +110,7 @@ std::vector<Proposal> propose(const Fitter& fitter, const Localisation& all, std
       return out;
     case CandidatePlace::Kind::rocking:
       add_rotations(plant, place, out);
+      add_amplitude_proposals(fitter, place, out);
       return out;
     case CandidatePlace::Kind::floor:
       add_floors(plant, place, out);
@@ -129,8 +131,12 @@ std::vector<Proposal> propose(const Fitter& fitter, const Localisation& all, std
     add_node_proposals(fitter, place, needed, node, out);
   }
   if (candidate.kind == CandidatePlace::Kind::link ||
-      (candidate.kind == CandidatePlace::Kind::node && candidate.place.story >= 2))
+      (candidate.kind == CandidatePlace::Kind::node && candidate.place.story >= 2)) {
     add_links(fitter, place, needed, out);
+    EffectPlace pair = candidate.place;
+    pair.kind = PlaceKind::node_pair;
+    add_contact_proposals(fitter, place, needed, pair, out);
+  }
   std::stable_sort(out.begin(), out.end(),
                    [](const Proposal& x, const Proposal& y) { return x.misfit < y.misfit; });
   return out;

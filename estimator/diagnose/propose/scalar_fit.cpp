@@ -9,20 +9,23 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-ScalarSums scalar_sums(const NeededSignal& needed, const std::vector<VectorXcd>& columns) {
+ScalarSums scalar_sums(const NeededSignal& needed, const std::vector<VectorXcd>& given) {
+  std::vector<VectorXcd> columns;
+  for (const VectorXcd& column : given) columns.push_back(needed.without_ends(column));
+  const VectorXcd force = needed.without_ends(needed.force);
   const auto count = static_cast<Index>(columns.size());
   const VectorXd& w = needed.weight;
   ScalarSums out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0};
   for (Index i = 0; i < count; ++i) {
     const VectorXcd& a = columns[static_cast<std::size_t>(i)];
-    out.right[i] = (w.array() * (a.conjugate().array() * needed.force.array()).real()).sum();
+    out.right[i] = (w.array() * (a.conjugate().array() * force.array()).real()).sum();
     for (Index j = 0; j <= i; ++j) {
       const VectorXcd& b = columns[static_cast<std::size_t>(j)];
       out.normal(i, j) = (w.array() * (a.conjugate().array() * b.array()).real()).sum();
       out.normal(j, i) = out.normal(i, j);
     }
   }
-  out.total = (w.array() * needed.force.array().abs2()).sum();
+  out.total = (w.array() * force.array().abs2()).sum();
   return out;
 }
 
@@ -51,10 +54,10 @@ ScalarFit scalar_fit(const std::vector<NeededSignal>& needed,
 }
 
 VectorXcd beyond_linear(const RecordSegment& s, const NeededSignal& needed) {
-  if (needed.d.size() == 0) return needed.force;
+  if (needed.d.size() == 0) return needed.without_ends(needed.force);
   const std::vector<VectorXcd> columns = linear_columns(needed, s.w);
   const VectorXd fit = scalar_fit({needed}, {columns}).coefficients;
-  return needed.force - fit[0] * columns[0] - fit[1] * columns[1];
+  return needed.without_ends(needed.force - fit[0] * columns[0] - fit[1] * columns[1]);
 }
 
 }  // namespace framewatch::estimator

@@ -25,6 +25,7 @@ struct ScalarSums {
   ScalarFit fit() const;
 };
 
+/// What the ends of the segment can add is left out of the force and the columns.
 ScalarSums scalar_sums(const NeededSignal& needed, const std::vector<Eigen::VectorXcd>& columns);
 
 /// The same coefficients for all records. columns: of each record.

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <complex>
 
+#include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/model/law_port.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -68,15 +71,74 @@ void set_broadband(Effect& out, const Plant& plant, const std::vector<RecordSegm
 }
 
 void set_hysteresis(const ModelEffect& e, Effect& out) {
-  const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
-  out.set("kh_npm", p(0));
-  out.set("dy_m", p(1));
+  using H = HysteresisIndex;
+  std::vector<double> p;
+  for (const LawParameter& one : e.parameters) p.push_back(one.plain());
+  out.set("kh_npm", p[H::kh]);
+  out.set("dy_m", p[H::dy]);
+  if (e.form == LawForm::sliders) {
+    out.set("spread", std::max(p[SliderIndex::spread], 1e-3));
+    out.set("strength_loss", value_or(p, SliderIndex::loss, 0));
+  }
+  if (e.form == LawForm::asymptotic) out.set("spread", spread_like(p[AsymptoteIndex::sharpness]));
   if (out.kind == EffectKind::bilinear_hysteresis) return;
-  out.set("exponent", p(2));
-  out.set("beta", p(3));
-  if (out.kind != EffectKind::pinching) return;
-  out.set("slip_ratio", p(4));
-  out.set("slip_width", p(5));
+  const bool plain = e.form == LawForm::hysteresis;
+  out.set("exponent", p[H::exponent]);
+  out.set("beta", p[H::beta]);
+  out.set("strength_loss", value_or(p, plain ? +H::strength_loss : +H::pinched_strength, 0));
+  out.set("stiffness_loss", value_or(p, plain ? +H::stiffness_loss : +H::pinched_stiffness, 0));
+  if (plain) {
+    out.set("loading", value_or(p, H::loading, 1));
+    return;
+  }
+  out.set("slip_ratio", p[H::slip]);
+  out.set("slip_width", p[H::width]);
+  out.set("slip_offset", value_or(p, H::offset, 0));
+  out.set("slip_work", value_or(p, H::slip_work, 0));
+  out.set("slip_lock", e.form == LawForm::slip_lock ? 1.0 : 0.0);
+}
+
+void set_friction(const ModelEffect& e, Effect& out) {
+  const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
+  if (is_hysteretic(e.form)) {
+    out.set("fc_n", p(0) * p(1));
+    out.set("v0_mps", 1e-3 * e.rate);
+    out.set("stick_npm", p(0));
+    return;
+  }
+  out.set("fc_n", p(0));
+  if (e.form == LawForm::power_damping) {
+    out.set("v0_mps", 0.01 * e.rate);
+    return;
+  }
+  out.set("v0_mps", p(1));
+  if (e.parameters.size() < 4) return;
+  out.set("static_ratio", p(2));
+  out.set("stribeck_mps", p(3));
+}
+
+/// At a deformation of a whole frame: shares of the mean stiffness.
+void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e, Effect& out) {
+  double k = 0;
+  const std::vector<LawPort> ports = law_ports(plant, model, e);
+  for (const LawPort& port : ports)
+    k += model.theta[port.element] / static_cast<double>(ports.size());
+  const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
+  out.set("softening", -p(0) / (k * e.deformation));
+  out.set("at_m", e.deformation);
+  out.set("exponent", p(1));
+  out.set("damping_s2pm", p(2) / (k * e.rate * e.rate));
+}
+
+/// Slope of a spring's cubic or quadratic part, whatever its shape: at the largest deformation.
+double curved_force(const ModelEffect& e) {
+  if (e.form == LawForm::power) return e.parameters[0].plain();
+  Eigen::VectorXd d(1);
+  d << e.deformation;
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(1);
+  const double at_end = law_force(e.law(0), d, none, 1)[0];
+  d << 1e-3 * e.deformation;
+  return at_end - 1e3 * law_force(e.law(0), d, none, 1)[0];
 }
 
 /// Effects of elements; others are left as they are.
@@ -84,10 +146,10 @@ void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
   switch (out.kind) {
     case EffectKind::cubic_stiffness:
-      out.set("k3_npm3", p(0) / std::pow(e.deformation, 3));
+      out.set("k3_npm3", curved_force(e) / std::pow(e.deformation, 3));
       break;
     case EffectKind::quadratic_stiffness:
-      out.set("k2_npm2", p(0) / std::pow(e.deformation, 2));
+      out.set("k2_npm2", curved_force(e) / std::pow(e.deformation, 2));
       break;
     case EffectKind::bilinear_hysteresis:
     case EffectKind::bouc_wen:
@@ -95,8 +157,7 @@ void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
       set_hysteresis(e, out);
       break;
     case EffectKind::coulomb_friction:
-      out.set("fc_n", e.form == LawForm::hysteresis ? p(0) * p(1) : p(0));
-      out.set("v0_mps", e.form == LawForm::hysteresis ? 1e-3 * e.rate : p(1));
+      set_friction(e, out);
       break;
     case EffectKind::quadratic_damping:
       out.set("c2_ns2pm2", p(0) / (e.rate * e.rate));
@@ -105,6 +166,7 @@ void set_element_values(const Plant& plant, const ModelEffect& e, Effect& out) {
     case EffectKind::two_sided_gap:
       out.set("kg_npm", p(0));
       out.set("gap_m", p(1));
+      if (e.parameters.size() > 2) out.set("cg_nspm", p(2));
       if (out.kind == EffectKind::one_sided_gap)
         out.set("side", e.form == LawForm::gap_positive ? 1.0 : -1.0);
       break;
@@ -200,6 +262,9 @@ Effect catalogue_effect(const Plant& plant, const std::vector<RecordSegment>& se
       break;
     case EffectKind::misalignment:
       out.set("angle_deg", e.parameters[0].plain() * 180 / M_PI);
+      break;
+    case EffectKind::amplitude_dependence:
+      set_amplitude(plant, model, e, out);
       break;
     default:
       set_element_values(plant, e, out);

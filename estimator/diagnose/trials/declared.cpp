@@ -3,12 +3,44 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/model/hysteretic_force.h"
+
 namespace framewatch::estimator {
 namespace {
 
 constexpr int kFitSteps = 5;  ///< of each fit
 
+/// A spring of another shape as the power law that stands for it.
+void as_power(ModelEffect& effect) {
+  Eigen::VectorXd d(1), none = Eigen::VectorXd::Zero(1);
+  d << effect.deformation;
+  const double at_end = law_force(effect.law(0), d, none, 1)[0];
+  d << 1e-3 * effect.deformation;
+  const double at_start = 1e3 * law_force(effect.law(0), d, none, 1)[0];
+  const double force = at_end - at_start;
+  effect.form = LawForm::power;
+  effect.parameters = {linear_parameter(force, 0.02 * std::max(std::abs(force), 1e-12)),
+                       bounded_parameter(2, 0.02, 1.2, 9)};
+}
+
 void fix_exponent(EffectKind kind, ModelEffect& effect) {
+  if (kind == EffectKind::coulomb_friction && effect.form == LawForm::power_damping) {
+    effect.form = LawForm::friction;
+    effect.parameters[1] =
+        logarithmic_parameter(0.01 * effect.rate, 1e-4 * effect.rate, 0.3 * effect.rate);
+    return;
+  }
+  if (effect.form == LawForm::asymptotic) {
+    const double spread = spread_like(effect.parameters[AsymptoteIndex::sharpness].plain());
+    effect.form = LawForm::sliders;
+    effect.parameters.resize(2);
+    effect.parameters.push_back(bounded_parameter(spread, 0.02, 0, 0.98));
+    effect.parameters.push_back(bounded_parameter(0, 0.005, 0, 5, false));
+    return;
+  }
+  const bool elastic =
+      kind == EffectKind::cubic_stiffness || kind == EffectKind::quadratic_stiffness;
+  if (elastic && effect.form != LawForm::power) as_power(effect);
   if (effect.form != LawForm::power && effect.form != LawForm::power_damping) return;
   LawParameter& exponent = effect.parameters[1];
   const double value = kind == EffectKind::cubic_stiffness ? 3 : 2;

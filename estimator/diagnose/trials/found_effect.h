@@ -19,7 +19,8 @@ struct FoundEffect {
   int index = -1;                 ///< among the model's effects; -1: gain or clock of an axis
   std::vector<double> ramp_mps3;  ///< bias_drift: slope in every segment
   std::vector<double> ramp_from_s;
-  std::vector<double> std_error;  ///< of the catalogue's parameters; 0: not known
+  std::vector<double> drift_rms_mps2;  ///< of that drift about its mean; empty: of the ramp
+  std::vector<double> std_error;       ///< of the catalogue's parameters; 0: not known
 };
 
 }  // namespace framewatch::estimator

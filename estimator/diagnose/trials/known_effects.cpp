@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 
+#include "estimator/diagnose/model/law_port.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -20,17 +22,17 @@ LawParameter sized(double value) {
   return linear_parameter(value, 0.02 * std::max(std::abs(value), 1e-12));
 }
 
-/// Largest measured deformation and rate of an element.
+/// Largest measured deformation and rate where a law acts.
 void set_scales(const Plant& plant, const std::vector<RecordSegment>& segments, ModelEffect& e) {
   e.deformation = e.rate = 1e-12;
-  const int element = element_of(plant, e.place);
-  for (const RecordSegment& s : segments) {
-    const VectorXcd q = (plant.building.sense.row(element) * s.spectrum).transpose();
-    const VectorXcd d = -q.array() / s.w.array().square();
-    const VectorXcd v = d.array() * s.w.array() * std::complex<double>(0, 1);
-    e.deformation = std::max(e.deformation, signal_of(d, s, 1).cwiseAbs().maxCoeff());
-    e.rate = std::max(e.rate, signal_of(v, s, 1).cwiseAbs().maxCoeff());
-  }
+  for (const LawPort& port : law_ports(plant, initial_model(plant), e))
+    for (const RecordSegment& s : segments) {
+      const VectorXcd q = (port.sense * s.spectrum).transpose();
+      const VectorXcd d = -q.array() / s.w.array().square();
+      const VectorXcd v = d.array() * s.w.array() * std::complex<double>(0, 1);
+      e.deformation = std::max(e.deformation, signal_of(d, s, 1).cwiseAbs().maxCoeff());
+      e.rate = std::max(e.rate, signal_of(v, s, 1).cwiseAbs().maxCoeff());
+    }
 }
 
 /// Sets an error of an axis; false when the effect is another one.
@@ -62,12 +64,16 @@ LawForm form_of(const Effect& effect) {
     case p_delta:
       return LawForm::power;
     case bilinear_hysteresis:
+      return effect.value("spread") > 0 || effect.value("strength_loss") > 0 ? LawForm::sliders
+                                                                             : LawForm::hysteresis;
     case bouc_wen:
       return LawForm::hysteresis;
     case pinching:
-      return LawForm::pinched;
+      return effect.value("slip_lock") > 0 ? LawForm::slip_lock : LawForm::pinched;
     case coulomb_friction:
-      return LawForm::friction;
+      return effect.value("stick_npm") > 0 ? LawForm::hysteresis : LawForm::friction;
+    case amplitude_dependence:
+      return LawForm::amplitude;
     case quadratic_damping:
       return LawForm::power_damping;
     case one_sided_gap:
@@ -116,16 +122,63 @@ void set_power(const Plant& plant, const Effect& effect, ModelEffect& e) {
                   bounded_parameter(p, 0.02, 1.2, 9)};
 }
 
+/// kh, dy, exponent, beta.
+std::vector<LawParameter> hysteretic_shape(double kh, double dy, double exponent, double beta,
+                                           double peak) {
+  return {sized(kh), logarithmic_parameter(dy, 1e-4 * peak, 1e3 * peak),
+          bounded_parameter(exponent, 0.05, 0.5, 60, false),
+          bounded_parameter(beta, 0.02, 0.05, 10, false)};
+}
+
 void set_hysteresis(const Effect& effect, ModelEffect& e) {
   const auto value = [&](const char* key) { return effect.value(key); };
   const double d = e.deformation;
+  const auto loss = [&](const char* key) {
+    return bounded_parameter(value(key), 0.005, 0, 5, value(key) > 0);
+  };
+  if (effect.kind == EffectKind::coulomb_friction) {
+    const double stick = value("stick_npm");
+    e.parameters = hysteretic_shape(stick, value("fc_n") / stick, kBilinear, 0.5, d);
+    return;
+  }
+  if (e.form == LawForm::sliders) {
+    e.parameters = {sized(value("kh_npm")), logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
+                    bounded_parameter(value("spread"), 0.02, 0, 0.98), loss("strength_loss")};
+    return;
+  }
   const bool corner = effect.kind == EffectKind::bilinear_hysteresis;
-  e.parameters = {sized(value("kh_npm")), logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
-                  bounded_parameter(corner ? kBilinear : value("exponent"), 0.05, 0.5, 60, false),
-                  bounded_parameter(corner ? 0.5 : value("beta"), 0.02, 0.1, 1.0, false)};
-  if (e.form != LawForm::pinched) return;
-  e.parameters.push_back(bounded_parameter(value("slip_ratio"), 0.02, 0.0, 0.99));
-  e.parameters.push_back(logarithmic_parameter(value("slip_width"), 0.05, 1.0));
+  e.parameters =
+      hysteretic_shape(value("kh_npm"), value("dy_m"), corner ? kBilinear : value("exponent"),
+                       corner ? 0.5 : value("beta"), d);
+  if (corner) return;
+  if (effect.kind == EffectKind::pinching) {
+    e.parameters.push_back(bounded_parameter(value("slip_ratio"), 0.02, 0.0, 0.99));
+    e.parameters.push_back(logarithmic_parameter(value("slip_width"), 0.05, 50));
+    e.parameters.push_back(fixed(value("slip_offset")));
+    const double work = value("slip_work");
+    e.parameters.push_back(work > 0 ? logarithmic_parameter(work, 0.05, 1e6) : fixed(0));
+  }
+  e.parameters.push_back(loss("strength_loss"));
+  e.parameters.push_back(loss("stiffness_loss"));
+  if (effect.kind == EffectKind::bouc_wen) e.parameters.push_back(fixed(value("loading")));
+}
+
+void set_amplitude(const Plant& plant, const Effect& effect, ModelEffect& e) {
+  double k = 0;  // mean of the elements: LawPort::scale is 1 there
+  int count = 0;
+  for (const Element& element : plant.elements) {
+    const bool own =
+        element.frame >= 0 && (e.place.kind == PlaceKind::whole_frame
+                                   ? element.frame == e.place.frame
+                                   : plant.structure.direction(element.frame) == e.place.direction);
+    k += own ? plant.design[element.stiffness] : 0;
+    count += own;
+  }
+  k /= std::max(count, 1);
+  const double p = effect.value("exponent"), d = e.deformation;
+  e.parameters = {
+      sized(-effect.value("softening") * k * d * std::pow(d / effect.value("at_m"), p - 1)),
+      fixed(p), sized(effect.value("damping_s2pm") * k * e.rate * e.rate), fixed(2)};
 }
 
 void set_changing(const std::vector<RecordSegment>& segments, const Effect& effect,
@@ -165,12 +218,19 @@ void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>
       set_power(plant, effect, e);
       break;
     case LawForm::hysteresis:
+    case LawForm::sliders:
     case LawForm::pinched:
+    case LawForm::slip_lock:
       set_hysteresis(effect, e);
       break;
     case LawForm::friction:
-      e.parameters = {sized(value("fc_n")),
-                      logarithmic_parameter(value("v0_mps"), 1e-4 * v, 10 * v)};
+      e.parameters = {
+          sized(value("fc_n")), logarithmic_parameter(value("v0_mps"), 1e-4 * v, 10 * v),
+          bounded_parameter(value("static_ratio"), 0.02, -0.9, 10, value("static_ratio") != 0),
+          fixed(value("stribeck_mps"))};
+      break;
+    case LawForm::amplitude:
+      set_amplitude(plant, effect, e);
       break;
     case LawForm::power_damping:
       e.parameters = {sized(value("c2_ns2pm2") * v * v), bounded_parameter(2, 0.02, 0.15, 5)};
@@ -179,7 +239,9 @@ void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>
     case LawForm::gap_negative:
     case LawForm::gap_both:
       e.parameters = {sized(value("kg_npm")),
-                      logarithmic_parameter(std::max(value("gap_m"), 1e-3 * d), 1e-3 * d, 10 * d)};
+                      logarithmic_parameter(std::max(value("gap_m"), 1e-3 * d), 1e-3 * d, 10 * d),
+                      bounded_parameter(value("cg_nspm"), 0.05 * std::max(value("cg_nspm"), 1e-9),
+                                        0, 1e15, value("cg_nspm") > 0)};
       break;
     case LawForm::changing:
       set_changing(segments, effect, e);

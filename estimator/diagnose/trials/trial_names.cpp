@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/model/hysteretic_force.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 
 namespace framewatch::estimator {
@@ -80,9 +81,11 @@ bool may_be_named(const TrialContext& c, const Trial& t) {
     const ModelEffect& effect = t.model.effects[e];
     if (has_wrong_sign(effect)) return false;
     if (effect.form == LawForm::resonator && is_no_oscillator(c, effect)) return false;
-    if (effect.form == LawForm::pinched &&
-        (dissipation(effect) < kDissipates || effect.parameters[5].plain() < kNarrowestSlip ||
-         at_bound(effect.parameters[4]) || at_bound(effect.parameters[5])))
+    const bool slips = effect.form == LawForm::pinched || effect.form == LawForm::slip_lock;
+    if (slips && (dissipation(effect) < kDissipates ||
+                  effect.parameters[HysteresisIndex::width].plain() < kNarrowestSlip ||
+                  at_bound(effect.parameters[HysteresisIndex::slip]) ||
+                  at_bound(effect.parameters[HysteresisIndex::width])))
       return false;
   }
   return !is_excluded(c, t.kind) && !(t.second && is_excluded(c, t.second->first));

@@ -6,6 +6,7 @@
 
 #include "estimator/diagnose/fit/free_run_start.h"
 #include "estimator/diagnose/fit/onset.h"
+#include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "estimator/diagnose/trials/trial_names.h"
 
@@ -13,7 +14,6 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
-constexpr double kSmooth = 20;  ///< exponent of hysteresis below which it has no corner
 constexpr int kSharpSteps = 12;
 constexpr int kTrialSteps = 3;    ///< of a free run's fit, before the costs are compared
 constexpr double kCostLimit = 4;  ///< times the least cost then: fits above it end there
@@ -143,13 +143,7 @@ Candidate joined(const Localisation& pair, const Proposal& p, const Proposal& q)
 }  // namespace
 
 void free_shapes(Model& model) {
-  for (ModelEffect& e : model.effects) {
-    const bool hysteretic = e.form == LawForm::hysteresis || e.form == LawForm::pinched;
-    if (!hysteretic || e.parameters[2].plain() > kSmooth) continue;
-    e.parameters[2].free = e.parameters[3].free = true;
-    e.parameters[2].low = 1;
-    e.parameters[3].low = 0.5;
-  }
+  for (ModelEffect& e : model.effects) free_shape(e);
 }
 
 Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {

@@ -15,7 +15,7 @@ Trial sharpened(const TrialContext& context, const Trial& trial, const Model& fr
 /// converges there where a fit to all records does not.
 Model fitted_to_the_weakest(const TrialContext& context, const Model& model);
 
-/// Frees the exponent and the unloading parameter of smooth hysteresis.
+/// Frees the shapes of all laws (free_shape).
 void free_shapes(Model& model);
 
 /// Fits the laws of each place.

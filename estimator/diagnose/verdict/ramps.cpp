@@ -34,6 +34,7 @@ std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions
       const auto ramp = find_ramp(plant, whole[r], a);
       found.ramp_mps3.push_back(ramp ? ramp->slope : 0);
       found.ramp_from_s.push_back(ramp ? ramp->from_s : 0);
+      found.drift_rms_mps2.push_back(ramp ? ramp->rms : 0);
       if (!ramp) continue;
       any = true;
       segments[r] = without_ramp(segments[r], a, *ramp);
@@ -46,11 +47,12 @@ std::vector<FoundEffect> remove_ramps(const Plant& plant, const DiagnosisOptions
 namespace {
 
 /// outputs: axes that Gap::overall is of.
-void add_ramp(const RecordSegment& s, Index axis, double slope, double from_s, Index outputs,
-              Gap& gap) {
+void add_ramp(const RecordSegment& s, Index axis, double slope, double from_s, double rms,
+              Index outputs, Gap& gap) {
   const double length = std::max(s.seconds() - from_s, 0.0), share = length / s.seconds();
-  // Of slope max(t - from, 0) about its mean.
-  const double square = std::pow(slope * length, 2) * share * (1.0 / 3 - share / 4);
+  // Of slope max(t - from, 0) about its mean, where it is no other curve.
+  const double square =
+      std::max(std::pow(slope * length, 2) * share * (1.0 / 3 - share / 4), rms * rms);
   const double intervals = static_cast<double>(s.intervals());
   const double power = 2 * s.spectrum.row(axis).squaredNorm() / (intervals * intervals);
   const double all = static_cast<double>(outputs) * gap.measured_rms * gap.measured_rms;
@@ -74,7 +76,8 @@ void add_ramps_to_gaps(const Plant& plant, const std::vector<RecordSegment>& seg
     found->after = mean_gap(d.before, holdout_from);
     for (std::size_t r = 0; r < d.before.size(); ++r)
       add_ramp(segments[r], found->chosen.place.channel, found->ramp_mps3[r], found->ramp_from_s[r],
-               outputs, d.before[r]);
+               r < found->drift_rms_mps2.size() ? found->drift_rms_mps2[r] : 0, outputs,
+               d.before[r]);
     found->before = mean_gap(d.before, holdout_from);
   }
 }

@@ -45,7 +45,7 @@ inline estimator::EffectPlace at_crossing(int crossing) {
 inline estimator::Effect effect_of(estimator::EffectKind kind, const estimator::EffectPlace& place,
                                    std::initializer_list<double> values) {
   estimator::Effect out = make_effect(kind, place);
-  out.values = values;
+  std::copy(values.begin(), values.end(), out.values.begin());
   return out;
 }
 

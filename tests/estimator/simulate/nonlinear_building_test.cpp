@@ -102,7 +102,8 @@ TEST_P(EveryEffect, ConvergesWithTheStep) {
   const bool corners = GetParam() == bilinear_hysteresis || GetParam() == one_sided_gap ||
                        GetParam() == two_sided_gap || GetParam() == bouc_wen ||
                        GetParam() == pinching || GetParam() == coulomb_friction ||
-                       GetParam() == quadratic_damping || GetParam() == quadratic_stiffness;
+                       GetParam() == quadratic_damping || GetParam() == quadratic_stiffness ||
+                       GetParam() == amplitude_dependence;
   EXPECT_LT(coarse, corners ? kCorners : kSmooth);
   EXPECT_LE(medium, std::max(coarse, kExact));
   RecordProperty("coarse", std::to_string(coarse));
@@ -135,7 +136,9 @@ Effect on_first_frame(EffectKind kind, std::initializer_list<double> values) {
     place.story = 1;
     place.frame = 0;
   }
-  return {kind, place, values};
+  Effect out = make_effect(kind, place);
+  std::copy(values.begin(), values.end(), out.values.begin());
+  return out;
 }
 
 Eigen::VectorXd pair_of(double k, double c) {

@@ -47,6 +47,8 @@ TEST(EffectPlaces, AreAllThereAre) {
   EXPECT_EQ(count(tuned_mass_damper), 8u);
   EXPECT_EQ(count(extra_mass), 8u);
   EXPECT_EQ(count(added_spring), 4u) << "second floor to the ground";
+  EXPECT_EQ(count(one_sided_gap), 8u + 4u) << "frame stories, stops at the second floor";
+  EXPECT_EQ(count(amplitude_dependence), 2u + 4u) << "directions and whole frames";
   EXPECT_EQ(count(base_rocking), 2u);
   EXPECT_EQ(count(floor_flexibility), 0u) << "the floors flex already";
   EXPECT_EQ(count(gain_error), 10u);
@@ -97,7 +99,7 @@ TEST(EffectProblems, NameTheKeyAndTheRule) {
   EXPECT_NE(first_problem(wrong).find("no such place"), std::string::npos);
   Effect short_of_values = test::example_effect(bouc_wen, m);
   short_of_values.values.pop_back();
-  EXPECT_NE(first_problem(short_of_values).find("needs 4 values"), std::string::npos);
+  EXPECT_NE(first_problem(short_of_values).find("needs 7 values"), std::string::npos);
   Effect not_a_number = test::example_effect(cubic_stiffness, m);
   not_a_number.values[0] = std::nan("");
   EXPECT_NE(first_problem(not_a_number).find("must be finite"), std::string::npos);

@@ -57,9 +57,11 @@ TEST(Law, ForcesAreThoseOfTheFormulas) {
 }
 
 TEST(Law, OnlyThoseOfElementsPullThere) {
-  for (const LawForm form : {LawForm::power, LawForm::hysteresis, LawForm::pinched,
-                             LawForm::friction, LawForm::power_damping, LawForm::gap_positive,
-                             LawForm::gap_negative, LawForm::gap_both, LawForm::changing})
+  for (const LawForm form :
+       {LawForm::power, LawForm::saturating, LawForm::hysteresis, LawForm::sliders,
+        LawForm::asymptotic, LawForm::pinched, LawForm::slip_lock, LawForm::friction,
+        LawForm::power_damping, LawForm::amplitude, LawForm::gap_positive, LawForm::gap_negative,
+        LawForm::gap_both, LawForm::changing})
     EXPECT_TRUE(is_element_law(form)) << static_cast<int>(form);
   for (const LawForm form :
        {LawForm::mass, LawForm::resonator, LawForm::spring, LawForm::damper, LawForm::rocking,
@@ -108,6 +110,9 @@ TEST(Law, HysteresisIsThatOfTheSimulator) {
     EffectKind kind;
   };
   for (const Case& c : {Case{LawForm::hysteresis, {1, 0.5}, EffectKind::bouc_wen},
+                        Case{LawForm::hysteresis, {1, 0.5, 0.02, 0.03}, EffectKind::bouc_wen},
+                        Case{LawForm::sliders, {0.8, 0.02}, EffectKind::bilinear_hysteresis},
+                        Case{LawForm::pinched, {1, 0.5, 0.9, 0.4, 0.1, 3}, EffectKind::pinching},
                         Case{LawForm::hysteresis, {2, 0.7}, EffectKind::bouc_wen},
                         Case{LawForm::hysteresis, {6, 0.5}, EffectKind::bouc_wen},
                         Case{LawForm::hysteresis, {40, 0.5}, EffectKind::bilinear_hysteresis},
@@ -127,6 +132,53 @@ TEST(Law, HysteresisIsThatOfTheSimulator) {
         << name_of(c.kind) << " " << c.shape.front();
     EXPECT_GT(force.maxCoeff(), 0.6 * kStiffness * kYields_m);
   }
+}
+
+VectorXd force_over(const LawValues& law, const VectorXd& d) {
+  return law_force(law, d, VectorXd::Zero(d.size()), 0.01);
+}
+
+TEST(Law, SlidersThatYieldTogetherAreBilinear) {
+  const VectorXd d = growing_cycles(800);
+  const VectorXd sliders = force_over({LawForm::sliders, {kStiffness, kYields_m, 0}, 1, 1}, d);
+  const VectorXd corner =
+      force_over({LawForm::hysteresis, {kStiffness, kYields_m, 40, 0.5}, 1, 1}, d);
+  EXPECT_LT((sliders - corner).cwiseAbs().maxCoeff(), 1e-9 * kStiffness * kYields_m);
+}
+
+/// Menegotto and Pinto's curve: its first loading, its slope after a reversal and its end.
+TEST(Law, SteelFollowsItsCurveFromEveryReversal) {
+  constexpr double kSharpness = 5;
+  const LawValues law{LawForm::asymptotic, {kStiffness, kYields_m, kSharpness, 0}, 1, 1};
+  VectorXd d(4);
+  d << 0.5 * kYields_m, 3 * kYields_m, 2.9 * kYields_m, -20 * kYields_m;
+  const VectorXd force = force_over(law, d) / (kStiffness * kYields_m);
+  const auto curve = [](double x) {
+    return x / std::pow(1 + std::pow(x, kSharpness), 1 / kSharpness);
+  };
+  EXPECT_NEAR(force[0], curve(0.5), 1e-9);
+  EXPECT_NEAR(force[1], curve(3), 1e-9);
+  EXPECT_NEAR(force[1] - force[2], 0.1, 0.01);
+  EXPECT_NEAR(force[3], -1, 0.05);
+}
+
+TEST(Law, SlipLocksAwayFromZeroDeformation) {
+  const LawValues law{LawForm::slip_lock, {kStiffness, 10 * kYields_m, 1, 0.5, 0.9, 0.1}, 1, 1};
+  VectorXd d(4);
+  d << 0.1 * kYields_m, 0.2 * kYields_m, 4 * kYields_m, 4.1 * kYields_m;
+  const VectorXd force = force_over(law, d);
+  EXPECT_LT(force[1] - force[0], 0.2 * 0.1 * kStiffness * kYields_m);
+  EXPECT_GT(force[3] - force[2], 0.5 * 0.1 * kStiffness * kYields_m);
+}
+
+TEST(Law, FrictionMayFallWithTheRateAndAContactOnlyPushes) {
+  const LawMotion stribeck({LawForm::friction, {10, 1e-4, 0.5, 0.1}, 1, 1});
+  EXPECT_NEAR(stribeck.force(0, 0.002, 0), 15, 0.1);
+  EXPECT_NEAR(stribeck.force(0, -1, 0), -10, 0.1);
+  const LawMotion contact({LawForm::gap_positive, {100, 0.02, 50}, 1, 1});
+  EXPECT_NEAR(contact.force(0.05, 0.1, 0), 8, 1e-9);
+  EXPECT_EQ(contact.force(0.05, -1, 0), 0);
+  EXPECT_EQ(contact.force(0.01, 1, 0), 0);
 }
 
 TEST(Law, ASteadyBilinearLoopDissipatesItsArea) {

@@ -21,8 +21,7 @@ constexpr double kSizeOff = 0.4;      // of a start value: the scalar fit sees n
 constexpr double kLeastShare = 0.05;  // of the design, what a proposal leaves of a stiffness
 
 bool dissipates(LawForm form) {
-  return form == LawForm::hysteresis || form == LawForm::pinched || form == LawForm::friction ||
-         form == LawForm::power_damping;
+  return is_hysteretic(form) || form == LawForm::friction || form == LawForm::power_damping;
 }
 
 /// A law hidden in the frame, and the family that has to fit its force best.
@@ -49,7 +48,7 @@ class LawInAFrame : public testing::TestWithParam<HiddenLaw> {};
 TEST_P(LawInAFrame, IsProposedFirst) {
   const HiddenLaw& law = GetParam();
   Effect effect = make_effect(law.kind, test::in_frame(kFrame));
-  effect.values = law.values;
+  std::copy(law.values.begin(), law.values.end(), effect.values.begin());
   const Recorded recorded(test::records_with({effect}));
   const std::vector<Proposal> proposals = propose(recorded.fitter, recorded.freed(effect.place), 0);
   ASSERT_FALSE(proposals.empty());

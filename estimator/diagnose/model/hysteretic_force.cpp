@@ -1,0 +1,169 @@
+#include "estimator/diagnose/model/hysteretic_force.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framewatch::estimator {
+namespace {
+
+using H = HysteresisIndex;
+using S = SliderIndex;
+
+constexpr double kSharp = 20;          ///< exponent above which hysteresis is computed as bilinear
+constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
+constexpr double kYielded = 1e-12;  ///< change of z below which the rest of a step changes nothing
+constexpr double kMostSlides = 5000;
+constexpr double kLargestZ = 1e3;  ///< of hysteresis that hardens
+
+/// dz/dd of one law, in units of dy.
+class Slope {
+ public:
+  Slope(const LawValues& values, double work) : p_(values.p), form_(values.form) {
+    const bool plain = form_ == LawForm::hysteresis;
+    const double strength = value_or(p_, plain ? +H::strength_loss : +H::pinched_strength, 0);
+    const double stiffness = value_or(p_, plain ? +H::stiffness_loss : +H::pinched_stiffness, 0);
+    loading_ = plain ? value_or(p_, H::loading, 1) : 1;
+    weaker_ = 1 + std::max(strength * work, -0.9);
+    softer_ = 1 + std::max(stiffness * work, -0.9);
+    if (plain) return;
+    slip_ = p_[H::slip];
+    const double slip_work = value_or(p_, H::slip_work, 0);
+    if (slip_work > 0) slip_ *= 1 - std::exp(-work / slip_work);
+    offset_ = form_ == LawForm::pinched ? value_or(p_, H::offset, 0) : 0;
+  }
+
+  double operator()(double z, double d, double direction) const {
+    double slip = 1;
+    if (slip_ != 0) {
+      const double at = form_ == LawForm::pinched ? z * direction - offset_ : d;
+      slip -= slip_ * std::exp(-(at / p_[H::width]) * (at / p_[H::width]));
+    }
+    const double level = weaker_ * power_of(std::abs(z), p_[H::exponent]);
+    const double turn = p_[H::beta] * (z * direction > 0 ? 1.0 : -1.0) + loading_ - p_[H::beta];
+    return slip * (1 - level * turn) / softer_;
+  }
+
+  double most() const {
+    return loading_ > 0 ? std::pow(1 / (weaker_ * loading_), 1 / p_[H::exponent]) : kLargestZ;
+  }
+
+ private:
+  const std::vector<double>& p_;
+  LawForm form_;
+  double loading_ = 1, weaker_ = 1, softer_ = 1, slip_ = 0, offset_ = 0;
+};
+
+/// Deformation at which a slider gives way.
+double limit_of(const LawValues& values, std::size_t slider, double weaker) {
+  const double place = (2.0 * static_cast<double>(slider) + 1) / S::kCount - 1;
+  return values.p[S::dy] * (1 + values.p[S::spread] * place) / weaker;
+}
+
+double weaker_of(const LawValues& values, double work) {
+  return std::max(1 + value_or(values.p, S::loss, 0) * work, 0.1);
+}
+
+}  // namespace
+
+double power_of(double x, double p) {
+  return p == 1 ? x : p == 2 ? x * x : p == 3 ? x * x * x : std::pow(x, p);
+}
+
+double value_or(const std::vector<double>& p, std::size_t index, double without) {
+  return index < p.size() ? p[index] : without;
+}
+
+double advanced_z(const LawValues& values, double from, double d, double d_now, double work) {
+  const double dy = values.p[H::dy];
+  const double travel = (d_now - d) / dy;
+  if (travel == 0) return from;
+  const Slope slope(values, work);
+  const double most = std::max(slope.most(), std::abs(from));
+  if (values.form == LawForm::hysteresis && values.p[H::exponent] > kSharp)
+    return std::clamp(from + travel, -most, most);
+  const double direction = travel > 0 ? 1.0 : -1.0;
+  const double longest = std::max(kLongestSlide, std::abs(travel) / kMostSlides);
+  double z = from, at = d / dy;
+  for (double left = std::abs(travel); left > 0; left -= longest) {
+    const double at_start = slope(z, at, direction);
+    if (z * direction > 0 && at_start * left < kYielded && at_start > -kYielded &&
+        values.form != LawForm::slip_lock)
+      break;
+    const double h = direction * std::min(left, longest);
+    z = std::clamp(z + h * slope(z + 0.5 * h * at_start, at + 0.5 * h, direction), -most, most);
+    at += h;
+  }
+  return z;
+}
+
+namespace {
+
+enum Memory : std::size_t { kReversal_m, kReversalZ, kDirection, kLargest_m, kSmallest_m };
+
+double direction_of(const std::vector<double>& memory, double d, double d_now) {
+  return d_now > d ? 1.0 : d_now < d ? -1.0 : memory[kDirection];
+}
+
+}  // namespace
+
+double spread_like(double sharpness) {
+  return std::clamp(2.5 / sharpness, 0.05, 0.95);
+}
+
+std::vector<double> no_reversal(const LawValues& values) {
+  const double dy = values.p[AsymptoteIndex::dy];
+  return {0, 0, 0, dy, -dy};
+}
+
+void turn(std::vector<double>& memory, double z, double d, double d_now) {
+  const double direction = direction_of(memory, d, d_now);
+  if (direction == memory[kDirection]) return;
+  if (memory[kDirection] != 0) {
+    memory[kReversal_m] = d;
+    memory[kReversalZ] = z;
+    memory[kLargest_m] = std::max(memory[kLargest_m], d);
+    memory[kSmallest_m] = std::min(memory[kSmallest_m], d);
+  }
+  memory[kDirection] = direction;
+}
+
+double asymptotic_z(const LawValues& values, const std::vector<double>& memory, double z, double d,
+                    double d_now) {
+  using A = AsymptoteIndex;
+  constexpr double kHalf = 0.15, kLeastSharpness = 0.3, kNoWay = 1e-9;
+  std::vector<double> now = memory;
+  turn(now, z, d, d_now);
+  const double direction = now[kDirection], dy = values.p[A::dy];
+  const double way = direction - now[kReversalZ];
+  if (direction == 0 || std::abs(way) < kNoWay) return z;
+  const double corner = now[kReversal_m] + way * dy;
+  const double beyond =
+      std::abs((direction > 0 ? now[kLargest_m] : now[kSmallest_m]) - corner) / dy;
+  const double sharpness =
+      std::max(values.p[A::sharpness] * (1 - values.p[A::loss] * beyond / (kHalf + beyond)),
+               kLeastSharpness);
+  const double x = std::max((d_now - now[kReversal_m]) / (way * dy), 0.0);
+  const double bent = x > 1 ? 1 / std::pow(1 + std::pow(1 / x, sharpness), 1 / sharpness)
+                            : x / std::pow(1 + std::pow(x, sharpness), 1 / sharpness);
+  return now[kReversalZ] + way * bent;
+}
+
+double slider_force(const LawValues& values, const std::vector<double>& at, double d, double work) {
+  const double weaker = weaker_of(values, work);
+  double sum = 0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const double limit = limit_of(values, i, weaker);
+    sum += std::clamp(d - at[i], -limit, limit);
+  }
+  return sum / S::kCount;
+}
+
+void move_sliders(const LawValues& values, std::vector<double>& at, double d, double work) {
+  const double weaker = weaker_of(values, work);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const double limit = limit_of(values, i, weaker);
+    at[i] = d - std::clamp(d - at[i], -limit, limit);
+  }
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,121 @@
+#include "estimator/diagnose/propose/contact_proposals.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "estimator/diagnose/model/law_port.h"
+#include "estimator/diagnose/propose/law_starts.h"
+#include "estimator/diagnose/propose/scalar_fit.h"
+#include "estimator/numeric/complex.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kMostFrames = 4;  ///< whole frames that are tried in one direction
+constexpr double kFirstShare = 0.05;    ///< of the stiffness that a start takes at the peak
+
+/// Deformation of a port in one record, with its rate: Fitter::ratio() steps a sample.
+struct PortMotion {
+  VectorXd d, v;
+};
+
+PortMotion motion_of(const Fitter& fitter, const Localisation& place, const LawPort& port,
+                     std::size_t record) {
+  const RecordSegment& s = fitter.segments()[record];
+  const VectorXcd q = (port.sense * place.motion[record]).transpose();
+  const VectorXcd d = -q.array() / s.w.array().square();
+  const int ratio = fitter.ratio(record);
+  return {signal_of(d, s, ratio), signal_of(VectorXcd(d.array() * s.w.array() * kJ), s, ratio)};
+}
+
+void set_scales(const Fitter& fitter, const Localisation& place, ModelEffect& effect) {
+  effect.deformation = effect.rate = 1e-12;
+  for (const LawPort& port : law_ports(fitter.plant(), place.model, effect))
+    for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
+      const PortMotion motion = motion_of(fitter, place, port, r);
+      effect.deformation = std::max(effect.deformation, motion.d.cwiseAbs().maxCoeff());
+      effect.rate = std::max(effect.rate, motion.v.cwiseAbs().maxCoeff());
+    }
+}
+
+Proposal proposal_of(const Localisation& place, ModelEffect effect, EffectKind kind,
+                     double misfit) {
+  Proposal out{place.model, kind, effect.place, misfit};
+  out.model.effects.push_back(std::move(effect));
+  return out;
+}
+
+}  // namespace
+
+void add_contact_proposals(const Fitter& fitter, const Localisation& place,
+                           const std::vector<NeededSignal>& needed, const EffectPlace& pair,
+                           std::vector<Proposal>& out) {
+  const Plant& plant = fitter.plant();
+  ModelEffect effect;
+  effect.form = LawForm::gap_both;
+  effect.place = pair;
+  set_scales(fitter, place, effect);
+  const LawPort port = law_ports(plant, place.model, effect).front();
+  std::vector<PortMotion> motion;
+  for (std::size_t r = 0; r < needed.size(); ++r)
+    motion.push_back(motion_of(fitter, place, port, r));
+  const double k = plant.design[plant.table.frame_stiffness(pair.story, pair.frame)];
+  for (const LawStarts& family : contact_starts({k, effect.deformation, effect.rate})) {
+    ScalarFit least;
+    ModelEffect chosen;
+    effect.form = family.form;
+    for (const std::vector<LawParameter>& shape : family.shapes) {
+      effect.parameters = shape;
+      std::vector<std::vector<VectorXcd>> columns(needed.size());
+      for (std::size_t r = 0; r < needed.size(); ++r) {
+        const RecordSegment& s = fitter.segments()[r];
+        const int ratio = fitter.ratio(r);
+        columns[r].push_back(band_of(
+            law_force(effect.law(r), motion[r].d, motion[r].v, 1 / (s.rate_hz * ratio)), s, ratio));
+      }
+      const ScalarFit fit = scalar_fit(needed, columns);
+      if (fit.coefficients[0] <= 0 || fit.misfit >= least.misfit) continue;
+      least = fit;
+      chosen = effect;
+    }
+    if (least.misfit > 1e299) continue;
+    chosen.parameters[0].value = least.coefficients[0];
+    out.push_back(proposal_of(place, std::move(chosen), family.kind, least.misfit));
+  }
+}
+
+void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,
+                             std::vector<Proposal>& out) {
+  const Plant& plant = fitter.plant();
+  const Structure& s = plant.structure;
+  if (s.stories < 2) return;
+  const EffectPlace& building = place.candidate_places.front().place;
+  std::vector<EffectPlace> places{building};
+  const int count = building.direction == Direction::x ? s.n() : s.m();
+  for (int f = 0; f < s.frames() && count > 1; ++f) {
+    if (s.direction(f) != building.direction || places.size() > kMostFrames) continue;
+    EffectPlace frame;
+    frame.kind = PlaceKind::whole_frame;
+    frame.frame = f;
+    places.push_back(frame);
+  }
+  for (const EffectPlace& one : places) {
+    ModelEffect effect;
+    effect.form = LawForm::amplitude;
+    effect.place = one;
+    set_scales(fitter, place, effect);
+    double k = 0;
+    for (const LawPort& port : law_ports(plant, place.model, effect))
+      k = std::max(k, place.model.theta[port.element]);
+    const double force = kFirstShare * k * effect.deformation;
+    effect.parameters = {
+        linear_parameter(-force, 0.2 * force), bounded_parameter(2, 0.02, 1.2, 6, false),
+        linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
+    out.push_back(proposal_of(place, std::move(effect), EffectKind::amplitude_dependence, 0));
+  }
+}
+
+}  // namespace framewatch::estimator

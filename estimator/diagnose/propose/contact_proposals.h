@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/propose/needed_signal.h"
+#include "estimator/diagnose/propose/proposal.h"
+
+namespace framewatch::estimator {
+
+/// Adds stops: contacts that a floor makes with the ground or with another floor, at a place with
+/// story, to_story and frame (PlaceKind::node_pair). needed: the force of a node or of a pair.
+void add_contact_proposals(const Fitter& fitter, const Localisation& place,
+                           const std::vector<NeededSignal>& needed, const EffectPlace& pair,
+                           std::vector<Proposal>& out);
+
+/// Adds laws of all elements of a direction at once, and of each frame of it.
+void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,
+                             std::vector<Proposal>& out);
+
+}  // namespace framewatch::estimator

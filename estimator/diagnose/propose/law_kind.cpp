@@ -1,0 +1,224 @@
+#include "estimator/diagnose/propose/law_kind.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "estimator/diagnose/propose/scalar_fit.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+constexpr int kCells = 15;
+constexpr int kLeastCount = 3;         ///< samples of a cell that is shown
+constexpr int kTimes = 8;              ///< supports of a stiffness that varies in time
+constexpr double kNearlyAll = 0.93;    ///< of the best share, that a simpler kind must explain
+constexpr double kKindFollows = 0.5;   ///< share below which no kind explains the force
+constexpr double kBeyondChance = 1.3;  ///< misfit of a linear element over noise
+constexpr double kAsImpact = 0.7;      ///< of the powers' rest, that contacts must leave at most
+
+/// Column in time of one record.
+using Columns = std::vector<VectorXd>;
+
+struct Scales {
+  double d = 1e-300, v = 1e-300;
+};
+
+Columns powers(const NeededSignal& n, const Scales& s) {
+  const auto x = (n.d_t / s.d).array().eval();
+  return {x * x.abs(), x.cube(), x.square(), x.cube() * x.square()};
+}
+
+Columns contacts(const NeededSignal& n, const Scales& s) {
+  Columns out;
+  for (const double gap : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
+    out.push_back((n.d_t / s.d).array() - gap);
+    out.back() = out.back().cwiseMax(0);
+    out.push_back((-n.d_t / s.d).array() - gap);
+    out.back() = out.back().cwiseMax(0);
+  }
+  return out;
+}
+
+Columns rates(const NeededSignal& n, const Scales& s) {
+  const auto x = (n.v_t / s.v).array().eval();
+  Columns out{x * x.abs(), x.cube()};
+  for (const double width : {0.01, 0.05, 0.2}) out.push_back((x / width).tanh());
+  return out;
+}
+
+/// Force of a spring that gives way at `limit`, over its stiffness.
+VectorXd stopped(const VectorXd& d, double limit) {
+  VectorXd out(d.size());
+  double slider = 0;
+  for (Index i = 0; i < d.size(); ++i) {
+    out[i] = std::clamp(d[i] - slider, -limit, limit);
+    slider = d[i] - out[i];
+  }
+  return out;
+}
+
+/// Stop operators, and how they grow or fade with the deformation: pinching.
+Columns memories(const NeededSignal& n, const Scales& s) {
+  const VectorXd x = n.d_t / s.d;
+  Columns out;
+  for (const double limit : {0.005, 0.03, 0.1, 0.2, 0.4, 0.7}) out.push_back(stopped(x, limit));
+  out.push_back(out[1].array() * x.array().abs());
+  out.push_back(out[3].array() * x.array().abs());
+  out.push_back(out[3].array() * x.array().square());
+  return out;
+}
+
+/// The deformation, weighted by hats in time; the first is left out: all of them are the linear
+/// spring.
+Columns times(const NeededSignal& n) {
+  Columns out;
+  const Index size = n.d_t.size();
+  for (int k = 1; k < kTimes; ++k) {
+    VectorXd hat(size);
+    for (Index i = 0; i < size; ++i) {
+      const double at = static_cast<double>(i) / static_cast<double>(size) * (kTimes - 1);
+      hat[i] = std::max(0.0, 1 - std::abs(at - k));
+    }
+    out.push_back(hat.array() * n.d_t.array());
+  }
+  return out;
+}
+
+class KindSearch {
+ public:
+  KindSearch(const Fitter& fitter, const std::vector<NeededSignal>& needed)
+      : fitter_(fitter), needed_(needed) {
+    for (const NeededSignal& n : needed) {
+      scales_.d = std::max(scales_.d, n.d_t.cwiseAbs().maxCoeff());
+      scales_.v = std::max(scales_.v, n.v_t.cwiseAbs().maxCoeff());
+    }
+  }
+
+  KindOfLaw run() {
+    KindOfLaw out;
+    double noise = 0;
+    for (const RecordSegment& s : fitter_.segments()) noise += static_cast<double>(s.bins());
+    const double linear = rest([](const NeededSignal&) { return Columns(); }, false);
+    const double beyond = linear - noise;
+    const auto share = [&](LawKind kind, double left) {
+      out.share[static_cast<std::size_t>(kind)] =
+          beyond > 0 ? std::clamp((linear - left) / beyond, 0.0, 1.0) : 0;
+    };
+    const double smooth = rest([&](const NeededSignal& n) { return powers(n, scales_); }, false);
+    const double edged = rest([&](const NeededSignal& n) { return contacts(n, scales_); }, false);
+    share(LawKind::elastic, smooth);
+    share(LawKind::impact, edged);
+    share(LawKind::dissipative,
+          rest([&](const NeededSignal& n) { return rates(n, scales_); }, false));
+    share(LawKind::hysteretic,
+          rest([&](const NeededSignal& n) { return memories(n, scales_); }, false));
+    share(LawKind::time_varying, rest([](const NeededSignal& n) { return times(n); }, true));
+    out.kind = linear < kBeyondChance * noise ? LawKind::linear : simplest(out.share);
+    if (out.kind == LawKind::impact && edged - noise > kAsImpact * (smooth - noise))
+      out.kind = LawKind::elastic;
+    picture(out);
+    return out;
+  }
+
+ private:
+  /// Misfit beside a linear element. own: every record has its own coefficients.
+  template <typename Make>
+  double rest(const Make& make, bool own) const {
+    std::vector<std::vector<VectorXcd>> columns(needed_.size());
+    for (std::size_t r = 0; r < needed_.size(); ++r) {
+      const RecordSegment& s = fitter_.segments()[r];
+      columns[r] = linear_columns(needed_[r], s.w);
+      const Columns more = make(needed_[r]);
+      for (std::size_t other = 0; other < (own ? needed_.size() : 1); ++other)
+        for (const VectorXd& column : more)
+          columns[r].push_back(own && other != r ? VectorXcd(VectorXcd::Zero(s.bins()))
+                                                 : band_of(column, s, fitter_.ratio(r)));
+    }
+    return scalar_fit(needed_, columns).misfit;
+  }
+
+  static LawKind simplest(const std::array<double, 7>& share) {
+    const double best = *std::max_element(share.begin(), share.end());
+    if (best < kKindFollows) return LawKind::external;
+    for (const LawKind kind : {LawKind::elastic, LawKind::dissipative, LawKind::impact,
+                               LawKind::time_varying, LawKind::hysteretic})
+      if (share[static_cast<std::size_t>(kind)] >= kNearlyAll * best) return kind;
+    return LawKind::hysteretic;
+  }
+
+  void picture(KindOfLaw& out) const {
+    RestoringSurface& to = out.surface;
+    to.d_m = VectorXd::LinSpaced(kCells, -scales_.d, scales_.d);
+    to.v_mps = VectorXd::LinSpaced(kCells, -scales_.v, scales_.v);
+    to.force_n = Eigen::MatrixXd::Zero(kCells, kCells);
+    to.count = Eigen::MatrixXi::Zero(kCells, kCells);
+    const auto cell = [](double x, double peak) {
+      const double at = (x / peak + 1) / 2 * (kCells - 1);
+      return std::clamp<Index>(static_cast<Index>(std::lround(at)), 0, kCells - 1);
+    };
+    double strongest = 0;
+    for (std::size_t r = 0; r < needed_.size(); ++r) {
+      const RecordSegment& s = fitter_.segments()[r];
+      const int ratio = fitter_.ratio(r);
+      const VectorXd force = signal_of(beyond_linear(s, needed_[r]), s, ratio);
+      const VectorXd &d = needed_[r].d_t, &v = needed_[r].v_t;
+      for (Index i = 0; i < force.size(); ++i) {
+        const Index a = cell(d[i], scales_.d), b = cell(v[i], scales_.v);
+        to.force_n(a, b) += force[i];
+        ++to.count(a, b);
+      }
+      const double peak = d.cwiseAbs().maxCoeff();
+      if (peak <= strongest) continue;
+      strongest = peak;
+      out.d_m.resize(force.size() / ratio);
+      out.force_n.resize(out.d_m.size());
+      for (Index i = 0; i < out.d_m.size(); ++i) {
+        out.d_m[i] = d[i * ratio];
+        out.force_n[i] = force[i * ratio];
+      }
+    }
+    for (Index i = 0; i < to.force_n.size(); ++i) {
+      const int count = to.count.data()[i];
+      to.force_n.data()[i] = count < kLeastCount ? std::numeric_limits<double>::quiet_NaN()
+                                                 : to.force_n.data()[i] / count;
+    }
+  }
+
+  const Fitter& fitter_;
+  const std::vector<NeededSignal>& needed_;
+  Scales scales_;
+};
+
+}  // namespace
+
+const char* law_kind_word(LawKind kind) {
+  switch (kind) {
+    case LawKind::linear:
+      return "linear";
+    case LawKind::elastic:
+      return "elastic";
+    case LawKind::impact:
+      return "impact";
+    case LawKind::dissipative:
+      return "dissipative";
+    case LawKind::hysteretic:
+      return "hysteretic";
+    case LawKind::time_varying:
+      return "time_varying";
+    case LawKind::external:
+      break;
+  }
+  return "external";
+}
+
+KindOfLaw kind_of_law(const Fitter& fitter, const std::vector<NeededSignal>& needed) {
+  return KindSearch(fitter, needed).run();
+}
+
+}  // namespace framewatch::estimator
