@@ -37,7 +37,9 @@ const Option kOptions[] = {
      .default_value = "0.03",
      .min = 0,
      .max = 1,
-     .meaning = "Smallest lasting change of a frame's stiffness that matters; 0: not watched.",
+     .meaning =
+         "Smallest lasting change of a frame's stiffness that matters, half as much of a group of "
+         "stories; 0: not watched.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::least_change_k>},
     {.section = "watch",

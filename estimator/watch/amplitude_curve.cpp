@@ -35,6 +35,7 @@ AmplitudeCurve::AmplitudeCurve(double value, const std::vector<AmplitudePoint>& 
     mean += w * at_.back();
   }
   origin_ = mean / weight;
+  own_error_ = 1 / std::sqrt(weight) / value;
   Eigen::MatrixXd matrix(n, n);
   Eigen::VectorXd off(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -48,7 +49,6 @@ AmplitudeCurve::AmplitudeCurve(double value, const std::vector<AmplitudePoint>& 
   const Eigen::VectorXd weights = inverse * off;
   weights_.assign(weights.data(), weights.data() + n);
   inverse_.assign(inverse.data(), inverse.data() + n * n);
-  own_error_ = at_log(origin_).std_error;
 }
 
 AmplitudeCurve::Expected AmplitudeCurve::expected(double amplitude_m) const {
@@ -65,12 +65,12 @@ double AmplitudeCurve::highest_m() const {
 
 double AmplitudeCurve::least(double amplitude_m, double errors) const {
   const Expected e = expected(std::max(amplitude_m, lowest_m()));
-  return e.ratio - errors * (std::hypot(e.std_error, own_error_) - own_error_);
+  return e.ratio - errors * std::max(e.std_error - own_error_, 0.0);
 }
 
 double AmplitudeCurve::most(double amplitude_m, double errors) const {
   const Expected e = expected(std::min(amplitude_m, highest_m()));
-  return e.ratio + errors * (std::hypot(e.std_error, own_error_) - own_error_);
+  return e.ratio + errors * std::max(e.std_error - own_error_, 0.0);
 }
 
 AmplitudeCurve::Expected AmplitudeCurve::at_log(double log) const {
@@ -84,8 +84,7 @@ AmplitudeCurve::Expected AmplitudeCurve::at_log(double log) const {
     for (std::size_t j = 0; j <= i; ++j) row += (i == j ? 1 : 2) * inverse_[i * n + j] * with[j];
     explained += with[i] * row;
   }
-  const double variance = covariance(log, log) - explained - own_error_ * own_error_;
-  return {1 + off, std::sqrt(std::max(variance, 0.0))};
+  return {1 + off, std::sqrt(std::max(covariance(log, log) - explained, 0.0))};
 }
 
 double AmplitudeCurve::slope(double amplitude_m) const {

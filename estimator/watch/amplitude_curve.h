@@ -35,12 +35,12 @@ class AmplitudeCurve {
   bool known() const { return !at_.empty(); }
   struct Expected {
     double ratio;      ///< to the baseline's value
-    double std_error;  ///< of that, beyond the error of the value itself
+    double std_error;  ///< of that, the error of the value itself among it
   };
   /// Precondition: known(); amplitude_m > 0.
   Expected expected(double amplitude_m) const;
-  /// What the ratio may be, `errors` standard errors either way, beyond those of the value itself
-  /// (in quadrature): below the amplitudes that were
+  /// What the ratio may be, `errors` standard errors either way beyond as many of the value itself:
+  /// below the amplitudes that were
   /// learned no lower than at the lowest of them, above no higher than at the highest.
   double least(double amplitude_m, double errors) const;
   double most(double amplitude_m, double errors) const;
@@ -55,7 +55,7 @@ class AmplitudeCurve {
   Expected at_log(double log) const;
 
   double origin_ = 0;       ///< logarithm, where the slope is drawn to zero
-  double own_error_ = 0;    ///< there
+  double own_error_ = 0;    ///< of the value itself, relative
   std::vector<double> at_;  ///< logarithms of the points
   std::vector<double> weights_, inverse_;
 };

@@ -77,7 +77,7 @@ void ElementDrift::find_groups(const PipelineConfig& config, const ParameterTabl
   const Structure& s = config.structure;
   const ReducedBuilding building =
       reduced_building(s, config.axes, table, {design_of(config), config.bending_nmprad},
-                       std::vector<std::uint8_t>(config.axes.size(), 1), true);
+                       identifying(config.axes), true);
   const Eigen::MatrixXd frames = building.frames.leftCols(building.measured) * building.from_axes;
   for (int p = 0; p < table.elements(); ++p) {
     const Parameter& group = table[p];

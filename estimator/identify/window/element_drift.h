@@ -17,7 +17,7 @@ namespace framewatch::estimator {
 /// Bounded; allocates when constructed, never after.
 class ElementDrift {
  public:
-  static constexpr double kCorner = 0.7;
+  static constexpr double kCorner = 0.4;
 
   /// Sets are those of the layout's MotionSource. most_blocks: of the longest window.
   ElementDrift(const PipelineConfig& config, const ParameterTable& table, const FloorLayout& layout,

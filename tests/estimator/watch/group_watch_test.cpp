@@ -161,9 +161,9 @@ TEST(GroupWatch, SofteningWhileItMovesIsNoChange) {
   std::printf("%d alarms in %.2f hours of shaking; stiffness of a group from %.3g to %.3g N/m\n",
               alarms, building.now_s() / 3600, lowest, highest);
   ASSERT_NE(watch.baseline(), nullptr);
-  EXPECT_EQ(watch.baseline()->known(), 4);
+  EXPECT_EQ(watch.baseline()->known(), 8);
   EXPECT_EQ(alarms, 0);
-  EXPECT_LT(lowest, 0.9 * highest);  // it did soften
+  EXPECT_LT(lowest, 0.93 * highest);  // it did soften
 }
 
 struct Aftermath {
@@ -183,6 +183,10 @@ Aftermath shaken(double lost) {
   Aftermath out;
   Watched building(tower, [&](const WindowEstimate& e) {
     for (const Alarm& alarm : watch.push(e)) {
+      if (alarm.state == AlarmState::raised)
+        std::printf("  alarm at %.1f s: group %d, %.2f %% +- %.2f %%\n",
+                    1e-6 * static_cast<double>(to_microseconds(e.end)), alarm.parameter,
+                    100 * alarm.change.ratio, 100 * alarm.change.std_error);
       if (alarm.state == AlarmState::raised && alarm.parameter != 1) ++out.others;
       if (alarm.state == AlarmState::raised) ++out.alarms;
       if (alarm.parameter != 1 || alarm.state == AlarmState::cleared) continue;
