@@ -1,6 +1,8 @@
 #include "daemon/config/baseline_file.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/core.h>
 
@@ -12,6 +14,48 @@
 
 namespace framewatch::daemon {
 namespace {
+
+/// Why these are no points of a curve; empty: they are.
+std::string problem_of(const std::vector<double>& amplitudes, const std::vector<double>& values,
+                       const std::vector<double>& errors) {
+  constexpr std::size_t kMost = estimator::AmplitudeBins::kBins;
+  if (amplitudes.size() > kMost)
+    return fmt::format("{} amplitudes, at most {}", amplitudes.size(), kMost);
+  if (values.size() != amplitudes.size() || errors.size() != amplitudes.size())
+    return fmt::format(
+        "{} amplitudes, {} values and {} standard errors: value_at_amplitude and "
+        "std_error_at_amplitude need one each",
+        amplitudes.size(), values.size(), errors.size());
+  if (std::adjacent_find(amplitudes.begin(), amplitudes.end(), std::greater_equal<>()) !=
+      amplitudes.end())
+    return "amplitudes must ascend";
+  return "";
+}
+
+void read_points(ConfigSection& s, std::vector<estimator::AmplitudePoint>& out) {
+  const std::vector<double> amplitudes = s.list("amplitude_m");
+  const std::vector<double> values = s.list("value_at_amplitude");
+  const std::vector<double> errors = s.list("std_error_at_amplitude");
+  for (const char* key : {"amplitude_m", "value_at_amplitude", "std_error_at_amplitude"})
+    if (!s.good(key)) return;
+  const std::string problem = problem_of(amplitudes, values, errors);
+  if (!problem.empty()) return s.problem("amplitude_m", problem);
+  for (std::size_t i = 0; i < amplitudes.size(); ++i)
+    out.push_back({amplitudes[i], values[i], errors[i]});
+}
+
+std::string points_text(const std::vector<estimator::AmplitudePoint>& points) {
+  const auto list = [&](const char* key, double estimator::AmplitudePoint::*of) {
+    std::string out = fmt::format("{} = [", key);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      out += fmt::format("{}{:.17g}", i > 0 ? ", " : "", points[i].*of);
+    return out + "]\n";
+  };
+  if (points.empty()) return "";
+  return list("amplitude_m", &estimator::AmplitudePoint::amplitude_m) +
+         list("value_at_amplitude", &estimator::AmplitudePoint::value) +
+         list("std_error_at_amplitude", &estimator::AmplitudePoint::std_error);
+}
 
 void read_parameter(const TomlValue& value, const estimator::ParameterTable& table,
                     estimator::Baseline& out, std::vector<TextProblem>& problems) {
@@ -38,6 +82,7 @@ void read_parameter(const TomlValue& value, const estimator::ParameterTable& tab
   out.value[p] = s.number("value");
   out.std_error[p] = s.number("std_error");
   if (s.given("temperature_degc")) out.degc[p] = s.number("temperature_degc");
+  read_points(s, out.by_amplitude[p]);
 }
 
 }  // namespace
@@ -61,6 +106,7 @@ std::string extended_baseline_text(const std::string& text, const estimator::Bas
         table[i].name, baseline.value[p], baseline.std_error[p], table[i].unit);
     if (!std::isnan(baseline.degc[p]))
       out += fmt::format("temperature_degc = {:.17g}\n", baseline.degc[p]);
+    out += points_text(baseline.by_amplitude[p]);
   }
   return out;
 }

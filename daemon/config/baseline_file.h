@@ -10,8 +10,8 @@
 
 namespace framewatch::daemon {
 
-/// Baseline as a TOML file, one [[parameter]] each with name, value, std_error, unit and, when it
-/// is known, temperature; the same baseline gives the same bytes.
+/// Baseline as a TOML file, one [[parameter]] each with name, value, std_error, unit and, when they
+/// are known, temperature and values by amplitude; the same baseline gives the same bytes.
 std::string baseline_text(const estimator::Baseline& baseline,
                           const estimator::ParameterTable& table);
 

@@ -37,7 +37,9 @@ const Option kOptions[] = {
      .default_value = "0.03",
      .min = 0,
      .max = 1,
-     .meaning = "Smallest lasting change of a frame's stiffness that matters; 0: not watched.",
+     .meaning =
+         "Smallest lasting change of a frame's stiffness that matters, half as much of a group of "
+         "stories; 0: not watched.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::least_change_k>},
     {.section = "watch",
@@ -98,9 +100,9 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "follow_amplitude",
      .type = boolean,
-     .default_value = "false",
-     .meaning = "In long windows stiffness may follow the amplitude of the motion, and is watched "
-                "for what that does not explain.",
+     .default_value = "true",
+     .meaning = "Stiffness may follow the amplitude of the element's own motion, and recovers some "
+                "time after a strong one; it is watched for what that does not explain.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::amplitude>},
     {.section = "baseline.parameter",
@@ -132,6 +134,29 @@ const Option kOptions[] = {
      .max = 150,
      .meaning = "Mean temperature at which it was learned: with `temperature_channel` the value is "
                 "corrected for the temperature since."},
+    {.section = "baseline.parameter",
+     .key = "amplitude_m",
+     .type = grid,
+     .unit = "m",
+     .shape = "[point]",
+     .min = 0,
+     .above_min = true,
+     .meaning = "Amplitudes of the element it was learned at, ascending: rms deformation of a "
+                "window. With `follow_amplitude` the value is corrected for them."},
+    {.section = "baseline.parameter",
+     .key = "value_at_amplitude",
+     .type = grid,
+     .shape = "[point]",
+     .min = 0,
+     .above_min = true,
+     .meaning = "Its values there, in `unit`."},
+    {.section = "baseline.parameter",
+     .key = "std_error_at_amplitude",
+     .type = grid,
+     .shape = "[point]",
+     .min = 0,
+     .above_min = true,
+     .meaning = "How well those are known, likewise."},
 };
 
 }  // namespace

@@ -8,7 +8,35 @@ namespace framewatch::estimator {
 Baseline::Baseline(std::size_t parameters)
     : value(parameters, std::numeric_limits<double>::quiet_NaN()),
       std_error(parameters, std::numeric_limits<double>::quiet_NaN()),
-      degc(parameters, std::numeric_limits<double>::quiet_NaN()) {}
+      degc(parameters, std::numeric_limits<double>::quiet_NaN()),
+      by_amplitude(parameters) {}
+
+std::vector<double> Baseline::flat_points() const {
+  std::vector<double> out;
+  for (const std::vector<AmplitudePoint>& points : by_amplitude) {
+    out.push_back(static_cast<double>(points.size()));
+    for (const AmplitudePoint& p : points)
+      out.insert(out.end(), {p.amplitude_m, p.value, p.std_error});
+  }
+  return out;
+}
+
+bool Baseline::take_points(const std::vector<double>& numbers) {
+  by_amplitude.assign(value.size(), {});
+  std::size_t at = 0;
+  for (std::vector<AmplitudePoint>& points : by_amplitude) {
+    if (at >= numbers.size()) return false;
+    const double count = numbers[at++];
+    if (!(count >= 0 && count <= AmplitudeBins::kBins)) return false;
+    for (int i = 0; i < static_cast<int>(count); ++i, at += 3) {
+      if (at + 3 > numbers.size()) return false;
+      const AmplitudePoint p{numbers[at], numbers[at + 1], numbers[at + 2]};
+      if (!p.valid()) return false;
+      points.push_back(p);
+    }
+  }
+  return at == numbers.size();
+}
 
 bool Baseline::knows(std::size_t p) const {
   return std::isfinite(value[p]);
@@ -25,8 +53,9 @@ bool Baseline::holds(const Baseline& other) const {
   return true;
 }
 
-BaselineLearner::BaselineLearner(const std::vector<Watched>& watched, double learn_s)
-    : watched_(watched), learn_s_(learn_s), sums_(watched.size()) {}
+BaselineLearner::BaselineLearner(const std::vector<Watched>& watched, double learn_s,
+                                 bool amplitude)
+    : watched_(watched), learn_s_(learn_s), amplitude_(amplitude), sums_(watched.size()) {}
 
 bool BaselineLearner::push(const WindowEstimate& e, double degc) {
   if (e.window != 0 || !windows_.take(e)) return false;
@@ -45,6 +74,10 @@ bool BaselineLearner::push(const WindowEstimate& e, double degc) {
       sum.degc_weight += weight;
       sum.degc += weight * degc;
     }
+    if (amplitude_ && e.amplitude[p] > 0) {
+      ++sum.with_amplitude;
+      sum.bins.push(e.amplitude[p], off / sum.first, weight * sum.first * sum.first);
+    }
     sum.complete = enough(p);
     any = any || sum.complete;
   }
@@ -61,7 +94,9 @@ bool BaselineLearner::enough(std::size_t p) const {
 BaselineLearner::Mean BaselineLearner::mean(const Sum& sum) {
   const double off = sum.value / sum.weight;
   const double scatter = std::max(sum.square - sum.weight * off * off, 0.0);
-  const double excess = sum.count > 1 ? scatter / (sum.count - 1) : 1.0;
+  const double excess = sum.with_amplitude == sum.count ? sum.bins.excess()
+                        : sum.count > 1                 ? scatter / (sum.count - 1)
+                                                        : 1.0;
   return {sum.first + off, std::sqrt(std::max(excess, 1.0) / sum.weight),
           sum.degc / sum.degc_weight};  // 0 / 0 is NaN: not known
 }
@@ -71,6 +106,7 @@ void BaselineLearner::put(const Sum& sum, std::size_t p, Baseline& out) {
   out.value[p] = m.value;
   out.std_error[p] = m.std_error;
   out.degc[p] = m.degc;
+  if (sum.with_amplitude == sum.count) out.by_amplitude[p] = sum.bins.points(sum.first);
 }
 
 Baseline BaselineLearner::baseline() const {

@@ -9,6 +9,7 @@ namespace {
 constexpr Time kLongAgo{SensorClock::duration(-8'000'000'000'000'000)};
 constexpr double kFreedom = 19;         // of standard errors from 20 blocks
 constexpr double kMemory_s = 15;        // of the usual standard error
+constexpr double kMostOfUsual = 1.5;    // that a single one counts with
 constexpr double kBaselineErrors = 3;   // that a value may be off by permanently
 constexpr double kMostOfThreshold = 2;  // a sum is limited to that
 constexpr double kOneWindow = 0.6;      // of the threshold: most that one window adds
@@ -26,15 +27,19 @@ ChangeDetector::ChangeDetector(const Baseline& baseline, const std::vector<Watch
   used_until_.fill(kLongAgo);
 }
 
-void ChangeDetector::push(const WindowEstimate& e) {
+int ChangeDetector::free_phase(const WindowEstimate& e) const {
   const auto length = e.end - e.start;
   const Time newest = *std::max_element(used_until_.begin(), used_until_.end());
-  if (newest != kLongAgo && e.end - newest < length / kPhases) return;
+  if (newest != kLongAgo && e.end - newest < length / kPhases) return -1;
   const auto free = std::find_if(used_until_.begin(), used_until_.end(),
                                  [&](Time until) { return until <= e.start; });
-  if (free == used_until_.end()) return;
-  *free = e.end;
-  const auto phase = static_cast<int>(free - used_until_.begin());
+  return free == used_until_.end() ? -1 : static_cast<int>(free - used_until_.begin());
+}
+
+void ChangeDetector::push(const WindowEstimate& e) {
+  const int phase = free_phase(e);
+  if (phase < 0) return;
+  used_until_[static_cast<std::size_t>(phase)] = e.end;
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
     const Watched& watched = parameters_[p].watched;
     if (watched.least_change > 0 && baseline_.knows(p) && watched.counts(e, p)) judge(p, phase, e);
@@ -47,8 +52,11 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   const double baseline_error = baseline_.std_error[p] / baseline_.value[p];
   const double window_s = std::chrono::duration<double>(e.end - e.start).count();
   double& usual = parameter.usual_error;
-  usual =
-      usual == 0 ? error : usual + std::min(1.0, window_s / kPhases / kMemory_s) * (error - usual);
+  // Windows across a change have large errors; they must not hide the next ones.
+  const double most = kMostOfUsual * usual;
+  usual = usual == 0 ? error
+                     : usual + std::min(1.0, window_s / kPhases / kMemory_s) *
+                                   (std::min(error, most) - usual);
   const double scale = std::hypot(std::max(error, usual), baseline_error);
   const double off = e.value[p] / baseline_.value[p] - 1;
   const double tolerance = (parameter.watched.tolerance + kBaselineErrors * baseline_error) / scale;

@@ -40,7 +40,8 @@ class ChangeDetector {
   /// The baseline from now on; the sums stay.
   void set_baseline(const Baseline& baseline) { baseline_ = baseline; }
 
-  /// Windows closer than a kPhases-th of their length are left out.
+  /// Whether push() judges this one: windows closer than a kPhases-th of their length are left out.
+  bool takes(const WindowEstimate& estimate) const { return free_phase(estimate) >= 0; }
   void push(const WindowEstimate& estimate);
 
   /// A change of the parameter has been accepted, and its end not yet.
@@ -87,6 +88,7 @@ class ChangeDetector {
   const Parameter& of(int parameter) const {
     return parameters_[static_cast<std::size_t>(parameter)];
   }
+  int free_phase(const WindowEstimate& estimate) const;
   void judge(std::size_t p, int phase, const WindowEstimate& estimate);
 
   Baseline baseline_;

@@ -1,14 +1,21 @@
 #include "estimator/watch/watch.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace framewatch::estimator {
 namespace {
 
+/// Of a story's least relevant change: what a group of several in series shows of a larger one.
+constexpr double kOfGroup = 0.5;
 constexpr double kSeconds = 3600, kHoursPerYear = 8766;
 constexpr double kBinsPerWindow = 20, kBin_s = 60;  // of the temperature's means
 constexpr double kExpectedErrors = 3;
+/// Motion of late counts, for long windows, from so many times the usual amplitude on.
+constexpr double kStrong = 4;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kUnknown_degc = 10;  // assumed deviation while the thermometer is silent
 constexpr double kNewsErrors = 2;  // standard errors a change moves by before it is reported again
 constexpr double kSharper = 0.7;   // of the error reported: a smaller one is news too
@@ -20,17 +27,23 @@ constexpr double kMostBias_k = 0.1, kMostBias_g = 0.25;
 /// The same in long windows, whose baseline has the same bias.
 constexpr double kMostBiasQuiet = 0.4;
 
-/// The value as it would be under the conditions of the baseline. A deviation that the conditions
-/// may explain within kExpectedErrors errors is removed: that error is the same in every window.
-void correct(WindowEstimate& e, std::size_t p, double baseline, const Dependence::Expected& now) {
-  if (!std::isfinite(now.std_error) || now.ratio <= 0) {
+/// The value as it would be under the conditions of the baseline, which make `ratio` of it, or
+/// anything from `below` under that to `above` over it, relative: what the conditions may explain
+/// is no deviation, because it is the same in every window.
+void correct(WindowEstimate& e, std::size_t p, double baseline, double ratio, double below,
+             double above) {
+  if (!std::isfinite(below) || !std::isfinite(above) || !(ratio > 0)) {
     e.reason[p] = Observability::quiet;
     return;
   }
-  const double off = e.value[p] / now.ratio - baseline;
-  const double explained = kExpectedErrors * now.std_error * baseline;
-  e.value[p] = baseline + std::copysign(std::max(std::abs(off) - explained, 0.0), off);
-  e.std_error[p] /= now.ratio;
+  const double off = e.value[p] / ratio - baseline;
+  e.value[p] = baseline + (off > 0 ? std::max(off - above * baseline, 0.0)
+                                   : std::min(off + below * baseline, 0.0));
+  e.std_error[p] /= ratio;
+}
+
+double seconds_of(Time time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
 DependenceOptions quiet_options(const WatchOptions& o) {
@@ -61,8 +74,9 @@ std::vector<Watched> watched_parameters(const ParameterTable& table, const Watch
   std::vector<Watched> out(static_cast<std::size_t>(table.size()));
   for (std::size_t p = 0; p < out.size(); ++p) {
     const ParameterKind kind = table[static_cast<int>(p)].kind;
+    const bool group = table[static_cast<int>(p)].last_story > table[static_cast<int>(p)].story;
     if (kind == ParameterKind::frame_stiffness)
-      out[p] = watched(o.least_change_k, kMostBias_k, kind, 0);
+      out[p] = watched((group ? kOfGroup : 1) * o.least_change_k, kMostBias_k, kind, 0);
     if (kind == ParameterKind::panel_stiffness)
       out[p] = watched(o.least_change_g, kMostBias_g, kind, kMostBias_g);
   }
@@ -75,9 +89,12 @@ Watch::Watch(const ParameterTable& table, const WatchOptions& options,
       watched_(watched_parameters(table, options)),
       windows_s_(windows_s),
       threshold_(threshold_for(options, windows_s, watched_)),
-      learner_(watched_, options.learn_s),
+      learner_(watched_, options.learn_s, options.amplitude),
       baseline_(baseline.value_or(Baseline(watched_.size()))),
       temperature_(options.quiet_window_s > 0 ? options.quiet_window_s / kBinsPerWindow : kBin_s),
+      curves_(watched_.size()),
+      recent_(watched_.size()),
+      usual_(watched_.size()),
       quiet_learner_(table.size(), quiet_options(options)),
       quiet_baseline_(watched_.size()),
       dependence_(watched_.size()),
@@ -91,6 +108,10 @@ Watch::Watch(const ParameterTable& table, const WatchOptions& options,
 
 void Watch::begin() {
   for (std::size_t i = 0; i < windows_s_.size(); ++i) detectors_[i].set_baseline(baseline_);
+  if (!options_.amplitude) return;
+  for (std::size_t p = 0; p < curves_.size(); ++p)
+    if (baseline_.knows(p) && watched(p))
+      curves_[p] = AmplitudeCurve(baseline_.value[p], baseline_.by_amplitude[p]);
 }
 
 void Watch::begin_quiet() {
@@ -122,6 +143,7 @@ void Watch::learn(const WindowEstimate& e) {
     baseline_.value[p] = learned.value[p];
     baseline_.std_error[p] = learned.std_error[p];
     baseline_.degc[p] = learned.degc[p];
+    baseline_.by_amplitude[p] = learned.by_amplitude[p];
   }
   begin();
 }
@@ -155,14 +177,56 @@ Dependence::Expected Watch::expected(std::size_t p, double degc) const {
   return {1, per_degc * off};
 }
 
+Watch::Intact Watch::intact(std::size_t p, const WindowEstimate& e, double degc) const {
+  Dependence::Expected warm{1, 0};
+  if (options_.temperature && !std::isnan(baseline_.degc[p])) warm = expected(p, degc);
+  Intact out{1, 0, 0};
+  out.low = 1 - kExpectedErrors * warm.std_error, out.high = 1 + kExpectedErrors * warm.std_error;
+  if (curves_[p].known()) {
+    // An element that has been shaken stronger of late may still be as soft as it was then.
+    const double now = e.amplitude[p];
+    if (!(now > 0)) return {1, -kInfinity, kInfinity};
+    const AmplitudeCurve& curve = curves_[p];
+    const double before = std::max(recent_[p].at(seconds_of(e.end)), now);
+    out.low +=
+        std::min(curve.least(now, kExpectedErrors), curve.least(before, kExpectedErrors)) - 1;
+    out.high += std::max(curve.most(now, kExpectedErrors), curve.most(before, kExpectedErrors)) - 1;
+    out.ratio = std::clamp(curve.expected(now).ratio, out.low, out.high);
+  }
+  for (double* ratio : {&out.ratio, &out.low, &out.high}) *ratio *= warm.ratio;
+  return out;
+}
+
+void Watch::remember_amplitudes(const WindowEstimate& e) {
+  for (std::size_t p = 0; p < watched_.size(); ++p) {
+    if (!watched(p) || !(e.amplitude[p] > 0)) continue;
+    recent_[p].push(seconds_of(e.end), e.amplitude[p]);
+    if (quiet_known_ || options_.quiet_window_s <= 0) continue;
+    usual_[p].sum += std::log(e.amplitude[p]);
+    ++usual_[p].count;
+  }
+}
+
+/// By how much a quiet value may still be too low after strong motion, relative.
+double Watch::recovering(std::size_t p, Time now) const {
+  const double recent = recent_[p].at(seconds_of(now));
+  if (!options_.amplitude || usual_[p].count == 0 || !(recent > 0)) return 0;
+  const double usual = usual_[p].sum / static_cast<double>(usual_[p].count);
+  return kExpectedErrors * AmplitudeCurve::kUsualPerLog *
+         std::max(std::log(recent / kStrong) - usual, 0.0);
+}
+
 const WindowEstimate& Watch::corrected(const WindowEstimate& e) {
-  if (!options_.temperature) return e;
+  if ((!options_.temperature && !options_.amplitude) || !used(e)) return e;
   const double degc = temperature_.mean(e.start, e.end);
   corrected_ = e;
-  for (std::size_t p = 0; p < watched_.size(); ++p)
-    if (baseline_.knows(p) && !std::isnan(baseline_.degc[p]) &&
-        e.reason[p] == Observability::observable)
-      correct(corrected_, p, baseline_.value[p], expected(p, degc));
+  if (e.window == 0) remember_amplitudes(e);
+  for (std::size_t p = 0; p < watched_.size(); ++p) {
+    if (!baseline_.knows(p) || !watched(p) || e.reason[p] != Observability::observable) continue;
+    const Intact now = intact(p, e, degc);
+    correct(corrected_, p, baseline_.value[p], now.ratio, 1 - now.low / now.ratio,
+            now.high / now.ratio - 1);
+  }
   return corrected_;
 }
 
@@ -171,8 +235,11 @@ const WindowEstimate& Watch::corrected_quiet(const WindowEstimate& e) {
   const double degc = temperature_.mean(e.start, e.end);
   for (std::size_t p = 0; p < watched_.size(); ++p) {
     if (!quiet_baseline_.knows(p) || e.reason[p] != Observability::observable) continue;
-    correct(corrected_, p, quiet_baseline_.value[p],
-            dependence_.expected(p, {degc, DependenceLearner::log_amplitude(e, p)}));
+    const Dependence::Expected now =
+        dependence_.expected(p, {degc, DependenceLearner::log_amplitude(e, p)});
+    const double explained = kExpectedErrors * now.std_error;
+    correct(corrected_, p, quiet_baseline_.value[p], now.ratio, explained + recovering(p, e.end),
+            explained);
   }
   return corrected_;
 }
@@ -181,11 +248,23 @@ std::size_t Watch::sizing_window(std::size_t detector) const {
   return detector == windows_s_.size() ? detector : 0;
 }
 
+bool Watch::measures(std::size_t p, const WindowEstimate& e) const {
+  const State& state = states_[p];
+  return state.id != 0 && static_cast<std::size_t>(e.window) == sizing_window(state.detector) &&
+         e.start >= state.sized_until;
+}
+
+bool Watch::used(const WindowEstimate& e) const {
+  if (detectors_[static_cast<std::size_t>(e.window)].takes(e)) return true;
+  for (std::size_t p = 0; p < states_.size(); ++p)
+    if (measures(p, e)) return true;
+  return false;
+}
+
 void Watch::measure(std::size_t p, const WindowEstimate& e) {
+  if (!measures(p, e) || !watched_[p].counts(e, p)) return;
   State& state = states_[p];
   const auto window = static_cast<std::size_t>(e.window);
-  if (state.id == 0 || window != sizing_window(state.detector)) return;
-  if (e.start < state.sized_until || !watched_[p].counts(e, p)) return;
   state.sized_until = e.end;
   const double baseline =
       window == windows_s_.size() ? quiet_baseline_.value[p] : baseline_.value[p];

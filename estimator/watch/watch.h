@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "estimator/structure/parameter_table.h"
+#include "estimator/watch/amplitude_curve.h"
 #include "estimator/watch/baseline.h"
 #include "estimator/watch/change_detector.h"
 #include "estimator/watch/change_size.h"
@@ -24,9 +25,9 @@ struct WatchOptions {
   double quiet_window_s = 3600;
   /// Hours of long windows that their baseline takes.
   double quiet_learn_hours = 24;
-  /// Conditions that baselines are corrected for: the temperature, given by temperature(), and, in
-  /// long windows, the amplitude of the motion.
-  bool temperature = false, amplitude = false;
+  /// Conditions that baselines are corrected for: the temperature, given by temperature(), and the
+  /// amplitude of the motion.
+  bool temperature = false, amplitude = true;
 };
 
 enum class AlarmState { cleared, raised, changed };
@@ -68,7 +69,9 @@ class Watch {
   bool watched(std::size_t parameter) const { return watched_[parameter].least_change > 0; }
   /// Of the long windows; null while it is being learned.
   const Baseline* quiet_baseline() const { return quiet_known_ ? &quiet_baseline_ : nullptr; }
-  /// How that follows the conditions.
+  /// How ordinary windows' value follows the amplitude.
+  const AmplitudeCurve& curve(std::size_t parameter) const { return curves_[parameter]; }
+  /// How the quiet baseline follows the conditions.
   const Dependence& dependence() const { return dependence_; }
   /// Of the long windows their baseline takes, 0..1.
   double quiet_learned() const;
@@ -94,7 +97,7 @@ class Watch {
       begin();
       if (quiet_known_) begin_quiet();
     }
-    a(temperature_, detectors_, states_);
+    a(temperature_, detectors_, states_, recent_, usual_);
     a.within(last_id_, 0, a.kMostCount);
     for (const State& state : states_)
       if (state.detector >= detectors_.size()) a.refuse();
@@ -115,13 +118,35 @@ class Watch {
       a(detector, reported, size, sized_until);
     }
   };
+  /// The mean logarithm of an amplitude.
+  struct Usual {
+    std::int64_t count = 0;
+    double sum = 0;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a.within(count, 0, a.kMostCount);
+      a.finite(sum);
+    }
+  };
   void begin();
   void begin_quiet();
   void learn(const WindowEstimate& estimate);
   void learn_quiet(const WindowEstimate& estimate);
   Dependence::Expected expected(std::size_t parameter, double degc) const;
+  /// What the conditions make of an intact element's value, relative to the baseline's.
+  struct Intact {
+    double ratio;      ///< most likely
+    double low, high;  ///< what it may be
+  };
+  Intact intact(std::size_t parameter, const WindowEstimate& estimate, double degc) const;
+  /// Whether anything looks at this window's values.
+  bool used(const WindowEstimate& estimate) const;
+  bool measures(std::size_t parameter, const WindowEstimate& estimate) const;
   /// The estimate as it would be under the conditions of its baseline.
   const WindowEstimate& corrected(const WindowEstimate& estimate);
+  void remember_amplitudes(const WindowEstimate& estimate);
+  double recovering(std::size_t parameter, Time now) const;
   const WindowEstimate& corrected_quiet(const WindowEstimate& estimate);
   /// The window that sizes of the changes a detector has found are measured in.
   std::size_t sizing_window(std::size_t detector) const;
@@ -136,6 +161,9 @@ class Watch {
   BaselineLearner learner_;
   Baseline baseline_;
   MeanTemperature temperature_;
+  std::vector<AmplitudeCurve> curves_;   ///< of baseline_
+  std::vector<RecentAmplitude> recent_;  ///< of main windows
+  std::vector<Usual> usual_;             ///< while the quiet baseline is being learned
   bool quiet_known_ = false;
   DependenceLearner quiet_learner_;
   Baseline quiet_baseline_;

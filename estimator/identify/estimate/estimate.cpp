@@ -5,8 +5,8 @@
 namespace framewatch::estimator {
 
 WindowEstimate::WindowEstimate(std::size_t parameters) {
-  for (std::vector<double>* v : {&value, &std_error, &snr, &prior_share, &noise_share, &last_value,
-                                 &last_std_error, &solution})
+  for (std::vector<double>* v : {&value, &std_error, &snr, &amplitude, &prior_share, &noise_share,
+                                 &last_value, &last_std_error, &solution})
     v->assign(parameters, kNaN);
   last_end.resize(parameters);
   reason.assign(parameters, Observability::warming_up);

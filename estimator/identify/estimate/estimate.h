@@ -54,7 +54,10 @@ struct WindowEstimate {
   std::vector<double> value;      ///< SI
   std::vector<double> std_error;  ///< SI, one standard deviation
   std::vector<Observability> reason;
-  std::vector<double> snr;          ///< regressor energy over its expected noise energy
+  std::vector<double> snr;  ///< regressor energy over its expected noise energy
+  /// rms deformation of a stiffness parameter's element in the window, m (ElementDrift); NaN: not
+  /// known, and in long windows.
+  std::vector<double> amplitude;
   std::vector<double> prior_share;  ///< 0..1: share of the prior in the value
   std::vector<double> noise_share;  ///< 0..1: of the noise that remains in the regressors
   /// The newest value that was observable, this window's or an older one's, with the end of its
@@ -73,7 +76,8 @@ struct WindowEstimate {
     a.within(rows, 0, a.kMostCount);
     a(residual_ratio, value, std_error);
     a.each_within(reason, 0, static_cast<double>(Observability::channel_lost));
-    a(snr, prior_share, noise_share, last_value, last_std_error, last_end, boxplot, solution);
+    a(snr, amplitude, prior_share, noise_share, last_value, last_std_error, last_end, boxplot,
+      solution);
   }
 };
 

@@ -67,6 +67,9 @@ const WindowEstimate* OtherWindows::give(const Context& c) {
   Window& window = windows_[static_cast<std::size_t>(current_)];
   window.solution.fill({&c.regression->tuning().theta0(), c.known, c.tuned, c.main},
                        window.estimate);
+  for (int p = 0; p < c.drift->elements(); ++p)
+    window.estimate.amplitude[static_cast<std::size_t>(p)] =
+        c.drift->rms(p, rows_ / c.drift->block_rows());
   window.estimate.rows = rows_;
   window.estimate.end = end_;
   window.estimate.start = end_ - SensorClock::duration(std::llround((rows_ - 1) * 1e6 / rate_hz_));

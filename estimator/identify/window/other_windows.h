@@ -3,6 +3,7 @@
 #include <deque>
 #include <vector>
 
+#include "estimator/identify/window/element_drift.h"
 #include "estimator/identify/window/tuned_regression.h"
 #include "estimator/identify/window/window_solution.h"
 
@@ -31,6 +32,7 @@ class OtherWindows {
     const std::vector<std::uint8_t>* known;
     WindowSolution::Trust trust;
     bool tuned;
+    const ElementDrift* drift;
   };
   /// One instant's share of the work; the estimate of a window that it completed, or null.
   const WindowEstimate* advance(const Context& context);

@@ -96,6 +96,8 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       ring_(*motion_source_,
             SelfTuning::ring_rows(longest_settle(options_, layout_.grouped()) +
                                   longest_window(block_rows_, other_blocks_) + triple_.length())),
+      drift_(config_, table_, layout_, block_rows_,
+             longest_window(block_rows_, other_blocks_) / block_rows_),
       main_(config_.structure, layout_, table_, options_, kCompensatedShare, kWarm),
       others_(config_.structure, layout_, table_, options_, other_blocks_, block_rows_),
       estimate_(static_cast<std::size_t>(table_.size())) {
@@ -159,6 +161,7 @@ std::vector<int> SlidingWindowEstimator::other_window_rows() const {
 void SlidingWindowEstimator::restart() {
   integrator_.reset();
   ring_.reset();
+  drift_.restart();
   active_->start(0);
   if (self_tuning_) self_tuning_->restart();
   main_.restart();
@@ -189,6 +192,7 @@ const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
   integrator_.push(set.accel);
   noise_.push(set.accel);
   motion_source_->compute(integrator_, ring_.push());
+  drift_.push(ring_.at(ring_.end() - 1));
   if (layout_.grouped()) follow_axes(ring_.at(ring_.end() - 1).known);
   active_->advance(ring_);
   ++since_hop_;
@@ -240,8 +244,8 @@ void SlidingWindowEstimator::advance_errors(Time window_end) {
   }
   errors_new_ = main_.advance_errors(steps_per_instant_);
   if (errors_new_) check_tuning();
-  other_ =
-      others_.advance({active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned()});
+  other_ = others_.advance(
+      {active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned(), &drift_});
   if (long_ && other_ == nullptr) advance_long();
   if (bending_ &&
       bending_->advance({active_.get(), &ring_.at(ring_.end() - 1).known, trust(), tuned()}))
@@ -297,6 +301,8 @@ void SlidingWindowEstimator::fill_estimate(Time end) {
   estimate_.start = end - duration_of(std::max(estimate_.rows - 1, 0), options_.rate_hz);
   ++estimate_.sequence;
   main_.fill({&theta0(), &ring_.at(ring_.end() - 1).known, tuned()}, estimate_);
+  for (int p = 0; p < table_.elements(); ++p)
+    estimate_.amplitude[static_cast<std::size_t>(p)] = drift_.rms(p, blocks_);
   for (std::size_t p = 0; p < boxplots_.size(); ++p) {
     boxplots_[p].push(estimate_.value[p]);
     estimate_.boxplot[p] = boxplots_[p].statistics();

@@ -7,6 +7,7 @@
 #include "estimator/identify/estimate/boxplot.h"
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/noise/axis_noise.h"
+#include "estimator/identify/window/element_drift.h"
 #include "estimator/identify/window/held_bending.h"
 #include "estimator/identify/window/long_window.h"
 #include "estimator/identify/window/model_check.h"
@@ -50,7 +51,7 @@ class SlidingWindowEstimator {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(integrator_, noise_, ring_, *active_);
+    a(integrator_, noise_, ring_, drift_, *active_);
     if (self_tuning_) a(*self_tuning_);
     main_.archive(a, active_->rows(), active_->sums());
     others_.archive(a, *active_);
@@ -118,6 +119,7 @@ class SlidingWindowEstimator {
   DriftControlledIntegrator integrator_;
   AxisNoise noise_;
   MotionRing ring_;
+  ElementDrift drift_;
   std::unique_ptr<TunedRegression> active_;
   std::unique_ptr<SelfTuning> self_tuning_;  ///< null when switched off
   WindowSolution main_;

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "estimator/identify/elements/floor_layout.h"
+#include "estimator/identify/elements/motion_source.h"
+#include "estimator/setup/pipeline_config.h"
+#include "estimator/state/archive.h"
+
+namespace framewatch::estimator {
+
+/// How far every frame, panel or group of stories is deformed, as a root mean square over whole
+/// blocks: the amplitude that its stiffness may depend on. Displacements are those of one
+/// oscillator section (OscillatorSection) whose corner is kCorner of the design's lowest frequency.
+/// Bounded; allocates when constructed, never after.
+class ElementDrift {
+ public:
+  static constexpr double kCorner = 0.4;
+
+  /// Sets are those of the layout's MotionSource. most_blocks: of the longest window.
+  ElementDrift(const PipelineConfig& config, const ParameterTable& table, const FloorLayout& layout,
+               int block_rows, int most_blocks);
+
+  void restart();
+  /// One instant.
+  void push(const DeformationSet& set);
+
+  /// rms of the element's deformation over the newest `blocks` and the one that is being filled, m;
+  /// of a panel as in docs/equations.md (3). NaN: a channel that shows it is missing, or the
+  /// parameter is no stiffness of a frame, panel or group.
+  double rms(int parameter, int blocks) const;
+
+  int elements() const { return static_cast<int>(elements_.size()); }
+  int block_rows() const { return block_rows_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a.finite(s1_, s2_, sums_);
+    a.each_within(counts_, 0, block_rows_);
+    a.within(rows_, 0, block_rows_);
+    a.within(at_, 0, static_cast<double>(blocks_ - 1));
+  }
+
+ private:
+  struct Term {
+    std::size_t value;  ///< of the DeformationSet
+    double weight;
+  };
+  struct Element {
+    std::vector<Term> terms;         ///< empty: not shown
+    std::vector<std::size_t> flags;  ///< of the DeformationSet that must be set
+  };
+  void find_stories(const ParameterTable& table, const FloorLayout& layout);
+  void find_groups(const PipelineConfig& config, const ParameterTable& table);
+  bool known(const Element& element, const DeformationSet& set) const;
+
+  int block_rows_, blocks_;
+  double gain_ = 0, a1_ = 0, a2_ = 0, over_w2_ = 0;
+  std::vector<Element> elements_;  ///< by stiffness parameter
+  std::vector<double> s1_, s2_;
+  std::vector<double> sums_;          ///< of squares, blocks x elements
+  std::vector<std::int32_t> counts_;  ///< instants in them
+  int rows_ = 0, at_ = 0;             ///< of the block that is being filled, and which it is
+};
+
+}  // namespace framewatch::estimator
