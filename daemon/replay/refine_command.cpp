@@ -34,15 +34,15 @@ struct Report {
 };
 
 /// What is refined: the stretch without the channels that have no sample in it.
-struct Stretch {
+struct RefinedSegment {
   estimator::PipelineConfig config;
   Eigen::MatrixXd accel;
   std::vector<std::string> silent;
 };
 
-Stretch without_silent_channels(const estimator::PipelineConfig& config,
-                                const SegmentCollector& collector) {
-  Stretch out{config, {}, {}};
+RefinedSegment without_silent_channels(const estimator::PipelineConfig& config,
+                                       const SegmentCollector& collector) {
+  RefinedSegment out{config, {}, {}};
   const Eigen::MatrixXd accel = collector.accel();
   std::vector<Eigen::Index> kept;
   out.config.axes.clear();
@@ -183,13 +183,13 @@ int refine(const RefineArguments& a) {
   pipeline.finish();
   collector.finish();
 
-  const Stretch stretch = without_silent_channels(pipeline_config, collector);
-  const estimator::ParameterTable table = stretch.config.parameters();
-  const Eigen::VectorXd design = design_of(stretch.config);
+  const RefinedSegment segment = without_silent_channels(pipeline_config, collector);
+  const estimator::ParameterTable table = segment.config.parameters();
+  const Eigen::VectorXd design = design_of(segment.config);
   Report report;
   report.from_s = a.from_s;
   report.to_s = to_s;
-  report.silent = stretch.silent;
+  report.silent = segment.silent;
   Eigen::VectorXd start = design;
   for (int p = 0; p < table.size(); ++p) {
     const std::optional<int> same = streamed.find(table[p].name);
@@ -204,7 +204,7 @@ int refine(const RefineArguments& a) {
     progress(fmt::format("step {} of {} at most", step, options.max_iterations), 0);
   };
   options.prior = a.prior && pipeline_config.options.prior && pipeline_config.design.size() > 0;
-  report.refinement = refine_max_likelihood(stretch.config, stretch.accel,
+  report.refinement = refine_max_likelihood(segment.config, segment.accel,
                                             options.prior ? design : start, start, options);
   fmt::print("{}", a.json ? json(a, *config, table, report) : text(table, report));
   return report.refinement.status == estimator::RefineStatus::converged ? 0 : kNotRefined;

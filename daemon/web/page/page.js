@@ -33,16 +33,6 @@ function showTip(text, x, y) {
   tip.style.top = Math.max(4, Math.min(innerHeight - tip.offsetHeight - 8, y + 14)) + 'px';
 }
 function hideTip() { $('tip').hidden = true; }
-function place(q) {
-  const n = plan.frames_x.length;
-  const name = f => f < n ? plan.frames_x[f] : plan.frames_y[f - n];
-  if (q.kind === 4) return `all frames along ${q.direction}`;
-  if (q.frames.length) {
-    const stories = q.last_story > q.story ? `stories ${q.story} to ${q.last_story}` : `story ${q.story}`;
-    return `${stories}, ` + (q.frames.length > 1 || q.frame < 0 ? `along ${q.direction}` : `frame ${name(q.frames[0])}`);
-  }
-  return `floor ${q.story}, panel ${q.name.split('_').pop()}`;
-}
 const groupMeaning = {0: 'Stories between two measured floors, together: the stiffness of their springs in series, which is what these channels show.', 2: 'Viscous damping of these stories together; an equivalent, of which changes mean something and the value little.'};
 const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.', 'Rotational stiffness of the frames against bending, the same at every floor.'];
 function reference(i) { return baseline[i] || plan.parameters[i].design || null; }

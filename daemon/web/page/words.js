@@ -46,3 +46,14 @@ function niceTicks(low, high, wanted) {
   for (let t = Math.ceil(low / step) * step; t <= high + step * 1e-9; t += step) out.push(+t.toPrecision(12));
   return out;
 }
+// Where a parameter of the plan is.
+function place(q) {
+  const n = plan.frames_x.length;
+  const name = f => f < n ? plan.frames_x[f] : plan.frames_y[f - n];
+  if (q.kind === 4) return `all frames along ${q.direction}`;
+  if (q.frames.length) {
+    const stories = q.last_story > q.story ? `stories ${q.story} to ${q.last_story}` : `story ${q.story}`;
+    return `${stories}, ` + (q.frames.length > 1 || q.frame < 0 ? `along ${q.direction}` : `frame ${name(q.frames[0])}`);
+  }
+  return `floor ${q.story}, panel ${q.name.split('_').pop()}`;
+}

@@ -213,19 +213,10 @@ void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
 void LiveView::instant(const estimator::SampleSet& set) {
   motion_at_ = flushes_;
   shaking_.push(set);
-  motion_.push(with_every_floor(set));
+  motion_.push(grouped_ ? with_every_floor(set, config_.pipeline.structure, shaking_.response())
+                        : set);
   const std::lock_guard<std::mutex> lock(mutex_);
   history_.instant(set);
-}
-
-/// Behind the channels the motion of every frame, the base's first, where that is not the same.
-estimator::SampleSet LiveView::with_every_floor(estimator::SampleSet set) const {
-  if (!grouped_) return set;
-  const estimator::Structure& s = config_.pipeline.structure;
-  for (int floor = 0; floor <= s.stories; ++floor)
-    for (int f = 0; f < s.frames(); ++f)
-      set.accel.push_back(shaking_.response().floor_accel_mps2(floor, f));
-  return set;
 }
 
 std::vector<double> LiveView::baseline() const {

@@ -73,7 +73,6 @@ class LiveView {
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);
   void instant(const estimator::SampleSet& instant);
-  estimator::SampleSet with_every_floor(estimator::SampleSet set) const;
   void push_if_new(const std::string& name, const std::string& json);
   /// What changes are judged against, and which of the parameters are.
   std::vector<double> baseline() const;

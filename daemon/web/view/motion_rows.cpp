@@ -7,6 +7,13 @@
 
 namespace framewatch::daemon {
 
+estimator::SampleSet with_every_floor(estimator::SampleSet set, const estimator::Structure& s,
+                                      const estimator::StoryResponse& response) {
+  for (int floor = 0; floor <= s.stories; ++floor)
+    for (int f = 0; f < s.frames(); ++f) set.accel.push_back(response.floor_accel_mps2(floor, f));
+  return set;
+}
+
 MotionRows::MotionRows(double rate_hz)
     : stride_(std::max(1, static_cast<int>(std::ceil(rate_hz / kMostRate_hz)))) {}
 

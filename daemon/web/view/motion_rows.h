@@ -5,8 +5,14 @@
 #include <string>
 
 #include "estimator/motion/sample.h"
+#include "estimator/shaking/story_response.h"
 
 namespace framewatch::daemon {
+
+/// Behind the channels the motion of every frame, the base's first.
+estimator::SampleSet with_every_floor(estimator::SampleSet set,
+                                      const estimator::Structure& structure,
+                                      const estimator::StoryResponse& response);
 
 /// Collects calibrated instants for the page's next "motion" event: every stride-th one, so that at
 /// most kMostRate_hz go to the page.
