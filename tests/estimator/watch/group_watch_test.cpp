@@ -126,14 +126,14 @@ Tally lose_each(double ratio, int motions) {
   return out;
 }
 
-/// Issue 21 asks for 20 of 20 within 7 s; reached is 20 of 20 within kReached_s (docs/accuracy.md).
+/// Issue 21 asks for 20 of 20 within 7 s; reached is 20 of 20 within kReached_s (docs/equations.md).
 TEST(GroupWatch, FindsAFifthLostByOneStoryOfFive) {
   const Tally tally = lose_each(0.2, wanted_runs());
   EXPECT_EQ(tally.reached, tally.cases);
   EXPECT_EQ(tally.wrong, 0);
 }
 
-/// Issue 21 asks for 17 of 20, which is not reached: measured (docs/accuracy.md), and none wrong.
+/// Issue 21 asks for 17 of 20, which is not reached: measured (docs/equations.md), and none wrong.
 TEST(GroupWatch, ATenthLostByOneStoryOfFiveIsNeverOfAnotherGroup) {
   EXPECT_EQ(lose_each(0.1, wanted_runs()).wrong, 0);
 }
