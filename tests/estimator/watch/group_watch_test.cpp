@@ -126,7 +126,8 @@ Tally lose_each(double ratio, int motions) {
   return out;
 }
 
-/// Issue 21 asks for 20 of 20 within 7 s; reached is 20 of 20 within kReached_s (docs/equations.md).
+/// Issue 21 asks for 20 of 20 within 7 s; reached is 20 of 20 within kReached_s
+/// (docs/equations.md).
 TEST(GroupWatch, FindsAFifthLostByOneStoryOfFive) {
   const Tally tally = lose_each(0.2, wanted_runs());
   EXPECT_EQ(tally.reached, tally.cases);
