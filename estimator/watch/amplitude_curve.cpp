@@ -10,7 +10,8 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kLevel = 1;  // standard deviation of the value itself before anything is known
+/// Standard deviation of the curve about the baseline's value; a larger one costs digits.
+constexpr double kLevel = 0.05;
 
 }  // namespace
 
