@@ -10,11 +10,12 @@
 
 namespace framewatch::fleet {
 
-/// What a building may say in an hour; what is more is flooding. It is acknowledged and counted,
-/// and comes again later, when the inventory shows that it lacks.
+/// What a building may say in an hour: more than an uplink ever does that catches up (4 older
+/// summaries a second) or sends raw samples (2000 kbit/s). What is beyond is flooding: counted and
+/// not stored.
 class FloodGate {
  public:
-  static constexpr std::int64_t kMessages = 5000, kBytes = 50'000'000;
+  static constexpr std::int64_t kMessages = 20'000, kBytes = 1'000'000'000;
 
   /// Whether a message of `bytes` is within the hour of `hub_us` (UTC).
   bool takes(const std::string& building, std::size_t bytes, std::int64_t hub_us);

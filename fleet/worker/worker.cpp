@@ -94,6 +94,7 @@ void Worker::acknowledge(const Message& message) {
 }
 
 void Worker::store(const WorkerTime& now) {
+  FloodGate before = gate_;
   FleetBatch batch = batch_of(waiting_.data(), waiting_.data() + waiting_.size(), now);
   batch.floods = gate_.take_floods();
   const StoreOutcome outcome = store_(batch);
@@ -105,7 +106,8 @@ void Worker::store(const WorkerTime& now) {
   } else if (outcome.lasting) {
     store_one_by_one(now);
   } else {
-    // Nothing is acknowledged: the hub keeps it, and gives it again.
+    // Nothing is acknowledged: the hub keeps it, and gives it again. So nothing of it was said yet.
+    gate_ = std::move(before);
     pause_us_ = std::clamp(2 * pause_us_, kShortestPause_us, kLongestPause_us);
     pause_until_us_ = now.steady_us + pause_us_;
   }

@@ -113,6 +113,20 @@ TEST_F(WorkerTest, AsksAgainAfterANewConnection) {
   EXPECT_EQ(hub_.requests(), requests + 4);
 }
 
+TEST_F(WorkerTest, WhatComesAgainBecauseTheDatabaseWasAwayIsNoFlood) {
+  for (std::int64_t id = 0; id < FloodGate::kMessages / 2; ++id)
+    hub_.hold(event_message("kobe", id));
+  database_.problem = "connection refused";
+  for (int i = 0; i < 5; ++i) {
+    pass(60'000'000);
+    hub_.time_is_over();
+  }
+  database_.problem.clear();
+  pass(60'000'000);
+  EXPECT_EQ(database_.events().size(), static_cast<std::size_t>(FloodGate::kMessages / 2));
+  EXPECT_EQ(worker_.counters().flooding, 0);
+}
+
 TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
   const auto more = FloodGate::kMessages + 20;
   for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
