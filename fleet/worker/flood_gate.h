@@ -17,6 +17,9 @@ class FloodGate {
  public:
   static constexpr std::int64_t kMessages = 20'000, kBytes = 1'000'000'000;
 
+  explicit FloodGate(std::int64_t most_messages = kMessages, std::int64_t most_bytes = kBytes)
+      : most_messages_(most_messages), most_bytes_(most_bytes) {}
+
   /// Whether a message of `bytes` is within the hour of `hub_us` (UTC).
   bool takes(const std::string& building, std::size_t bytes, std::int64_t hub_us);
   /// What did not pass since the last call.
@@ -27,6 +30,7 @@ class FloodGate {
     std::int64_t messages = 0, bytes = 0;  ///< in this hour
     std::int64_t flood_messages = 0, flood_bytes = 0;
   };
+  std::int64_t most_messages_, most_bytes_;
   std::int64_t hour_us_ = 0;
   std::map<std::string, Said> said_;
   std::vector<ReceivedFlood> floods_;  ///< of an hour that is over

@@ -17,9 +17,10 @@ constexpr std::int64_t kGrace_us = 1'000'000;  // after the hub's own end of a r
 
 }  // namespace
 
-Worker::Worker(Link& link, StoreSink store)
+Worker::Worker(Link& link, StoreSink store, FloodGate gate)
     : link_(link),
       store_(std::move(store)),
+      gate_(std::move(gate)),
       consumers_{{"FW_EVENT", "store"},
                  {"FW_SUMMARY", "store"},
                  {"FW_LAST", "page"},
