@@ -15,7 +15,7 @@ bool FloodGate::takes(const std::string& building, std::size_t bytes, std::int64
   }
   Said& said = said_[building];
   const auto size = static_cast<std::int64_t>(bytes);
-  if (said.messages < kMessages && said.bytes + size <= kBytes) {
+  if (said.messages < most_messages_ && said.bytes + size <= most_bytes_) {
     ++said.messages;
     said.bytes += size;
     return true;

@@ -17,9 +17,10 @@ constexpr std::int64_t kGrace_us = 1'000'000;  // after the hub's own end of a r
 
 }  // namespace
 
-Worker::Worker(Link& link, StoreSink store)
+Worker::Worker(Link& link, StoreSink store, FloodGate gate)
     : link_(link),
       store_(std::move(store)),
+      gate_(std::move(gate)),
       consumers_{{"FW_EVENT", "store"},
                  {"FW_SUMMARY", "store"},
                  {"FW_LAST", "page"},
@@ -94,6 +95,7 @@ void Worker::acknowledge(const Message& message) {
 }
 
 void Worker::store(const WorkerTime& now) {
+  FloodGate before = gate_;
   FleetBatch batch = batch_of(waiting_.data(), waiting_.data() + waiting_.size(), now);
   batch.floods = gate_.take_floods();
   const StoreOutcome outcome = store_(batch);
@@ -105,7 +107,8 @@ void Worker::store(const WorkerTime& now) {
   } else if (outcome.lasting) {
     store_one_by_one(now);
   } else {
-    // Nothing is acknowledged: the hub keeps it, and gives it again.
+    // Nothing is acknowledged: the hub keeps it, and gives it again. So nothing of it was said yet.
+    gate_ = std::move(before);
     pause_us_ = std::clamp(2 * pause_us_, kShortestPause_us, kLongestPause_us);
     pause_until_us_ = now.steady_us + pause_us_;
   }

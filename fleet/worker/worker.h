@@ -42,7 +42,7 @@ class Worker {
     std::string trouble;  ///< why the newest batch was not stored
   };
 
-  Worker(Link& link, StoreSink store);
+  Worker(Link& link, StoreSink store, FloodGate gate = FloodGate());
 
   /// Does what is due. Waits for nothing but the store.
   void step(const WorkerTime& now);

@@ -105,13 +105,14 @@ def check(hub):
                 postgres.start()
             if number % BURST == 0:
                 time.sleep(0.05)
-        building.publish("fw.up.c1.event", b"nonsense", {"Nats-Msg-Id": "c1/event/x/1/1/1", "Fw-Type": "event_t"})
+        building.publish("fw.up.c1.event", b"nonsense of a newer one", {"Nats-Msg-Id": "c1/event/x/1/1/1", "Fw-Type": "event_t"})
         building.publish("fw.up.c1.event", event(fingerprint, 1), {"Nats-Msg-Id": "c2/event/x/1/1/1", "Fw-Type": "event_t"})
         building.round_trip()
         sent_s = time.monotonic() - begin
         while time.monotonic() - begin < 180:
             if postgres.ask("SELECT count(*) FROM event") == str(EVENTS) and \
-                    int(postgres.ask("SELECT count(*) FROM refused") or 0) >= 2:
+                    int(postgres.ask("SELECT count(*) FROM refused") or 0) >= 1 and \
+                    int(postgres.ask("SELECT count(*) FROM unknown") or 0) >= 1:
                 break
             time.sleep(0.3)
         stored = postgres.ask("SELECT count(*), count(DISTINCT id) FROM event")
@@ -119,6 +120,8 @@ def check(hub):
               f"{time.monotonic() - begin - sent_s:.1f} s more")
         if stored != f"{EVENTS}|{EVENTS}":
             problems.append(f"{stored} of {EVENTS} events are in the database")
+        if int(postgres.ask("SELECT count(*) FROM flooding") or 0) != 0:
+            problems.append("what came again is taken for a flood")
         reasons = postgres.ask("SELECT DISTINCT reason FROM refused ORDER BY 1")
         if "its key names c2" not in reasons:
             problems.append(f"a forged key was not refused: {reasons}")

@@ -12,6 +12,7 @@ namespace framewatch::fleet {
 namespace worker_test {
 
 constexpr std::int64_t kStep_us = 100'000;
+constexpr std::int64_t kMessages = 200;  // more is a flood
 
 /// A database that fails when it is told to.
 struct Database {
@@ -46,7 +47,8 @@ class WorkerTest : public testing::Test {
 
   HubLink hub_;
   Database database_;
-  Worker worker_{hub_, [this](const FleetBatch& batch) { return database_.store(batch); }};
+  Worker worker_{hub_, [this](const FleetBatch& batch) { return database_.store(batch); },
+                 FloodGate(kMessages, FloodGate::kBytes)};
   WorkerTime now_{1'000'000, kHub_us};
 };
 
@@ -113,13 +115,26 @@ TEST_F(WorkerTest, AsksAgainAfterANewConnection) {
   EXPECT_EQ(hub_.requests(), requests + 4);
 }
 
+TEST_F(WorkerTest, WhatComesAgainBecauseTheDatabaseWasAwayIsNoFlood) {
+  for (std::int64_t id = 0; id < kMessages / 2; ++id) hub_.hold(event_message("kobe", id));
+  database_.problem = "connection refused";
+  for (int i = 0; i < 5; ++i) {
+    pass(60'000'000);
+    hub_.time_is_over();
+  }
+  database_.problem.clear();
+  pass(60'000'000);
+  EXPECT_EQ(database_.events().size(), static_cast<std::size_t>(kMessages / 2));
+  EXPECT_EQ(worker_.counters().flooding, 0);
+}
+
 TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
-  const auto more = FloodGate::kMessages + 20;
+  const auto more = kMessages + 20;
   for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
   hub_.hold(event_message("osaka", 1));
   pass(30'000'000);
   EXPECT_EQ(hub_.held(), 0u);
-  EXPECT_EQ(database_.events().size(), static_cast<std::size_t>(FloodGate::kMessages) + 1);
+  EXPECT_EQ(database_.events().size(), static_cast<std::size_t>(kMessages) + 1);
   std::int64_t floods = 0;
   for (const FleetBatch& batch : database_.batches)
     for (const ReceivedFlood& flood : batch.floods) {
@@ -130,8 +145,8 @@ TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
 }
 
 TEST(FloodGateTest, EveryHourBeginsAnew) {
-  FloodGate gate;
-  for (std::int64_t i = 0; i < FloodGate::kMessages; ++i) EXPECT_TRUE(gate.takes("a", 1, kHub_us));
+  FloodGate gate(kMessages);
+  for (std::int64_t i = 0; i < kMessages; ++i) EXPECT_TRUE(gate.takes("a", 1, kHub_us));
   EXPECT_FALSE(gate.takes("a", 7, kHub_us));
   EXPECT_TRUE(gate.takes("b", 1, kHub_us));
   EXPECT_FALSE(gate.takes("c", FloodGate::kBytes + 1, kHub_us));
