@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kFine = 10;  // steps of 1 ms per instant
 constexpr double kStep_s = 1e-3;
-constexpr double kGround_hz = 2.5, kGroundDamping = 0.6, kGround_mps2 = 1;
+constexpr double kTowerGround_hz = 2.5, kTowerGroundDamping = 0.6, kTowerGround_mps2 = 1;
 constexpr double kGroupsOff = 0.2, kStoriesOff = 0.05, kMassesOff = 0.02;
 constexpr double kMeasured_s = 60, kBuildUp_s = 15;
 
@@ -76,13 +76,13 @@ const Eigen::VectorXd& SofteningTower::next(double level) {
 }
 
 void SofteningTower::step(double level) {
-  const double w = 2 * M_PI * kGround_hz;
-  const double white =
-      kGround_mps2 * level * std::sqrt(2 * kGroundDamping / w / kStep_s) * random_.normal();
-  const double pull = 2 * kGroundDamping * w * ground_velocity_ + w * w * ground_moved_;
+  const double w = 2 * M_PI * kTowerGround_hz;
+  const double white = kTowerGround_mps2 * level *
+                       std::sqrt(2 * kTowerGroundDamping / w / kStep_s) * random_.normal();
+  const double pull = 2 * kTowerGroundDamping * w * ground_velocity_ + w * w * ground_moved_;
   ground_velocity_ += kStep_s * (white - pull);
   ground_moved_ += kStep_s * ground_velocity_;
-  const double ground = -(2 * kGroundDamping * w * ground_velocity_ + w * w * ground_moved_);
+  const double ground = -(2 * kTowerGroundDamping * w * ground_velocity_ + w * w * ground_moved_);
 
   double below = 0, below_velocity = 0, lower = 0;
   Eigen::Array<double, kStories, 1> accel;  // relative to the ground
