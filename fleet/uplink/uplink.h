@@ -41,8 +41,8 @@ struct UplinkSettings {
 class Uplink {
  public:
   static constexpr std::size_t kMostLive = 1024;  ///< events of LCM that wait
-  static constexpr std::int64_t kAgainAfterLoss_us =
-      600'000'000;                        ///< acknowledgements that a hub may lose
+  /// Acknowledgements that a hub may lose with its power.
+  static constexpr std::int64_t kAgainAfterLoss_us = 600'000'000;
   static constexpr double kOlder_hz = 4;  ///< summaries of earlier hours
 
   /// `link` must outlive this.
