@@ -100,7 +100,7 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "follow_amplitude",
      .type = boolean,
-     .default_value = "true",
+     .default_value = "false",
      .meaning = "Stiffness may follow the amplitude of the element's own motion, and recovers some "
                 "time after a strong one; it is watched for what that does not explain.",
      .reload = settings,

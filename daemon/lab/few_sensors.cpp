@@ -1,5 +1,6 @@
 #include "daemon/lab/few_sensors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <mutex>
 #include <numbers>

@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "daemon/estimates/estimate_output.h"
-#include "daemon/replay/replay_command.h"
 #include "drivers/base/standard_streams.h"
 
 namespace framewatch::daemon {

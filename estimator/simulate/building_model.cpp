@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/numeric/eigenvalues.h"
+#include "estimator/simulate/make_law.h"
 #include "estimator/simulate/rotations.h"
 #include "estimator/structure/matrices.h"
 

@@ -27,7 +27,7 @@ struct WatchOptions {
   double quiet_learn_hours = 24;
   /// Conditions that baselines are corrected for: the temperature, given by temperature(), and the
   /// amplitude of the motion.
-  bool temperature = false, amplitude = true;
+  bool temperature = false, amplitude = false;
 };
 
 enum class AlarmState { cleared, raised, changed };

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "estimator/diagnose/fit/fit_columns.h"
+#include "estimator/diagnose/fit/normal_equations.h"
 
 namespace framewatch::estimator {
 namespace {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "estimator/diagnose/fit/bin_products.h"
+#include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/numeric/complex.h"
 namespace framewatch::estimator {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/numeric/solve.h"
 

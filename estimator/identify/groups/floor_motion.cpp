@@ -34,7 +34,8 @@ void FloorMotion::tune(const Eigen::VectorXd& theta, const std::vector<std::uint
 
 void FloorMotion::form() {
   building_ = reduced_building(config_.structure, config_.axes, table_, design_, present_, true);
-  equations_ = group_equations(building_, theta_.cwiseQuotient(designed_), config_.options.rate_hz);
+  equations_ = group_equations(building_, theta_.cwiseQuotient(designed_), config_.options.rate_hz,
+                               InnerModes::all_below_20_hz);
   double settle_s = 0;
   for (const InnerChain& chain : equations_.chains)
     settle_s = std::max(settle_s, kForgottenStart / chain.slowest_radps);
@@ -54,13 +55,18 @@ void FloorMotion::restart() {
 const Eigen::VectorXd& FloorMotion::push(const SampleSet& set) {
   if (set.index != expected_index_) restart();
   expected_index_ = set.index + 1;
+  if (building_.rows() == 0) {  // the base is not known
+    restart();
+    frames_.setConstant((config_.structure.stories + 1) * config_.structure.frames(), kNaN);
+    return frames_;
+  }
   measured_.setZero(building_.measured);
   for (std::size_t a = 0; a < present_.size(); ++a)
     if (present_[a] != 0)
       measured_ += building_.from_axes.col(static_cast<Eigen::Index>(a)) * set.accel[a];
-  if (building_.rows() == 0 || !measured_.allFinite()) {
+  if (!measured_.allFinite()) {
     restart();
-    frames_.setConstant(kNaN);
+    frames_.setConstant(equations_.frames.rows(), kNaN);
     return frames_;
   }
   frames_ = equations_.frames * measured_;

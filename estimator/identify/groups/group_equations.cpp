@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/solve.h"
@@ -54,10 +55,12 @@ struct SetModes {
 
 class Builder {
  public:
-  Builder(const ReducedBuilding& building, const Eigen::VectorXd& x, double rate_hz)
+  Builder(const ReducedBuilding& building, const Eigen::VectorXd& x, double rate_hz,
+          InnerModes modes)
       : b_(building),
         x_(x),
         rate_hz_(rate_hz),
+        modes_(modes),
         stiffness_(b_.constant_stiffness),
         damping_(b_.constant_damping) {
     for (std::size_t p = 0; p < b_.parts.size(); ++p)
@@ -116,7 +119,8 @@ class Builder {
       for (Eigen::Index m = size - 1; m >= 0; --m) {  // 1 / w^2, ascending
         const double over_w2 = eigen.values[m];
         const bool low = over_w2 * std::pow(2 * M_PI * kHighestMode_hz, 2) > 1;
-        if (!(over_w2 > 1e-12 * eigen.values[size - 1]) || modes >= kMostModes * pairs ||
+        if (!(over_w2 > 1e-12 * eigen.values[size - 1]) ||
+            (modes_ == InnerModes::few && modes >= kMostModes * pairs) ||
             (!low && modes >= kFewestModes * pairs))
           break;
         set.w2[modes] = 1 / over_w2;
@@ -217,6 +221,7 @@ class Builder {
   const ReducedBuilding& b_;
   const Eigen::VectorXd& x_;
   double rate_hz_;
+  InnerModes modes_;
   Eigen::MatrixXd stiffness_, damping_;
   Eigen::MatrixXd at_ends_;     ///< all coordinates by measured ones, static
   Eigen::MatrixXd mass_;        ///< of the measured ones, with what they carry
@@ -228,9 +233,9 @@ class Builder {
 }  // namespace
 
 GroupEquations group_equations(const ReducedBuilding& building, const Eigen::VectorXd& x,
-                               double rate_hz) {
+                               double rate_hz, InnerModes modes) {
   if (building.rows() == 0) return {};
-  return Builder(building, x, rate_hz).equations();
+  return Builder(building, x, rate_hz, modes).equations();
 }
 
 }  // namespace framewatch::estimator

@@ -61,8 +61,12 @@ struct GroupEquations {
   std::vector<InnerChain> chains;
 };
 
+/// How many modes of inner floors are kept: as many as the estimation needs, or, where nothing but
+/// their motion is wanted, all that the derivative filters reach.
+enum class InnerModes { few, all_below_20_hz };
+
 /// x: factor of every parameter; those that stand for others count.
 GroupEquations group_equations(const ReducedBuilding& building, const Eigen::VectorXd& x,
-                               double rate_hz);
+                               double rate_hz, InnerModes modes = InnerModes::few);
 
 }  // namespace framewatch::estimator

@@ -88,4 +88,9 @@ void RegressorFilter::push(const DeformationSet& set) {
   }
 }
 
+/// Here, because the tuning must not need the filter that needs it.
+std::unique_ptr<RowFilter> RegressorTuning::make_filter(int settle) {
+  return std::make_unique<RegressorFilter>(*this, *layout_, settle);
+}
+
 }  // namespace framewatch::estimator

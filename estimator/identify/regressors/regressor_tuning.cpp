@@ -5,8 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "estimator/identify/regressors/regressor_filter.h"
-
 namespace framewatch::estimator {
 namespace {
 
@@ -240,10 +238,6 @@ void RegressorTuning::pack_noise(int floor, FloorRows& out) const {
                                 perturbed_.floor(floor), out.noise_bias.data(),
                                 PerturbedDesigns::kCount);
   pack_compensation(*layout_, floor, out, kCompensatedShare, out.noise_compensation);
-}
-
-std::unique_ptr<RowFilter> RegressorTuning::make_filter(int settle) {
-  return std::make_unique<RegressorFilter>(*this, *layout_, settle);
 }
 
 double RegressorTuning::damping() const {

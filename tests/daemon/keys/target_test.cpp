@@ -101,6 +101,7 @@ TEST(KeyTargets, EveryKeyReachesItsFieldAndNoOther) {
   round_trip<HistorySettings>("history", keys);
   round_trip<EventReportSettings>("event_report", keys);
   round_trip<ActionSettings>("actions", keys);
+  round_trip<FleetSettings>("fleet", keys);
   int all = 0;
   for (const Option& o : options()) all += o.target ? 1 : 0;
   EXPECT_EQ(keys, all) << "a settings struct is missing above";

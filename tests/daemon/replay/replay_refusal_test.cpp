@@ -130,7 +130,8 @@ TEST_F(ReplayRefusal, NeverWritesOverItsInputs) {
 TEST_F(ReplayRefusal, RefusesAnOutputOfNoKnownFormat) {
   const Outcome o = replay_of({log()}, path("est.xlsx"));
   EXPECT_EQ(o.exit_code, 2);
-  EXPECT_NE(o.err.find("must end in .lcmlog, .csv, .csv.gz or .mat"), std::string::npos) << o.err;
+  EXPECT_NE(o.err.find("must end in .lcmlog, .csv, .csv.gz, .mat or .sqlite"), std::string::npos)
+      << o.err;
   EXPECT_TRUE(own_.names().empty());
 }
 

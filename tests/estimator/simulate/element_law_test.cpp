@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/simulate/make_law.h"
 #include "tests/support/example_effects.h"
 
 namespace framewatch::estimator {

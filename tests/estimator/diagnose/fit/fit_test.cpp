@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 
 #include "estimator/diagnose/fit/law_tracks.h"
+#include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/fit/unknowns.h"
 #include "tests/estimator/diagnose/small_building.h"
 

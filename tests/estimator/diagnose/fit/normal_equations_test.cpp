@@ -5,6 +5,7 @@
 
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/fit/law_tracks.h"
+#include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/fit/unknowns.h"
 #include "tests/estimator/diagnose/exact_record.h"
 

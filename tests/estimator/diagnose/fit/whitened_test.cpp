@@ -8,6 +8,7 @@
 
 #include "estimator/diagnose/fit/axis_readings.h"
 #include "estimator/diagnose/fit/law_tracks.h"
+#include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/numeric/complex.h"
 #include "tests/estimator/diagnose/exact_record.h"
 

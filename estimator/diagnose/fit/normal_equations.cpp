@@ -1,4 +1,4 @@
-#include "estimator/diagnose/fit/linearised.h"
+#include "estimator/diagnose/fit/normal_equations.h"
 
 #include <algorithm>
 #include <numeric>
