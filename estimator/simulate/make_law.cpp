@@ -102,8 +102,8 @@ class StiffnessDrop : public ElementLaw {
     return dropped_ ? change_ * d : 0;
   }
   void begin_step(double time_s, double) override {
-    constexpr double kRounding_s = 1e-9;
-    dropped_ = time_s >= at_s_ - kRounding_s;
+    constexpr double kDropRounding_s = 1e-9;
+    dropped_ = time_s >= at_s_ - kDropRounding_s;
   }
   double stiffness_bound() const override { return std::abs(change_); }
 

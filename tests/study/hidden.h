@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/simulate/element_law.h"
+#include "estimator/structure/effect.h"
 #include "tests/study/study_building.h"
 
 namespace framewatch::study {
