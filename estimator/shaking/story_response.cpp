@@ -78,9 +78,15 @@ void StoryResponse::push(const SampleSet& set) {
 }
 
 void StoryResponse::follow_floors(const SampleSet& set) {
-  const Eigen::VectorXd& accel = floors_->push(set);
-  for (Eigen::Index i = 0; i < accel.size(); ++i)
-    follow(axes_.size() + static_cast<std::size_t>(i), accel[i]);
+  floor_accel_ = floors_->push(set);
+  for (Eigen::Index i = 0; i < floor_accel_.size(); ++i)
+    follow(axes_.size() + static_cast<std::size_t>(i), floor_accel_[i]);
+}
+
+double StoryResponse::floor_accel_mps2(int floor, int frame) const {
+  if (!floors_) return at(floor, frame).accel_mps2;
+  const Eigen::Index i = floor * structure_.frames() + frame;
+  return i < floor_accel_.size() ? floor_accel_[i] : kNaN;
 }
 
 void StoryResponse::follow(const WindowEstimate& estimate) {

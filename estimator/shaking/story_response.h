@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/motion/oscillator_section.h"
 #include "estimator/motion/sample.h"
@@ -32,8 +34,9 @@ class StoryResponse {
 
   /// Of each axis: without its mean, m/s^2; NaN: none.
   const std::vector<double>& accel_mps2() const { return accel_; }
-  /// Of a frame on a floor, 0: the base, m/s^2, without its mean; NaN: not known.
-  double floor_accel_mps2(int floor, int frame) const { return at(floor, frame).accel_mps2; }
+  /// Of a frame on a floor, 0: the base, m/s^2; NaN: not known. Without its mean where every frame
+  /// has a sensor.
+  double floor_accel_mps2(int floor, int frame) const;
   /// Of each frame in each story (Structure::dof), m, positive toward +x or +y; NaN: not known.
   const std::vector<double>& drift_m() const { return drift_; }
   /// Along x and y: minus the floors' masses times their accelerations, N; NaN: not known.
@@ -80,6 +83,7 @@ class StoryResponse {
   std::vector<Motion> motions_;               ///< by axis; then by level and frame
   std::vector<double> motion_accel_, moved_;  ///< of motions_; moved_: displacement, m
   std::vector<double> accel_;                 ///< by axis
+  Eigen::VectorXd floor_accel_;  ///< of floors_, by level and frame: as they move, mean and all
   std::vector<double> drift_;
   std::array<double, 2> base_shear_{kNaN, kNaN};
 };

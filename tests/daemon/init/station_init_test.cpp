@@ -186,10 +186,10 @@ TEST_F(StationInit, OfTheAtwoodBuildingIsAsWrittenByHand) {
     for (std::size_t at = 0; (at = written.find(text, at)) != std::string::npos; ++at) ++n;
     return n;
   };
-  EXPECT_EQ(count("[[channel]]"), 52);
+  EXPECT_EQ(count("\n[[channel]]\n"), 52);
   EXPECT_EQ(count("use = false"), 25) << "basement and borehole";
   for (const char* part :
-       {"name = \"NP.8040.13.HNN\"\nstory = 6  # 7th fl E side\nazimuth_deg = 360",
+       {"name = \"NP.8040.13.HNN\"\nstory = 6  # 7th fl E side\nazimuth_deg = 0",
         "name = \"NP.8040.32.HNE\"\nstory = 20  # Roof E side\nazimuth_deg = 90"})
     EXPECT_NE(written.find(part), std::string::npos) << part;
   const ShellResult check = shell("$F check building.toml");

@@ -32,6 +32,7 @@ int wanted_runs() {
 
 WatchOptions options() {
   WatchOptions o;
+  o.amplitude = true;
   o.quiet_window_s = 0;
   return o;
 }
