@@ -16,8 +16,9 @@ void add_demo(CommandList& commands) {
   CLI::App* command = commands.add(
       "demo",
       "a virtual two-story shaking-table test over LCM, with a live page and a table of truth");
-  command->add_option("--building", arguments.building,
-                      "stories: 2, a channel on every frame of every floor, or 20, on five levels")
+  command
+      ->add_option("--building", arguments.building,
+                   "stories: 2, a channel on every frame of every floor, or 20, on five levels")
       ->check(CLI::IsMember({2, 20}))
       ->capture_default_str();
   command
@@ -26,7 +27,8 @@ void add_demo(CommandList& commands) {
       ->type_name("INTERFACE");
   command->footer(
       "After 20 s one frame loses 15 % of its stiffness; the page says which, how much, how sure.\n"
-      "Of 20 stories, five lose 20 % in one frame: groups of stories are what is told apart there.\n"
+      "Of 20 stories, five lose 20 % in one frame: groups of stories are what is told apart "
+      "there.\n"
       "Examples:\n"
       "  framewatch demo --seconds 40 --report demo.html\n"
       "  framewatch demo --building 20 --seconds 40");

@@ -22,7 +22,7 @@ struct AmplitudePoint {
 /// was, and only to that side which softening with amplitude explains. Its slope is drawn to 0 +-
 /// kUsualPerLog and bends by kBend per square root of a unit of the logarithm (Wahba, J. R. Stat.
 /// Soc. B 40, 1978, 364: a smoothing spline as the mean of an integrated random walk).
-/// docs/equations.md (46).
+/// docs/equations.md, changes.
 class AmplitudeCurve {
  public:
   static constexpr double kUsualPerLog = 0.05, kBend = 0.03;

@@ -14,7 +14,7 @@ namespace framewatch::estimator {
 /// The bending stiffness of a building of groups (krx, kry): a property of the whole building that
 /// moves slowly and that a window of seconds hardly shows. Identified free over windows of
 /// kWindow_s, one after the other, each weighted by its error, and held in the sliding windows at
-/// what they and the design say together. docs/equations.md, bending that is held.
+/// what they and the design say together. docs/equations.md, groups of stories.
 class HeldBending {
  public:
   static constexpr double kWindow_s = 10;
