@@ -64,7 +64,7 @@ std::vector<double> example_values(estimator::EffectKind kind, double size) {
     case quadratic_damping:
       return {size * 1e3};
     case amplitude_dependence:
-      return {size * 0.3, 4e-3, 2, size * 0.1};
+      return {size * 0.3, 20e-3, 2, size * 0.1};
     case one_sided_gap:
       return {size * 3e4, 2e-3, -1};
     case two_sided_gap:

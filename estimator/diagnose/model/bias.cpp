@@ -16,7 +16,9 @@ using Eigen::VectorXd;
 /// Of the band's lower end in one mean: a Hann taper has its zeros from there on.
 constexpr double kPeriods = 2;
 constexpr Index kHops = 4;  ///< in one mean
-constexpr Index kLeastMeans = 12;
+constexpr Index kLeastMeans = 23;
+/// Of the band's lower end in a record: in fewer, slow motion of the building is like a drift.
+constexpr double kLeastPeriods = 26;
 constexpr double kLeastShare = 0.02;  ///< of an axis' rms
 constexpr double kBeyondOthers = 5;   ///< times the median of all axes
 constexpr double kSignificance = 30;  ///< F of two parameters
@@ -136,6 +138,8 @@ void remove_common(const Plant& plant, Means& means) {
 }  // namespace
 
 std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index axis) {
+  const double seconds = static_cast<double>(s.accel.rows()) / s.rate_hz;
+  if (seconds * s.w[0] < kLeastPeriods * 2 * M_PI) return std::nullopt;
   Means means = means_of(s);
   if (means.time.size() < kLeastMeans) return std::nullopt;
   remove_common(plant, means);

@@ -124,9 +124,12 @@ void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e,
   for (const LawPort& port : ports)
     k += model.theta[port.element] / static_cast<double>(ports.size());
   const auto p = [&](std::size_t i) { return e.parameters[i].plain(); };
-  out.set("softening", -p(0) / (k * e.deformation));
-  out.set("at_m", e.deformation);
-  out.set("exponent", p(1));
+  const double share = -p(0) / (k * e.deformation), exponent = p(1);
+  // No element loses more than all it has: the same law at a smaller deformation.
+  const double nearer = share > 1 && exponent > 1 ? std::pow(share, -1 / (exponent - 1)) : 1;
+  out.set("softening", share * std::pow(nearer, exponent - 1));
+  out.set("at_m", nearer * e.deformation);
+  out.set("exponent", exponent);
   out.set("damping_s2pm", p(2) / (k * e.rate * e.rate));
 }
 

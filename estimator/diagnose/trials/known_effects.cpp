@@ -175,10 +175,10 @@ void set_amplitude(const Plant& plant, const Effect& effect, ModelEffect& e) {
     count += own;
   }
   k /= std::max(count, 1);
-  const double p = effect.value("exponent"), d = e.deformation;
-  e.parameters = {
-      sized(-effect.value("softening") * k * d * std::pow(d / effect.value("at_m"), p - 1)),
-      fixed(p), sized(effect.value("damping_s2pm") * k * e.rate * e.rate), fixed(2)};
+  e.deformation = effect.value("at_m");
+  e.parameters = {sized(-effect.value("softening") * k * e.deformation),
+                  fixed(effect.value("exponent")),
+                  sized(effect.value("damping_s2pm") * k * e.rate * e.rate), fixed(2)};
 }
 
 void set_changing(const std::vector<RecordSegment>& segments, const Effect& effect,
