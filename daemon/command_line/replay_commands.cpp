@@ -17,7 +17,7 @@ void add_replay(CommandList& commands) {
       "expectations or input.\n"
       "Examples:\n"
       "  framewatch replay building.toml monday.lcmlog tuesday.lcmlog.zst --out estimates.lcmlog\n"
-      "  framewatch replay building.toml record.csv --floors floors.csv\n"
+      "  framewatch replay building.toml record.csv --json\n"
       "  framewatch replay building.toml golden.lcmlog --expect expected.toml --junit result.xml");
   add_config(commands, command, arguments.config);
   commands.reads_files(

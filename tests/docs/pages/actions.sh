@@ -4,7 +4,7 @@ before() {
   link_configs
   shake 60 record.csv
   framewatch replay building.toml record.csv --quiet --write-baseline learned.toml
-  awk '/^name/ { raised = /kx_1_y1|kx_2_y2|ky_1_x2/ } raised && /^value/ { $3 *= 1.2 } { print }' learned.toml >baseline.toml
+  awk '/^name/ { raised = /kx_1_y1|kx_2_y2|ky_1_x2/ } raised && /^value = / { $3 *= 1.2 } { print }' learned.toml >baseline.toml
   printf '[watch]\nbaseline = "baseline.toml"\n' >>building.toml
   framewatch run building.toml &
   shake_live 120
