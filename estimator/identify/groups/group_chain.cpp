@@ -130,6 +130,7 @@ void GroupChain::advance(const InnerChain& chain, Inner& inner, const double* mo
 }
 
 void GroupChain::derive(const InnerChain& chain, Inner& inner) {
+  if (chain.forces.empty()) return;  // nothing that is identified moves it
   const int modes = chain.modes, columns = inner.columns;
   const auto rows = static_cast<int>(chain.rows.size());
   const auto ends = static_cast<int>(chain.ends.size());
