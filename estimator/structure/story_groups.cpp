@@ -172,7 +172,8 @@ double line_position(const Structure& s, int frame) {
   const std::vector<double>& spans = frame < s.n() ? s.span_y : s.span_x;
   const int line = frame < s.n() ? frame : frame - s.n();
   double at = 0;
-  for (int i = 0; i < line; ++i) at += spans[static_cast<std::size_t>(i)];
+  const std::size_t given = std::min(static_cast<std::size_t>(std::max(line, 0)), spans.size());
+  for (std::size_t i = 0; i < given; ++i) at += spans[i];
   return at;
 }
 

@@ -44,7 +44,8 @@ StoryGroups story_groups(const Structure& structure, const std::vector<SensorAxi
 /// one story). Between frames, and on rigid floors anywhere, linear in plan.
 std::vector<double> frame_weights(const Structure& structure, const SensorAxis& axis);
 
-/// Position of a frame across its direction, m, from the first one.
+/// Position of a frame across its direction, m, from the first one; spans that are missing in a
+/// structure that has problems count as none.
 double line_position(const Structure& structure, int frame);
 
 }  // namespace framewatch::estimator
