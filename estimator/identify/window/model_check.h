@@ -36,8 +36,7 @@ class ModelCheck {
   void hold(int unknown, double ratio, double std_error);
 
   struct Context {
-    const TunedRegression* active;
-    const WindowSolution* main;  ///< of the active regression
+    const WindowSolution* main;
     const MotionRing* ring;
     WindowSolution::Trust trust;
     bool tuned;

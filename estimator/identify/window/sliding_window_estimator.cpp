@@ -206,8 +206,7 @@ const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
   if (due) since_hop_ = 0;
   if (given) fill_estimate(window_end);
   model_fit_ = check_ && ring_.end() > triple_.length()
-                   ? check_->advance(
-                         {active_.get(), &main_, &ring_, trust(), tuned(), errors_new_, window_end})
+                   ? check_->advance({&main_, &ring_, trust(), tuned(), errors_new_, window_end})
                    : nullptr;
   if (self_tuning_ && self_tuning_->step(active_, ring_)) regression_exchanged();
   return given ? &estimate_ : nullptr;
