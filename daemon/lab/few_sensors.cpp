@@ -87,13 +87,13 @@ TallRecord tall_record(const TallTrial& t) {
   out.config.structure = t.in_space ? tall_building_in_space(t.stories) : tall_building(t.stories);
   out.config.design = t.in_space ? tall_design_in_space(t.stories) : tall_design(t.stories);
   out.config.axes = t.in_space ? floor_axes_in_space(t.floors) : floor_axes(t.floors);
-  out.config.bending_nmprad = {t.believed_bending_nmprad, 0};
+  out.config.bending_nmprad.base_nmprad[0] = t.believed_bending_nmprad;
   out.config.options.rate_hz = kTrialRate_hz;
   estimator::Structure truly = out.config.structure;
   Eigen::VectorXd theta = out.config.design;
   draw(t, truly, theta);
   const estimator::ParameterTable table = out.config.parameters();
-  out.truth = group_parameters(truly, table, {theta, {t.bending_nmprad, 0}});
+  out.truth = group_parameters(truly, table, {theta, {{t.bending_nmprad, 0}, {}}});
   std::vector<estimator::SensorAxis> sensors = out.config.axes;
   if (t.in_space) put_on_soil(truly, theta, sensors);
   const estimator::ParameterTable stories(truly);

@@ -59,7 +59,7 @@ void compare(SessionReport& r) {
 }
 
 bool bends(const estimator::PipelineConfig& c) {
-  return c.bending_nmprad[0] > 0 || c.bending_nmprad[1] > 0;
+  return c.bending_nmprad.any();
 }
 
 /// What the drawings say of what is identified; empty: nothing.

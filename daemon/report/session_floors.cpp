@@ -16,6 +16,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double kBegins = 0.05, kEnds = 0.95;  // of the Arias intensity
+constexpr double kSameBending = 0.15;           // relative
 constexpr double kLongestStrong_s = 300;
 constexpr double kLead_s = 60, kTail_s = 10;  // for the filters' and the inner floors' start
 
@@ -49,6 +50,24 @@ std::pair<Index, Index> strong_rows(const SessionMotion& m) {
                                    first + static_cast<Index>(kLongestStrong_s * m.rate_hz))};
 }
 
+/// Over the windows that were identified with about the bending stiffness that is known in the end:
+/// the two go together.
+double median_with(const SessionEstimates& estimates, std::size_t p, std::size_t bending) {
+  const std::vector<double>& held = estimates.value[bending];
+  const auto known = std::find_if(held.rbegin(), held.rend(), [](double v) { return v > 0; });
+  if (known == held.rend()) return summarise(estimates, p, {0, estimates.windows()}).boxplot.median;
+  std::vector<double> values;
+  for (std::size_t w = 0; w < held.size(); ++w)
+    if (std::abs(held[w] / *known - 1) < kSameBending) values.push_back(estimates.value[p][w]);
+  return p == bending ? *known : boxplot_of(std::move(values)).median;
+}
+
+void take(double value, std::size_t p, SessionFloors& out) {
+  if (!(value > 0)) return;
+  out.theta[p] = value;
+  out.identified[p] = 1;
+}
+
 void choose_parameters(const Config& config, const SessionEstimates& estimates,
                        SessionFloors& out) {
   const estimator::PipelineConfig& c = config.pipeline;
@@ -61,13 +80,17 @@ void choose_parameters(const Config& config, const SessionEstimates& estimates,
   out.theta.assign(design.begin(), design.end());
   out.identified.assign(out.theta.size(), 0);
   const WindowRange strong = windows_within(estimates, out.from_us, out.to_us);
-  for (std::size_t p = 0; p < out.theta.size(); ++p)
-    for (const WindowRange& windows : {strong, WindowRange{0, estimates.windows()}}) {
-      const double median = summarise(estimates, p, windows).boxplot.median;
-      if (out.identified[p] != 0 || !(median > 0)) continue;
-      out.theta[p] = median;
-      out.identified[p] = 1;
+  const WindowRange all{0, estimates.windows()};
+  for (std::size_t p = 0; p < out.theta.size(); ++p) {
+    const estimator::Parameter& parameter = table[static_cast<int>(p)];
+    const auto bending = table.find(parameter.direction == estimator::Direction::x ? "krx" : "kry");
+    if (bending && !parameter.frames.empty()) {  // panels have none
+      take(median_with(estimates, p, static_cast<std::size_t>(*bending)), p, out);
+      continue;
     }
+    take(summarise(estimates, p, strong).boxplot.median, p, out);
+    if (out.identified[p] == 0) take(summarise(estimates, p, all).boxplot.median, p, out);
+  }
 }
 
 /// What StoryResponse follows.

@@ -39,7 +39,7 @@ BendingStiffness bending_of(const std::vector<Effect>& effects) {
   BendingStiffness out{};
   for (const Effect& e : effects)
     if (e.kind == EffectKind::frame_bending)
-      out[e.place.direction == Direction::x ? 0 : 1] = e.value("kr_nmprad");
+      out.base_nmprad[e.place.direction == Direction::x ? 0 : 1] = e.value("kr_nmprad");
   return out;
 }
 

@@ -31,7 +31,7 @@ struct PipelineConfig {
 
   StoryGroups groups() const {
     return story_groups(structure, axes,
-                        {group_floors, bending_nmprad[0] > 0 || bending_nmprad[1] > 0});
+                        {group_floors, bending_nmprad.any()});
   }
   /// What is identified.
   ParameterTable parameters() const { return ParameterTable(structure, groups(), bending_nmprad); }

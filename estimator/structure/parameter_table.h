@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "estimator/structure/story_groups.h"
+#include "estimator/structure/bending_stiffness.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
@@ -30,17 +31,13 @@ struct Parameter {
   int frame;  ///< 0..n+m-1; -1 for a panel and where it is of several frames
   int panel;  ///< 0..panels-1, x span fastest; -1 for a frame
   /// N/m, N*s/m; panel shear stiffness per unit length as in docs/equations.md (3): N/(rad*m),
-  /// N*s/(rad*m). A group's is that of its stories in series. krx, kry: N*m/rad, the rotational
-  /// stiffness of every frame of the direction at every floor (effect frame_bending).
+  /// N*s/(rad*m). A group's is that of its stories in series. krx, kry: N*m/rad, see
+  /// BendingStiffness.
   std::string unit;
   int last_story = story;        ///< above `story` in a group
   std::vector<int> frames = {};  ///< those it is of, none of a panel
   Direction direction = Direction::x;
 };
-
-/// Rotational stiffness of every frame at every floor along x and along y, N*m/rad; 0: frames do
-/// not bend.
-using BendingStiffness = std::array<double, 2>;
 
 /// The parameter vector of the paper's equation (13): k_x, k_y, G_k, c_x, c_y, G_c, story-major
 /// inside each group, then frame order (panels: y span, then x span fastest). Of groups of stories:

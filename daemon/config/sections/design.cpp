@@ -62,7 +62,12 @@ DesignReading read_design(const TomlValue* design, const estimator::Structure& s
        {std::tuple("krx_nmprad", s.n(), 0), std::tuple("kry_nmprad", s.m(), 1)}) {
     if (!section.given(key)) continue;
     if (frames == 0) section.problem(key, "the structure has no frame in this direction");
-    out.bending_nmprad[static_cast<std::size_t>(which)] = section.number(key);
+    const std::vector<double> of_floors = section.grid(key, {s.stories});
+    if (!section.good(key)) continue;
+    const auto along = static_cast<std::size_t>(which);
+    out.bending_nmprad.base_nmprad[along] = of_floors[0];
+    for (const double value : of_floors)
+      out.bending_nmprad.shares[along].push_back(value / of_floors[0]);
   }
   const bool complete = find_problems(s).empty() && section.good("kx_npm") &&
                         section.good("ky_npm") && section.good("gk") &&

@@ -42,7 +42,7 @@ std::vector<double> response(const std::vector<double>& taps, const HighPass& hi
 
 FloorRows group_rows(const EstimatorOptions& o, const GroupDesign& design,
                      const GroupEquations& equations, int unknowns) {
-  const bool bends = design.bending_nmprad[0] > 0 || design.bending_nmprad[1] > 0;
+  const bool bends = design.bending_nmprad.any();
   const double ratio = o.corner_ratio * (bends ? kBendingCorner : kShearCorner);
   const int stride = padded(unknowns + 1);
   FloorRows out;

@@ -67,17 +67,16 @@ std::vector<Spring> springs(const Structure& s, const ParameterTable& table,
   const ParameterTable stories(s);
   std::vector<Spring> out;
   const int hinges = c.total;
-  const auto bends = [&](int f) {
-    return design.bending_nmprad[s.direction(f) == Direction::x ? 0 : 1];
-  };
   std::vector<int> first_hinge(static_cast<std::size_t>(s.frames()), -1);
   c.total = hinges;
   for (int f = 0; f < s.frames(); ++f) {
-    if (!(bends(f) > 0)) continue;
+    const std::size_t along = s.direction(f) == Direction::x ? 0 : 1;
+    if (!(design.bending_nmprad[along] > 0)) continue;
     first_hinge[static_cast<std::size_t>(f)] = c.total;
-    const int parameter = table.find(s.direction(f) == Direction::x ? "krx" : "kry").value_or(-1);
-    for (int j = 0; j < s.stories; ++j)
-      out.push_back({{{c.total++, 1.0}}, bends(f), 0, parameter, -1, true});
+    const int parameter = table.find(along == 0 ? "krx" : "kry").value_or(-1);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(s.stories); ++j)
+      out.push_back(
+          {{{c.total++, 1.0}}, design.bending_nmprad.of_floor(along, j), 0, parameter, -1, true});
   }
   for (const Element& e : elements(s, stories)) {
     const auto floor = static_cast<std::size_t>(e.story);

@@ -54,7 +54,11 @@ class HeldBending {
   }
 
  private:
+  /// How far, relative, the stiffnesses are from where the equations were made linear.
+  double detuning(const WindowSolution& solution) const;
+
   LongWindow window_;
+  std::vector<int> stiffnesses_;  ///< unknowns
   std::vector<Held> held_;
 };
 
