@@ -100,9 +100,10 @@ const Option kOptions[] = {
     {.section = "watch",
      .key = "follow_amplitude",
      .type = boolean,
-     .default_value = "false",
+     .default_value = "true",
      .meaning = "Stiffness may follow the amplitude of the element's own motion, and recovers some "
-                "time after a strong one; it is watched for what that does not explain.",
+                "time after a strong one; it is watched for what that does not explain, where the "
+                "baseline spans amplitudes 3 times apart or more.",
      .reload = settings,
      .target = into<&WatchSettings::options, &estimator::WatchOptions::amplitude>},
     {.section = "baseline.parameter",

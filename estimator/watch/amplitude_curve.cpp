@@ -12,6 +12,7 @@ namespace {
 
 /// Standard deviation of the curve about the baseline's value; a larger one costs digits.
 constexpr double kLevel = 0.05;
+constexpr double kChance = 2;  // standard errors of an excess that is none
 
 }  // namespace
 
@@ -25,9 +26,11 @@ double AmplitudeCurve::covariance(double a, double b) const {
   return kLevel * kLevel + kUsualPerLog * kUsualPerLog * x * y + kBend * kBend * walk;
 }
 
-AmplitudeCurve::AmplitudeCurve(double value, const std::vector<AmplitudePoint>& points) {
+AmplitudeCurve::AmplitudeCurve(double value, double own_error,
+                               const std::vector<AmplitudePoint>& points) {
   const auto n = static_cast<Eigen::Index>(points.size());
   if (n == 0) return;
+  own_error_ = own_error;
   double weight = 0, mean = 0;
   for (const AmplitudePoint& point : points) {
     const double w = 1 / (point.std_error * point.std_error);
@@ -36,7 +39,6 @@ AmplitudeCurve::AmplitudeCurve(double value, const std::vector<AmplitudePoint>& 
     mean += w * at_.back();
   }
   origin_ = mean / weight;
-  own_error_ = 1 / std::sqrt(weight) / value;
   Eigen::MatrixXd matrix(n, n);
   Eigen::VectorXd off(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -53,7 +55,13 @@ AmplitudeCurve::AmplitudeCurve(double value, const std::vector<AmplitudePoint>& 
 }
 
 AmplitudeCurve::Expected AmplitudeCurve::expected(double amplitude_m) const {
-  return at_log(std::log(amplitude_m));
+  if (spans()) return at_log(std::log(amplitude_m));
+  const double beyond = std::max({amplitude_m / highest_m(), lowest_m() / amplitude_m, 1.0});
+  return {1, std::hypot(own_error_, kUsualPerLog * std::log(beyond))};
+}
+
+bool AmplitudeCurve::spans() const {
+  return highest_m() >= kSpan * lowest_m();
 }
 
 double AmplitudeCurve::lowest_m() const {
@@ -115,28 +123,36 @@ bool AmplitudeBins::any() const {
 
 std::vector<AmplitudePoint> AmplitudeBins::points(double first) const {
   std::vector<AmplitudePoint> out;
-  const double error = std::sqrt(excess());
+  const Scatter scatter = this->scatter();
   for (const Bin& b : bins_)
     if (b.count > 0)
       out.push_back({std::exp(first_log_ + b.log / b.weight), first * (1 + b.off / b.weight),
-                     first * error / std::sqrt(b.weight)});
+                     first * std::sqrt(scatter.excess / b.weight + scatter.lasting)});
   return out;
 }
 
-/// About lines within the bins that have one slope in common.
 double AmplitudeBins::excess() const {
-  double across = 0, along = 0, square = 0;
-  int freedom = -1;
+  return scatter().excess;
+}
+
+/// About lines within the bins that have one slope in common.
+AmplitudeBins::Scatter AmplitudeBins::scatter() const {
+  double across = 0, along = 0, square = 0, weight = 0;
+  int freedom = -1, count = 0;
   for (const Bin& b : bins_) {
     if (b.count == 0) continue;
     across += b.log_square - b.log * b.log / b.weight;
     along += b.log_off - b.log * b.off / b.weight;
     square += b.off_square - b.off * b.off / b.weight;
     freedom += b.count - 1;
+    weight += b.weight;
+    count += b.count;
   }
-  if (freedom <= 0) return 1;
+  if (freedom <= 0) return {};
   const double left = square - (across > 0 ? along * along / across : 0);
-  return std::max(left / freedom, 1.0);
+  const double excess = std::max(left / freedom, 1.0);
+  const double by_chance = 1 + kChance * std::sqrt(2.0 / freedom);
+  return {excess, std::max(excess - by_chance, 0.0) * count / weight};
 }
 
 double RecentAmplitude::remembered(std::size_t i, double time_s) const {

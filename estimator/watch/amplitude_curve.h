@@ -25,12 +25,15 @@ struct AmplitudePoint {
 /// docs/equations.md, changes.
 class AmplitudeCurve {
  public:
-  static constexpr double kUsualPerLog = 0.05, kBend = 0.03;
+  static constexpr double kUsualPerLog = 0.035, kBend = 0.03;
+  /// Highest over lowest amplitude from which on a curve is drawn; over less the baseline's value
+  /// holds, because a slope would be mostly noise.
+  static constexpr double kSpan = 3;
 
   AmplitudeCurve() = default;  ///< follows nothing
-  /// value: the parameter's baseline > 0. At most AmplitudeBins::kBins points; without any it
-  /// follows nothing.
-  AmplitudeCurve(double value, const std::vector<AmplitudePoint>& points);
+  /// value: the parameter's baseline > 0; own_error: of it, relative. At most AmplitudeBins::kBins
+  /// points; without any it follows nothing.
+  AmplitudeCurve(double value, double own_error, const std::vector<AmplitudePoint>& points);
 
   bool known() const { return !at_.empty(); }
   struct Expected {
@@ -44,6 +47,7 @@ class AmplitudeCurve {
   /// learned no lower than at the lowest of them, above no higher than at the highest.
   double least(double amplitude_m, double errors) const;
   double most(double amplitude_m, double errors) const;
+  bool spans() const;
   /// Learned from.
   double lowest_m() const;
   double highest_m() const;
@@ -84,6 +88,12 @@ class AmplitudeBins {
   }
 
  private:
+  /// About the curve: as a ratio of variances, and the variance, relative, beyond what errors and
+  /// chance explain. That is no noise but what the element has gone through before, and lasts.
+  struct Scatter {
+    double excess = 1, lasting = 0;
+  };
+  Scatter scatter() const;
   struct Bin {
     int count = 0;
     double weight = 0, log = 0, off = 0;  ///< weighted sums
@@ -104,11 +114,13 @@ class AmplitudeBins {
 class RecentAmplitude {
  public:
   /// An amplitude counts in full for so long, then kHolds_s over its age.
-  static constexpr double kHolds_s = 10;
+  static constexpr double kHolds_s = 20;
   static constexpr std::size_t kMost = 8;
 
   /// time_s: never before the last one.
   void push(double time_s, double amplitude_m);
+  /// The last one; 0: nothing.
+  double newest() const { return count_ > 0 ? amplitude_[count_ - 1] : 0; }
   /// The largest of what is remembered; 0: nothing.
   double at(double time_s) const;
 

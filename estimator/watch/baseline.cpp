@@ -1,9 +1,17 @@
 #include "estimator/watch/baseline.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 namespace framewatch::estimator {
+namespace {
+
+double end_s(const WindowEstimate& e) {
+  return std::chrono::duration<double>(e.end.time_since_epoch()).count();
+}
+
+}  // namespace
 
 Baseline::Baseline(std::size_t parameters)
     : value(parameters, std::numeric_limits<double>::quiet_NaN()),
@@ -55,10 +63,16 @@ bool Baseline::holds(const Baseline& other) const {
 
 BaselineLearner::BaselineLearner(const std::vector<Watched>& watched, double learn_s,
                                  bool amplitude)
-    : watched_(watched), learn_s_(learn_s), amplitude_(amplitude), sums_(watched.size()) {}
+    : watched_(watched),
+      learn_s_(learn_s),
+      amplitude_(amplitude),
+      sums_(watched.size()),
+      recent_(watched.size()) {}
 
 bool BaselineLearner::push(const WindowEstimate& e, double degc) {
-  if (e.window != 0 || !windows_.take(e)) return false;
+  if (e.window != 0) return false;
+  remember(e);
+  if (!windows_.take(e)) return false;
   bool any = false;
   for (std::size_t p = 0; p < sums_.size(); ++p) {
     Sum& sum = sums_[p];
@@ -76,12 +90,18 @@ bool BaselineLearner::push(const WindowEstimate& e, double degc) {
     }
     if (amplitude_ && e.amplitude[p] > 0) {
       ++sum.with_amplitude;
-      sum.bins.push(e.amplitude[p], off / sum.first, weight * sum.first * sum.first);
+      sum.bins.push(recent_[p].at(end_s(e)), off / sum.first, weight * sum.first * sum.first);
     }
     sum.complete = enough(p);
     any = any || sum.complete;
   }
   return any;
+}
+
+void BaselineLearner::remember(const WindowEstimate& e) {
+  if (!amplitude_ || e.status != WindowStatus::valid) return;
+  for (std::size_t p = 0; p < recent_.size(); ++p)
+    if (watched_[p].counts(e, p) && e.amplitude[p] > 0) recent_[p].push(end_s(e), e.amplitude[p]);
 }
 
 bool BaselineLearner::enough(std::size_t p) const {

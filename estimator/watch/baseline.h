@@ -17,8 +17,8 @@ struct Baseline {
   explicit Baseline(std::size_t parameters);
   std::vector<double> value, std_error;
   std::vector<double> degc;  ///< mean temperature at which it was learned; NaN: not known
-  /// Its values by the amplitude of the element, ascending, at most AmplitudeBins::kBins; empty:
-  /// not known.
+  /// Its values by the amplitude of the element, that of RecentAmplitude, ascending, at most
+  /// AmplitudeBins::kBins; empty: not known.
   std::vector<std::vector<AmplitudePoint>> by_amplitude;
 
   bool knows(std::size_t parameter) const;
@@ -72,7 +72,7 @@ class BaselineLearner {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(windows_, sums_);
+    a(windows_, sums_, recent_);
   }
 
  private:
@@ -100,6 +100,7 @@ class BaselineLearner {
   };
   static Mean mean(const Sum& sum);
   static void put(const Sum& sum, std::size_t parameter, Baseline& out);
+  void remember(const WindowEstimate& estimate);
   bool enough(std::size_t parameter) const;
 
   std::vector<Watched> watched_;
@@ -107,6 +108,7 @@ class BaselineLearner {
   bool amplitude_;
   SeparateWindows windows_;
   std::vector<Sum> sums_;
+  std::vector<RecentAmplitude> recent_;  ///< of main windows
 };
 
 }  // namespace framewatch::estimator

@@ -7,15 +7,15 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr Time kLongAgo{SensorClock::duration(-8'000'000'000'000'000)};
-constexpr double kFreedom = 19;         // of standard errors from 20 blocks
+constexpr double kFreedom = 19;         // of a window's standard error, from 20 blocks
 constexpr double kMemory_s = 15;        // of the usual standard error
 constexpr double kMostOfUsual = 1.5;    // that a single one counts with
 constexpr double kBaselineErrors = 3;   // that a value may be off by permanently
 constexpr double kMostOfThreshold = 2;  // a sum is limited to that
 constexpr double kOneWindow = 0.6;      // of the threshold: most that one window adds
 
-double log_likelihood(double z) {
-  return -(kFreedom + 1) / 2 * std::log1p(z * z / kFreedom);
+double log_likelihood(double z, double freedom) {
+  return -(freedom + 1) / 2 * std::log1p(z * z / freedom);
 }
 
 }  // namespace
@@ -62,11 +62,15 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   const double tolerance = (parameter.watched.tolerance + kBaselineErrors * baseline_error) / scale;
   const double z = off / scale, least = parameter.watched.least_change / scale;
 
+  // The error is at least the usual one, of so many windows.
+  const double freedom = kFreedom * (1 + kMemory_s / window_s);
+  const auto likelihood = [&](double distance) { return log_likelihood(distance, freedom); };
+
   for (const int sign : {-1, 1}) {
     Track& track = parameter.away[sign < 0 ? 0 : 1][static_cast<std::size_t>(phase)];
     const double toward = sign * z;
-    const double gain = std::min(log_likelihood(toward - std::max(toward, least)) -
-                                     log_likelihood(toward - std::clamp(toward, 0.0, tolerance)),
+    const double gain = std::min(likelihood(toward - std::max(toward, least)) -
+                                     likelihood(toward - std::clamp(toward, 0.0, tolerance)),
                                  kOneWindow * threshold_);
     if (track.sum + gain <= 0) {
       track = {};
@@ -85,8 +89,8 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   if (parameter.sign == 0) return;
   double& back = parameter.back[static_cast<std::size_t>(phase)];
   const double toward = parameter.sign * z;
-  back = std::max(0.0, back + log_likelihood(toward - std::clamp(toward, 0.0, tolerance)) -
-                           log_likelihood(toward - std::max(toward, least)));
+  back = std::max(0.0, back + likelihood(toward - std::clamp(toward, 0.0, tolerance)) -
+                           likelihood(toward - std::max(toward, least)));
   if (back <= threshold_) return;
   parameter.sign = 0;
   for (auto& tracks : parameter.away) tracks.fill({});

@@ -111,7 +111,8 @@ void Watch::begin() {
   if (!options_.amplitude) return;
   for (std::size_t p = 0; p < curves_.size(); ++p)
     if (baseline_.knows(p) && watched(p))
-      curves_[p] = AmplitudeCurve(baseline_.value[p], baseline_.by_amplitude[p]);
+      curves_[p] = AmplitudeCurve(baseline_.value[p], baseline_.std_error[p] / baseline_.value[p],
+                                  baseline_.by_amplitude[p]);
 }
 
 void Watch::begin_quiet() {
@@ -177,21 +178,27 @@ Dependence::Expected Watch::expected(std::size_t p, double degc) const {
   return {1, per_degc * off};
 }
 
+bool Watch::is_shorter(const WindowEstimate& e) const {
+  return windows_s_[static_cast<std::size_t>(e.window)] < windows_s_[0];
+}
+
 Watch::Intact Watch::intact(std::size_t p, const WindowEstimate& e, double degc) const {
   Dependence::Expected warm{1, 0};
   if (options_.temperature && !std::isnan(baseline_.degc[p])) warm = expected(p, degc);
   Intact out{1, 0, 0};
   out.low = 1 - kExpectedErrors * warm.std_error, out.high = 1 + kExpectedErrors * warm.std_error;
   if (curves_[p].known()) {
-    // An element that has been shaken stronger of late may still be as soft as it was then.
-    const double now = e.amplitude[p];
+    // The curve is of what the element has gone through of late; it may have recovered by now.
+    // The baseline is of main windows; within one shorter windows are now weaker, now stronger.
+    const double own = e.amplitude[p];
+    const double now = is_shorter(e) ? std::max(own, recent_[p].newest()) : own;
     if (!(now > 0)) return {1, -kInfinity, kInfinity};
     const AmplitudeCurve& curve = curves_[p];
     const double before = std::max(recent_[p].at(seconds_of(e.end)), now);
     out.low +=
         std::min(curve.least(now, kExpectedErrors), curve.least(before, kExpectedErrors)) - 1;
     out.high += std::max(curve.most(now, kExpectedErrors), curve.most(before, kExpectedErrors)) - 1;
-    out.ratio = std::clamp(curve.expected(now).ratio, out.low, out.high);
+    out.ratio = std::clamp(curve.expected(before).ratio, out.low, out.high);
   }
   for (double* ratio : {&out.ratio, &out.low, &out.high}) *ratio *= warm.ratio;
   return out;

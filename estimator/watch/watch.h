@@ -27,7 +27,7 @@ struct WatchOptions {
   double quiet_learn_hours = 24;
   /// Conditions that baselines are corrected for: the temperature, given by temperature(), and the
   /// amplitude of the motion.
-  bool temperature = false, amplitude = false;
+  bool temperature = false, amplitude = true;
 };
 
 enum class AlarmState { cleared, raised, changed };
@@ -139,6 +139,7 @@ class Watch {
     double ratio;      ///< most likely
     double low, high;  ///< what it may be
   };
+  bool is_shorter(const WindowEstimate& estimate) const;  ///< than the main window
   Intact intact(std::size_t parameter, const WindowEstimate& estimate, double degc) const;
   /// Whether anything looks at this window's values.
   bool used(const WindowEstimate& estimate) const;

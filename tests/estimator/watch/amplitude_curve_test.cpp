@@ -34,7 +34,7 @@ TEST(AmplitudeCurve, FollowsALawWithinItsErrors) {
   constexpr double kMostMissed = 0.02;  // of 3 errors
   int missed = 0, places = 0;
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
-    const AmplitudeCurve curve(1, learned(seed, 200, kError).points(1));
+    const AmplitudeCurve curve(1, kError / std::sqrt(200), learned(seed, 200, kError).points(1));
     for (int i = 0; i <= kPlaces; ++i, ++places) {
       const double a =
           kWeakest_m * std::pow(kStrongest_m / kWeakest_m, static_cast<double>(i) / kPlaces);
@@ -47,7 +47,7 @@ TEST(AmplitudeCurve, FollowsALawWithinItsErrors) {
 }
 
 TEST(AmplitudeCurve, BeyondWhatWasLearnedTheErrorGrowsTowardSoftening) {
-  const AmplitudeCurve curve(1, learned(1, 100, kError).points(1));
+  const AmplitudeCurve curve(1, kError / std::sqrt(100), learned(1, 100, kError).points(1));
   const double top = kStrongest_m, beyond = 10 * top, below = kWeakest_m / 10;
   EXPECT_GT(curve.expected(beyond).std_error, 10 * curve.expected(top).std_error);
   EXPECT_LT(curve.least(beyond, 3), curve.least(top, 3) - 0.05);
@@ -57,12 +57,12 @@ TEST(AmplitudeCurve, BeyondWhatWasLearnedTheErrorGrowsTowardSoftening) {
 }
 
 TEST(AmplitudeCurve, OfOneAmplitudeIsThatValueThere) {
-  const AmplitudeCurve curve(2, {{1e-4, 2, 0.002}});
+  const AmplitudeCurve curve(2, 0.001, {{1e-4, 2, 0.002}});
   ASSERT_TRUE(curve.known());
   EXPECT_NEAR(curve.expected(1e-4).ratio, 1, 1e-5);
   EXPECT_NEAR(curve.expected(1e-4).std_error, 0.001, 1e-4);
   EXPECT_NEAR(curve.expected(1e-3).std_error, AmplitudeCurve::kUsualPerLog * std::log(10), 0.05);
-  EXPECT_FALSE(AmplitudeCurve(2, {}).known());
+  EXPECT_FALSE(AmplitudeCurve(2, 0.001, {}).known());
 }
 
 TEST(AmplitudeBins, ScatterIsAboutWhatAmplitudeExplains) {

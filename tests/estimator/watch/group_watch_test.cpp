@@ -19,7 +19,7 @@ namespace group_watch_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNoise = 0.02;
-constexpr double kSettled_s = 20, kLearned_s = 45, kEnd_s = 65, kSoon_s = 7, kReached_s = 15;
+constexpr double kSettled_s = 20, kLearned_s = 320, kEnd_s = 340, kSoon_s = 7, kReached_s = 15;
 constexpr int kStories[] = {2, 5, 8, 13, 18};
 constexpr double kSoftening = 0.15;
 
@@ -73,7 +73,7 @@ struct Detection {
   int before = 0;  ///< false alarms
 };
 
-/// Baseline from 25 s of the same record, as in the study of the method.
+/// Baseline from five minutes of the same shaking.
 Detection lose(int story, double ratio, std::uint64_t seed) {
   test::SofteningTower tower(seed, 0, kNoise);
   const ParameterTable table = tower.config().parameters();
@@ -127,7 +127,7 @@ Tally lose_each(double ratio, int motions) {
   return out;
 }
 
-/// Issue 21 asks for 20 of 20 within 7 s; reached is 20 of 20 within kReached_s
+/// Issue 21 asks for 20 of 20 within 7 s; reached is 16, and 20 within kReached_s
 /// (docs/equations.md).
 TEST(GroupWatch, FindsAFifthLostByOneStoryOfFive) {
   const Tally tally = lose_each(0.2, wanted_runs());
@@ -135,19 +135,22 @@ TEST(GroupWatch, FindsAFifthLostByOneStoryOfFive) {
   EXPECT_EQ(tally.wrong, 0);
 }
 
-/// Issue 21 asks for 17 of 20, which is not reached: measured (docs/equations.md), and none wrong.
-TEST(GroupWatch, ATenthLostByOneStoryOfFiveIsNeverOfAnotherGroup) {
-  EXPECT_EQ(lose_each(0.1, wanted_runs()).wrong, 0);
+/// Issue 21 asks for 17 of 20.
+TEST(GroupWatch, FindsATenthLostByOneStoryOfFiveMostly) {
+  constexpr double kFound = 0.85;
+  const Tally tally = lose_each(0.1, wanted_runs());
+  EXPECT_GE(tally.found, kFound * tally.cases);
+  EXPECT_EQ(tally.wrong, 0);
 }
 
 /// Issue 21: none in ten hours.
 TEST(GroupWatch, SofteningWhileItMovesIsNoChange) {
   constexpr double kEvent_s = 40, kWeakest = 0.1;
-  const double hours = wanted_runs() > 0 ? 2.5 * wanted_runs() : 0.1;
+  const double hours = wanted_runs() > 0 ? 2.5 * wanted_runs() : 0.25;
   test::SofteningTower tower(7, kSoftening, kNoise * kWeakest);
   const ParameterTable table = tower.config().parameters();
   WatchOptions o = options();
-  o.learn_s = 300;
+  o.learn_s = 600;
   Watch watch(table, o, Watched::windows_s(), std::nullopt);
   int alarms = 0;
   double lowest = kInfinity, highest = 0;
