@@ -34,6 +34,8 @@ class Reader {
     } else if (kind == status_t::getHash()) {
       if (auto status = drivers::decoded<status_t>(event.data))
         session_.status = std::move(*status);
+    } else if (kind == model_fit_t::getHash()) {
+      model_fit(event);
     } else if (kind == event_t::getHash() && session_.events.size() < kMostEvents) {
       if (auto found = drivers::decoded<event_t>(event.data))
         session_.events.push_back(std::move(*found));
@@ -85,6 +87,12 @@ class Reader {
     }
   }
 
+  void model_fit(const drivers::LogEvent& event) {
+    const auto fit = drivers::decoded<model_fit_t>(event.data);
+    if (fit && has_table_ && fit->parameters == session_.table.parameters)
+      session_.model_fit.push_back({fit->window_end_us, fit->error, fit->word});
+  }
+
   SessionEstimates& session_;
   const double min_snr_ = estimator::EstimatorOptions{}.min_snr;  // the log does not say it
   std::string channel_;
@@ -125,6 +133,15 @@ WindowRange windows_within(const SessionEstimates& session, std::int64_t from_us
   range.to = range.from;
   while (range.to < session.windows() && session.end_us[range.to] <= to_us) ++range.to;
   return range;
+}
+
+const ModelFitTold* model_fit_at_end(const SessionEstimates& s, WindowRange windows) {
+  if (windows.size() == 0) return nullptr;
+  const ModelFitTold* out = nullptr;
+  for (const ModelFitTold& told : s.model_fit)
+    if (told.end_us >= s.end_us[windows.from] && told.end_us <= s.end_us[windows.to - 1])
+      out = &told;
+  return out;
 }
 
 estimator::BoxplotStatistics boxplot_of(std::vector<double> values) {

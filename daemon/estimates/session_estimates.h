@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <framewatch/event_t.hpp>
+#include <framewatch/model_fit_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
 
@@ -15,6 +16,13 @@
 
 namespace framewatch::daemon {
 
+/// What model_fit_t says of every parameter: relative error of its absolute value, and the word.
+struct ModelFitTold {
+  std::int64_t end_us = 0;
+  std::vector<double> error;
+  std::vector<std::int32_t> word;
+};
+
 /// The estimates of one session, of the main window only. Parameters in the order of the
 /// table, windows in the order of the log.
 struct SessionEstimates {
@@ -23,6 +31,7 @@ struct SessionEstimates {
   std::vector<double> residual_ratio;
   std::vector<std::vector<double>> value, std_error;  ///< [parameter][window], SI; NaN: none
   std::vector<std::vector<std::uint8_t>> reason;      ///< [parameter][window]: told_reason()
+  std::vector<ModelFitTold> model_fit;                ///< in the order of the log
   std::optional<status_t> status;                     ///< the last one
   std::vector<event_t> events;
   std::vector<std::string> notes;  ///< damage that was left out, for the person
@@ -46,6 +55,9 @@ std::optional<SessionEstimates> read_session_estimates(const std::string& path,
 /// Windows that lie wholly between two times.
 WindowRange windows_within(const SessionEstimates& session, std::int64_t from_us,
                            std::int64_t to_us);
+
+/// The last one that was told within these windows; null: none was.
+const ModelFitTold* model_fit_at_end(const SessionEstimates& session, WindowRange windows);
 
 /// The statistics that BoxplotWindow gives for these values, of any number of them at once; those
 /// that are not finite do not count.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/estimates/settled_windows.h"
 #include "daemon/events/event_words.h"
 #include "daemon/events/place_words.h"
 #include "estimator/structure/parameter_table.h"
@@ -30,9 +31,12 @@ double least_change(const SessionEstimates& s, std::size_t p) {
 /// Windows of the session that do not overlap, with the parameter's values.
 std::vector<WindowValue> separate(const SessionEstimates& s, std::size_t p) {
   std::vector<WindowValue> out;
+  const std::vector<std::uint8_t> settled = settled_windows(s, p);
   std::int64_t end_us = 0;
   for (std::size_t w = 0; w < s.windows(); ++w) {
-    if (!std::isfinite(s.value[p][w]) || (!out.empty() && s.start_us[w] < end_us)) continue;
+    if (settled[w] == 0 || !std::isfinite(s.value[p][w]) ||
+        (!out.empty() && s.start_us[w] < end_us))
+      continue;
     end_us = s.end_us[w];
     out.push_back({estimator::from_microseconds(s.start_us[w]),
                    estimator::from_microseconds(end_us), s.value[p][w], s.std_error[p][w]});

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/documents/json_values.h"
+#include "daemon/estimates/settled_windows.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"
@@ -50,16 +51,18 @@ std::pair<Index, Index> strong_rows(const SessionMotion& m) {
                                    first + static_cast<Index>(kLongestStrong_s * m.rate_hz))};
 }
 
-/// Over the windows that were identified with about the bending stiffness that is known in the end:
-/// the two go together.
-double median_with(const SessionEstimates& estimates, std::size_t p, std::size_t bending) {
-  const std::vector<double>& held = estimates.value[bending];
-  const auto known = std::find_if(held.rbegin(), held.rend(), [](double v) { return v > 0; });
-  if (known == held.rend()) return summarise(estimates, p, {0, estimates.windows()}).boxplot.median;
+double settled_median(const SessionEstimates& estimates, std::size_t p) {
+  const std::vector<std::uint8_t> settled = settled_windows(estimates, p);
   std::vector<double> values;
-  for (std::size_t w = 0; w < held.size(); ++w)
-    if (std::abs(held[w] / *known - 1) < kSameBending) values.push_back(estimates.value[p][w]);
-  return p == bending ? *known : boxplot_of(std::move(values)).median;
+  for (std::size_t w = 0; w < settled.size(); ++w)
+    if (settled[w] != 0) values.push_back(estimates.value[p][w]);
+  return boxplot_of(std::move(values)).median;
+}
+
+double last_value(const SessionEstimates& estimates, std::size_t p) {
+  const std::vector<double>& all = estimates.value[p];
+  const auto last = std::find_if(all.rbegin(), all.rend(), [](double v) { return v > 0; });
+  return last == all.rend() ? estimator::kNaN : *last;
 }
 
 void take(double value, std::size_t p, SessionFloors& out) {
@@ -85,7 +88,10 @@ void choose_parameters(const Config& config, const SessionEstimates& estimates,
     const estimator::Parameter& parameter = table[static_cast<int>(p)];
     const auto bending = table.find(parameter.direction == estimator::Direction::x ? "krx" : "kry");
     if (bending && !parameter.frames.empty()) {  // panels have none
-      take(median_with(estimates, p, static_cast<std::size_t>(*bending)), p, out);
+      take(parameter.kind == estimator::ParameterKind::bending_stiffness
+               ? last_value(estimates, p)
+               : settled_median(estimates, p),
+           p, out);
       continue;
     }
     take(summarise(estimates, p, strong).boxplot.median, p, out);

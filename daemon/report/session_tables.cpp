@@ -27,6 +27,14 @@ std::string without(const SessionReport& r, std::size_t p, WindowRange windows) 
   return *worst == 0 ? "" : reason_word(static_cast<int>(worst - counts.begin()));
 }
 
+/// "1.2 N/m, fits": of the absolute value.
+std::string model_error(const ModelFitTold* fit, std::size_t p, double value) {
+  static constexpr std::array kWords{"", "fits", "only changes mean something", "does not fit"};
+  if (fit == nullptr || fit->word[p] < 1 || fit->word[p] > 3) return "-";
+  const char* word = kWords[static_cast<std::size_t>(fit->word[p])];
+  return fit->word[p] == 3 ? word : number(fit->error[p] * value, 2) + ", " + word;
+}
+
 }  // namespace
 
 std::string parameter_section(const SessionReport& r) {
@@ -34,9 +42,12 @@ std::string parameter_section(const SessionReport& r) {
       "<h2>Table of parameters</h2>\n<p>Over every window that lies wholly in the stage. The "
       "standard error is that of one window; neighboring windows share nearly all their samples, "
       "so "
-      "a mean of many is not that much better.</p>\n";
+      "a mean of many is not that much better. It is the error of changes; the model's error is "
+      "that of "
+      "the absolute value, the same in every window, and the larger one counts for it.</p>\n";
   for (const ReportStage& stage : r.compared) {
     std::vector<std::vector<std::string>> rows;
+    const ModelFitTold* fit = model_fit_at_end(r.estimates, stage.whole);
     for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
       const auto [factor, unit] = paper_unit(r.estimates.table.kind[p]);
       const ParameterSummary one = summarise(r.estimates, p, stage.whole);
@@ -44,6 +55,7 @@ std::string parameter_section(const SessionReport& r) {
       for (const double value : {r.reference_static[p], r.reference_dynamic[p], one.mean})
         row.push_back(number(factor * value));
       row.push_back(number(factor * one.std_error, 2));
+      row.push_back(model_error(fit, p, factor * one.mean));
       for (const double value : {one.boxplot.q1, one.boxplot.median, one.boxplot.q3})
         row.push_back(number(factor * value));
       row.push_back(percent(one.observable_ratio));
@@ -54,8 +66,8 @@ std::string parameter_section(const SessionReport& r) {
     out += "<h3>" + html_text(stage.name) + "</h3>\n" +
            html_table(
                {"parameter", "unit", r.reference_from_drawings ? "reference-static" : "start value",
-                "reference-dynamic", "mean", "standard error", "q1", "median", "q3",
-                "windows with value, %", "median to reference, %", "without, mostly"},
+                "reference-dynamic", "mean", "standard error", "model's error", "q1", "median",
+                "q3", "windows with value, %", "median to reference, %", "without, mostly"},
                rows);
   }
   return out;

@@ -16,7 +16,8 @@ constexpr double kExpectedErrors = 3;
 /// Motion of late counts, for long windows, from so many times the usual amplitude on.
 constexpr double kStrong = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kUnknown_degc = 10;  // assumed deviation while the thermometer is silent
+constexpr double kUnknown_degc = 10;       // assumed deviation while the thermometer is silent
+constexpr double kMostBendingError = 0.1;  // relative, of windows to learn from
 constexpr double kNewsErrors = 2;  // standard errors a change moves by before it is reported again
 constexpr double kSharper = 0.7;   // of the error reported: a smaller one is news too
 
@@ -100,6 +101,9 @@ Watch::Watch(const ParameterTable& table, const WatchOptions& options,
       dependence_(watched_.size()),
       corrected_(watched_.size()),
       states_(watched_.size()) {
+  for (int p = 0; p < table.size(); ++p)
+    if (table[p].kind == ParameterKind::bending_stiffness)
+      bending_.push_back(static_cast<std::size_t>(p));
   const Baseline none(watched_.size());
   detectors_.assign(windows_s_.size() + 1, ChangeDetector(none, watched_, threshold_));
   news_.reserve(watched_.size());
@@ -134,9 +138,17 @@ const std::vector<Alarm>& Watch::push(const WindowEstimate& estimate) {
   return news_;
 }
 
+/// Stiffnesses that were identified with another bending cannot be compared later.
+bool Watch::bending_known(const WindowEstimate& e) const {
+  return std::all_of(bending_.begin(), bending_.end(), [&](std::size_t p) {
+    return e.std_error[p] <= kMostBendingError * e.value[p];
+  });
+}
+
 void Watch::learn(const WindowEstimate& e) {
   const double degc = temperature_.mean(e.start, e.end);
   if (options_.temperature && std::isnan(degc)) return;  // it could not be corrected later
+  if (!bending_known(e)) return;
   if (!learner_.push(e, degc)) return;
   const Baseline learned = learner_.baseline();
   for (std::size_t p = 0; p < watched_.size(); ++p) {

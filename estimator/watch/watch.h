@@ -131,6 +131,7 @@ class Watch {
   };
   void begin();
   void begin_quiet();
+  bool bending_known(const WindowEstimate& estimate) const;
   void learn(const WindowEstimate& estimate);
   void learn_quiet(const WindowEstimate& estimate);
   Dependence::Expected expected(std::size_t parameter, double degc) const;
@@ -156,7 +157,8 @@ class Watch {
   void report(int parameter, const WindowEstimate& estimate);
 
   WatchOptions options_;
-  std::vector<Watched> watched_;  ///< theta order
+  std::vector<Watched> watched_;      ///< theta order
+  std::vector<std::size_t> bending_;  ///< parameters krx, kry
   std::vector<double> windows_s_;
   double threshold_;
   BaselineLearner learner_;

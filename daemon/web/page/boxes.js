@@ -119,16 +119,21 @@ class Boxes {
   }
 }
 // Every value as text, for whoever wants the numbers or cannot see the picture.
+function fitShort(i) {
+  if (!fit || !fit.word[i]) return '';
+  return (fit.word[i] < 3 ? `± ${percent(fit.error[i], fit.error[i]).slice(1)}, ` : '') + fitWords[fit.word[i]];
+}
 function valueTable() {
   if (!$('values').open) return;
   const table = $('value-table');
   table.replaceChildren();
-  heads(table, ['element', 'value ± standard error', 'from', 'baseline', 'design', 'change', 'median', 'quartiles', 'outliers']);
+  heads(table, ['element', 'value ± standard error', 'absolute value by the model', 'from', 'baseline', 'design', 'change', 'median', 'quartiles', 'outliers']);
   const body = table.createTBody();
   plan.parameters.forEach((q, i) => {
     const row = body.insertRow(), v = known[i], has = boxes && boxes.count[i] > 0, f = findingOf(q.name);
     cell(row, q.name).title = place(q);
     cell(row, v ? withError(v.value, v.error, q.unit) : whyNot(i));
+    cell(row, v ? fitShort(i) : '');
     cell(row, v ? (isNow(i) ? 'now' : when(v.us)) : '');
     cell(row, baseline[i] ? plain(baseline[i], q.unit) : ''); cell(row, q.design ? plain(q.design, q.unit) : '');
     cell(row, f ? `${percent(f.ratio, f.error)} ± ${percent(f.error, f.error).slice(1)}` : '');

@@ -2,8 +2,9 @@
 // Ties the stream of events to what is drawn. All numbers shown come from the events.
 const $ = id => document.getElementById(id);
 const reasons = ['', 'first window not complete', 'moves too little', 'floor too stiff', 'plan symmetric', 'sensor lost', 'moves, but too uncertain'];
+const fitWords = ['', 'it fits', 'only changes mean something', 'the model does not fit'];
 const kSilence_ms = 1500;
-let plan, building, boxPlots = [], strips = {}, boxes, estimate, baseline = [], status, chosen = 0;
+let plan, building, boxPlots = [], strips = {}, boxes, estimate, fit, baseline = [], status, chosen = 0;
 let lastMotion = 0, lastAlive = 0, lastRow = null, frames = [], known = [];
 let boxMode = localStorage.getItem('boxes') || 'percent';
 const alarms = new Map();
@@ -34,7 +35,7 @@ function showTip(text, x, y) {
 }
 function hideTip() { $('tip').hidden = true; }
 const groupMeaning = {0: 'Stories between two measured floors, together: the stiffness of their springs in series, which is what these channels show.', 2: 'Viscous damping of these stories together; an equivalent, of which changes mean something and the value little.'};
-const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.', 'Rotational stiffness of the frames against bending, the same at every floor.'];
+const meaning = ['Story shear of the frame over its story drift.', 'In-plane shear force of the floor panel per unit length and radian.', 'Viscous damping of the frame.', 'Viscous damping of the floor panel.', 'Rotational stiffness of the frames against bending at their base; above it as the design has it.'];
 function reference(i) { return baseline[i] || plan.parameters[i].design || null; }
 const baselineKnown = () => baseline.some(b => b);
 const flows = () => lastMotion > 0 && performance.now() - lastMotion <= kSilence_ms;
@@ -43,10 +44,15 @@ const newestUs = () => Math.max(lastRow || 0, estimate ? estimate.end_us : 0);
 // Sensor time now, as far as the page can tell: an old value gets older while nothing comes.
 const nowUs = () => newestUs() + (flows() || !lastMotion ? 0 : 1e3 * (performance.now() - lastMotion));
 const whyNot = i => estimate ? reasons[estimate.reason[i]] || 'no value' : 'no value yet';
+function fitOf(i) {
+  if (!fit || !fit.word[i]) return '';
+  return fit.word[i] === 3 ? fitWords[3] : `absolute value good to ${percent(fit.error[i], fit.error[i]).slice(1)} by the model: ${fitWords[fit.word[i]]}`;
+}
 function elementText(i) {
   const q = plan.parameters[i], out = [`${q.name}: ${place(q)}`, q.last_story > q.story && groupMeaning[q.kind] || meaning[q.kind]], v = known[i], f = findingOf(q.name);
   if (f) out.push(`${f.ratio < 0 ? 'lost' : 'gained'} ${percent(f.ratio, f.error).slice(1)} of its stiffness, give or take ${percent(f.error, f.error).slice(1)}, since ${when(f.since_us)}`);
   if (v) out.push(`${isNow(i) ? 'newest window' : 'last value'} ${withError(v.value, v.error, q.unit)} (one standard error)` + (isNow(i) ? '' : `, ${span((nowUs() - v.us) / 1e6)} old, of ${when(v.us)}`));
+  if (v && fitOf(i)) out.push(fitOf(i));
   if (!isNow(i) && flows()) out.push(`now no value: ${whyNot(i)}`);
   if (reference(i)) out.push(`${baseline[i] ? 'baseline' : 'design'} ${plain(reference(i), q.unit)}`);
   if (boxes && boxes.count[i] > 0) out.push(`median ${plain(boxes.median[i], q.unit)}, quartiles ${plain(boxes.q1[i], q.unit)} to ${plain(boxes.q3[i], q.unit)}, ${boxes.outliers[i]} outliers in ${boxes.count[i]} windows`);
@@ -267,6 +273,7 @@ function listen() {
   on('motion', onMotion); on('estimate', onEstimate); on('status', onStatus); on('alarm', onAlarm);
   on('session', onSession); on('gap', onGap); on('can', onCan); on('refused', onRefused);
   on('boxes', b => { boxes = window.framewatch.boxes = b; });
+  on('fit', f => { fit = f; });
   on('answers', onAnswers); on('last', onLast);
   on('baseline', b => { baseline = b.value; });
   on('dropped', d => { window.framewatch.dropped = d.events; });

@@ -145,6 +145,10 @@ void LiveView::message(const std::string& channel, const void* data, std::size_t
     if (const auto s = drivers::decoded<can_status_t>(bytes(data, size))) keep("can", can_json(*s));
   } else if (name == "GAP") {
     if (const auto gap = drivers::decoded<gap_t>(bytes(data, size))) keep("gap", gap_json(*gap));
+  } else if (name == "MODEL_FIT") {
+    const auto fit = drivers::decoded<model_fit_t>(bytes(data, size));
+    if (fit && static_cast<std::size_t>(fit->parameters) == parameters_.size())
+      keep("fit", model_fit_json(*fit));
   } else {
     alarms_message(name, data, size);
   }

@@ -23,6 +23,11 @@ std::string estimate_json(const window_estimate_t& e, double min_snr) {
                      json_list(e.snr, "{:.3g}"));
 }
 
+std::string model_fit_json(const model_fit_t& f) {
+  return fmt::format(R"({{"error":{},"word":{}}})", json_list(f.error, "{:.3g}"),
+                     json_list(f.word));
+}
+
 std::string boxes_json(const window_estimate_t& e) {
   return fmt::format(
       R"({{"windows":{},"q1":{},"median":{},"q3":{},"low":{},"high":{},"outliers":{},"count":{}}})",

@@ -7,6 +7,7 @@
 #include <framewatch/can_status_t.hpp>
 #include <framewatch/event_t.hpp>
 #include <framewatch/gap_t.hpp>
+#include <framewatch/model_fit_t.hpp>
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
@@ -20,6 +21,7 @@
 namespace framewatch::daemon {
 
 std::string estimate_json(const window_estimate_t& estimate, double min_snr);
+std::string model_fit_json(const model_fit_t& fit);
 std::string boxes_json(const window_estimate_t& estimate);
 std::string baseline_json(const std::vector<double>& baseline);
 /// config_sha256: of the page, to say whether the estimator runs with the same one.
