@@ -15,6 +15,7 @@ constexpr std::size_t kContenders = 3, kMostContenders = 5;
 constexpr std::size_t kMostAsLikely = 16;
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
 constexpr std::size_t kAxesOfPairs = 24;
+constexpr std::size_t kMostOfPairs = 150;  ///< places of a large building, best first
 constexpr int kSteps = 8, kPairSteps = 6;
 constexpr int kTrialSteps = 3;     ///< before the ratios are compared
 constexpr double kWideMargin = 2;  ///< times the margin: places above it then are not iterated on
@@ -124,7 +125,8 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
 std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
                                        const std::vector<Localisation>& once,
                                        const Parallel& parallel) {
-  const std::vector<CandidatePlace> all = of_one_direction(once);
+  std::vector<CandidatePlace> all = of_one_direction(once);
+  if (fitter.plant().is_large() && all.size() > kMostOfPairs) all.resize(kMostOfPairs);
   std::vector<std::vector<CandidatePlace>> lists;
   // Two exchanged axes stand out among the axes, each for itself.
   std::vector<char> leading_axis(all.size(), 0);

@@ -17,12 +17,14 @@ using Eigen::VectorXd;
 constexpr double kPeriods = 2;
 constexpr Index kHops = 4;  ///< in one mean
 constexpr Index kLeastMeans = 23;
-/// Of the band's lower end in a record: in fewer, slow motion of the building is like a drift.
-constexpr double kLeastPeriods = 26;
-constexpr double kLeastShare = 0.02;  ///< of an axis' rms
-constexpr double kBeyondOthers = 5;   ///< times the median of all axes
-constexpr double kSignificance = 30;  ///< F of two parameters
-constexpr double kOnsetStep = 0.05;   ///< of the segment
+/// Of the band's lower end in a record: in fewer, slow motion of the building is like a drift,
+/// unless that is large.
+constexpr double kLeastPeriods = 26, kFewPeriods = 6;
+constexpr Index kFewMeans = 9;
+constexpr double kLeastShare = 0.02, kLargeShare = 0.1;  ///< of an axis' rms
+constexpr double kBeyondOthers = 5, kFarBeyond = 15;     ///< times the median of all axes
+constexpr double kSignificance = 30;                     ///< F of two parameters
+constexpr double kOnsetStep = 0.05;                      ///< of the segment
 constexpr double kLatestOnset = 0.85;
 constexpr Index kMostCosines = 20;
 constexpr double kFarBetter = 4;  ///< times less is left by a curve than by a ramp
@@ -139,9 +141,11 @@ void remove_common(const Plant& plant, Means& means) {
 
 std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index axis) {
   const double seconds = static_cast<double>(s.accel.rows()) / s.rate_hz;
-  if (seconds * s.w[0] < kLeastPeriods * 2 * M_PI) return std::nullopt;
+  const double periods = seconds * s.w[0] / (2 * M_PI);
+  if (periods < kFewPeriods) return std::nullopt;
   Means means = means_of(s);
-  if (means.time.size() < kLeastMeans) return std::nullopt;
+  const bool few = periods < kLeastPeriods || means.time.size() < kLeastMeans;
+  if (means.time.size() < kFewMeans) return std::nullopt;
   remove_common(plant, means);
   const auto fitted = [&](Index a) {
     Fit fit = fit_of(means, a, s.seconds());
@@ -157,8 +161,9 @@ std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index 
   const Fit own = fitted(axis);
   const double rms =
       std::sqrt(s.accel.col(axis).squaredNorm() / static_cast<double>(s.accel.rows()));
-  const bool stands_out = own.significance > kSignificance && own.ramp.rms > kLeastShare * rms &&
-                          own.ramp.rms > kBeyondOthers * others[others.size() / 2];
+  const bool stands_out =
+      own.significance > kSignificance && own.ramp.rms > (few ? kLargeShare : kLeastShare) * rms &&
+      own.ramp.rms > (few ? kFarBeyond : kBeyondOthers) * others[others.size() / 2];
   return stands_out ? std::optional<Ramp>(own.ramp) : std::nullopt;
 }
 
