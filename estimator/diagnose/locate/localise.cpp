@@ -7,6 +7,7 @@
 
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/normal_equations.h"
+#include "estimator/diagnose/locate/closer_look.h"
 #include "estimator/diagnose/locate/large_lists.h"
 #include "estimator/diagnose/locate/place_products.h"
 #include "estimator/numeric/complex.h"
@@ -164,17 +165,20 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
   const double prior = fitter.prior_cost(model);
   std::vector<Localisation> out(lists.size());
-  const auto store = [&](std::size_t i, const Reduced& reduced) {
+  // closer: of a large building.
+  const auto store = [&](std::size_t i, const Reduced& reduced, const CloserLook* closer) {
     Localisation& one = out[i];
     one.candidate_places = lists[i];
     if (explains_everything(fitter, one.candidate_places)) {
       one = everything(fitter, model, one.candidate_places, at.systems);
       return;
     }
-    const VectorXd step = step_of(reduced, at, model, 1.0, kept);
+    const VectorXd step = closer ? closer->step : step_of(reduced, at, model, 1.0, kept);
     if (!step.allFinite()) return;
-    const double left = reduced.equations.misfit + step.dot(reduced.equations.normal * step) +
-                        2 * step.dot(reduced.equations.gradient);
+    const double left = closer
+                            ? closer->left
+                            : reduced.equations.misfit + step.dot(reduced.equations.normal * step) +
+                                  2 * step.dot(reduced.equations.gradient);
     one.misfit = left + prior;
     one.ratio = left / reduced.expected;
     one.record_ratio = reduced.record_ratio;
@@ -196,8 +200,9 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     chosen.resize(kCloser);
   }
   const auto numbers = static_cast<std::size_t>(squares.empty() ? 1 : squares.front().size());
+  const bool large = fitter.plant().is_large();
   const std::size_t at_once =
-      std::clamp(kNumbersTogether / numbers, kFewestTogether, kMostTogether);
+      large ? kCloser / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMostTogether);
   const std::size_t groups = (chosen.size() + at_once - 1) / at_once;
   run_all(parallel, static_cast<int>(groups), [&](int group) {
     const std::size_t first = static_cast<std::size_t>(group) * at_once;
@@ -205,8 +210,23 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     for (std::size_t i = first; i < std::min(first + at_once, chosen.size()); ++i)
       together.push_back(lists[chosen[i]]);
     const std::vector<Reduced> reduced = reduce(fitter, at, model, kept, squares, together);
-    for (std::size_t i = 0; i < reduced.size(); ++i) store(chosen[first + i], reduced[i]);
+    std::vector<CloserLook> closer;
+    if (large) {
+      std::vector<NormalEquations> equations;
+      for (const Reduced& one : reduced) equations.push_back(one.equations);
+      closer = closer_looks(at, kept, together, equations);
+    }
+    for (std::size_t i = 0; i < reduced.size(); ++i)
+      store(chosen[first + i], reduced[i], large ? &closer[i] : nullptr);
   });
+  if (chosen.size() < lists.size()) {  // what was not looked at closer comes after all that was
+    double last = 0;
+    for (const std::size_t i : chosen)
+      if (out[i].ratio < 1e299) last = std::max(last, out[i].ratio);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (std::find(chosen.begin(), chosen.end(), i) == chosen.end())
+        out[i].ratio = std::max(out[i].ratio, last);
+  }
   return out;
 }
 
@@ -229,7 +249,7 @@ Localisation localise(const Fitter& fitter, const Model& start,
     const Linearised at = fitter.linearise(model, std::move(systems));
     if (explains_everything(fitter, candidate_places))
       return everything(fitter, model, candidate_places, at.systems);
-    const std::vector<Index> kept = moving(at, !plant.is_large());
+    const std::vector<Index> kept = moving(at, true);
     std::vector<MatrixXd> squares;
     for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
     std::vector<CandidatePlace> current = candidate_places;

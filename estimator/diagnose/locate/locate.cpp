@@ -10,6 +10,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
+constexpr std::size_t kSingle = 3;     ///< of places of one direction, iterated too
 constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
 constexpr std::size_t kContenders = 3, kMostContenders = 5;
 constexpr std::size_t kMostAsLikely = 16;
@@ -111,11 +112,15 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
     lists.push_back({s});
   out.once = one_step(fitter, now, lists, parallel);
   std::vector<const Localisation*> starts;
-  std::size_t global = 0;
+  std::size_t global = 0, single = 0;
   for (std::size_t i = 0; i < out.once.size(); ++i) {
-    const bool more = is_global(out.once[i].candidate_places.front()) && global < kOfOneKind;
+    const CandidatePlace& place = out.once[i].candidate_places.front();
+    // Of a large building, both directions of its masses come before either of them.
+    const bool alone = fitter.plant().is_large() && place.size() == 1 && single < kSingle;
+    const bool more = (is_global(place) && global < kOfOneKind) || alone;
     if (i >= kPlaces && !more) continue;
-    global += is_global(out.once[i].candidate_places.front());
+    global += is_global(place);
+    single += place.size() == 1;
     starts.push_back(&out.once[i]);
   }
   out.places = iterated(fitter, now, starts, kSteps, wide_margin_of, parallel);
