@@ -63,6 +63,17 @@ Json effect_json(const DiagnoseOutput& o, const estimator::FoundEffect& f) {
           {"parameters", parameters}};
 }
 
+/// Its word and what general functions of every kind explain; null where it was not looked at.
+Json kind_json(const estimator::WhereEntry& where) {
+  if (!where.kind) return nullptr;
+  Json share = Json::object();
+  for (const estimator::LawKind kind :
+       {estimator::LawKind::elastic, estimator::LawKind::impact, estimator::LawKind::dissipative,
+        estimator::LawKind::hysteretic, estimator::LawKind::time_varying})
+    share[law_kind_word(kind)] = json_value(where.kind->share[static_cast<std::size_t>(kind)]);
+  return {{"name", law_kind_word(where.kind->kind)}, {"explained_share", share}};
+}
+
 const char* outcome_word(estimator::TrialOutcome outcome) {
   switch (outcome) {
     case estimator::TrialOutcome::fitted:
@@ -144,7 +155,8 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
          {"time_s", span(w.from_s, w.to_s)},
          {"band_hz", span(w.low_hz, w.high_hz)},
          {"peak", w.peak > 0 ? json_value(w.peak) : Json(nullptr)},
-         {"peak_unit", w.place.kind == estimator::PlaceKind::channel ? "m/s^2" : "N"}});
+         {"peak_unit", w.place.kind == estimator::PlaceKind::channel ? "m/s^2" : "N"},
+         {"kind", kind_json(w)}});
   Json parameters = Json::object();
   for (int p = 0; p < o.plant.table.size(); ++p)
     if (!o.plant.stiff_floors || o.plant.table[p].panel < 0)

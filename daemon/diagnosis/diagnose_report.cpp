@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "daemon/diagnosis/diagnose_verdict.h"
+#include "daemon/diagnosis/kind_section.h"
 #include "daemon/diagnosis/where_map.h"
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
@@ -301,6 +302,9 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
                          100 * share_of_gap(o, f.before - f.after));
   if (const std::string text = leading_sentence(o); !text.empty())
     items += "<li>" + html_text(text) + "</li>\n";
+  if (d.effects.empty())
+    if (const std::string text = kind_sentence(o); !text.empty())
+      items += "<li>" + html_text(text) + "</li>\n";
   for (const LawMotion& m : motions)
     if (const std::string text = meaning(o, m); !text.empty())
       items += "<li>" + html_text(text) + "</li>\n";
@@ -308,8 +312,8 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
   if (!d.reason.empty()) body += "<p>" + html_text(d.reason) + "</p>\n";
   const std::string title = "Diagnosis of " + o.plant.structure.name;
   body += "<h1>" + html_text(title) + "</h1>\n";
-  body += loop_section(motions) + where_section(o) + gap_section(o) + history_section(o) +
-          effects_section(o);
+  body += loop_section(motions) + where_section(o) + kind_section(o) + gap_section(o) +
+          history_section(o) + effects_section(o);
   body += fmt::format(
       "<h2>What stays unexplained</h2>\n<p>After all effects the simulation differs from the "
       "measurement by {:.3g} times what the sensors' noise explains; 1 would be nothing but "

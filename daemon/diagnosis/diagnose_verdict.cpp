@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/diagnosis/kind_section.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::daemon {
@@ -163,6 +164,8 @@ std::string diagnosis_text(const DiagnoseOutput& o) {
                        effect_words(o, f), confidence_words(f),
                        100 * share_of_gap(o, f.before - f.after));
   if (const std::string text = leading_sentence(o); !text.empty()) out += "  " + text + "\n";
+  if (const std::string text = kind_sentence(o); d.effects.empty() && !text.empty())
+    out += "  " + text + "\n";
   if (!d.reason.empty()) out += "  " + d.reason + "\n";
   return out;
 }

@@ -11,12 +11,19 @@ using Eigen::Index;
 using Eigen::RowVectorXcd;
 
 BinProducts::BinProducts(const Linearised& at, std::size_t record, const std::vector<Index>& kept)
-    : at_(at), system_(at.systems[record]), columns_(at.columns[record]), kept_(kept) {
+    : at_(at),
+      system_(at.systems[record]),
+      columns_(at.columns[record]),
+      last_(at.plant->is_large() ? system_.rest : system_.residual),
+      kept_(kept) {
   const Plant& plant = *at.plant;
   const Index n = plant.equations(), own = static_cast<Index>(kept.size()) + 1;
   for (const Index u : kept)
     direction_of_.push_back(columns_.direction[static_cast<std::size_t>(u)]);
   direction_of_.push_back(-1);
+  axes_too_ = std::any_of(direction_of_.begin(), direction_of_.end(), [&](Index d) {
+    return d >= plant.element_count() && d < plant.element_count() + plant.axis_count();
+  });
   for (Index c = 0; c < own; ++c)
     if (direction_of_[static_cast<std::size_t>(c)] < 0) effects_.push_back(c);
   for (Index e = 0; e < plant.element_count(); ++e)
@@ -49,8 +56,8 @@ void BinProducts::put_effects(Index bin) {
     const auto c = static_cast<std::size_t>(effects_[i]);
     auto column = whitened_effects_.col(static_cast<Index>(i));
     if (c == kept_.size()) {
-      column.real() = system_.residual.segment(2 * n * bin, n);
-      column.imag() = system_.residual.segment(2 * n * bin + n, n);
+      column.real() = last_.segment(2 * n * bin, n);
+      column.imag() = last_.segment(2 * n * bin + n, n);
     } else {
       const auto rows = columns_.effects.col(columns_.row[static_cast<std::size_t>(kept_[c])]);
       column.real() = rows.segment(2 * n * bin, n);
@@ -122,7 +129,8 @@ void BinProducts::compute(Index bin) {
 void BinProducts::put_others() {
   const Index first = all_.real.rows() - metric_.rows();
   Index k = 0;
-  for (const std::vector<Direction>* list : {&elements_, &axes_})
+  for (const std::vector<Direction>* list : {&elements_, &axes_}) {
+    if (list == &axes_ && !axes_too_) break;
     for (const Direction& one : *list) {
       all_.real.row(k).setZero();
       all_.imaginary.row(k).setZero();
@@ -139,26 +147,29 @@ void BinProducts::put_others() {
       }
       ++k;
     }
+  }
 }
 
-void BinProducts::add_square(RowMatrix& sum) {
+void BinProducts::add_square(RowMatrix& sum, double weight) {
   put_others();
   const Index own = size_real_.size();
   for (Index u = 0; u < own; ++u) {
     const Index k = direction_of_[static_cast<std::size_t>(u)];
     if (k < 0) continue;
     sum.row(u).segment(u, own - u) +=
-        size_real_[u] * all_.real.row(k).segment(u, own - u) +
-        size_imaginary_[u] * all_.imaginary.row(k).segment(u, own - u);
+        weight * size_real_[u] * all_.real.row(k).segment(u, own - u) +
+        weight * size_imaginary_[u] * all_.imaginary.row(k).segment(u, own - u);
     for (const Index v : effects_)
       if (v < u)
-        sum(v, u) += size_real_[u] * all_.real(k, v) + size_imaginary_[u] * all_.imaginary(k, v);
+        sum(v, u) +=
+            weight * (size_real_[u] * all_.real(k, v) + size_imaginary_[u] * all_.imaginary(k, v));
   }
   for (std::size_t i = 0; i < effects_.size(); ++i)
     for (std::size_t j = i; j < effects_.size(); ++j)
-      sum(effects_[i], effects_[j]) += whitened_effects_.col(static_cast<Index>(i))
-                                           .dot(whitened_effects_.col(static_cast<Index>(j)))
-                                           .real();
+      sum(effects_[i], effects_[j]) +=
+          weight * whitened_effects_.col(static_cast<Index>(i))
+                       .dot(whitened_effects_.col(static_cast<Index>(j)))
+                       .real();
 }
 
 BinProducts::Direction BinProducts::of_force(const Eigen::VectorXd& force) {
@@ -172,6 +183,15 @@ RowVectorXcd BinProducts::under_metric(const Direction& direction) const {
   RowVectorXcd out = RowVectorXcd::Zero(metric_.cols());
   for (const Entry& e : direction)
     out += Complex(e.real, -e.imaginary) * metric_.col(e.equation).adjoint();
+  return out;
+}
+
+Complex BinProducts::between(const Direction& a, const Direction& b) const {
+  Complex out = 0;
+  for (const Entry& e : a)
+    for (const Entry& f : b)
+      out += Complex(e.real, -e.imaginary) * metric_(e.equation, f.equation) *
+             Complex(f.real, f.imaginary);
   return out;
 }
 

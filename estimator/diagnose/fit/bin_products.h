@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,12 +14,13 @@ namespace framewatch::estimator {
 /// themselves, and none of their memory.
 class BinProducts {
  public:
-  /// Of the unknowns `kept`, then the residual.
+  /// Of the unknowns `kept`, then the residual; of a large building without its end terms.
   BinProducts(const Linearised& at, std::size_t record, const std::vector<Eigen::Index>& kept);
 
   void compute(Eigen::Index bin);
-  /// Adds the products of the columns with each other to the upper triangle of `sum`.
-  void add_square(RowMatrix& sum);
+  /// Adds the products of the columns with each other, `weight` times, to the upper triangle of
+  /// `sum`.
+  void add_square(RowMatrix& sum, double weight = 1);
   /// The columns under the metric, at the equations: real parts, then imaginary parts with opposite
   /// sign; 2 equations x columns, padded. As Weights::add_shares() takes them.
   const RowMatrix& at_equations() const { return at_equations_; }
@@ -36,6 +38,8 @@ class BinProducts {
   }
   /// direction^H metric: equations.
   Eigen::RowVectorXcd under_metric(const Direction& direction) const;
+  /// a^H metric b.
+  std::complex<double> between(const Direction& a, const Direction& b) const;
   /// Its product with every column: direction^H metric column.
   Eigen::RowVectorXcd with_columns(const Direction& direction) const;
 
@@ -54,7 +58,9 @@ class BinProducts {
   const Linearised& at_;
   const Whitened& system_;
   const Columns& columns_;
+  const Eigen::VectorXd& last_;                    ///< the residual
   std::vector<Eigen::Index> kept_, direction_of_;  ///< of every column; -1: of an effect
+  bool axes_too_ = false;                          ///< a column has the direction of an axis
   std::vector<Direction> elements_, axes_;
   Eigen::MatrixXcd metric_;
   Complexes under_;     ///< one equation's row of the metric

@@ -17,6 +17,9 @@ using Eigen::VectorXd;
 
 constexpr double kLongestStep = 0.5;  ///< of a stiffness, relative to the design
 constexpr int kTries = 7;
+/// Misfit, over that when the weights were those of the model, below which a large building's are
+/// made anew: they take longer than a step.
+constexpr double kNewWeights = 0.5;
 
 double total_misfit(const std::vector<Whitened>& systems) {
   double out = 0;
@@ -126,6 +129,8 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   FitResult best = out;
   double damping = 1e-6;
   int worse = 0;
+  double weighted = total_misfit(now);  // when the weights were those of the model
+  bool own_weights = true;
   for (; out.steps < options.max_steps; ++out.steps) {
     const Linearised at = linearise(out.model, std::move(now), options.through_run);
     NormalEquations equations = normal_equations(at);
@@ -144,10 +149,17 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
         continue;
       }
       const Model trial = moved(out.model, at.unknowns, step);
-      const std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems);
+      std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems);
       const bool falls =
           !then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before;
-      if (falls || (!then.empty() && at.level < kNearNoise)) now = reweighted(trial, then);
+      if (falls && plant_.is_large() && total_misfit(then) > kNewWeights * weighted) {
+        now = then;
+        own_weights = false;
+      } else if (falls || (!then.empty() && !plant_.is_large() && at.level < kNearNoise)) {
+        now = reweighted(trial, then);
+        own_weights = true;
+        if (!now.empty()) weighted = total_misfit(now);
+      }
       better = falls || (!now.empty() && total_misfit(now) + prior_cost(trial) < out.cost);
       if (better) out.model = trial;
       damping = better ? std::max(1e-9, damping / 10) : std::max(1e-3, damping * 10);
@@ -158,6 +170,14 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
     if (gained > 0) best = out;
     worse = gained > std::max(options.tolerance, 1e-4 * out.cost) ? 0 : worse + 1;
     if (worse >= 2 || (worse == 1 && std::abs(gained) < options.tolerance)) break;
+  }
+  if (!own_weights) {
+    std::vector<Whitened> last = systems(best.model, best.motion, options.forcing);
+    if (!last.empty()) {
+      out.model = best.model;
+      store(last);
+      best = out;
+    }
   }
   best.steps = out.steps;
   best.good = true;

@@ -68,7 +68,8 @@ std::vector<Model> linear_starts(const Plant& plant, const Model& model) {
   return {model, damped, design};
 }
 
-JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps) {
+JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps,
+                     const Parallel& parallel) {
   const Model& first = starts.front();
   const FitResult noise = fitter.fit(first, {}, thorough(first, steps));
   const Model& fitted = noise.good ? noise.model : first;
@@ -78,16 +79,16 @@ JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int
 
   std::vector<Start> all{{out.model, out.gap}};
   for (const Model& model : starts) all.push_back({model, rms_gap(fitter, model)});
-  for (Start& s : all) fit_free_run(fitter, kFirstSteps, s);
+  run_all(parallel, static_cast<int>(all.size()),
+          [&](int i) { fit_free_run(fitter, kFirstSteps, all[static_cast<std::size_t>(i)]); });
   std::stable_sort(all.begin(), all.end(),
                    [](const Start& a, const Start& b) { return a.gap < b.gap; });
   Start best = all.front();
-  for (const Start& s : all) {
-    if (!(s.gap < kClose * all.front().gap)) break;
-    Start on = s;
-    fit_to_the_end(fitter, steps, on);
-    if (on.gap < best.gap) best = std::move(on);
-  }
+  std::erase_if(all, [close = kClose * best.gap](const Start& s) { return !(s.gap < close); });
+  run_all(parallel, static_cast<int>(all.size()),
+          [&](int i) { fit_to_the_end(fitter, steps, all[static_cast<std::size_t>(i)]); });
+  for (Start& s : all)
+    if (s.gap < best.gap) best = std::move(s);
   out.model = std::move(best.model);
   out.gap = best.gap;
   return out;

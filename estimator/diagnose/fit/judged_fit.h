@@ -4,6 +4,7 @@
 
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/fit/gap.h"
+#include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
 
@@ -25,7 +26,8 @@ struct JudgedFit {
 /// From several starts, the first of which is fitted under the sensors' noise alone too; the best
 /// by its gap.
 /// steps: of each fit. Where nothing can be fitted, the first start.
-JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps);
+JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps,
+                     const Parallel& parallel = {});
 
 /// Starts of the linear class beside a model of it: with the design's damping where it has less,
 /// and the design itself.

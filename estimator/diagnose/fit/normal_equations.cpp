@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "estimator/diagnose/fit/bin_products.h"
+#include "estimator/diagnose/fit/sampled_bins.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -12,7 +13,56 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+
+/// Products of the columns of all unknowns with the rest.
+VectorXd gradient_of(const Linearised& at, std::size_t record) {
+  const Plant& plant = *at.plant;
+  const Whitened& system = at.systems[record];
+  const Columns& columns = at.columns[record];
+  const Index n = plant.equations(), elements = plant.element_count(), axes = plant.axis_count();
+  VectorXd out = VectorXd::Zero(columns.count());
+  Eigen::VectorXcd rest(n), along(elements + axes + n);
+  for (Index b = 0; b < system.bins(); ++b) {
+    rest.real() = system.rest.segment(2 * n * b, n);
+    rest.imag() = system.rest.segment(2 * n * b + n, n);
+    along.tail(n).noalias() = system.weights->whitener(b).adjoint() * rest;
+    along.head(elements).real().noalias() = plant.building.act.transpose() * along.tail(n).real();
+    along.head(elements).imag().noalias() = plant.building.act.transpose() * along.tail(n).imag();
+    along.segment(elements, axes).noalias() =
+        system.operation[static_cast<std::size_t>(b)].adjoint() * along.tail(n);
+    for (Index u = 0; u < out.size(); ++u) {
+      const Index d = columns.direction[static_cast<std::size_t>(u)];
+      if (d >= 0) out[u] += (std::conj(columns.size(b, u)) * along[d]).real();
+    }
+  }
+  for (Index u = 0; u < out.size(); ++u)
+    if (columns.direction[static_cast<std::size_t>(u)] < 0)
+      out[u] = columns.effects.col(columns.row[static_cast<std::size_t>(u)]).dot(system.rest);
+  return out;
+}
+
+MatrixXd sampled_square_of(const Linearised& at, std::size_t record,
+                           const std::vector<Index>& kept) {
+  const auto count = static_cast<Index>(kept.size());
+  BinProducts products(at, record, kept);
+  RowMatrix square = RowMatrix::Zero(count + 1, count + 1);
+  for (const SampledBin& sampled : sampled_bins(at, record)) {
+    products.compute(sampled.bin);
+    products.add_square(square, sampled.weight);
+  }
+  MatrixXd out = square.selfadjointView<Eigen::Upper>();
+  const VectorXd gradient = gradient_of(at, record)(kept);
+  out.col(count).head(count) = gradient;
+  out.row(count).head(count) = gradient.transpose();
+  out(count, count) = at.systems[record].misfit;
+  return out;
+}
+
+}  // namespace
+
 MatrixXd square_of(const Linearised& at, std::size_t record, const std::vector<Index>& kept) {
+  if (at.plant->is_large()) return sampled_square_of(at, record, kept);
   const Weights& weights = *at.systems[record].weights;
   const Index own = static_cast<Index>(kept.size()) + 1, ends = weights.ends();
   BinProducts products(at, record, kept);
@@ -31,8 +81,15 @@ MatrixXd square_of(const Linearised& at, std::size_t record, const std::vector<I
   return out;
 }
 
+Index ends_of(const Linearised& at, std::size_t record) {
+  return at.plant->is_large() ? 0 : at.systems[record].weights->ends();
+}
+
 NormalEquations without_ends(const MatrixXd& square, Index ends) {
   const Index count = square.cols() - ends - 1;
+  if (ends == 0)
+    return {square.topLeftCorner(count, count), square.col(count).head(count),
+            square(count, count)};
   MatrixXd inner = square.bottomRightCorner(ends, ends);
   inner.diagonal().array() += 1e-9;
   const Ldlt factor(inner);
@@ -92,7 +149,7 @@ NormalEquations normal_equations(const Linearised& at) {
   const auto count = static_cast<Index>(all.size());
   NormalEquations out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0};
   for (std::size_t r = 0; r < at.systems.size(); ++r)
-    out += without_ends(square_of(at, r, all), at.systems[r].weights->ends());
+    out += without_ends(square_of(at, r, all), ends_of(at, r));
   return out;
 }
 

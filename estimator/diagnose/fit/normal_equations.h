@@ -8,7 +8,9 @@
 
 namespace framewatch::estimator {
 
-/// Gram matrix of the unknowns `kept`, the residual and the end terms, in this order.
+/// Gram matrix of the unknowns `kept`, the residual and the end terms, in this order. Of a large
+/// building the end terms are projected out of the residual and there are none here; the unknowns'
+/// own products are those of sampled_bins().
 Eigen::MatrixXd square_of(const Linearised& at, std::size_t record,
                           const std::vector<Eigen::Index>& kept);
 
@@ -26,6 +28,8 @@ struct NormalEquations {
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd& right,
                              const Model& model, const std::vector<Unknown>& unknowns);
 
+/// How many end terms square_of() gives.
+Eigen::Index ends_of(const Linearised& at, std::size_t record);
 /// square: as square_of() gives it; ends: how many end terms.
 NormalEquations without_ends(const Eigen::MatrixXd& square, Eigen::Index ends);
 /// Of all segments together.

@@ -14,10 +14,8 @@ using Eigen::VectorXd;
 using Kind = Unknown::Kind;
 
 constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
-/// Equations of a large building: there only frames at the law and next to it move its run enough
-/// for what their runs cost.
-constexpr Index kLarge = 40;
-
+/// In a large building only frames at the law and next to it move its run enough for what their
+/// runs cost.
 bool is_near(const EffectPlace& law, int story, int frame) {
   return law.frame == frame && std::abs(law.story - story) <= 1;
 }
@@ -42,8 +40,7 @@ bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
     return false;
   }
   return std::any_of(model.effects.begin(), model.effects.end(), [&](const ModelEffect& e) {
-    if (plant.equations() > kLarge && frame >= 0)
-      return e.element_law() && is_near(e.place, story, frame);
+    if (plant.is_large() && frame >= 0) return e.element_law() && is_near(e.place, story, frame);
     return e.element_law() &&
            (frame < 0 || e.place.kind == PlaceKind::panel ||
             (e.place.frame < 0 ? e.place.direction : s.direction(e.place.frame)) ==

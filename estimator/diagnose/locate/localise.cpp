@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
+#include <numeric>
 #include <span>
 
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/normal_equations.h"
+#include "estimator/diagnose/locate/closer_look.h"
+#include "estimator/diagnose/locate/large_lists.h"
+#include "estimator/diagnose/locate/place_products.h"
 #include "estimator/numeric/complex.h"
 namespace framewatch::estimator {
 namespace {
@@ -17,10 +20,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kConverged = 1e-3;  ///< change of the misfit, relative
-/// Of a direction's square, below which it depends on those before it.
-constexpr double kIndependent = 1e-12;
 /// Lists that are processed in one pass over the bins: so many numbers of their squares, but a few.
 constexpr std::size_t kNumbersTogether = 8'000'000, kFewestTogether = 8, kMostTogether = 64;
+/// Lists of a large building that are looked at closer than by their rough misfits.
+constexpr std::size_t kCloser = 64;
 
 /// Which unknowns a step may change; masses, gains and clocks within tolerance only if
 /// `tolerances`.
@@ -36,60 +39,12 @@ std::vector<Index> moving(const Linearised& at, bool tolerances) {
   return out;
 }
 
-/// Products of the orthonormal directions of a list of places, whitened, with the columns and with
-/// unit forces on the equations; directions x either.
-struct Along {
-  MatrixXcd columns, equations;
-};
-
-Complex product(const Eigen::RowVectorXcd& equations, const BinProducts::Direction& direction) {
-  Complex out = 0;
-  for (const BinProducts::Entry& e : direction)
-    out += equations[e.equation] * Complex(e.real, e.imaginary);
-  return out;
-}
-
-Along along_places(const BinProducts& products, const std::vector<CandidatePlace>& places) {
-  std::vector<BinProducts::Direction> directions;
-  for (const CandidatePlace& place : places) {
-    if (place.kind == CandidatePlace::Kind::axis)
-      directions.push_back(products.of_axis(place.axis));
-    for (Index c = 0; c < place.directions.cols(); ++c)
-      directions.push_back(products.of_force(place.directions.col(c)));
-  }
-  Along out;
-  const auto count = static_cast<Index>(directions.size());
-  for (Index i = 0; i < count; ++i) {
-    const BinProducts::Direction& direction = directions[static_cast<std::size_t>(i)];
-    const Eigen::RowVectorXcd equations = products.under_metric(direction),
-                              columns = products.with_columns(direction);
-    if (i == 0) {
-      out.equations = MatrixXcd::Zero(count, equations.size());
-      out.columns = MatrixXcd::Zero(count, columns.size());
-    }
-    out.equations.row(i) = equations;
-    out.columns.row(i) = columns;
-    const double before = product(equations, direction).real();
-    double square = before;
-    // equations.row(k) force: the product of the orthonormal direction k with this one.
-    for (Index k = 0; k < i; ++k) {
-      const Complex with = product(out.equations.row(k), direction);
-      out.equations.row(i) -= std::conj(with) * out.equations.row(k);
-      out.columns.row(i) -= std::conj(with) * out.columns.row(k);
-      square -= std::norm(with);
-    }
-    const double scale = square > kIndependent * before ? 1 / std::sqrt(square) : 0.0;
-    out.equations.row(i) *= scale;
-    out.columns.row(i) *= scale;
-  }
-  return out;
-}
-
 /// For each list: the Gram matrix of the unknowns, the residual and the end terms with the whitened
 /// directions of the list's places projected out.
 std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std::size_t record,
                               const std::vector<Index>& kept,
                               std::span<const std::vector<CandidatePlace>> lists) {
+  if (at.plant->is_large()) return without_sampled(square, at, record, kept, lists);
   const Whitened& system = at.systems[record];
   const Index n = system.weights->equations(), ends = system.weights->ends();
   std::vector<RowGram> along(lists.size(), RowGram(square.cols()));
@@ -98,7 +53,7 @@ std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std:
   for (Index b = 0; b < system.bins(); ++b) {
     products.compute(b);
     for (std::size_t i = 0; i < lists.size(); ++i) {
-      const Along places = along_places(products, lists[i]);
+      const PlaceProducts places = place_products(products, lists[i]);
       const Index count = places.columns.rows(), own = places.columns.cols();
       auto rows = along[i].rows(2 * count);
       rows.topLeftCorner(count, own) = places.columns.real();
@@ -131,6 +86,13 @@ Index size_of(const std::vector<CandidatePlace>& candidate_places) {
   return out;
 }
 
+/// Expected misfit of all segments beside arbitrary signals at these places.
+double expected_of(const Fitter& fitter, const Model& model,
+                   const std::vector<CandidatePlace>& places) {
+  return fitter.expected(model) * (1 - static_cast<double>(size_of(places)) /
+                                           static_cast<double>(fitter.plant().equations()));
+}
+
 /// Normal equations with the places of each list projected out. squares: of each segment.
 std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Model& model,
                             const std::vector<Index>& kept, const std::vector<MatrixXd>& squares,
@@ -142,7 +104,7 @@ std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Mo
   for (std::size_t r = 0; r < at.systems.size(); ++r) {
     const std::vector<MatrixXd> rest = without(squares[r], at, r, kept, lists);
     for (std::size_t i = 0; i < lists.size(); ++i) {
-      const NormalEquations one = without_ends(rest[i], at.systems[r].weights->ends());
+      const NormalEquations one = without_ends(rest[i], ends_of(at, r));
       const double expected =
           fitter.expected(r, model) * (1 - static_cast<double>(size_of(lists[i])) / n);
       out[i].equations += one;
@@ -203,17 +165,20 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
   const double prior = fitter.prior_cost(model);
   std::vector<Localisation> out(lists.size());
-  const auto store = [&](std::size_t i, const Reduced& reduced) {
+  // closer: of a large building.
+  const auto store = [&](std::size_t i, const Reduced& reduced, const CloserLook* closer) {
     Localisation& one = out[i];
     one.candidate_places = lists[i];
     if (explains_everything(fitter, one.candidate_places)) {
       one = everything(fitter, model, one.candidate_places, at.systems);
       return;
     }
-    const VectorXd step = step_of(reduced, at, model, 1.0, kept);
+    const VectorXd step = closer ? closer->step : step_of(reduced, at, model, 1.0, kept);
     if (!step.allFinite()) return;
-    const double left = reduced.equations.misfit + step.dot(reduced.equations.normal * step) +
-                        2 * step.dot(reduced.equations.gradient);
+    const double left = closer
+                            ? closer->left
+                            : reduced.equations.misfit + step.dot(reduced.equations.normal * step) +
+                                  2 * step.dot(reduced.equations.gradient);
     one.misfit = left + prior;
     one.ratio = left / reduced.expected;
     one.record_ratio = reduced.record_ratio;
@@ -221,17 +186,47 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     whole(kept) = step;
     one.model = fitter.moved(model, at.unknowns, whole);
   };
+  std::vector<std::size_t> chosen(lists.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  if (fitter.plant().is_large() && lists.size() > kCloser) {
+    const std::vector<double> left = rough_misfits(at, kept, squares, lists, parallel);
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+      out[i].candidate_places = lists[i];
+      out[i].misfit = left[i] + prior;
+      out[i].ratio = left[i] / expected_of(fitter, model, lists[i]);
+    }
+    std::stable_sort(chosen.begin(), chosen.end(),
+                     [&](std::size_t a, std::size_t b) { return out[a].ratio < out[b].ratio; });
+    chosen.resize(kCloser);
+  }
   const auto numbers = static_cast<std::size_t>(squares.empty() ? 1 : squares.front().size());
+  const bool large = fitter.plant().is_large();
   const std::size_t at_once =
-      std::clamp(kNumbersTogether / numbers, kFewestTogether, kMostTogether);
-  const std::size_t groups = (lists.size() + at_once - 1) / at_once;
+      large ? kCloser / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMostTogether);
+  const std::size_t groups = (chosen.size() + at_once - 1) / at_once;
   run_all(parallel, static_cast<int>(groups), [&](int group) {
     const std::size_t first = static_cast<std::size_t>(group) * at_once;
-    const std::span together =
-        std::span(lists).subspan(first, std::min(at_once, lists.size() - first));
+    std::vector<std::vector<CandidatePlace>> together;
+    for (std::size_t i = first; i < std::min(first + at_once, chosen.size()); ++i)
+      together.push_back(lists[chosen[i]]);
     const std::vector<Reduced> reduced = reduce(fitter, at, model, kept, squares, together);
-    for (std::size_t i = 0; i < reduced.size(); ++i) store(first + i, reduced[i]);
+    std::vector<CloserLook> closer;
+    if (large) {
+      std::vector<NormalEquations> equations;
+      for (const Reduced& one : reduced) equations.push_back(one.equations);
+      closer = closer_looks(at, kept, together, equations);
+    }
+    for (std::size_t i = 0; i < reduced.size(); ++i)
+      store(chosen[first + i], reduced[i], large ? &closer[i] : nullptr);
   });
+  if (chosen.size() < lists.size()) {  // what was not looked at closer comes after all that was
+    double last = 0;
+    for (const std::size_t i : chosen)
+      if (out[i].ratio < 1e299) last = std::max(last, out[i].ratio);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (std::find(chosen.begin(), chosen.end(), i) == chosen.end())
+        out[i].ratio = std::max(out[i].ratio, last);
+  }
   return out;
 }
 
@@ -245,9 +240,12 @@ Localisation localise(const Fitter& fitter, const Model& start,
   std::vector<MatrixXcd> driving = motion;
   driving.resize(fitter.segments().size());
   double before = 1e300;
+  std::vector<Whitened> weights;  // of a large building: those of the first step stay
   for (int step = 0; step <= steps; ++step) {
-    std::vector<Whitened> systems = fitter.systems(model, driving, Forcing::measured);
+    std::vector<Whitened> systems =
+        fitter.systems(model, driving, Forcing::measured, weights.empty() ? nullptr : &weights);
     if (systems.empty()) return out;
+    if (plant.is_large() && weights.empty()) weights = systems;
     const Linearised at = fitter.linearise(model, std::move(systems));
     if (explains_everything(fitter, candidate_places))
       return everything(fitter, model, candidate_places, at.systems);

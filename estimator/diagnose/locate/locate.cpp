@@ -10,11 +10,13 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
+constexpr std::size_t kSingle = 3;     ///< of places of one direction, iterated too
 constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
 constexpr std::size_t kContenders = 3, kMostContenders = 5;
 constexpr std::size_t kMostAsLikely = 16;
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
 constexpr std::size_t kAxesOfPairs = 24;
+constexpr std::size_t kMostOfPairs = 150;  ///< places of a large building, best first
 constexpr int kSteps = 8, kPairSteps = 6;
 constexpr int kTrialSteps = 3;     ///< before the ratios are compared
 constexpr double kWideMargin = 2;  ///< times the margin: places above it then are not iterated on
@@ -110,11 +112,15 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
     lists.push_back({s});
   out.once = one_step(fitter, now, lists, parallel);
   std::vector<const Localisation*> starts;
-  std::size_t global = 0;
+  std::size_t global = 0, single = 0;
   for (std::size_t i = 0; i < out.once.size(); ++i) {
-    const bool more = is_global(out.once[i].candidate_places.front()) && global < kOfOneKind;
+    const CandidatePlace& place = out.once[i].candidate_places.front();
+    // Of a large building, both directions of its masses come before either of them.
+    const bool alone = fitter.plant().is_large() && place.size() == 1 && single < kSingle;
+    const bool more = (is_global(place) && global < kOfOneKind) || alone;
     if (i >= kPlaces && !more) continue;
-    global += is_global(out.once[i].candidate_places.front());
+    global += is_global(place);
+    single += place.size() == 1;
     starts.push_back(&out.once[i]);
   }
   out.places = iterated(fitter, now, starts, kSteps, wide_margin_of, parallel);
@@ -124,7 +130,8 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
 std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& now,
                                        const std::vector<Localisation>& once,
                                        const Parallel& parallel) {
-  const std::vector<CandidatePlace> all = of_one_direction(once);
+  std::vector<CandidatePlace> all = of_one_direction(once);
+  if (fitter.plant().is_large() && all.size() > kMostOfPairs) all.resize(kMostOfPairs);
   std::vector<std::vector<CandidatePlace>> lists;
   // Two exchanged axes stand out among the axes, each for itself.
   std::vector<char> leading_axis(all.size(), 0);

@@ -17,12 +17,15 @@ using Eigen::VectorXd;
 constexpr double kPeriods = 2;
 constexpr Index kHops = 4;  ///< in one mean
 constexpr Index kLeastMeans = 23;
-/// Of the band's lower end in a record: in fewer, slow motion of the building is like a drift.
-constexpr double kLeastPeriods = 26;
-constexpr double kLeastShare = 0.02;  ///< of an axis' rms
-constexpr double kBeyondOthers = 5;   ///< times the median of all axes
-constexpr double kSignificance = 30;  ///< F of two parameters
-constexpr double kOnsetStep = 0.05;   ///< of the segment
+/// Of the band's lower end in a record: in fewer, slow motion of the building is like a drift,
+/// unless that is large.
+constexpr double kLeastPeriods = 26, kFewPeriods = 6;
+constexpr Index kFewMeans = 9;
+constexpr double kLeastShare = 0.02, kLargeShare = 0.04;  ///< of an axis' rms
+constexpr double kBeyondOthers = 5, kFarBeyond = 15;      ///< times the median of all axes
+constexpr double kSignificance = 30;                      ///< F of two parameters
+constexpr double kOfFew = 3;         ///< the same where few means are far beyond the others'
+constexpr double kOnsetStep = 0.05;  ///< of the segment
 constexpr double kLatestOnset = 0.85;
 constexpr Index kMostCosines = 20;
 constexpr double kFarBetter = 4;  ///< times less is left by a curve than by a ramp
@@ -90,21 +93,30 @@ MatrixXd cosines(const VectorXd& time, double seconds, Index count) {
   return out;
 }
 
+/// What a mean keeps of a cosine: response of a Hann taper. cycles: of the cosine within it,
+/// below 1.
+double kept(double cycles) {
+  if (cycles == 0) return 1;
+  return std::sin(M_PI * cycles) / (M_PI * cycles) / (1 - cycles * cycles);
+}
+
 /// The slow curve of an axis where that follows its means far better than a ramp, with its rms.
-void follow(const RecordSegment& s, const Means& means, Index axis, Fit& fit) {
+void follow(const RecordSegment& s, const Means& means, Index axis, bool few, Fit& fit) {
   const double seconds = s.seconds();
   const double span_s = kHops * (means.time[1] - means.time[0]);
-  const Index count =
-      std::min({kMostCosines, static_cast<Index>(seconds / span_s), means.time.size() / 2 - 1});
+  const auto apart = static_cast<Index>((few ? 1.5 : 1) * seconds / span_s);
+  const Index count = std::min({kMostCosines, apart, means.time.size() / 2 - 1});
   if (count < 2) return;
-  const MatrixXd x = cosines(means.time, seconds, count);
+  MatrixXd x = cosines(means.time, seconds, count);
+  for (Index k = 1; k <= count; ++k)
+    x.col(k) *= kept(0.5 * static_cast<double>(k) * span_s / seconds);
   const VectorXd y = means.value.col(axis), c = LeastSquares(x).solve(y);
   const double rest = (y - x * c).squaredNorm();
   const double total = (y.array() - y.mean()).matrix().squaredNorm();
   const auto left = static_cast<double>(y.size() - count - 1);
   const double significance =
       (total - rest) / kHops / static_cast<double>(count) / std::max(rest / left, 1e-300);
-  if (kFarBetter * rest > fit.rest || significance < kSignificance) return;
+  if (kFarBetter * rest > fit.rest || significance < (few ? kOfFew : kSignificance)) return;
   VectorXd time(s.accel.rows());
   for (Index i = 0; i < time.size(); ++i) time[i] = static_cast<double>(i) / s.rate_hz;
   VectorXd slow = c;
@@ -139,13 +151,15 @@ void remove_common(const Plant& plant, Means& means) {
 
 std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index axis) {
   const double seconds = static_cast<double>(s.accel.rows()) / s.rate_hz;
-  if (seconds * s.w[0] < kLeastPeriods * 2 * M_PI) return std::nullopt;
+  const double periods = seconds * s.w[0] / (2 * M_PI);
+  if (periods < kFewPeriods) return std::nullopt;
   Means means = means_of(s);
-  if (means.time.size() < kLeastMeans) return std::nullopt;
+  const bool few = periods < kLeastPeriods || means.time.size() < kLeastMeans;
+  if (means.time.size() < kFewMeans) return std::nullopt;
   remove_common(plant, means);
   const auto fitted = [&](Index a) {
     Fit fit = fit_of(means, a, s.seconds());
-    follow(s, means, a, fit);
+    follow(s, means, a, few, fit);
     return fit;
   };
   std::vector<double> others;
@@ -157,8 +171,10 @@ std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index 
   const Fit own = fitted(axis);
   const double rms =
       std::sqrt(s.accel.col(axis).squaredNorm() / static_cast<double>(s.accel.rows()));
-  const bool stands_out = own.significance > kSignificance && own.ramp.rms > kLeastShare * rms &&
-                          own.ramp.rms > kBeyondOthers * others[others.size() / 2];
+  const bool stands_out =
+      own.significance > (few ? kOfFew : kSignificance) &&
+      own.ramp.rms > (few ? kLargeShare : kLeastShare) * rms &&
+      own.ramp.rms > (few ? kFarBeyond : kBeyondOthers) * others[others.size() / 2];
   return stands_out ? std::optional<Ramp>(own.ramp) : std::nullopt;
 }
 

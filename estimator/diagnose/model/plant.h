@@ -43,6 +43,11 @@ struct Plant {
   Eigen::Index equations() const { return building.equations(); }
   Eigen::Index element_count() const { return building.elements(); }
   Eigen::Index axis_count() const { return building.axes(); }
+  /// Whether a fit's work must be saved: docs/diagnosis.md, "Large buildings".
+  bool is_large() const {
+    constexpr Eigen::Index kLarge = 40;  // equations
+    return equations() > kLarge;
+  }
   bool is_force(Eigen::Index axis) const { return !push.col(axis).isZero(0); }
   /// Whether a simulation is driven by the axis: an axis of the base, or a force axis.
   bool is_input(Eigen::Index axis) const {

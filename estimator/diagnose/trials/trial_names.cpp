@@ -11,6 +11,9 @@ namespace {
 
 constexpr double kDissipates = 0.15;     ///< dissipation() below which a law counts as elastic
 constexpr double kNarrowestSlip = 0.08;  ///< of a slip zone, in yield deformations
+/// Damping ratio above which an oscillator hardly resonates: any force that lags behind the motion
+/// is like it.
+constexpr double kDulled = 0.4;
 
 /// Energy dissipated in a cycle to the peak deformation, over that of the box around its loop.
 double dissipation(const ModelEffect& effect) {
@@ -40,10 +43,11 @@ bool at_bound(const LawParameter& parameter) {
 }
 
 /// A resonator that is none: its frequency lies above the band, its mass exceeds that of its frame,
-/// or its damping is at its bound.
+/// or its damping is at its bound or too strong for a resonance.
 bool is_no_oscillator(const TrialContext& c, const ModelEffect& effect) {
   const EffectPlace& place = effect.place;
   return effect.parameters[1].plain() > highest_hz(c.fitter) || at_bound(effect.parameters[2]) ||
+         effect.parameters[2].plain() > kDulled ||
          effect.parameters[0].plain() >
              c.fitter.plant().structure.frame_mass(place.story, place.frame);
 }

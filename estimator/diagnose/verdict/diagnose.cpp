@@ -95,9 +95,9 @@ class Search {
     set_errors(fitter_, out_.model, now.motion, out_.effects);
     set_errors(fitter_, out_.model, now.motion, out_.known);
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
-    set_gaps(fitter_, options_.holdout_from, out_);
+    set_gaps(fitter_, options_, out_);
     if (ramps.empty() && withdraw_worse(options_.holdout_from, out_)) set_models(out_.linear);
-    set_leading(fitter_, options_.holdout_from, out_);
+    set_leading(fitter_, options_, out_);
     judge(fitter_, out_);
     return out_;
   }
@@ -161,10 +161,12 @@ class Search {
     out_.model = model;
     std::vector<RecordSegment> segments = segments_;
     if (out_.ratio_before > kNearNoise)
-      out_.linear = judged_fit(fitter_, linear_starts(plant_, out_.linear), kPolishSteps).model;
+      out_.linear =
+          judged_fit(fitter_, linear_starts(plant_, out_.linear), kPolishSteps, options_.parallel)
+              .model;
     if (out_.ratio_after > kNearNoise) {
-      const JudgedFit judged =
-          judged_fit(fitter_, {out_.effects.empty() ? out_.linear : model}, kPolishSteps);
+      const JudgedFit judged = judged_fit(fitter_, {out_.effects.empty() ? out_.linear : model},
+                                          kPolishSteps, options_.parallel);
       out_.model = judged.model;
       segments = with_model_error(plant_, segments_, std::min(judged.gap, 1.0));
     }

@@ -10,6 +10,7 @@
 
 #include "estimator/diagnose/fit/gap.h"
 #include "estimator/diagnose/fit/unknowns.h"
+#include "estimator/diagnose/propose/law_kind.h"
 #include "estimator/diagnose/trials/found_effect.h"
 #include "estimator/numeric/parallel.h"
 
@@ -24,7 +25,8 @@ struct WhereEntry {
   /// not known.
   std::size_t record = 0;
   double from_s = 0, to_s = 0, low_hz = 0, high_hz = 0;
-  double peak = 0;  ///< of that signal: N, of an axis m/s^2
+  double peak = 0;                ///< of that signal: N, of an axis m/s^2
+  std::optional<KindOfLaw> kind;  ///< of the likeliest element
 };
 
 /// The best of the laws that were tried and not named: the free run with it, fitted to the training

@@ -87,11 +87,12 @@ Model with_first(const Model& model, const std::vector<FoundEffect>& effects, st
 
 }  // namespace
 
-void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
+void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out) {
+  const std::size_t holdout_from = options.holdout_from;
   const std::vector<RecordSegment> seen = training(fitter, holdout_from);
   const Fitter train(fitter.plant(), seen, fitter.tolerances());
   const auto of_train = [&](const std::vector<Model>& starts) {
-    return gaps_of(fitter, judged_fit(train, starts, kTrainSteps).model);
+    return gaps_of(fitter, judged_fit(train, starts, kTrainSteps, options.parallel).model);
   };
   out.before = of_train(linear_starts(fitter.plant(), out.linear));
   if (out.effects.empty()) {
@@ -134,7 +135,8 @@ bool no_worse(const std::vector<Gap>& before, const std::vector<Gap>& after) {
 
 }  // namespace
 
-void set_leading(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out) {
+void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out) {
+  const std::size_t holdout_from = options.holdout_from;
   if (!out.effects.empty() || out.ratio_after < kNearNoise) return;
   const std::vector<RecordSegment> seen = training(fitter, holdout_from);
   const Fitter train(fitter.plant(), seen, fitter.tolerances());
@@ -143,7 +145,7 @@ void set_leading(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out)
     if (t.outcome != TrialOutcome::fitted || is_arbitrary(t.model)) continue;
     if (tried++ == kLeading) break;
     const std::vector<Gap> gaps =
-        gaps_of(fitter, judged_fit(train, {t.model}, kLeadingSteps).model);
+        gaps_of(fitter, judged_fit(train, {t.model}, kLeadingSteps, options.parallel).model);
     if (!no_worse(out.before, gaps)) continue;
     const LeadingLaw law{t, mean_gap(out.before, holdout_from), mean_gap(gaps, holdout_from)};
     if (law.after < kLeads * law.before) out.leading.push_back(law);
@@ -206,9 +208,16 @@ void judge(const Fitter& fitter, Diagnosis& out) {
         return e.index >= 0 &&
                out.model.effects[static_cast<std::size_t>(e.index)].form == LawForm::broadband;
       });
-  out.verdict = !surrogate && (fits || (fraction > kExplainsAll && gap < kNearFloor * floor))
-                    ? Verdict::explained
-                    : Verdict::partly_explained;
+  // A linear effect has no shape of its own: what it leaves beyond chance is another one's.
+  const bool another =
+      std::any_of(out.effects.begin(), out.effects.end(), [&](const FoundEffect& e) {
+        return e.index >= 0 && e.approximate &&
+               !out.model.effects[static_cast<std::size_t>(e.index)].element_law();
+      });
+  out.verdict =
+      !surrogate && !another && (fits || (fraction > kExplainsAll && gap < kNearFloor * floor))
+          ? Verdict::explained
+          : Verdict::partly_explained;
 }
 
 }  // namespace framewatch::estimator

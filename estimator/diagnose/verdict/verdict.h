@@ -16,11 +16,12 @@ constexpr double kAdequate = 1.25;
 double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
 
 /// Sets Diagnosis::before and after, and before and after of its effects in their order: gaps of
-/// models fitted to the segments before `holdout_from` alone, as they are judged (judged_fit).
-void set_gaps(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out);
+/// models fitted to the segments before `options.holdout_from` alone, as they are judged
+/// (judged_fit).
+void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out);
 
 /// Sets Diagnosis::leading from its rejected trials; after set_gaps().
-void set_leading(const Fitter& fitter, std::size_t holdout_from, Diagnosis& out);
+void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out);
 
 /// Takes every name back whose model is worse than none: a gap above 100 % in any record, or, held
 /// out, above the one before by more than a tenth. Whether it did.

@@ -28,8 +28,10 @@ std::pair<Index, Index> middle(const VectorXd& energy) {
   return {first, last};
 }
 
-void describe_signal(const Fitter& fitter, const Localisation& place, WhereEntry& entry) {
+void describe_signal(const Fitter& fitter, const Localisation& place, bool kind,
+                     WhereEntry& entry) {
   const std::vector<NeededSignal> needed = needed_signals(fitter, place);
+  if (kind) entry.kind = kind_of_law(fitter, needed);
   double most = -1;
   for (std::size_t r = 0; r < needed.size(); ++r) {
     // Without the noise of the needed signal.
@@ -54,11 +56,17 @@ void describe_signal(const Fitter& fitter, const Localisation& place, WhereEntry
 
 std::vector<WhereEntry> where_of(const Fitter& fitter, const std::vector<Localisation>& places) {
   std::vector<WhereEntry> out;
+  bool kind = false;
   for (const Localisation& place : places) {
     WhereEntry entry;
     entry.place = place.candidate_places.front().place;
     entry.ratio = place.ratio;
-    if (out.size() < kDescribed) describe_signal(fitter, place, entry);
+    const bool first_element =
+        !kind && place.candidate_places.front().kind == CandidatePlace::Kind::element;
+    if (out.size() < kDescribed) {
+      describe_signal(fitter, place, first_element, entry);
+      kind = kind || first_element;
+    }
     out.push_back(entry);
   }
   return out;

@@ -7,7 +7,8 @@
 
 namespace framewatch::estimator {
 
-/// The signal that each place needs: when, at which frequencies and how large.
+/// The signal that each place needs: when, at which frequencies and how large; of the first element
+/// among the best three, what sort of force it is.
 std::vector<WhereEntry> where_of(const Fitter& fitter, const std::vector<Localisation>& places);
 
 /// Every place, best first: as iterated where that was done, after one step elsewhere.

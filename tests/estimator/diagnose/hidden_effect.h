@@ -9,6 +9,7 @@
 #include "estimator/diagnose/fit/unknowns.h"
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/locate/localise.h"
+#include "estimator/diagnose/verdict/diagnosis.h"
 #include "tests/estimator/diagnose/small_building.h"
 
 namespace framewatch::test {
@@ -55,6 +56,13 @@ inline std::vector<Eigen::MatrixXd> records_with(const std::vector<estimator::Ef
   const Small small;
   std::vector<Eigen::MatrixXd> out;
   for (const std::uint64_t seed : seeds) out.push_back(small.record(effects, seed));
+  return out;
+}
+
+/// first: of the held-out segments.
+inline estimator::DiagnosisOptions held_out_from(std::size_t first) {
+  estimator::DiagnosisOptions out;
+  out.holdout_from = first;
   return out;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "tests/estimator/diagnose/small_building.h"
 
 namespace framewatch::test {
@@ -37,6 +39,36 @@ struct SingleMass {
     return *make_plant(structure, axes, Eigen::Vector2d(stiffness, damping), kRate_hz);
   }
 };
+
+/// Stories of Small's plan, one on the other, of its design; an axis on every frame of every floor:
+/// eleven are a large building (Plant::is_large).
+inline Small tower(int stories) {
+  const Small one;
+  Small out;
+  estimator::Structure& s = out.structure;
+  s.stories = stories;
+  s.story_height.assign(static_cast<std::size_t>(stories), one.structure.story_height[0]);
+  s.node_mass.clear();
+  for (int i = 0; i < stories; ++i)
+    s.node_mass.insert(s.node_mass.end(), one.structure.node_mass.begin(),
+                       one.structure.node_mass.end());
+  out.table = estimator::ParameterTable(s);
+  out.truth = Eigen::VectorXd::Zero(out.table.size());
+  for (int story = 1; story <= stories; ++story) {
+    for (int f = 0; f < 4; ++f)
+      out.truth[out.table.frame_stiffness(story, f)] = one.truth[one.table.frame_stiffness(1, f)];
+    out.truth[out.table.panel_stiffness(story, 0)] = one.truth[one.table.panel_stiffness(1, 0)];
+  }
+  out.truth = with_proportional_damping(s, out.table, out.truth, 0.02);
+  out.design = 1.05 * out.truth;
+  out.axes.clear();
+  for (int story = 1; story <= stories; ++story)
+    for (int f = 0; f < 4; ++f)
+      out.axes.push_back({s.frame_name(f) + "-" + std::to_string(story), story, s.direction(f), f});
+  out.axes.push_back({"base-x", 0, estimator::Direction::x, -1});
+  out.axes.push_back({"base-y", 0, estimator::Direction::y, -1});
+  return out;
+}
 
 /// Three equal stories of Table 1's plan.
 inline estimator::Plant three_stories() {

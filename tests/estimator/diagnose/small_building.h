@@ -51,10 +51,11 @@ struct Small {
     estimator::ResponseStream stream(structure, table, truth, oblique_motion(seed), {kRate_hz}, {},
                                      {}, effects);
     estimator::Random random(seed + 1000);
-    Eigen::MatrixXd out(static_cast<Eigen::Index>(kSeconds * kRate_hz), 6);
+    const auto count = static_cast<Eigen::Index>(axes.size());
+    Eigen::MatrixXd out(static_cast<Eigen::Index>(kSeconds * kRate_hz), count);
     for (Eigen::Index i = 0; i < out.rows(); ++i) {
       const Eigen::VectorXd& exact = stream.next();
-      for (Eigen::Index a = 0; a < 6; ++a) out(i, a) = exact[a] + kNoise_mps2 * random.normal();
+      for (Eigen::Index a = 0; a < count; ++a) out(i, a) = exact[a] + kNoise_mps2 * random.normal();
     }
     return out;
   }
@@ -67,7 +68,7 @@ struct Small {
     std::vector<estimator::RecordSegment> out;
     for (const Eigen::MatrixXd& record : records)
       out.push_back(estimator::make_segment(record, kRate_hz,
-                                            Eigen::VectorXd::Constant(6, kNoise_mps2),
+                                            Eigen::VectorXd::Constant(record.cols(), kNoise_mps2),
                                             {0.4 * hz.front(), 1.6 * hz.back()}));
     return out;
   }

@@ -67,11 +67,15 @@ TEST(Bias, WhatAllAxesDoIsNotBias) {
   for (Index a = 0; a < 6; ++a) EXPECT_FALSE(find_ramp(r.plant, s, a)) << a;
 }
 
-TEST(Bias, AShortRecordTellsNothing) {
-  Ramped r;
-  add_ramp(r.record, kAxis, kSlope_mps3, 1);
-  r.record.conservativeResize(1000, Eigen::NoChange);
-  EXPECT_FALSE(find_ramp(r.plant, r.segment(), kAxis));
+TEST(Bias, AShortRecordShowsLargeDriftsAlone) {
+  constexpr Index kShort = 1000;
+  for (const double slope_mps3 : {0.002, 0.2}) {
+    Ramped r;
+    add_ramp(r.record, kAxis, slope_mps3, 1);
+    r.record.conservativeResize(kShort, Eigen::NoChange);
+    EXPECT_EQ(find_ramp(r.plant, r.segment(), kAxis).has_value(), slope_mps3 > 0.1) << slope_mps3;
+    EXPECT_FALSE(find_ramp(r.plant, r.segment(), kAxis + 1)) << slope_mps3;
+  }
 }
 
 TEST(Bias, WithoutItsRampARecordIsAsItWas) {

@@ -68,6 +68,7 @@ ModelEffect oscillator(double mass_kg, double hz, double damping) {
 }
 
 TEST(TrialNames, AnOscillatorIsSeenLighterThanItsFloorAndDamped) {
+  constexpr double kDulled = 0.4;
   const HandMade made;
   const double floor_kg = made.recorded.plant.structure.frame_mass(1, 2), kg = 0.1 * floor_kg;
   const Eigen::VectorXd& w = made.recorded.segments.front().w;
@@ -78,6 +79,8 @@ TEST(TrialNames, AnOscillatorIsSeenLighterThanItsFloorAndDamped) {
                 {"heavier than its floor", oscillator((1 + kNear) * floor_kg, 2.5, 0.05), false},
                 {"at the band's end", oscillator(kg, (1 - kNear) * highest_hz, 0.05), true},
                 {"above the band", oscillator(kg, (1 + kNear) * highest_hz, 0.05), false},
+                {"damped, but it resonates", oscillator(kg, 2.5, (1 - kNear) * kDulled), true},
+                {"too damped to resonate", oscillator(kg, 2.5, (1 + kNear) * kDulled), false},
                 {"as damped as may be", oscillator(kg, 2.5, 2), false},
                 {"as little damped as may be", oscillator(kg, 2.5, 1e-3), false}});
 }

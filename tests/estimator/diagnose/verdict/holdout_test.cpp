@@ -58,7 +58,7 @@ struct Softened {
 
   explicit Softened(std::size_t holdout_from) {
     diagnosis.linear = diagnosis.model = recorded.linear().model;
-    set_gaps(recorded.fitter, holdout_from, diagnosis);
+    set_gaps(recorded.fitter, test::held_out_from(holdout_from), diagnosis);
   }
 };
 
@@ -93,7 +93,7 @@ TEST(Holdout, WhatTheTrainingRecordsDoNotDetermineIsOfAll) {
     d.model.gain[1] = kGain;
     d.model = recorded.fitter.fit(d.model, {}, {}).model;
     d.effects.emplace_back();
-    set_gaps(recorded.fitter, 1, d);
+    set_gaps(recorded.fitter, test::held_out_from(1), d);
     EXPECT_EQ(d.after_of_all, !determined);
     const double of_all = mean_gap(gaps_of(recorded.fitter, d.model), 1);
     if (determined) {

@@ -110,6 +110,24 @@ TEST(Judge, RecordsThatFitApartAreOfDifferentBuildings) {
   EXPECT_EQ(d.reason, "known");
 }
 
+TEST(Judge, WhatALinearEffectLeavesIsAnothers) {
+  Diagnosis d;
+  d.ratio_before = 101;
+  d.ratio_after = 1.2;
+  d.before = {gap_with(10)};
+  d.after = {gap_with(1)};
+  d.effects.emplace_back();
+  d.effects[0].index = 0;
+  d.model.effects.emplace_back();
+  d.model.effects[0].form = LawForm::resonator;
+  EXPECT_EQ(judged(d), Verdict::explained);
+  d.effects[0].approximate = true;
+  EXPECT_EQ(judged(d), Verdict::partly_explained);
+  // A law has a shape of its own, which its name need not have.
+  d.model.effects[0].form = LawForm::hysteresis;
+  EXPECT_EQ(judged(d), Verdict::explained);
+}
+
 TEST(Judge, AnArbitraryForceExplainsNothing) {
   Diagnosis d;
   d.ratio_before = 101;
@@ -178,7 +196,7 @@ TEST(Leading, IsTheLawWhoseFreeRunDisagreesLess) {
   Diagnosis d;
   d.linear = d.model = recorded.linear().model;
   d.ratio_before = d.ratio_after = 100;
-  set_gaps(recorded.fitter, 1, d);
+  set_gaps(recorded.fitter, test::held_out_from(1), d);
   const auto trial = [&](const ModelEffect& effect, LawForm form) {
     Trial t;
     t.model = test::with_effects(d.linear, {effect});
@@ -190,7 +208,7 @@ TEST(Leading, IsTheLawWhoseFreeRunDisagreesLess) {
   const ModelEffect elsewhere = test::cubic_spring(0, 1e8).modelled;
   d.rejected = {trial(elsewhere, LawForm::power), trial(twins.modelled, LawForm::power),
                 trial(twins.modelled, LawForm::broadband)};
-  set_leading(recorded.fitter, 1, d);
+  set_leading(recorded.fitter, test::held_out_from(1), d);
   ASSERT_FALSE(d.leading.empty());
   EXPECT_EQ(d.leading.front().trial.place, twins.modelled.place);
   EXPECT_LT(d.leading.front().after, 0.2 * d.leading.front().before);
@@ -200,11 +218,11 @@ TEST(Leading, IsTheLawWhoseFreeRunDisagreesLess) {
   // What fits leaves nothing to lead, and a name needs no leader.
   d.leading.clear();
   d.ratio_after = 1;
-  set_leading(recorded.fitter, 1, d);
+  set_leading(recorded.fitter, test::held_out_from(1), d);
   EXPECT_TRUE(d.leading.empty());
   d.ratio_after = 100;
   d.effects.emplace_back();
-  set_leading(recorded.fitter, 1, d);
+  set_leading(recorded.fitter, test::held_out_from(1), d);
   EXPECT_TRUE(d.leading.empty());
 }
 

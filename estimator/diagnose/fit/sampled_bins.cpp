@@ -1,0 +1,39 @@
+#include "estimator/diagnose/fit/sampled_bins.h"
+
+#include <algorithm>
+
+namespace framewatch::estimator {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+std::vector<SampledBin> sampled_bins(const Linearised& at, std::size_t record) {
+  constexpr Index kOneOf = 8, kFewest = 64;
+  constexpr double kEvenly = 0.5;  // share of the chances that does not depend on the motion
+  const Whitened& system = at.systems[record];
+  const Index bins = system.bins();
+  const double wanted = static_cast<double>(std::max(bins / kOneOf, std::min(bins, kFewest)));
+  std::vector<Index> thetas;
+  for (std::size_t u = 0; u < at.unknowns.size(); ++u)
+    if (at.unknowns[u].kind == Unknown::Kind::theta) thetas.push_back(static_cast<Index>(u));
+  VectorXd motion(bins);
+  for (Index b = 0; b < bins; ++b) {
+    double size = 0;
+    for (const Index u : thetas) size += std::norm(at.columns[record].size(b, u));
+    motion[b] = size * system.weights->whitener(b).squaredNorm();
+  }
+  const double total = std::max(motion.sum(), 1e-300);
+  std::vector<SampledBin> out;
+  double passed = 0.5;  // of the sum of chances; a bin is taken where it passes a whole number
+  for (Index b = 0; b < bins; ++b) {
+    const double chance = std::min(
+        1.0, wanted * (kEvenly / static_cast<double>(bins) + (1 - kEvenly) * motion[b] / total));
+    passed += chance;
+    if (passed < 1) continue;
+    passed -= 1;
+    out.push_back({b, 1 / chance});
+  }
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/fit/normal_equations.h"
+#include "estimator/diagnose/fit/sampled_bins.h"
+#include "estimator/diagnose/locate/localise.h"
+#include "estimator/structure/natural_frequencies.h"
+#include "tests/estimator/diagnose/exact_record.h"
+#include "tests/estimator/diagnose/other_buildings.h"
+
+namespace framewatch::estimator {
+namespace large_building_test {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using test::Small;
+
+constexpr int kStories = 11;
+constexpr double kBand = 4;  ///< of the lowest natural frequency
+
+RecordSegment segment_of(const Small& small, const std::vector<Effect>& effects) {
+  const MatrixXd record = small.record(effects, 1);
+  const double hz = natural_frequencies_hz(small.structure, small.table, small.design).front();
+  return make_segment(record, test::kRate_hz, VectorXd::Constant(record.cols(), test::kNoise_mps2),
+                      {0.4 * hz, kBand * hz});
+}
+
+/// Eleven stories with one record, in the band of the lowest modes.
+struct Case {
+  Small small = test::tower(kStories);
+  Plant plant = small.plant();
+  std::vector<RecordSegment> segments;
+  Fitter fitter;
+
+  explicit Case(const std::vector<Effect>& effects = {})
+      : segments{segment_of(small, effects)}, fitter(plant, segments, {}) {}
+  Case(const Case&) = delete;
+  Case& operator=(const Case&) = delete;
+
+  Linearised linearised(const Model& model) const {
+    return fitter.linearise(model, fitter.systems(model, {}, Forcing::measured));
+  }
+};
+
+MatrixXd whole_columns(const Linearised& at) {
+  MatrixXd out(at.systems[0].residual.size(), at.columns[0].count());
+  for (Index u = 0; u < out.cols(); ++u)
+    out.col(u) = whole_column(*at.plant, at.systems[0], at.columns[0], u);
+  return out;
+}
+
+std::vector<Index> all_of(const Linearised& at) {
+  std::vector<Index> out(at.unknowns.size());
+  std::iota(out.begin(), out.end(), Index{0});
+  return out;
+}
+
+TEST(LargeBuilding, GradientAndMisfitAreThoseOfAllBins) {
+  constexpr double kRounding = 1e-9;
+  const Case c;
+  ASSERT_TRUE(c.plant.is_large());
+  const Linearised at = c.linearised(initial_model(c.plant));
+  const Index count = at.columns[0].count();
+  const MatrixXd square = square_of(at, 0, all_of(at));
+  ASSERT_EQ(square.cols(), count + 1);
+  ASSERT_EQ(ends_of(at, 0), 0);
+  const VectorXd expected = whole_columns(at).transpose() * at.systems[0].rest;
+  EXPECT_LT((square.col(count).head(count) - expected).norm(), kRounding * expected.norm());
+  EXPECT_DOUBLE_EQ(square(count, count), at.systems[0].misfit);
+}
+
+TEST(LargeBuilding, SampledBinsStandForAll) {
+  constexpr double kShare = 0.15, kOff = 0.35;
+  const Case c;
+  const Linearised at = c.linearised(initial_model(c.plant));
+  const std::vector<SampledBin> sampled = sampled_bins(at, 0);
+  const auto bins = static_cast<double>(at.systems[0].bins());
+  EXPECT_LT(static_cast<double>(sampled.size()), std::max(65.0, 0.25 * bins));
+  double weight = 0;
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    weight += sampled[i].weight;
+    const Index before = i > 0 ? sampled[i - 1].bin : -1;
+    EXPECT_GT(sampled[i].bin, before);
+  }
+  EXPECT_NEAR(weight / bins, 1, kShare);
+  // The curvature along one unknown after another is about that of all bins.
+  const MatrixXd square = square_of(at, 0, all_of(at)), columns = whole_columns(at);
+  for (Index u = 0; u < 2 * c.plant.element_count(); ++u)
+    EXPECT_NEAR(square(u, u) / columns.col(u).squaredNorm(), 1, kOff) << u;
+}
+
+TEST(LargeBuilding, AFitComesToTheNoise) {
+  constexpr double kLow = 0.85, kHigh = 1.03;  // fitted values take their share
+  const Case c;
+  FitOptions options;
+  options.max_steps = 8;
+  const FitResult fit = c.fitter.fit(initial_model(c.plant), {}, options);
+  ASSERT_TRUE(fit.good);
+  const double ratio = fit.total_misfit() / c.fitter.expected(fit.model);
+  EXPECT_GT(ratio, kLow);
+  EXPECT_LT(ratio, kHigh);
+}
+
+TEST(LargeBuilding, ThePlaceOfAHiddenLawIsFoundAmongAll) {
+  constexpr int kStory = 6, kFrame = 2;
+  EffectPlace place = test::frame_place(kFrame);
+  place.story = kStory;
+  const Case c({test::with_values(EffectKind::coulomb_friction, place, {20e3, 1e-3})});
+  FitOptions options;
+  options.max_steps = 3;
+  const FitResult now = c.fitter.fit(initial_model(c.plant), {}, options);
+  ASSERT_TRUE(now.good);
+  std::vector<std::vector<CandidatePlace>> lists;
+  for (const CandidatePlace& candidate : candidate_places_of(c.plant, now.model))
+    lists.push_back({candidate});
+  const Linearised at =
+      c.fitter.linearise(now.model, c.fitter.systems(now.model, now.motion, Forcing::measured));
+  const std::vector<Localisation> once = localise_once(c.fitter, at, now.model, lists);
+  const auto best = std::min_element(
+      once.begin(), once.end(),
+      [](const Localisation& a, const Localisation& b) { return a.ratio < b.ratio; });
+  EXPECT_EQ(best->candidate_places.front().place, place);
+  // It was among those that were looked at closer.
+  const Localisation closer =
+      localise_once(c.fitter, at, now.model, {best->candidate_places}).front();
+  EXPECT_NEAR(closer.ratio, best->ratio, 1e-9);
+}
+
+}  // namespace large_building_test
+}  // namespace framewatch::estimator
