@@ -15,6 +15,7 @@
 
 #include "daemon/base/clocks.h"
 #include "drivers/base/descriptor.h"
+#include "fleet/link/certificate_age.h"
 #include "fleet/link/nats_objects.h"
 
 namespace framewatch::fleet {
@@ -51,7 +52,7 @@ struct NatsLink::State {
 
   mutable std::mutex mutex;  ///< guards what is below, also against the library's threads
   std::vector<Message> waiting;
-  std::string trouble;
+  std::string trouble, certificate_trouble;
 
   NatsConnection connection;  ///< last but one: its threads see everything above
   std::vector<NatsSubscription> subscriptions;
@@ -131,6 +132,11 @@ std::string NatsLink::State::connect() {
                                               settings.key.c_str()),
             settings.certificate + ", " + settings.key)})
     if (!problem.empty()) return problem;
+  std::string over = expired(settings.certificate);
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    certificate_trouble = std::move(over);
+  }
   natsOptions_SetName(made, settings.name.c_str());
   natsOptions_SetCustomInboxPrefix(made, fmt::format("_INBOX_{}", settings.name).c_str());
   natsOptions_SetAllowReconnect(made, true);
@@ -240,7 +246,7 @@ bool NatsLink::is_connected() const {
 
 std::string NatsLink::trouble() const {
   const std::lock_guard<std::mutex> lock(state_->mutex);
-  return state_->trouble;
+  return state_->certificate_trouble.empty() ? state_->trouble : state_->certificate_trouble;
 }
 
 std::string NatsLink::inbox() const {

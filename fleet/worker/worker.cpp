@@ -1,6 +1,7 @@
 #include "fleet/worker/worker.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
@@ -27,7 +28,6 @@ Worker::Worker(Link& link, StoreSink store, FloodGate gate)
                  {"FW_RAW", "store"}} {
   for (Consumer& consumer : consumers_)
     consumer.inbox = fmt::format("{}.{}", link_.inbox(), consumer.stream);
-  link_.listen(link_.inbox() + ".*");
 }
 
 void Worker::step(const WorkerTime& now) {
@@ -72,14 +72,14 @@ void Worker::take(Message message, const WorkerTime& now) {
   waiting_.push_back(std::move(message));
 }
 
-FleetBatch Worker::batch_of(const Message* begin, const Message* end, const WorkerTime& now) {
-  FleetBatch batch;
-  for (const Message* message = begin; message != end; ++message) {
-    const auto parts = up_parts(message->subject);
-    if (!parts || gate_.takes(parts->building, message->size(), now.hub_us))
-      judge(*message, now.hub_us, batch);
-  }
-  return batch;
+/// What floods goes behind the others; how many are before it.
+std::size_t Worker::put_floods_last(const WorkerTime& now) {
+  const auto within = [&](const Message& message) {
+    const auto parts = up_parts(message.subject);
+    return !parts || gate_.takes(parts->building, message.size(), now.hub_us);
+  };
+  return static_cast<std::size_t>(std::distance(
+      waiting_.begin(), std::stable_partition(waiting_.begin(), waiting_.end(), within)));
 }
 
 void Worker::count(const FleetBatch& batch, std::size_t messages) {
@@ -96,7 +96,9 @@ void Worker::acknowledge(const Message& message) {
 
 void Worker::store(const WorkerTime& now) {
   FloodGate before = gate_;
-  FleetBatch batch = batch_of(waiting_.data(), waiting_.data() + waiting_.size(), now);
+  const std::size_t within = put_floods_last(now);
+  FleetBatch batch;
+  for (std::size_t i = 0; i < within; ++i) judge(waiting_[i], now.hub_us, batch);
   batch.floods = gate_.take_floods();
   const StoreOutcome outcome = store_(batch);
   counters_.trouble = outcome.problem;
@@ -105,7 +107,7 @@ void Worker::store(const WorkerTime& now) {
     count(batch, waiting_.size());
     pause_us_ = 0;
   } else if (outcome.lasting) {
-    store_one_by_one(now);
+    store_one_by_one(within, std::move(batch.floods), now);
   } else {
     // Nothing is acknowledged: the hub keeps it, and gives it again. So nothing of it was said yet.
     gate_ = std::move(before);
@@ -116,8 +118,10 @@ void Worker::store(const WorkerTime& now) {
 }
 
 /// One message that the database cannot take does not stop the others.
-void Worker::store_one_by_one(const WorkerTime& now) {
-  for (const Message& message : waiting_) {
+void Worker::store_one_by_one(std::size_t within, std::vector<ReceivedFlood> floods,
+                              const WorkerTime& now) {
+  for (std::size_t i = 0; i < within; ++i) {
+    const Message& message = waiting_[i];
     FleetBatch batch;
     judge(message, now.hub_us, batch);
     StoreOutcome outcome = store_(batch);
@@ -134,6 +138,12 @@ void Worker::store_one_by_one(const WorkerTime& now) {
     acknowledge(message);
     count(batch, 1);
   }
+  FleetBatch rest;
+  rest.floods = std::move(floods);
+  counters_.trouble = store_(rest).problem;
+  if (!counters_.trouble.empty()) return;
+  for (std::size_t i = within; i < waiting_.size(); ++i) acknowledge(waiting_[i]);
+  count(rest, waiting_.size() - within);
 }
 
 void Worker::finish(const WorkerTime& now) {

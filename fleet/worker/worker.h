@@ -61,8 +61,9 @@ class Worker {
   void ask(Consumer& consumer, std::int64_t steady_us);
   void take(Message message, const WorkerTime& now);
   void store(const WorkerTime& now);
-  void store_one_by_one(const WorkerTime& now);
-  FleetBatch batch_of(const Message* begin, const Message* end, const WorkerTime& now);
+  void store_one_by_one(std::size_t within, std::vector<ReceivedFlood> floods,
+                        const WorkerTime& now);
+  std::size_t put_floods_last(const WorkerTime& now);
   void acknowledge(const Message& message);
   void count(const FleetBatch& batch, std::size_t messages);
 

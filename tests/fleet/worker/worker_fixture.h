@@ -91,13 +91,16 @@ class HubLink : public Link {
       for (const auto& [reply, one] : held_)
         if (message.subject.find(reply.substr(8, reply.find('.', 8) - 8)) != std::string::npos &&
             given_.insert({reply, true}).second)
-          come_.push_back(one);
+          come_.insert(come_.end(), subscriptions_, one);
     } else {
       held_.erase(message.subject);
     }
     return true;
   }
-  void listen(const std::string&) override {}
+  void listen(const std::string& subject) override {
+    // A server gives a message to each subscription that it fits; a link has one for its inbox.
+    if (subject.starts_with(inbox())) ++subscriptions_;
+  }
   std::vector<Message> take() override { return std::exchange(come_, {}); }
   std::int64_t connections() const override { return connections_; }
   bool is_connected() const override { return true; }
@@ -109,6 +112,7 @@ class HubLink : public Link {
   std::map<std::string, bool> given_;
   std::vector<Message> come_;
   std::int64_t connections_ = 1, number_ = 0;
+  std::size_t subscriptions_ = 1;
   int requests_ = 0;
 };
 

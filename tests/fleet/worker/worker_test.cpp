@@ -144,6 +144,26 @@ TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
   EXPECT_EQ(floods, 20);
 }
 
+TEST_F(WorkerTest, AFloodBesideAMessageThatTheDatabaseDoesNotTakeIsNotStoredEither) {
+  database_.bad_events = {3};
+  const auto more = kMessages + 20;
+  for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
+  pass(30'000'000);
+  EXPECT_EQ(hub_.held(), 0u);
+  EXPECT_EQ(database_.events().size(), static_cast<std::size_t>(kMessages) - 1);
+  std::int64_t floods = 0;
+  for (const FleetBatch& batch : database_.batches)
+    for (const ReceivedFlood& flood : batch.floods) floods += flood.messages;
+  EXPECT_EQ(floods, 20);
+  EXPECT_EQ(worker_.counters().flooding, 20);
+}
+
+TEST_F(WorkerTest, EveryMessageIsTakenOnce) {
+  for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
+  pass(2'000'000);
+  EXPECT_EQ(worker_.counters().stored, 10);
+}
+
 TEST(FloodGateTest, EveryHourBeginsAnew) {
   FloodGate gate(kMessages);
   for (std::int64_t i = 0; i < kMessages; ++i) EXPECT_TRUE(gate.takes("a", 1, kHub_us));
