@@ -158,7 +158,10 @@ std::string NatsLink::State::connect() {
   if (status == NATS_OK) on_connected(opened, this);
   // Somebody who is refused now may be let in later.
   if (status != NATS_OK && status != NATS_NOT_YET_CONNECTED) closed = true;
-  if (status != NATS_OK) say(last_error(status));
+  if (status == NATS_NOT_YET_CONNECTED)
+    say("no server of it answers, or it lets this certificate not in");
+  else if (status != NATS_OK)
+    say(last_error(status));
   for (const std::string& subject : subjects) listen(subject);
   return "";
 }

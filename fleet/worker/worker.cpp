@@ -94,6 +94,12 @@ void Worker::acknowledge(const Message& message) {
   (void)link_.publish({message.reply, "", {}, {}});  // if it is lost, the message comes again
 }
 
+/// To be given again, to any worker, when the pause is over: not only when the hub grows impatient.
+void Worker::give_back(const Message& message) {
+  const std::string text = fmt::format("-NAK {{\"delay\":{}}}", pause_us_ * 1000);
+  (void)link_.publish({message.reply, "", {}, Bytes(text.begin(), text.end())});
+}
+
 void Worker::store(const WorkerTime& now) {
   FloodGate before = gate_;
   const std::size_t within = put_floods_last(now);
@@ -113,6 +119,7 @@ void Worker::store(const WorkerTime& now) {
     gate_ = std::move(before);
     pause_us_ = std::clamp(2 * pause_us_, kShortestPause_us, kLongestPause_us);
     pause_until_us_ = now.steady_us + pause_us_;
+    for (const Message& message : waiting_) give_back(message);
   }
   waiting_.clear();
 }

@@ -65,6 +65,7 @@ class Worker {
                         const WorkerTime& now);
   std::size_t put_floods_last(const WorkerTime& now);
   void acknowledge(const Message& message);
+  void give_back(const Message& message);
   void count(const FleetBatch& batch, std::size_t messages);
 
   Link& link_;

@@ -84,6 +84,7 @@ class HubLink : public Link {
   std::size_t held() const { return held_.size(); }
   void cut() { ++connections_; }
   int requests() const { return requests_; }
+  int given_back() const { return given_back_; }
 
   bool publish(const Message& message) override {
     if (message.subject.starts_with("$JS.API.CONSUMER.MSG.NEXT.")) {
@@ -92,8 +93,11 @@ class HubLink : public Link {
         if (message.subject.find(reply.substr(8, reply.find('.', 8) - 8)) != std::string::npos &&
             given_.insert({reply, true}).second)
           come_.insert(come_.end(), subscriptions_, one);
-    } else {
+    } else if (message.bytes.empty()) {
       held_.erase(message.subject);
+    } else {  // -NAK: to be given again
+      given_.erase(message.subject);
+      ++given_back_;
     }
     return true;
   }
@@ -113,7 +117,7 @@ class HubLink : public Link {
   std::vector<Message> come_;
   std::int64_t connections_ = 1, number_ = 0;
   std::size_t subscriptions_ = 1;
-  int requests_ = 0;
+  int requests_ = 0, given_back_ = 0;
 };
 
 }  // namespace framewatch::fleet

@@ -158,6 +158,17 @@ TEST_F(WorkerTest, AFloodBesideAMessageThatTheDatabaseDoesNotTakeIsNotStoredEith
   EXPECT_EQ(worker_.counters().flooding, 20);
 }
 
+TEST_F(WorkerTest, WhatTheDatabaseDidNotTakeIsGivenBackAndTakenWhenItIsThereAgain) {
+  database_.problem = "connection refused";
+  for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
+  pass(1'000'000);
+  EXPECT_EQ(hub_.given_back(), 10);
+  database_.problem.clear();
+  pass(8'000'000);  // nobody's patience is over
+  EXPECT_EQ(database_.events().size(), 10u);
+  EXPECT_EQ(hub_.held(), 0u);
+}
+
 TEST_F(WorkerTest, EveryMessageIsTakenOnce) {
   for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
   pass(2'000'000);
