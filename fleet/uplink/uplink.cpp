@@ -293,6 +293,10 @@ void Uplink::send(Instant now) {
   for (const std::int64_t number : window_.due(now.steady_us)) {
     Message message = window_.message(number);
     message.reply = fmt::format("{}.{}", link_.inbox(), number);
+    if (!settings_.secret.empty()) {
+      std::string& key = message.headers[header::kKey];
+      key = sealed_key(key, settings_.secret, message.bytes);
+    }
     if (link_.publish(message))
       sent_bytes_ += static_cast<std::int64_t>(message.size());
     else

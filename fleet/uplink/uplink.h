@@ -34,6 +34,7 @@ struct UplinkSettings {
   daemon::FleetSettings fleet;
   daemon::HistorySettings history;
   std::string config;  ///< path of the configuration file
+  std::string secret;  ///< that seals keys (message/key.h); empty: they go as they are
 };
 
 /// Sends what the history holds to the hub until the hub has acknowledged it, and what is heard on

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/clocks.h"
 #include "fleet/message/subject.h"
 #include "fleet/worker/judge.h"
 
@@ -14,13 +15,15 @@ namespace {
 
 constexpr const char* kNext = "$JS.API.CONSUMER.MSG.NEXT.";
 constexpr std::size_t kAskedAtOnce = 250;
+constexpr std::int64_t kCommandHolds_s = 60;
 constexpr std::int64_t kGrace_us = 1'000'000;  // after the hub's own end of a request
 
 }  // namespace
 
-Worker::Worker(Link& link, StoreSink store, FloodGate gate)
+Worker::Worker(Link& link, StoreSink store, MissingDays missing, FloodGate gate)
     : link_(link),
       store_(std::move(store)),
+      missing_(std::move(missing)),
       gate_(std::move(gate)),
       consumers_{{"FW_EVENT", "store"},
                  {"FW_SUMMARY", "store"},
@@ -38,6 +41,7 @@ void Worker::step(const WorkerTime& now) {
                    (waiting_.size() >= kMostMessages || now.steady_us - since_us_ >= kLongest_us);
   if (due) store(now);
   if (now.steady_us < pause_until_us_) return;
+  compare_inventories(now);
   for (Consumer& consumer : consumers_) {
     const bool old = now.steady_us - consumer.asked_us > kPull_us + kGrace_us;
     if (consumer.asked_us == 0 || consumer.lacking == 0 || old) ask(consumer, now.steady_us);
@@ -111,6 +115,7 @@ void Worker::store(const WorkerTime& now) {
   if (outcome.problem.empty()) {
     for (const Message& message : waiting_) acknowledge(message);
     count(batch, waiting_.size());
+    note_inventories(batch, now.steady_us);
     pause_us_ = 0;
   } else if (outcome.lasting) {
     store_one_by_one(within, std::move(batch.floods), now);
@@ -151,6 +156,37 @@ void Worker::store_one_by_one(std::size_t within, std::vector<ReceivedFlood> flo
   if (!counters_.trouble.empty()) return;
   for (std::size_t i = within; i < waiting_.size(); ++i) acknowledge(waiting_[i]);
   count(rest, waiting_.size() - within);
+}
+
+void Worker::note_inventories(const FleetBatch& batch, std::int64_t steady_us) {
+  if (!missing_) return;
+  for (const ReceivedNewest& newest : batch.newest)
+    if (newest.kind == "inventory" && to_compare_.size() < kMostCompared)
+      to_compare_.insert({newest.building, steady_us + kBeforeCompared_us});
+}
+
+/// One at a time, between batches. What is not known now is asked of the inventory of tomorrow.
+void Worker::compare_inventories(const WorkerTime& now) {
+  const auto due = std::find_if(to_compare_.begin(), to_compare_.end(),
+                                [&](const auto& one) { return one.second <= now.steady_us; });
+  if (due == to_compare_.end()) return;
+  const std::string building = due->first;
+  to_compare_.erase(due);
+  const auto days = missing_(building);
+  for (std::size_t i = 0; days && i < std::min(days->size(), kMostResent_days); ++i)
+    ask_again(building, (*days)[i], now);
+}
+
+void Worker::ask_again(const std::string& building, std::int64_t from_us, const WorkerTime& now) {
+  const std::string text =
+      fmt::format("{{\"from_us\":{},\"to_us\":{}}}", from_us, from_us + daemon::kDay_us);
+  const std::int64_t now_s = now.hub_us / daemon::kSecond_us;
+  Message request{down_subject(building, "resend"), "", {}, Bytes(text.begin(), text.end())};
+  request.headers = {
+      {header::kWho, "worker"},
+      {header::kRequest, fmt::format("inventory-{}-{}", from_us / daemon::kDay_us, now_s)},
+      {header::kUntil, fmt::format("{}", now_s + kCommandHolds_s)}};
+  if (link_.publish(request)) ++counters_.resends;
 }
 
 void Worker::finish(const WorkerTime& now) {

@@ -149,8 +149,10 @@ class Cost:
             stored_s = time.monotonic() - begin
             time.sleep(0.2)
         self.hub.wait(240)
+        servers_s = sum(server.usage()[0] for server in self.hub.servers)
         print(f"  {self.count} buildings, {wanted} events and summaries of an hour: all connected "
-              f"{connected_s or -1:.0f} s after the hub's start, {rows} stored {stored_s:.0f} s")
+              f"{connected_s or -1:.0f} s after the hub's start, {rows} stored {stored_s:.0f} s; "
+              f"processor until then: servers {servers_s:.1f} s, uplinks {self.report()[5]:.1f} s")
         self.bound("everything acknowledged after", took, CATCH_UP_S, "s")
         if rows != wanted:
             self.problems.append(f"{rows} of {wanted} rows are in the database")
@@ -246,6 +248,9 @@ class Cost:
               f"processor, {self.postgres.processor_s() - database_s:.2f} s of the database's")
         if rows < wanted:
             self.problems.append(f"{rows} of {wanted} summaries are in the database")
+        size = self.postgres.number("SELECT sum(pg_total_relation_size(inhrelid)) FROM pg_inherits "
+                                    "WHERE inhparent = 'summary'::regclass")
+        print(f"       {size / max(rows, 1):.0f} bytes of the database for a summary")
         self.bound("seconds of a worker's processor for 1000 summaries", 1000 * worker_s / held, 1000 / SUMMARIES_CORE_S, "s")
 
     def check(self, steady_s, uplink_s):

@@ -110,7 +110,7 @@ class Client:
 
 
 def stream_keys(client, stream):
-    """Keys of everything that a stream holds, in its order."""
+    """Keys of everything that a stream holds, in its order, without their seals."""
     info = json.loads(client.request(f"$JS.API.STREAM.INFO.{stream}", timeout_s=30) or b"{}")
     state = info.get("state")
     if state is None:
@@ -124,7 +124,7 @@ def stream_keys(client, stream):
         raise RuntimeError(f"{stream}: {made['error']}")
     mine = lambda: [m for m in client.messages if m[0].startswith("fw.up.")]
     client.until(lambda: len(client.messages) > state["messages"] and len(mine()) >= state["messages"], 60)
-    found = [re.search(rb"Nats-Msg-Id: *(\S+)", head) for _, head, _ in mine()]
+    found = [re.search(rb"Nats-Msg-Id: *([^\s~]+)", head) for _, head, _ in mine()]
     if len(found) < state["messages"]:
         raise RuntimeError(f"{stream}: {len(found)} of {state['messages']} messages came")
     return [one.group(1).decode() if one else "?" for one in found]

@@ -101,6 +101,20 @@ TEST_F(UplinkRules, APeriodThatGrewIsSentAgainWhenItIsClosed) {
   EXPECT_EQ(hub_.stored[key], 2);
 }
 
+// Within minutes a stream takes one Nats-Msg-Id once.
+TEST_F(UplinkRules, APeriodThatGrewIsNoRepetitionToTheHub) {
+  secret_ = "mine";
+  add_hour(test::kStart_us, 1);
+  begin();
+  run(10);
+  const std::string key = fmt::format("a/summary/600/{}~", test::kStart_us);
+  EXPECT_EQ(hub_.count(key), 1U);
+  sql("UPDATE period SET windows = windows + 5, open = 0");
+  run(10);
+  EXPECT_EQ(hub_.count(key), 2U);
+  EXPECT_EQ(kept_twice(), 0U);
+}
+
 TEST_F(UplinkRules, AHubThatIsAwayForHoursCostsNothingButTime) {
   begin();
   run(2);
