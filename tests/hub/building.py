@@ -141,8 +141,8 @@ class Building:
 
     def acknowledged_keys(self):
         try:
-            events = self.read("uplink.sqlite", "SELECT kind, id, time_us, state FROM sent_event")
-            periods = self.read("uplink.sqlite", "SELECT period_s, start_us FROM sent_period")
+            events = self.read("uplink.sqlite", "SELECT kind, id, time_us, state FROM sent_event WHERE acknowledged_us >= 0")
+            periods = self.read("uplink.sqlite", "SELECT period_s, start_us FROM sent_period WHERE acknowledged_us >= 0")
         except sqlite3.Error:
             return set()
         return {self.event_key(*row) for row in events} | {f"{self.name}/summary/{p}/{s}" for p, s in periods}

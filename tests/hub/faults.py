@@ -69,7 +69,7 @@ class Faults:
         for _ in range(120):
             try:
                 client = Client(self.chance.choice(self.hub.client), self.hub.certificates, "operator", 3)
-                answer = json.loads(client.request(f"$JS.API.{what}") or b"{}")
+                answer = json.loads(client.request(f"$JS.API.{what}", timeout_s=10) or b"{}")
                 if "cluster" in answer and "leader" in answer["cluster"]:
                     return answer
             except Exception:  # noqa: BLE001: a server that is just gone

@@ -11,7 +11,7 @@ class Denied(Exception):
 
 
 class Client:
-    def __init__(self, port, folder, name, timeout_s=10):
+    def __init__(self, port, folder, name, timeout_s=30):
         self.name = name
         self.number = 0
         self.errors = []
@@ -81,7 +81,7 @@ class Client:
             self.errors.append(line.decode()[5:])
         return True
 
-    def round_trip(self, timeout_s=10):
+    def round_trip(self, timeout_s=30):
         self.ponged = False
         self.send(b"PING\r\n")
         return self.until(lambda: self.ponged, timeout_s)
@@ -97,7 +97,7 @@ class Client:
         else:
             self.send(f"PUB {subject} {reply} {len(data)}\r\n".encode() + data + b"\r\n")
 
-    def request(self, subject, data=b"", headers=None, timeout_s=10):
+    def request(self, subject, data=b"", headers=None, timeout_s=30):
         """The answer's bytes; None when there is none."""
         self.number += 1
         inbox = f"_INBOX_{self.name}.{self.number}"
