@@ -87,7 +87,7 @@ json stream_config(const Stream& s, int replicas, int buildings) {
           {"allow_direct", s.is_read_directly}};
 }
 
-/// What a worker that died had taken is given again after ack_wait to twice that: events sooner.
+/// What a worker that died had taken is given again after ack_wait or later: events sooner.
 json consumer_config(const Stream& stream) {
   const std::int64_t wait_s = std::string_view(stream.name) == "FW_EVENT" ? 8 : 30;
   return {{"durable_name", stream.consumer},
