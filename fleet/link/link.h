@@ -28,7 +28,8 @@ class Link {
   virtual bool is_connected() const = 0;
   /// Why the newest attempt to connect failed, or a permission was denied; empty: neither.
   virtual std::string trouble() const = 0;
-  /// Of a subject for replies to this link alone, without the last part: "_INBOX_kobe-03.x7q".
+  /// Of a subject for replies to this link alone, without the last part: "_INBOX_kobe-03.x7q". What
+  /// is sent to it comes out of take(), without listen().
   virtual std::string inbox() const = 0;
 };
 

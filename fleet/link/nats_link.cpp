@@ -15,6 +15,7 @@
 
 #include "daemon/base/clocks.h"
 #include "drivers/base/descriptor.h"
+#include "fleet/link/certificate_age.h"
 #include "fleet/link/nats_objects.h"
 
 namespace framewatch::fleet {
@@ -51,7 +52,7 @@ struct NatsLink::State {
 
   mutable std::mutex mutex;  ///< guards what is below, also against the library's threads
   std::vector<Message> waiting;
-  std::string trouble;
+  std::string trouble, certificate_trouble;
 
   NatsConnection connection;  ///< last but one: its threads see everything above
   std::vector<NatsSubscription> subscriptions;
@@ -131,6 +132,11 @@ std::string NatsLink::State::connect() {
                                               settings.key.c_str()),
             settings.certificate + ", " + settings.key)})
     if (!problem.empty()) return problem;
+  std::string over = expired(settings.certificate);
+  {
+    const std::lock_guard<std::mutex> lock(mutex);
+    certificate_trouble = std::move(over);
+  }
   natsOptions_SetName(made, settings.name.c_str());
   natsOptions_SetCustomInboxPrefix(made, fmt::format("_INBOX_{}", settings.name).c_str());
   natsOptions_SetAllowReconnect(made, true);
@@ -152,7 +158,10 @@ std::string NatsLink::State::connect() {
   if (status == NATS_OK) on_connected(opened, this);
   // Somebody who is refused now may be let in later.
   if (status != NATS_OK && status != NATS_NOT_YET_CONNECTED) closed = true;
-  if (status != NATS_OK) say(last_error(status));
+  if (status == NATS_NOT_YET_CONNECTED)
+    say("no server of it answers, or it lets this certificate not in");
+  else if (status != NATS_OK)
+    say(last_error(status));
   for (const std::string& subject : subjects) listen(subject);
   return "";
 }
@@ -240,7 +249,7 @@ bool NatsLink::is_connected() const {
 
 std::string NatsLink::trouble() const {
   const std::lock_guard<std::mutex> lock(state_->mutex);
-  return state_->trouble;
+  return state_->certificate_trouble.empty() ? state_->trouble : state_->certificate_trouble;
 }
 
 std::string NatsLink::inbox() const {

@@ -2,10 +2,14 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/file_digest.h"
 #include "fleet/message/subject.h"
 
 namespace framewatch::fleet {
 namespace {
+
+constexpr char kSeal = '~';
+constexpr std::size_t kSealDigits = 24;
 
 std::string without_slashes(std::string_view text) {
   std::string out;
@@ -40,6 +44,20 @@ std::string raw_key(std::string_view building, std::string_view request, std::in
 
 std::string newest_key(std::string_view building, std::string_view kind, std::int64_t time_us) {
   return fmt::format("{}/{}/{}", building, kind, time_us);
+}
+
+std::string sealed_key(std::string_view key, std::string_view secret,
+                       std::span<const std::uint8_t> content) {
+  std::string said(secret);
+  said.append(1, '\0').append(key).append(1, '\0').append(content.begin(), content.end());
+  return fmt::format("{}{}{}", key, kSeal, daemon::sha256(said).substr(0, kSealDigits));
+}
+
+std::string_view key_of_sealed(std::string_view sealed) {
+  const std::size_t at = sealed.rfind(kSeal);
+  const bool is_sealed = at != sealed.npos && sealed.size() - at == kSealDigits + 1 &&
+                         sealed.find('/', at) == sealed.npos;
+  return is_sealed ? sealed.substr(0, at) : sealed;
 }
 
 std::optional<KeyParts> key_parts(std::string_view key) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -35,6 +36,15 @@ std::string message_key(std::string_view building, const SummaryKey& key);
 std::string raw_key(std::string_view building, std::string_view request, std::int64_t piece);
 /// <building>/<kind>/<time_us>, of what the hub keeps the newest of.
 std::string newest_key(std::string_view building, std::string_view kind, std::int64_t time_us);
+
+/// KEY~DIGITS, what is given to the hub as Nats-Msg-Id. The hub takes a message whose Nats-Msg-Id
+/// it has heard within minutes for a repetition, whoever sent it: so nobody who does not have the
+/// `secret` can say it before the building, and other content under the same key is another
+/// message.
+std::string sealed_key(std::string_view key, std::string_view secret,
+                       std::span<const std::uint8_t> content);
+/// The key alone, of what sealed_key() made or of a key.
+std::string_view key_of_sealed(std::string_view sealed);
 
 /// Of any key: before its first slash, and what stands until the next. Empty when it is no key.
 struct KeyParts {

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/utf8.h"
+#include "drivers/base/number_text.h"
 #include "fleet/store/fleet_schema.h"
 
 namespace framewatch::fleet {
@@ -136,6 +137,37 @@ std::string FleetStore::add(const FleetBatch& batch) {
   of_values_ = database_.is_of_values();
   close();  // what is remembered may be gone
   return why;
+}
+
+std::optional<DayCounts> FleetStore::counts(const std::string& building, std::int64_t from_us,
+                                            std::int64_t to_us) {
+  const std::vector<SqlValue> which{building, std::to_string(from_us), std::to_string(to_us)};
+  const auto number = [](const SqlValue& value) {
+    return drivers::parse_integer(value.value_or("")).value_or(0);
+  };
+  const auto events = database_.query(
+      "SELECT count(*) FROM event JOIN building b ON b.id = building"
+      " WHERE b.name = $1 AND time_us >= $2 AND time_us < $3",
+      which);
+  if (!events || events->empty()) return std::nullopt;
+  const auto periods = database_.query(
+      "SELECT period_s, count(*) FROM summary JOIN building b ON b.id = building"
+      " WHERE b.name = $1 AND start_us >= $2 AND start_us < $3 GROUP BY period_s",
+      which);
+  if (!periods) return std::nullopt;
+  DayCounts out{number(events->front().front()), {}};
+  for (const auto& row : *periods) out.periods[number(row[0])] = number(row[1]);
+  return out;
+}
+
+std::optional<std::string> FleetStore::newest_text(const std::string& building,
+                                                   const std::string& kind) {
+  const auto rows = database_.query(
+      "SELECT convert_from(content, 'UTF8') FROM newest JOIN building b ON b.id = building"
+      " WHERE b.name = $1 AND newest.kind = $2",
+      {building, kind});
+  if (!rows) return std::nullopt;
+  return rows->empty() ? "" : rows->front().front().value_or("");
 }
 
 bool FleetStore::add_buildings(const FleetBatch& batch) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -58,6 +59,12 @@ struct FleetBatch {
   std::vector<ReceivedFlood> floods;
 };
 
+/// How many events and periods (by their length, s) there are of a day.
+struct DayCounts {
+  std::int64_t events = 0;
+  std::map<std::int64_t, std::int64_t> periods;
+};
+
 /// The database of a hub as it is written, by any number of programs at once. What is there already
 /// changes nothing.
 class FleetStore {
@@ -70,6 +77,12 @@ class FleetStore {
   std::string add(const FleetBatch& batch);
   /// Whether the last add() failed because of what is in the batch.
   bool is_of_values() const { return of_values_; }
+  /// Of a building, from a time until before another. Empty when the database is away.
+  std::optional<DayCounts> counts(const std::string& building, std::int64_t from_us,
+                                  std::int64_t to_us);
+  /// What a building said last of a kind that is text; an empty text when it said nothing. Empty
+  /// when the database is away.
+  std::optional<std::string> newest_text(const std::string& building, const std::string& kind);
   void close();
 
  private:

@@ -118,7 +118,7 @@ void Outbox::look_for_events(SentStore& sent, Waiting& out) {
       "SELECT kind, id, time_us, state FROM event"
       " ORDER BY kind, id, time_us, state");
   SqliteStatement known = sent.file().prepare(
-      "SELECT kind, id, time_us, state FROM sent_event"
+      "SELECT kind, id, time_us, state FROM sent_event WHERE acknowledged_us >= 0"
       " ORDER BY kind, id, time_us, state");
   std::vector<EventKey> keys;
   const auto older = [](const EventKey& a, const EventKey& b) { return a.time_us < b.time_us; };
@@ -153,7 +153,7 @@ void Outbox::look_for_periods(SentStore& sent, std::int64_t period_s, const Time
                                       kRange + " ORDER BY start_us DESC");
   SqliteStatement known =
       sent.file().prepare(std::string("SELECT start_us, windows FROM sent_period") + kRange +
-                          " ORDER BY start_us DESC");
+                          " AND acknowledged_us >= 0 ORDER BY start_us DESC");
   for (SqliteStatement* s : {&all, &known})
     s->bind(1, period_s).bind(2, time.from_us).bind(3, time.to_us);
   bool more = known.row();

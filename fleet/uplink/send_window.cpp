@@ -12,7 +12,8 @@ constexpr int kMostDoublings = 5;
 }  // namespace
 
 bool SendWindow::silent(std::int64_t now_us) const {
-  return !open_.empty() && now_us - heard_us_ > kSilent_us;
+  // What was refused was answered, and is not due.
+  return open_.size() > refused_ && now_us - heard_us_ > kSilent_us;
 }
 
 bool SendWindow::takes(std::int64_t now_us) const {
@@ -20,7 +21,7 @@ bool SendWindow::takes(std::int64_t now_us) const {
 }
 
 void SendWindow::add(Outgoing outgoing, std::int64_t now_us) {
-  if (open_.empty()) heard_us_ = std::max(heard_us_, now_us);
+  if (open_.size() == refused_) heard_us_ = std::max(heard_us_, now_us);
   bytes_ += outgoing.message.size();
   pieces_ += outgoing.request.empty() ? 0 : 1;
   summaries_ += outgoing.summary ? 1 : 0;
@@ -64,6 +65,7 @@ std::optional<Outgoing> SendWindow::acknowledged(std::int64_t number, std::int64
 
 Outgoing SendWindow::taken(std::map<std::int64_t, Open>::iterator at) {
   Outgoing out = std::move(at->second.outgoing);
+  refused_ -= at->second.refused ? 1 : 0;
   open_.erase(at);
   keys_.erase(out.message.header(header::kKey));
   bytes_ -= out.message.size();
@@ -76,7 +78,9 @@ bool SendWindow::refused(std::int64_t number, std::int64_t now_us, std::int64_t 
   const auto found = open_.find(number);
   if (found == open_.end()) return false;
   found->second.due_us = now_us + wait_us;
+  refused_ += found->second.refused ? 0 : 1;
   found->second.refused = true;
+  heard_us_ = std::max(heard_us_, now_us);
   return true;
 }
 

@@ -74,7 +74,7 @@ class SendWindow {
   std::map<std::int64_t, Open> open_;  ///< by number, oldest first
   std::set<std::string> keys_;
   std::int64_t next_ = 1, heard_us_ = INT64_MIN / 2, sent_again_ = 0;
-  std::size_t bytes_ = 0, pieces_ = 0, summaries_ = 0;
+  std::size_t bytes_ = 0, pieces_ = 0, summaries_ = 0, refused_ = 0;
 };
 
 }  // namespace framewatch::fleet

@@ -87,23 +87,25 @@ std::string SentStore::open(const std::string& directory, std::int64_t now_us) {
   }
 }
 
-bool SentStore::acknowledged(const std::vector<EventKey>& events,
-                             const std::vector<std::pair<SummaryKey, std::int64_t>>& summaries,
-                             std::int64_t clock_us) {
+bool SentStore::acknowledged(const std::vector<SentEvent>& events,
+                             const std::vector<SentPeriod>& periods, std::int64_t clock_us) {
   return file_.transaction([&] {
     daemon::SqliteStatement event = file_.prepare(
-        "INSERT OR REPLACE INTO sent_event (kind, id, time_us, state, acknowledged_us)"
-        " VALUES (?, ?, ?, ?, ?)");
-    for (const EventKey& k : events) {
+        "INSERT INTO sent_event (kind, id, time_us, state, acknowledged_us) VALUES (?1, ?2, ?3, "
+        "?4, ?5)"
+        " ON CONFLICT DO UPDATE SET acknowledged_us = iif(?6, abs(acknowledged_us), ?5)");
+    for (const auto& [k, before] : events) {
       event.bind(1, k.kind).bind(2, k.id).bind(3, k.time_us).bind(4, std::int64_t{k.state});
-      if (!event.bind(5, clock_us).run()) return false;
+      if (!event.bind(5, clock_us).bind(6, std::int64_t{before}).run()) return false;
     }
     daemon::SqliteStatement period = file_.prepare(
-        "INSERT OR REPLACE INTO sent_period (period_s, start_us, windows, acknowledged_us)"
-        " VALUES (?, ?, ?, ?)");
-    for (const auto& [k, windows] : summaries) {
+        "INSERT INTO sent_period (period_s, start_us, windows, acknowledged_us) VALUES (?1, ?2, "
+        "?3, ?4)"
+        " ON CONFLICT DO UPDATE SET windows = ?3,"
+        " acknowledged_us = iif(?5, abs(acknowledged_us), ?4)");
+    for (const auto& [k, windows, before] : periods) {
       period.bind(1, k.period_s).bind(2, k.start_us).bind(3, windows).bind(4, clock_us);
-      if (!period.run()) return false;
+      if (!period.bind(5, std::int64_t{before}).run()) return false;
     }
     return true;
   });
@@ -111,8 +113,9 @@ bool SentStore::acknowledged(const std::vector<EventKey>& events,
 
 std::optional<std::int64_t> SentStore::newest_us() {
   daemon::SqliteStatement s = file_.prepare(
-      "SELECT max(at) FROM (SELECT max(acknowledged_us) AS at FROM sent_event"
-      " UNION ALL SELECT max(acknowledged_us) FROM sent_period)");
+      "SELECT max(at) FROM (SELECT max(max(acknowledged_us), -min(acknowledged_us)) AS at"
+      " FROM sent_event UNION ALL"
+      " SELECT max(max(acknowledged_us), -min(acknowledged_us)) FROM sent_period)");
   if (!s.row() || s.null(0)) return std::nullopt;
   return s.integer(0);
 }
@@ -121,10 +124,12 @@ bool SentStore::forget_newest(std::int64_t span_us) {
   const std::optional<std::int64_t> newest = newest_us();
   if (!newest) return true;
   return file_.transaction([&] {
-    for (const char* sql : {"DELETE FROM sent_event WHERE acknowledged_us > ?",
-                            "DELETE FROM sent_period WHERE acknowledged_us > ?"}) {
+    // A time below nought: not acknowledged, as far as is known now.
+    for (const char* sql :
+         {"UPDATE sent_event SET acknowledged_us = -acknowledged_us WHERE acknowledged_us > ?",
+          "UPDATE sent_period SET acknowledged_us = -acknowledged_us WHERE acknowledged_us > ?"}) {
       daemon::SqliteStatement s = file_.prepare(sql);
-      if (!s.bind(1, *newest - span_us).run()) return false;
+      if (!s.bind(1, std::max<std::int64_t>(*newest - span_us, 0)).run()) return false;
     }
     return true;
   });

@@ -31,6 +31,17 @@ struct RawRequest {
   std::int64_t most_bytes = 0;
 };
 
+/// What the hub has acknowledged. `before`: it said that it had it already.
+struct SentEvent {
+  EventKey key;
+  bool before = false;
+};
+struct SentPeriod {
+  SummaryKey key;
+  std::int64_t windows = 0;
+  bool before = false;
+};
+
 /// `uplink.sqlite` beside a history: keys of what the hub has acknowledged, what it asked for, and
 /// a journal of its commands. What a call stores is on the disk when it returns. Calls that fail
 /// return false; error() says why.
@@ -45,10 +56,11 @@ class SentStore {
   const std::string& error() const { return file_.error(); }
   daemon::SqliteFile& file() { return file_; }
 
-  /// The hub has these. `clock_us` ascends from call to call, over restarts too (newest_us()).
-  [[nodiscard]] bool acknowledged(const std::vector<EventKey>& events,
-                                  const std::vector<std::pair<SummaryKey, std::int64_t>>& summaries,
-                                  std::int64_t clock_us);
+  /// The hub has these. `clock_us` ascends from call to call, over restarts too (newest_us()). What
+  /// it had before keeps the time of its first acknowledgement, where that is known: else a line
+  /// that breaks again and again would have it sent for ever.
+  [[nodiscard]] bool acknowledged(const std::vector<SentEvent>& events,
+                                  const std::vector<SentPeriod>& periods, std::int64_t clock_us);
   /// The newest `clock_us` of acknowledged(); empty when there is none.
   std::optional<std::int64_t> newest_us();
   /// What was acknowledged less than `span_us` before the newest acknowledgement counts as not

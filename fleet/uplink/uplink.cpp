@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
@@ -15,40 +14,17 @@
 #include "fleet/message/subject.h"
 #include "fleet/uplink/inventory.h"
 #include "fleet/uplink/summary_message.h"
+#include "fleet/uplink/verdict.h"
 
 namespace framewatch::fleet {
 namespace {
 
 constexpr std::int64_t kLook_us = 1'000'000, kStore_us = 200'000, kInventory_us = daemon::kDay_us;
 constexpr std::int64_t kRefused_us = 60'000'000;
-constexpr int kUnavailable = 503;  // nobody is there, or has no leader just now
 constexpr const char* kRawFolder = "uplink-raw";
 
 std::string raw_folder(const daemon::HistorySettings& history) {
   return (std::filesystem::path(history.directory) / kRawFolder).string();
-}
-
-/// What a stream said of a message: the code of an error, 0 when it has it.
-struct Verdict {
-  int code = kUnavailable;
-  std::string why = "what answered is no stream";
-};
-
-Verdict verdict_of(const Message& answer) {
-  if (answer.header(header::kStatus) == "503") return {kUnavailable, "no stream is there"};
-  const auto document =
-      nlohmann::json::parse(answer.bytes.begin(), answer.bytes.end(), nullptr, false);
-  if (!document.is_object()) return {};
-  if (const auto error = document.find("error"); error != document.end() && error->is_object()) {
-    Verdict out{kUnavailable, "refused"};
-    if (const auto c = error->find("code"); c != error->end() && c->is_number_integer())
-      out.code = c->get<int>();
-    if (const auto d = error->find("description"); d != error->end() && d->is_string())
-      out.why = d->get<std::string>();
-    if (out.code == 0) out.code = kUnavailable;
-    return out;
-  }
-  return document.contains("seq") ? Verdict{0, ""} : Verdict{};
 }
 
 }  // namespace
@@ -118,14 +94,16 @@ void Uplink::hear_link(Instant now) {
 void Uplink::hear_answer(std::int64_t number, const Message& answer, Instant now) {
   const Verdict verdict = verdict_of(answer);
   if (verdict.code == 0) {
-    if (auto done = window_.acknowledged(number, now.steady_us)) note_acknowledged(*done);
+    if (auto done = window_.acknowledged(number, now.steady_us))
+      note_acknowledged(*done, verdict.duplicate);
     acknowledged_us_ = now.host_us;
     return;
   }
   ++refused_;
   refusal_ = verdict.why;
   // Without a leader nobody takes anything: that is a hub that does not answer.
-  if (verdict.code != kUnavailable) (void)window_.refused(number, now.steady_us, kRefused_us);
+  if (verdict.code != Verdict::kUnavailable)
+    (void)window_.refused(number, now.steady_us, kRefused_us);
 }
 
 void Uplink::hear_command(const Message& command, Instant now) {
@@ -138,11 +116,11 @@ void Uplink::hear_command(const Message& command, Instant now) {
   look_again_ = desk_.changed_what_waits() || look_again_;
 }
 
-void Uplink::note_acknowledged(const Outgoing& done) {
+void Uplink::note_acknowledged(const Outgoing& done, bool duplicate) {
   ++acknowledged_;
   if (!done.request.empty()) raw_.acknowledged(done);
-  if (done.event) unstored_events_.push_back(*done.event);
-  if (done.summary) unstored_summaries_.emplace_back(*done.summary, done.windows);
+  if (done.event) unstored_events_.push_back({*done.event, duplicate});
+  if (done.summary) unstored_summaries_.push_back({*done.summary, done.windows, duplicate});
   if (done.event || done.summary) unstored_keys_.insert(done.message.header(header::kKey));
 }
 
@@ -293,6 +271,10 @@ void Uplink::send(Instant now) {
   for (const std::int64_t number : window_.due(now.steady_us)) {
     Message message = window_.message(number);
     message.reply = fmt::format("{}.{}", link_.inbox(), number);
+    if (!settings_.secret.empty()) {
+      std::string& key = message.headers[header::kKey];
+      key = sealed_key(key, settings_.secret, message.bytes);
+    }
     if (link_.publish(message))
       sent_bytes_ += static_cast<std::int64_t>(message.size());
     else

@@ -34,6 +34,7 @@ struct UplinkSettings {
   daemon::FleetSettings fleet;
   daemon::HistorySettings history;
   std::string config;  ///< path of the configuration file
+  std::string secret;  ///< that seals keys (message/key.h); empty: they go as they are
 };
 
 /// Sends what the history holds to the hub until the hub has acknowledged it, and what is heard on
@@ -63,7 +64,7 @@ class Uplink {
   void hear_link(Instant now);
   void hear_answer(std::int64_t number, const Message& answer, Instant now);
   void hear_command(const Message& command, Instant now);
-  void note_acknowledged(const Outgoing& done);
+  void note_acknowledged(const Outgoing& done, bool duplicate);
   void begin_connection();
   void store(Instant now, bool at_once);
   void look(Instant now);
@@ -99,8 +100,8 @@ class Uplink {
   std::int64_t look_us_ = INT64_MIN, store_us_ = INT64_MIN, older_us_ = INT64_MIN,
                inventory_us_ = INT64_MIN;
 
-  std::vector<EventKey> unstored_events_;  ///< acknowledged, not yet stored
-  std::vector<std::pair<SummaryKey, std::int64_t>> unstored_summaries_;
+  std::vector<SentEvent> unstored_events_;  ///< acknowledged, not yet stored
+  std::vector<SentPeriod> unstored_summaries_;
   std::set<std::string> unstored_keys_;
 
   std::int64_t connections_ = 0, acknowledged_ = 0, acknowledged_us_ = 0, refused_ = 0,

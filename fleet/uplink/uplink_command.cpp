@@ -15,6 +15,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
+#include "daemon/base/file_digest.h"
 #include "daemon/base/log.h"
 #include "daemon/base/once_a_second.h"
 #include "daemon/base/stop_signal.h"
@@ -45,6 +46,11 @@ std::string credential(const std::string& path) {
   const auto copy = std::filesystem::path(directory) / std::filesystem::path(path).filename();
   std::error_code none;
   return std::filesystem::exists(copy, none) ? copy.string() : path;
+}
+
+/// What this building alone knows.
+std::string a_secret(const daemon::FleetSettings& fleet) {
+  return daemon::sha256_of_file(credential(fleet.key));
 }
 
 /// As `framewatch acknowledge` asks the daemon.
@@ -92,7 +98,7 @@ int work(const Config& config, const UplinkArguments& a, NatsLink& link,
          daemon::ServiceManager& manager, drivers::LcmProvider& lcm) {
   const std::string& prefix = config.lcm.prefix;
   Uplink uplink(
-      {*config.fleet, *config.history, config.path}, link,
+      {*config.fleet, *config.history, config.path, a_secret(*config.fleet)}, link,
       [&](const acknowledge_t& request) { return acknowledge(config, request); },
       history_exporter(config.path), now());
   std::vector<std::string> channels;

@@ -56,7 +56,7 @@ class Judgement {
     if (!parts) return refuse("its subject is not one of a building");
     building_ = parts->building;
     kind_ = parts->kind;
-    key_ = message_.header(header::kKey);
+    key_ = key_of_sealed(message_.header(header::kKey));
     const auto key = key_parts(key_);
     if (!key) return refuse("it has no key");
     if (key->building != building_)

@@ -1,10 +1,12 @@
 #include "fleet/worker/worker.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "daemon/base/clocks.h"
 #include "fleet/message/subject.h"
 #include "fleet/worker/judge.h"
 
@@ -13,13 +15,15 @@ namespace {
 
 constexpr const char* kNext = "$JS.API.CONSUMER.MSG.NEXT.";
 constexpr std::size_t kAskedAtOnce = 250;
+constexpr std::int64_t kCommandHolds_s = 60;
 constexpr std::int64_t kGrace_us = 1'000'000;  // after the hub's own end of a request
 
 }  // namespace
 
-Worker::Worker(Link& link, StoreSink store, FloodGate gate)
+Worker::Worker(Link& link, StoreSink store, MissingDays missing, FloodGate gate)
     : link_(link),
       store_(std::move(store)),
+      missing_(std::move(missing)),
       gate_(std::move(gate)),
       consumers_{{"FW_EVENT", "store"},
                  {"FW_SUMMARY", "store"},
@@ -27,7 +31,6 @@ Worker::Worker(Link& link, StoreSink store, FloodGate gate)
                  {"FW_RAW", "store"}} {
   for (Consumer& consumer : consumers_)
     consumer.inbox = fmt::format("{}.{}", link_.inbox(), consumer.stream);
-  link_.listen(link_.inbox() + ".*");
 }
 
 void Worker::step(const WorkerTime& now) {
@@ -38,6 +41,7 @@ void Worker::step(const WorkerTime& now) {
                    (waiting_.size() >= kMostMessages || now.steady_us - since_us_ >= kLongest_us);
   if (due) store(now);
   if (now.steady_us < pause_until_us_) return;
+  compare_inventories(now);
   for (Consumer& consumer : consumers_) {
     const bool old = now.steady_us - consumer.asked_us > kPull_us + kGrace_us;
     if (consumer.asked_us == 0 || consumer.lacking == 0 || old) ask(consumer, now.steady_us);
@@ -72,14 +76,14 @@ void Worker::take(Message message, const WorkerTime& now) {
   waiting_.push_back(std::move(message));
 }
 
-FleetBatch Worker::batch_of(const Message* begin, const Message* end, const WorkerTime& now) {
-  FleetBatch batch;
-  for (const Message* message = begin; message != end; ++message) {
-    const auto parts = up_parts(message->subject);
-    if (!parts || gate_.takes(parts->building, message->size(), now.hub_us))
-      judge(*message, now.hub_us, batch);
-  }
-  return batch;
+/// What floods goes behind the others; how many are before it.
+std::size_t Worker::put_floods_last(const WorkerTime& now) {
+  const auto within = [&](const Message& message) {
+    const auto parts = up_parts(message.subject);
+    return !parts || gate_.takes(parts->building, message.size(), now.hub_us);
+  };
+  return static_cast<std::size_t>(std::distance(
+      waiting_.begin(), std::stable_partition(waiting_.begin(), waiting_.end(), within)));
 }
 
 void Worker::count(const FleetBatch& batch, std::size_t messages) {
@@ -94,30 +98,42 @@ void Worker::acknowledge(const Message& message) {
   (void)link_.publish({message.reply, "", {}, {}});  // if it is lost, the message comes again
 }
 
+/// To be given again, to any worker, when the pause is over: not only when the hub grows impatient.
+void Worker::give_back(const Message& message) {
+  const std::string text = fmt::format("-NAK {{\"delay\":{}}}", pause_us_ * 1000);
+  (void)link_.publish({message.reply, "", {}, Bytes(text.begin(), text.end())});
+}
+
 void Worker::store(const WorkerTime& now) {
   FloodGate before = gate_;
-  FleetBatch batch = batch_of(waiting_.data(), waiting_.data() + waiting_.size(), now);
+  const std::size_t within = put_floods_last(now);
+  FleetBatch batch;
+  for (std::size_t i = 0; i < within; ++i) judge(waiting_[i], now.hub_us, batch);
   batch.floods = gate_.take_floods();
   const StoreOutcome outcome = store_(batch);
   counters_.trouble = outcome.problem;
   if (outcome.problem.empty()) {
     for (const Message& message : waiting_) acknowledge(message);
     count(batch, waiting_.size());
+    note_inventories(batch, now.steady_us);
     pause_us_ = 0;
   } else if (outcome.lasting) {
-    store_one_by_one(now);
+    store_one_by_one(within, std::move(batch.floods), now);
   } else {
     // Nothing is acknowledged: the hub keeps it, and gives it again. So nothing of it was said yet.
     gate_ = std::move(before);
     pause_us_ = std::clamp(2 * pause_us_, kShortestPause_us, kLongestPause_us);
     pause_until_us_ = now.steady_us + pause_us_;
+    for (const Message& message : waiting_) give_back(message);
   }
   waiting_.clear();
 }
 
 /// One message that the database cannot take does not stop the others.
-void Worker::store_one_by_one(const WorkerTime& now) {
-  for (const Message& message : waiting_) {
+void Worker::store_one_by_one(std::size_t within, std::vector<ReceivedFlood> floods,
+                              const WorkerTime& now) {
+  for (std::size_t i = 0; i < within; ++i) {
+    const Message& message = waiting_[i];
     FleetBatch batch;
     judge(message, now.hub_us, batch);
     StoreOutcome outcome = store_(batch);
@@ -134,6 +150,43 @@ void Worker::store_one_by_one(const WorkerTime& now) {
     acknowledge(message);
     count(batch, 1);
   }
+  FleetBatch rest;
+  rest.floods = std::move(floods);
+  counters_.trouble = store_(rest).problem;
+  if (!counters_.trouble.empty()) return;
+  for (std::size_t i = within; i < waiting_.size(); ++i) acknowledge(waiting_[i]);
+  count(rest, waiting_.size() - within);
+}
+
+void Worker::note_inventories(const FleetBatch& batch, std::int64_t steady_us) {
+  if (!missing_) return;
+  for (const ReceivedNewest& newest : batch.newest)
+    if (newest.kind == "inventory" && to_compare_.size() < kMostCompared)
+      to_compare_.insert({newest.building, steady_us + kBeforeCompared_us});
+}
+
+/// One at a time, between batches. What is not known now is asked of the inventory of tomorrow.
+void Worker::compare_inventories(const WorkerTime& now) {
+  const auto due = std::find_if(to_compare_.begin(), to_compare_.end(),
+                                [&](const auto& one) { return one.second <= now.steady_us; });
+  if (due == to_compare_.end()) return;
+  const std::string building = due->first;
+  to_compare_.erase(due);
+  const auto days = missing_(building);
+  for (std::size_t i = 0; days && i < std::min(days->size(), kMostResent_days); ++i)
+    ask_again(building, (*days)[i], now);
+}
+
+void Worker::ask_again(const std::string& building, std::int64_t from_us, const WorkerTime& now) {
+  const std::string text =
+      fmt::format("{{\"from_us\":{},\"to_us\":{}}}", from_us, from_us + daemon::kDay_us);
+  const std::int64_t now_s = now.hub_us / daemon::kSecond_us;
+  Message request{down_subject(building, "resend"), "", {}, Bytes(text.begin(), text.end())};
+  request.headers = {
+      {header::kWho, "worker"},
+      {header::kRequest, fmt::format("inventory-{}-{}", from_us / daemon::kDay_us, now_s)},
+      {header::kUntil, fmt::format("{}", now_s + kCommandHolds_s)}};
+  if (link_.publish(request)) ++counters_.resends;
 }
 
 void Worker::finish(const WorkerTime& now) {

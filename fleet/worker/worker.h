@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,11 @@ struct StoreOutcome {
 };
 using StoreSink = std::function<StoreOutcome(const FleetBatch&)>;
 
+/// Begins of the days (us, UTC) of which the database has less than a building says it has, the
+/// newest first. Empty: it is not known now.
+using MissingDays =
+    std::function<std::optional<std::vector<std::int64_t>>(const std::string& building)>;
+
 /// The two clocks of a worker.
 struct WorkerTime {
   std::int64_t steady_us = 0;  ///< never set
@@ -33,16 +39,20 @@ class Worker {
   static constexpr std::size_t kMostMessages = 500;     ///< of a batch
   static constexpr std::int64_t kLongest_us = 500'000;  ///< that one is collected
   static constexpr std::int64_t kPull_us = 5'000'000;   ///< that the hub holds a request
+  /// After an inventory came, until it is compared: what is under way has then arrived.
+  static constexpr std::int64_t kBeforeCompared_us = 1'800'000'000;
+  static constexpr std::size_t kMostResent_days = 5, kMostCompared = 20'000;  ///< of one; waiting
   static constexpr std::int64_t kShortestPause_us = 1'000'000, kLongestPause_us = 30'000'000;
 
   struct Counters {
     std::int64_t stored = 0;                              ///< messages
     std::int64_t refused = 0, unknown = 0, flooding = 0;  ///< among them
     std::int64_t batches = 0;
-    std::string trouble;  ///< why the newest batch was not stored
+    std::int64_t resends = 0;  ///< days that buildings were asked for again
+    std::string trouble;       ///< why the newest batch was not stored
   };
 
-  Worker(Link& link, StoreSink store, FloodGate gate = FloodGate());
+  Worker(Link& link, StoreSink store, MissingDays missing = {}, FloodGate gate = FloodGate());
 
   /// Does what is due. Waits for nothing but the store.
   void step(const WorkerTime& now);
@@ -61,14 +71,21 @@ class Worker {
   void ask(Consumer& consumer, std::int64_t steady_us);
   void take(Message message, const WorkerTime& now);
   void store(const WorkerTime& now);
-  void store_one_by_one(const WorkerTime& now);
-  FleetBatch batch_of(const Message* begin, const Message* end, const WorkerTime& now);
+  void store_one_by_one(std::size_t within, std::vector<ReceivedFlood> floods,
+                        const WorkerTime& now);
+  std::size_t put_floods_last(const WorkerTime& now);
   void acknowledge(const Message& message);
+  void give_back(const Message& message);
   void count(const FleetBatch& batch, std::size_t messages);
+  void note_inventories(const FleetBatch& batch, std::int64_t steady_us);
+  void compare_inventories(const WorkerTime& now);
+  void ask_again(const std::string& building, std::int64_t from_us, const WorkerTime& now);
 
   Link& link_;
   StoreSink store_;
+  MissingDays missing_;
   FloodGate gate_;
+  std::map<std::string, std::int64_t> to_compare_;  ///< buildings, and when (steady clock)
   std::vector<Consumer> consumers_;
   std::vector<Message> waiting_;
   std::int64_t since_us_ = 0;  ///< when the oldest of them came

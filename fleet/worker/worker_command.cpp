@@ -16,6 +16,7 @@
 #include "drivers/base/caught.h"
 #include "fleet/link/nats_link.h"
 #include "fleet/store/fleet_store.h"
+#include "fleet/worker/missing_days.h"
 #include "fleet/worker/worker.h"
 
 namespace framewatch::fleet {
@@ -42,9 +43,12 @@ class WorkerLog {
     if (quiet_ || steady_us < next_us_ || c.stored == said_) return;
     next_us_ = steady_us + kReport_us;
     said_ = c.stored;
-    daemon::log(daemon::LogLevel::info,
-                fmt::format("{} messages stored in {} batches, {} refused, {} unknown, {} flooding",
-                            c.stored, c.batches, c.refused, c.unknown, c.flooding));
+    daemon::log(
+        daemon::LogLevel::info,
+        fmt::format(
+            "{} messages stored in {} batches, {} refused, {} unknown, {} flooding, {} days "
+            "asked for again",
+            c.stored, c.batches, c.refused, c.unknown, c.flooding, c.resends));
   }
 
  private:
@@ -56,12 +60,15 @@ class WorkerLog {
 
 void work(const WorkerArguments& a, NatsLink& link) {
   FleetStore store;
-  Worker worker(link, [&](const FleetBatch& batch) -> StoreOutcome {
-    std::string problem = store.open(a.database);
-    if (!problem.empty()) return {std::move(problem), false};
-    problem = store.add(batch);
-    return {problem, !problem.empty() && store.is_of_values()};
-  });
+  Worker worker(
+      link,
+      [&](const FleetBatch& batch) -> StoreOutcome {
+        std::string problem = store.open(a.database);
+        if (!problem.empty()) return {std::move(problem), false};
+        problem = store.add(batch);
+        return {problem, !problem.empty() && store.is_of_values()};
+      },
+      [&](const std::string& building) { return missing_days(store, building); });
   daemon::ServiceManager manager;
   manager.ready();
   WorkerLog log(a.quiet);

@@ -1,10 +1,9 @@
-"""Three nats-servers of this test's own, as deploy/fleet/ describes them, and buildings with a history at them."""
+"""Three nats-servers of this test's own, as deploy/fleet/ describes them, and workers at them."""
 import os
 import re
 import shutil
 import signal
 import socket
-import sqlite3
 import subprocess
 import time
 import urllib.request
@@ -45,6 +44,13 @@ class Process:
         self.log.close()
         Process.every.remove(self)
         return self.child.returncode
+
+    def usage(self):
+        """Seconds of processor so far, and bytes resident."""
+        with open(f"/proc/{self.child.pid}/stat") as file:
+            words = file.read().rsplit(")", 1)[1].split()
+        ticks, pages = int(words[11]) + int(words[12]), int(words[21])
+        return ticks / os.sysconf("SC_CLK_TCK"), pages * os.sysconf("SC_PAGE_SIZE")
 
     @classmethod
     def end_all(cls):
@@ -137,84 +143,20 @@ class Hub:
             os.rename(f"{self.folder}/old{i}", f"{self.folder}/store{i}")
 
 
-class Building:
-    """A building whose history this test writes: events, as many as it wants."""
+class Workers:
+    def __init__(self, hub, postgres):
+        self.hub, self.postgres, self.all, self.begun = hub, postgres, [], 0
 
-    def __init__(self, hub, name, ports=None, history=True):
-        self.hub, self.name = hub, name
-        self.folder = f"{hub.folder}/{name}"
-        os.makedirs(f"{self.folder}/history", exist_ok=True)
-        self.config = f"{self.folder}/building.toml"
-        (lcm,) = free_ports(1)
-        self.url = f"udpm://239.255.76.67:{lcm}?ttl=0"
-        hubs = ", ".join(f'"tls://localhost:{port}"' for port in (ports or hub.client))
-        with open(f"{hub.root}/configs/table_two_story.toml") as file:
-            text = file.read()
-        assert "\n[lcm]" not in text
-        with open(self.config, "w") as file:
-            file.write(f'{text}\n[lcm]\nurl = "{self.url}"\n[commands]\ndirectory = "."\n[history]\n'
-                       f'directory = "history"\n[watch]\nlearn_s = 5\n[fleet]\nbuilding = "{name}"\nhubs = [{hubs}]\n'
-                       f'certificate = "{hub.certificates}/{name}.pem"\nkey = "{hub.certificates}/{name}.key"\n'
-                       f'ca = "{hub.certificates}/ca.pem"\naccept = ["acknowledge", "raw", "resend", "minutes"]\n')
-        self.uplink = None
-        self.events = 0
-        if history:
-            self.database = self.make_history()
+    def start(self, count=1):
+        for _ in range(count):
+            urls = [argument for url in self.hub.urls() for argument in ("--hub", url)]
+            self.begun += 1
+            self.all.append(Process([self.hub.program, "fleet", "worker", *urls, "--dir", self.hub.certificates,
+                                     "--database", self.postgres.where], f"{self.hub.folder}/worker{self.begun}.log"))
 
-    def make_history(self):
-        """The tables are `framewatch run`'s: it makes them, and ends."""
-        child = subprocess.Popen([self.hub.program, "run", self.config, "--quiet"], stdout=subprocess.DEVNULL,
-                                 stderr=subprocess.DEVNULL)
-        path = f"{self.folder}/history/history.sqlite"
-        for _ in range(300):
-            time.sleep(0.1)
-            try:
-                if sqlite3.connect(path).execute("PRAGMA user_version").fetchone()[0] > 0:
-                    break
-            except sqlite3.Error:
-                pass
-        child.terminate()
-        child.wait()
-        return sqlite3.connect(path, isolation_level=None)
+    def kill(self, at=0):
+        self.all.pop(at).end(signal.SIGKILL)
 
-    def add_events(self, count):
-        first = self.events
-        rows = [("gap", i, 1_700_000_000_000_000 + i, 1, 0, 0, "", 1.0, 0.1, "", "message " * 20, "")
-                for i in range(first, first + count)]
-        self.database.execute("BEGIN")
-        self.database.executemany("INSERT INTO event VALUES (?,?,?,?,?,?,?,?,?,?,?,?)", rows)
-        self.database.execute("COMMIT")
-        self.events += count
-
-    def start(self):
-        self.uplink = Process([self.hub.program, "uplink", self.config, "--quiet"], f"{self.folder}/uplink.log")
-
-    def stop(self, number=signal.SIGTERM):
-        self.uplink.end(number)
-        self.uplink = None
-
-    def keys(self):
-        rows = self.read("history.sqlite", "SELECT kind, id, time_us, state FROM event")
-        return {f"{self.name}/event/{k}/{i}/{t}/{s}" for k, i, t, s in rows}
-
-    def read(self, file, query):
-        database = sqlite3.connect(f"file:{self.folder}/history/{file}?mode=ro", uri=True, timeout=30)
-        try:
-            return database.execute(query).fetchall()
-        finally:
-            database.close()
-
-    def acknowledged(self):
-        try:
-            return self.read("uplink.sqlite", "SELECT count(*) FROM sent_event")[0][0]
-        except sqlite3.Error:
-            return 0
-
-    def until_acknowledged(self, timeout_s=120):
-        """Seconds until everything is; raises when it is not in time."""
-        begin = time.monotonic()
-        while self.acknowledged() < len(self.keys()):
-            if time.monotonic() - begin > timeout_s:
-                raise RuntimeError(f"{self.name}: {self.acknowledged()} of {len(self.keys())} after {timeout_s} s")
-            time.sleep(0.1)
-        return time.monotonic() - begin
+    def stop(self):
+        while self.all:
+            self.all.pop().end()

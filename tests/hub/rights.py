@@ -1,10 +1,13 @@
 """What the certificate of a building may do at a real server, and what not."""
+import base64
 import json
 import subprocess
 import time
 
+import lcm_event
 from nats_client import Client, Denied
 
+SOON_S = 15  # a request that nobody answers takes 30 s
 DENIED = "Permissions Violation"
 
 
@@ -37,8 +40,19 @@ def check(hub, one):
             ("reading another's events", lambda c: c.subscribe("fw.up.b2.>")),
             ("reading everything", lambda c: c.subscribe(">")),
             ("reading another's answers", lambda c: c.subscribe("_INBOX_b2.>")),
-            ("hearing another's commands", lambda c: c.subscribe("fw.down.b2.>"))):
+            ("hearing another's commands", lambda c: c.subscribe("fw.down.b2.>")),
+            ("reading every building's events", lambda c: c.subscribe("fw.up.*.event")),
+            ("hearing everybody's commands", lambda c: c.subscribe("fw.down.*.raw")),
+            ("answering for another", lambda c: c.publish("_INBOX_b2.x.1", b'{"stream":"FW_EVENT","seq":1}')),
+            ("answering the page", lambda c: c.publish("_INBOX_page.x.1", b'{"ok":true}')),
+            ("reading another's newest", lambda c: c.publish("$JS.API.DIRECT.GET.FW_LAST.fw.up.b2.service", b"")),
+            ("making a consumer", lambda c: c.publish("$JS.API.CONSUMER.CREATE.FW_EVENT", b"{}")),
+            ("taking what workers are to take", lambda c: c.publish("$JS.API.CONSUMER.MSG.NEXT.FW_EVENT.store", b"")),
+            ("acknowledging for a worker", lambda c: c.publish("$JS.ACK.FW_EVENT.store.1.1.1.1.1", b"")),
+            ("purging a stream", lambda c: c.publish("$JS.API.STREAM.PURGE.FW_EVENT", b"")),
+            ("the server's own subjects", lambda c: c.publish("$SYS.REQ.SERVER.PING", b""))):
         must(denied(thief, act), f"{what} is refused")
+    must(not steals_keys(hub, thief, one), "keys said before another building says them take nothing from it")
     worker = Client(hub.client[0], hub.certificates, "worker")
     must(denied(worker, lambda c: c.publish("fw.down.b1.raw", b"x")), "the worker commands nothing but resend")
 
@@ -51,13 +65,28 @@ def check(hub, one):
     must(command(one.name, "ping", b"", "p1") == b'{"ok":true}', "the page's ping is answered")
     begin = time.monotonic()
     gone = command("b99", "ping", b"", "p2")
-    must(not gone and time.monotonic() - begin < 2, "of a building that is away the page hears so at once")
+    must(not gone and time.monotonic() - begin < SOON_S, "of a building that is away the page hears so at once")
     stretch = json.dumps({"from_us": 0, "to_us": 1}).encode()
     must(command(one.name, "resend", stretch, "r1") == b'{"ok":true}', "the page's resend is obeyed")
     must(b'"ok":false' in (command(one.name, "resend", stretch, "r2", -5) or b""), "a command that is late is refused")
     must(b'"ok":false' in (command(one.name, "raw", stretch, "../x") or b""), "a request that is no name is refused")
     must(b'"ok":false' in (command(one.name, "reboot", b"", "r4") or b""), "a verb that nobody knows is refused")
     return problems
+
+
+def steals_keys(hub, thief, one):
+    """The hub takes a second message of one Nats-Msg-Id for a repetition, whoever sent the first: a thief that says the
+    key of the event to come would have it acknowledged, and thrown away."""
+    kind, number, time_us, state = lcm_event.event(one.events)[:4]
+    key = one.event_key(kind, number, time_us, state)
+    thief.publish(f"fw.up.{thief.name}.event", b"x", {"Nats-Msg-Id": key})
+    thief.round_trip()
+    one.add_events(1)
+    one.until_acknowledged()
+    operator = Client(hub.client[0], hub.certificates, "operator", 30)
+    answer = json.loads(operator.request("$JS.API.STREAM.MSG.GET.FW_EVENT",
+                                         json.dumps({"last_by_subj": f"fw.up.{one.name}.event"}).encode(), timeout_s=30))
+    return key not in base64.b64decode(answer["message"]["hdrs"]).decode()
 
 
 def revoke(hub, one):

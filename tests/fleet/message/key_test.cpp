@@ -1,5 +1,9 @@
 #include "fleet/message/key.h"
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace framewatch::fleet {
@@ -22,6 +26,21 @@ TEST(Key, AKindThatIsNoWordMakesNoOtherKey) {
   const std::string key = message_key("a", EventKey{"x/1\r\nNats-Msg-Id: y%", 2, 3, 0});
   EXPECT_EQ(key, "a/event/x%2F1%0D%0ANats-Msg-Id:%20y%25/2/3/0");
   EXPECT_NE(message_key("a", EventKey{"x", 1, 2, 0}), message_key("a", EventKey{"x/1", 2, 0, 0}));
+}
+
+TEST(Key, IsSealedByWhoHasTheSecretAndByTheContent) {
+  const std::vector<std::uint8_t> content{1, 2, 3}, other{1, 2, 4};
+  const std::string key = "kobe-03/summary/600/0", sealed = sealed_key(key, "mine", content);
+  EXPECT_EQ(sealed, sealed_key(key, "mine", content));
+  EXPECT_NE(sealed, sealed_key(key, "yours", content));
+  EXPECT_NE(sealed, sealed_key(key, "mine", other));
+  EXPECT_TRUE(sealed.starts_with(key + "~"));
+  EXPECT_EQ(key_of_sealed(sealed), key);
+  EXPECT_EQ(key_of_sealed(key), key);
+  // A kind may have the sign itself.
+  const std::string odd = message_key("a", EventKey{"x~0123456789abcdef01234567", 1, 2, 0});
+  EXPECT_EQ(key_of_sealed(odd), odd);
+  EXPECT_EQ(key_of_sealed(sealed_key(odd, "mine", content)), odd);
 }
 
 TEST(Key, PartsSayWhoseItIs) {

@@ -95,6 +95,26 @@ TEST(SendWindow, ARefusedMessageWaitsAndHoldsUpNobody) {
   EXPECT_EQ(w.due(61 * kSecond_us), (std::vector<std::int64_t>{1}));
 }
 
+// A full stream of raw samples must not hold up an event.
+TEST(SendWindow, WhileNothingButARefusedMessageWaitsOthersAreTaken) {
+  SendWindow w;
+  w.add(numbered(1), 0);
+  (void)w.due(0);
+  ASSERT_TRUE(w.refused(1, 1000, 60 * kSecond_us));
+  EXPECT_TRUE(w.takes(30 * kSecond_us));
+  w.add(numbered(2), 30 * kSecond_us);
+  EXPECT_EQ(w.due(30 * kSecond_us), (std::vector<std::int64_t>{2}));
+  EXPECT_TRUE(w.takes(31 * kSecond_us));
+  EXPECT_FALSE(w.takes(32 * kSecond_us));  // that one is not answered
+  ASSERT_TRUE(w.acknowledged(2, 32 * kSecond_us));
+  EXPECT_TRUE(w.takes(59 * kSecond_us));
+  EXPECT_EQ(w.due(61 * kSecond_us), (std::vector<std::int64_t>{1}));
+  ASSERT_TRUE(w.acknowledged(1, 61 * kSecond_us));
+  EXPECT_EQ(w.messages(), 0u);
+  w.add(numbered(3), 100 * kSecond_us);
+  EXPECT_FALSE(w.takes(110 * kSecond_us));
+}
+
 TEST(SendWindow, AnAnswerThatComesTwiceOrLateSettlesOnce) {
   SendWindow w;
   w.add(numbered(1), 0);

@@ -122,7 +122,7 @@ class UplinkTest : public ::testing::Test {
     daemon::HistorySettings history;
     history.directory = directory();
     uplink_ = std::make_unique<Uplink>(
-        UplinkSettings{settings_, history, ""}, hub_,
+        UplinkSettings{settings_, history, "", secret_}, hub_,
         [this](const acknowledge_t& request) {
           acknowledged_.push_back(request);
           return acknowledge_problem_;
@@ -148,7 +148,7 @@ class UplinkTest : public ::testing::Test {
   daemon::FleetSettings settings_;
   FakeHub hub_;
   std::vector<acknowledge_t> acknowledged_;
-  std::string acknowledge_problem_;
+  std::string acknowledge_problem_, secret_;
   std::unique_ptr<Uplink> uplink_;
   std::int64_t steady_us_ = 5 * kSecond, host_us_ = kStart_us + 10 * kHour_us;
 };

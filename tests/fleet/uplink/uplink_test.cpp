@@ -101,6 +101,20 @@ TEST_F(UplinkRules, APeriodThatGrewIsSentAgainWhenItIsClosed) {
   EXPECT_EQ(hub_.stored[key], 2);
 }
 
+// Within minutes a stream takes one Nats-Msg-Id once.
+TEST_F(UplinkRules, APeriodThatGrewIsNoRepetitionToTheHub) {
+  secret_ = "mine";
+  add_hour(test::kStart_us, 1);
+  begin();
+  run(10);
+  const std::string key = fmt::format("a/summary/600/{}~", test::kStart_us);
+  EXPECT_EQ(hub_.count(key), 1U);
+  sql("UPDATE period SET windows = windows + 5, open = 0");
+  run(10);
+  EXPECT_EQ(hub_.count(key), 2U);
+  EXPECT_EQ(kept_twice(), 0U);
+}
+
 TEST_F(UplinkRules, AHubThatIsAwayForHoursCostsNothingButTime) {
   begin();
   run(2);
@@ -148,6 +162,45 @@ TEST_F(UplinkRules, AfterAPowerCutOfTheHubNothingIsMissing) {
   run(30);
   EXPECT_EQ(hub_.count("a/event/gap/"), std::size_t{kEvents});
   EXPECT_EQ(hub_.count("a/summary/"), kPeriodsOfAnHour);
+}
+
+TEST_F(UplinkRules, ASecondBreakBeforeWhatWasLostIsSentAgainForgetsNothing) {
+  for (int id = 0; id < 3; ++id) add_event(id, test::kStart_us + id);
+  begin();
+  run(2);
+  EXPECT_EQ(hub_.count("a/event/"), 3U);
+  hub_.stored.clear();  // its power is cut
+  hub_.answers = false;
+  for (int i = 0; i < 3; ++i) {
+    hub_.reconnect();
+    run(3);
+  }
+  begin();  // and the uplink is killed
+  run(3);
+  hub_.answers = true;
+  run(10);
+  EXPECT_EQ(hub_.count("a/event/"), 3U);
+}
+
+TEST_F(UplinkRules, ALineThatBreaksAgainAndAgainSendsNothingForEver) {
+  add_event(1, test::kStart_us);
+  begin();
+  run(2);
+  EXPECT_EQ(hub_.stored["a/event/gap/1/" + std::to_string(test::kStart_us) + "/1"], 1);
+  std::size_t sent = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int more = 0; more < 4; ++more) {  // something is acknowledged all the time
+      add_event(100 + 4 * i + more, test::kStart_us + 100 + 4 * i + more);
+      run(90, 500'000);
+    }
+    hub_.reconnect();
+    run(3);
+    const auto& all = hub_.published;
+    sent = static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [](const Message& m) {
+      return m.header(header::kKey).find("/gap/1/") != std::string::npos;
+    }));
+  }
+  EXPECT_EQ(sent, 2u);  // after the first break, 6 min later, and not after those that followed
 }
 
 TEST_F(UplinkRules, WhatWasAcknowledgedLongBeforeIsNotSentAgain) {
@@ -220,7 +273,8 @@ TEST_F(UplinkRules, AroundAnEventMinutesAreSent) {
 TEST_F(UplinkRules, AFullHubRefusesAndTheBuildingKeeps) {
   add_event(1, test::kStart_us);
   begin();
-  hub_.error = R"({"error":{"code":400,"err_code":10077,"description":"maximum bytes exceeded"}})";
+  // As JetStream says it.
+  hub_.error = R"({"error":{"code":503,"err_code":10077,"description":"maximum bytes exceeded"}})";
   run(10);
   EXPECT_EQ(hub_.count("a/event/"), 0U);
   EXPECT_EQ(uplink_->status(now()).refusal, "maximum bytes exceeded");

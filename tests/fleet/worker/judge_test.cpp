@@ -61,6 +61,15 @@ TEST(Judge, TakesAPieceOfRawSamples) {
   }
 }
 
+TEST(Judge, TakesSealedKeys) {
+  Message message = event_message("kobe", 1);
+  message.headers[header::kKey] =
+      sealed_key(message.header(header::kKey), "secret of kobe", message.bytes);
+  EXPECT_EQ(judged(message).events.size(), 1u);
+  message.subject = up_subject("osaka", "event");
+  EXPECT_EQ(reason(message), "its key names kobe, its subject osaka");
+}
+
 TEST(Judge, RefusesWhatNamesAnother) {
   Message forged = event_message("kobe", 1);
   forged.subject = up_subject("osaka", "event");

@@ -75,7 +75,8 @@ class HubLink : public Link {
  public:
   void hold(Message message) {
     const bool is_event = message.subject.ends_with(".event");
-    const std::string stream = is_event ? "FW_EVENT" : "FW_SUMMARY";
+    const bool is_newest = message.subject.ends_with(".inventory");
+    const std::string stream = is_event ? "FW_EVENT" : is_newest ? "FW_LAST" : "FW_SUMMARY";
     message.reply = "$JS.ACK." + stream + ".store.1." + std::to_string(++number_);
     held_[message.reply] = std::move(message);
   }
@@ -84,6 +85,8 @@ class HubLink : public Link {
   std::size_t held() const { return held_.size(); }
   void cut() { ++connections_; }
   int requests() const { return requests_; }
+  const std::vector<Message>& commands() const { return commands_; }
+  int given_back() const { return given_back_; }
 
   bool publish(const Message& message) override {
     if (message.subject.starts_with("$JS.API.CONSUMER.MSG.NEXT.")) {
@@ -91,13 +94,21 @@ class HubLink : public Link {
       for (const auto& [reply, one] : held_)
         if (message.subject.find(reply.substr(8, reply.find('.', 8) - 8)) != std::string::npos &&
             given_.insert({reply, true}).second)
-          come_.push_back(one);
-    } else {
+          come_.insert(come_.end(), subscriptions_, one);
+    } else if (message.subject.starts_with("fw.down.")) {
+      commands_.push_back(message);
+    } else if (message.bytes.empty()) {
       held_.erase(message.subject);
+    } else {  // -NAK: to be given again
+      given_.erase(message.subject);
+      ++given_back_;
     }
     return true;
   }
-  void listen(const std::string&) override {}
+  void listen(const std::string& subject) override {
+    // A server gives a message to each subscription that it fits; a link has one for its inbox.
+    if (subject.starts_with(inbox())) ++subscriptions_;
+  }
   std::vector<Message> take() override { return std::exchange(come_, {}); }
   std::int64_t connections() const override { return connections_; }
   bool is_connected() const override { return true; }
@@ -107,9 +118,10 @@ class HubLink : public Link {
  private:
   std::map<std::string, Message> held_;
   std::map<std::string, bool> given_;
-  std::vector<Message> come_;
+  std::vector<Message> come_, commands_;
   std::int64_t connections_ = 1, number_ = 0;
-  int requests_ = 0;
+  std::size_t subscriptions_ = 1;
+  int requests_ = 0, given_back_ = 0;
 };
 
 }  // namespace framewatch::fleet

@@ -1,7 +1,9 @@
 #include "fleet/worker/worker.h"
 
+#include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -47,7 +49,9 @@ class WorkerTest : public testing::Test {
 
   HubLink hub_;
   Database database_;
+  std::optional<std::vector<std::int64_t>> missing_;
   Worker worker_{hub_, [this](const FleetBatch& batch) { return database_.store(batch); },
+                 [this](const std::string&) { return missing_; },
                  FloodGate(kMessages, FloodGate::kBytes)};
   WorkerTime now_{1'000'000, kHub_us};
 };
@@ -142,6 +146,66 @@ TEST_F(WorkerTest, AFloodIsAcknowledgedAndCounted) {
       floods += flood.messages;
     }
   EXPECT_EQ(floods, 20);
+}
+
+TEST_F(WorkerTest, AFloodBesideAMessageThatTheDatabaseDoesNotTakeIsNotStoredEither) {
+  database_.bad_events = {3};
+  const auto more = kMessages + 20;
+  for (std::int64_t id = 0; id < more; ++id) hub_.hold(event_message("kobe", id));
+  pass(30'000'000);
+  EXPECT_EQ(hub_.held(), 0u);
+  EXPECT_EQ(database_.events().size(), static_cast<std::size_t>(kMessages) - 1);
+  std::int64_t floods = 0;
+  for (const FleetBatch& batch : database_.batches)
+    for (const ReceivedFlood& flood : batch.floods) floods += flood.messages;
+  EXPECT_EQ(floods, 20);
+  EXPECT_EQ(worker_.counters().flooding, 20);
+}
+
+TEST_F(WorkerTest, WhatTheDatabaseDidNotTakeIsGivenBackAndTakenWhenItIsThereAgain) {
+  database_.problem = "connection refused";
+  for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
+  pass(1'000'000);
+  EXPECT_EQ(hub_.given_back(), 10);
+  database_.problem.clear();
+  pass(8'000'000);  // nobody's patience is over
+  EXPECT_EQ(database_.events().size(), 10u);
+  EXPECT_EQ(hub_.held(), 0u);
+}
+
+TEST_F(WorkerTest, EveryMessageIsTakenOnce) {
+  for (int id = 0; id < 10; ++id) hub_.hold(event_message("kobe", id));
+  pass(2'000'000);
+  EXPECT_EQ(worker_.counters().stored, 10);
+}
+
+TEST_F(WorkerTest, AsksABuildingForDaysOfWhichTheDatabaseHasLessThanItsInventory) {
+  const Message inventory = packed(up_subject("kobe", "inventory"),
+                                   newest_key("kobe", "inventory", 1), "json", {'{', '}'}, "");
+  missing_ = std::vector<std::int64_t>(7, kHub_us - 86'400'000'000);
+  hub_.hold(inventory);
+  pass(60'000'000);
+  EXPECT_TRUE(hub_.commands().empty());  // what is under way may still come
+  pass(1'800'000'000);
+  ASSERT_EQ(hub_.commands().size(), Worker::kMostResent_days);
+  const Message& asked = hub_.commands().front();
+  EXPECT_EQ(asked.subject, "fw.down.kobe.resend");
+  EXPECT_EQ(std::string(asked.bytes.begin(), asked.bytes.end()),
+            R"({"from_us":1795219200000000,"to_us":1795305600000000})");
+  EXPECT_EQ(asked.header(header::kWho), "worker");
+  EXPECT_EQ(worker_.counters().resends, 5);
+  pass(3'600'000'000);
+  EXPECT_EQ(hub_.commands().size(), Worker::kMostResent_days);  // once for an inventory
+}
+
+TEST_F(WorkerTest, AsksForNothingWhileTheDatabaseIsAwayOrHasEverything) {
+  for (const char* name : {"kobe", "osaka"}) {
+    hub_.hold(packed(up_subject(name, "inventory"), newest_key(name, "inventory", 1), "json",
+                     {'{', '}'}, ""));
+    pass(2'000'000'000);
+    EXPECT_TRUE(hub_.commands().empty());
+    missing_.emplace();
+  }
 }
 
 TEST(FloodGateTest, EveryHourBeginsAnew) {

@@ -1,0 +1,169 @@
+"""A building at the hub: real `framewatch uplink`, real `framewatch run` where one is wanted, and events that this test
+adds to its history as `run` would."""
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import time
+
+import lcm_event
+from hub import Process, free_ports
+
+HISTORY = ("history.sqlite", "uplink.sqlite")
+PERIODS_S = (2, 4, 8)  # of summaries: minutes would be hours here
+
+
+class Building:
+    def __init__(self, hub, name, ports=None, history=True):
+        self.hub, self.name = hub, name
+        self.folder = f"{hub.folder}/{name}"
+        os.makedirs(f"{self.folder}/history", exist_ok=True)
+        self.config = f"{self.folder}/building.toml"
+        (lcm,) = free_ports(1)
+        self.url = f"udpm://{lcm_event.GROUP}:{lcm}?ttl=0"
+        self.lcm = lcm_event.Lcm(lcm)
+        self.fingerprint = lcm_event.fingerprint(hub.root)
+        hubs = ", ".join(f'"tls://localhost:{port}"' for port in (ports or hub.client))
+        with open(f"{hub.root}/configs/table_two_story.toml") as file:
+            text = file.read()
+        assert "\n[lcm]" not in text
+        with open(self.config, "w") as file:
+            file.write(f'{text}\n[lcm]\nurl = "{self.url}"\n[commands]\ndirectory = "."\n[history]\n'
+                       f'directory = "history"\nsummary_s = {list(PERIODS_S)}\n[watch]\nlearn_s = 5\n'
+                       f'[fleet]\nbuilding = "{name}"\nhubs = [{hubs}]\n'
+                       f'certificate = "{hub.certificates}/{name}.pem"\nkey = "{hub.certificates}/{name}.key"\n'
+                       f'ca = "{hub.certificates}/ca.pem"\naccept = ["acknowledge", "raw", "resend", "minutes"]\n')
+        self.uplink = self.run = self.samples = self.database = None
+        self.events = 0
+        self.before_cut = set()  # keys that were acknowledged before the building lost its power
+        if history:
+            self.start_run()
+            if not self.wait_for_history():
+                raise RuntimeError(f"{name}: run makes no history")
+            self.stop_run()
+
+    def start_run(self):
+        self.run = Process([self.hub.program, "run", self.config, "--quiet"], f"{self.folder}/run.log")
+
+    def stop_run(self, number=signal.SIGTERM):
+        self.run.end(number)
+        self.run = None
+
+    def start_samples(self, seconds=36_000):
+        """A virtual building that moves, for run to hear."""
+        with open(f"{self.hub.root}/configs/scenario_table_two_story.toml") as file:
+            scenario = file.read().replace("table_two_story.toml", "building.toml")
+        with open(f"{self.folder}/scenario.toml", "w") as file:
+            file.write(scenario)
+        self.samples = Process([self.hub.program, "simulate", f"{self.folder}/scenario.toml", "--lcm", "--seconds",
+                                str(seconds), "--quiet"], f"{self.folder}/simulate.log")
+
+    def wait_for_history(self, seconds=30):
+        """The tables are `framewatch run`'s: it makes them."""
+        path = f"{self.folder}/history/history.sqlite"
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if os.path.exists(path):
+                database = sqlite3.connect(path, isolation_level=None, timeout=30)
+                try:
+                    if database.execute("PRAGMA user_version").fetchone()[0] > 0:
+                        self.database = database
+                        return True
+                except sqlite3.Error:
+                    pass
+                database.close()
+            time.sleep(0.1)
+        return False
+
+    def add_events(self, count):
+        """As run does: into the history, and over LCM. Their numbers."""
+        numbers = range(self.events, self.events + count)
+        rows = [lcm_event.event(i, message="message " * 20) for i in numbers]
+        self.store(rows)
+        for row in rows:
+            self.lcm.publish("FRAMEWATCH_EVENT", lcm_event.encoded(self.fingerprint, row))
+        self.events += count
+        return numbers
+
+    def store(self, rows):
+        self.database.execute("BEGIN IMMEDIATE")
+        self.database.executemany("INSERT INTO event VALUES (?,?,?,?,?,?,?,?,?,?,?,?)", rows)
+        self.database.execute("COMMIT")
+
+    def start(self):
+        self.uplink = Process([self.hub.program, "uplink", self.config, "--quiet"], f"{self.folder}/uplink.log")
+
+    def stop(self, number=signal.SIGTERM):
+        self.uplink.end(number)
+        self.uplink = None
+
+    def keep_stores(self):
+        """As the disk is now, for put_back_stores()."""
+        old = f"{self.folder}/old"
+        shutil.rmtree(old, ignore_errors=True)
+        os.makedirs(old)
+        for name in HISTORY:
+            path = f"{self.folder}/history/{name}"
+            if os.path.exists(path):
+                source = sqlite3.connect(path, timeout=30)
+                with sqlite3.connect(f"{old}/{name}") as target:
+                    source.backup(target)
+                source.close()
+                target.close()
+
+    def put_back_stores(self):
+        """A power cut of the building: everything is killed, and its disk is as it was some seconds before."""
+        runs = self.run is not None
+        self.stop(signal.SIGKILL)
+        if runs:
+            self.stop_run(signal.SIGKILL)
+        self.database.close()
+        self.before_cut |= self.acknowledged_keys()
+        for name in HISTORY:
+            for tail in ("", "-wal", "-shm"):
+                if os.path.exists(f"{self.folder}/history/{name}{tail}"):
+                    os.remove(f"{self.folder}/history/{name}{tail}")
+            if os.path.exists(f"{self.folder}/old/{name}"):
+                shutil.copy(f"{self.folder}/old/{name}", f"{self.folder}/history/{name}")
+        if runs:
+            self.start_run()
+        self.wait_for_history()
+        self.start()
+
+    def event_keys(self):
+        """Of every event that the history has."""
+        rows = self.read("history.sqlite", "SELECT kind, id, time_us, state FROM event")
+        return {self.event_key(*row) for row in rows}
+
+    def event_key(self, kind, number, time_us, state):
+        return f"{self.name}/event/{kind}/{number}/{time_us}/{state}"
+
+    def acknowledged_keys(self):
+        try:
+            events = self.read("uplink.sqlite", "SELECT kind, id, time_us, state FROM sent_event WHERE acknowledged_us >= 0")
+            periods = self.read("uplink.sqlite", "SELECT period_s, start_us FROM sent_period WHERE acknowledged_us >= 0")
+        except sqlite3.Error:
+            return set()
+        return {self.event_key(*row) for row in events} | {f"{self.name}/summary/{p}/{s}" for p, s in periods}
+
+    def read(self, file, query):
+        database = sqlite3.connect(f"file:{self.folder}/history/{file}?mode=ro", uri=True, timeout=30)
+        try:
+            return database.execute(query).fetchall()
+        finally:
+            database.close()
+
+    def until_acknowledged(self, timeout_s=120):
+        """Seconds until every event is; raises when it is not in time."""
+        begin = time.monotonic()
+        while lacking := len(self.event_keys() - self.acknowledged_keys()):
+            if time.monotonic() - begin > timeout_s:
+                raise RuntimeError(f"{self.name}: {lacking} events are not acknowledged after {timeout_s} s")
+            time.sleep(0.1)
+        return time.monotonic() - begin
+
+
+def simulated_samples(hub, seconds, path):
+    subprocess.run([hub.program, "simulate", f"{hub.root}/configs/scenario_table_two_story.toml", "--seconds",
+                    str(seconds), "--out", path, "--quiet"], check=True)
