@@ -106,6 +106,8 @@ CREATE TABLE flooding (
 ALTER TABLE building ADD COLUMN retired boolean NOT NULL DEFAULT false;
 ALTER TABLE event ADD COLUMN came timestamptz NOT NULL DEFAULT now();
 CREATE INDEX event_came ON event (building, came);
+CREATE INDEX event_shaken ON event (time_us)
+  WHERE state = 1 AND kind IN ('strong_motion', 'stiffness_change');
 CREATE TABLE journal (
   request text PRIMARY KEY,
   came    timestamptz NOT NULL DEFAULT now(),

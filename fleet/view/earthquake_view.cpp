@@ -23,7 +23,7 @@ using nlohmann::json;
 
 constexpr std::int64_t kTogether_us = 60 * kSecond_us;
 constexpr std::size_t kLeastTogether = 3, kMostEarthquakes = 50;
-constexpr int kMostEvents = 100'000;
+constexpr int kMostEvents = 20'000;
 
 constexpr const char* kComparedBuildings =
     "SELECT id, name, title, place FROM building"

@@ -1,5 +1,6 @@
 #include "fleet/view/period_reader.h"
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -21,13 +22,14 @@ bool is_stiffness(std::int32_t kind) {
 }
 
 // A building's rows are found by the primary key; the limits are constants, so that no other month
-// is looked at.
+// is looked at. Damping, which comes last, is left out.
 constexpr const char* kPeriodRows =
-    "SELECT b.id, s.config, s.start_us, s.n, s.median, s.std_error"
-    " FROM unnest(ARRAY[{0}]::int[]) b(id) JOIN LATERAL (SELECT * FROM summary WHERE building = "
-    "b.id"
-    " AND period_s = {1} AND ((start_us >= {2} AND start_us <= {3}) OR"
-    " (start_us >= {4} AND start_us <= {5}))) s ON true";
+    "SELECT b.id, s.config, s.start_us, s.n[1:{6}], s.median[1:{6}], s.std_error[1:{6}]"
+    " FROM unnest(ARRAY[{0}]::int[]) b(id) JOIN LATERAL ("
+    " SELECT * FROM summary WHERE building = b.id AND period_s = {1}"
+    " AND start_us BETWEEN {2} AND {3} UNION ALL"
+    " SELECT * FROM summary WHERE building = b.id AND period_s = {1}"
+    " AND start_us BETWEEN {4} AND {5}) s ON true";
 constexpr const char* kNames =
     "SELECT building, config, to_json(name), to_json(unit), to_json(kind)"
     " FROM parameters WHERE building = ANY(ARRAY[{}]::int[])";
@@ -49,14 +51,22 @@ std::vector<Value> list_of(const std::string& text) {
 
 /// Values of one parameter before [0] and after [1].
 struct Gathered {
+  std::string name, unit;
   std::vector<float> medians[2], errors[2];
-  std::string unit;
 };
-/// Of one building: parameters by name, in the order in which they came.
+/// Of one building: parameters in the order in which they came. `places`: by configuration the
+/// place of each of its entries in `values`; -1: of no stiffness.
 struct Side {
-  std::vector<std::string> order;
-  std::map<std::string, Gathered> values;
+  std::vector<Gathered> values;
+  std::map<std::string, std::vector<int>> places;
   int periods[2] = {0, 0};
+
+  int place_of(const std::string& name, const std::string& unit) {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (values[i].name == name) return static_cast<int>(i);
+    values.push_back({name, unit, {}, {}});
+    return static_cast<int>(values.size() - 1);
+  }
 };
 
 }  // namespace
@@ -74,66 +84,79 @@ bool PeriodReader::read(std::map<std::int64_t, ComparedBuilding>& buildings,
   return true;
 }
 
-const PeriodReader::Names* PeriodReader::names_of(std::int64_t building,
-                                                  const std::string& config) {
-  const auto found = names_.find({building, config});
-  return found == names_.end() ? nullptr : &found->second;
+bool PeriodReader::read_names(const std::string& ids, std::size_t& stiffnesses) {
+  const auto rows = database_.query_binary(fmt::format(kNames, ids));
+  if (!rows) return false;
+  names_.clear();
+  for (const Database::Row& row : *rows) {
+    Names names{list_of<std::string>(text_at(row, 2)), list_of<std::string>(text_at(row, 3)),
+                list_of<std::int32_t>(text_at(row, 4))};
+    if (names.unit.size() != names.name.size() || names.kind.size() != names.name.size()) continue;
+    for (std::size_t i = 0; i < names.kind.size(); ++i)
+      if (is_stiffness(names.kind[i])) stiffnesses = std::max(stiffnesses, i + 1);
+    names_[{integer_of(text_at(row, 0)), text_at(row, 1)}] = std::move(names);
+  }
+  return true;
 }
+
+namespace {
+
+/// Adds the values of a period, at the places that its configuration has them.
+void gather(Side& side, const std::vector<int>& places, const Database::Row& row, int which) {
+  const auto n = integers_of(*row[3]);
+  const auto median = reals_of(*row[4]), error = reals_of(*row[5]);
+  if (n.size() != places.size() || median.size() != n.size() || error.size() != n.size()) return;
+  ++side.periods[which];
+  for (std::size_t i = 0; i < n.size(); ++i) {
+    if (places[i] < 0 || n[i] <= 0 || !(median[i] > 0) || !(error[i] >= 0)) continue;
+    Gathered& values = side.values[static_cast<std::size_t>(places[i])];
+    values.medians[which].push_back(median[i]);
+    values.errors[which].push_back(error[i]);
+  }
+}
+
+void compare_sides(const Side& side, ComparedBuilding& out) {
+  out.before = side.periods[0];
+  out.after = side.periods[1];
+  for (const Gathered& g : side.values) {
+    Comparison both{g.name, g.unit, level_of(g.medians[0], g.errors[0]),
+                    level_of(g.medians[1], g.errors[1])};
+    compare(both);
+    out.stiffness.push_back(std::move(both));
+  }
+}
+
+}  // namespace
 
 bool PeriodReader::read_some(const std::vector<std::int64_t>& ids,
                              std::map<std::int64_t, ComparedBuilding>& buildings,
                              const ComparedTime& t, int least) {
   const std::string list = comma_list(ids);
   const std::int64_t length_us = t.period_s * kSecond_us;
-  const auto names = database_.query_binary(fmt::format(kNames, list));
-  const auto rows = names ? database_.query_binary(fmt::format(kPeriodRows, list, t.period_s,
-                                                               t.from_us, t.until_us - length_us,
-                                                               t.after_us, t.to_us - length_us))
-                          : std::nullopt;
+  std::size_t stiffnesses = 0;
+  if (!read_names(list, stiffnesses)) return false;
+  const auto rows = database_.query_binary(fmt::format(kPeriodRows, list, t.period_s, t.from_us,
+                                                       t.until_us - length_us, t.after_us,
+                                                       t.to_us - length_us, stiffnesses));
   if (!rows) return false;
-  names_.clear();
-  for (const Database::Row& row : *names)
-    names_[{integer_of(text_at(row, 0)), text_at(row, 1)}] = {
-        list_of<std::string>(text_at(row, 2)), list_of<std::string>(text_at(row, 3)),
-        list_of<std::int32_t>(text_at(row, 4))};
   std::map<std::int64_t, Side> sides;
   for (const Database::Row& row : *rows) {
     const std::int64_t id = integer_of(*row[0]);
-    const Names* const known = names_of(id, *row[1]);
-    const auto n = integers_of(*row[3]);
-    const auto median = reals_of(*row[4]), error = reals_of(*row[5]);
-    if (known == nullptr || known->name.size() != n.size() || median.size() != n.size() ||
-        error.size() != n.size() || known->kind.size() != n.size() ||
-        known->unit.size() != n.size())
-      continue;
+    const auto known = names_.find({id, *row[1]});
+    if (known == names_.end()) continue;
     Side& side = sides[id];
-    const int which = integer_of(*row[2]) >= t.after_us ? 1 : 0;
-    ++side.periods[which];
-    for (std::size_t i = 0; i < n.size(); ++i) {
-      if (!is_stiffness(known->kind[i])) continue;
-      const auto [at, is_new] = side.values.try_emplace(known->name[i]);
-      if (is_new) {
-        side.order.push_back(known->name[i]);
-        at->second.unit = known->unit[i];
-      }
-      if (n[i] <= 0 || !(median[i] > 0) || !(error[i] >= 0)) continue;
-      at->second.medians[which].push_back(median[i]);
-      at->second.errors[which].push_back(error[i]);
-    }
+    const auto [places, is_new] = side.places.try_emplace(*row[1]);
+    const Names& names = known->second;
+    for (std::size_t i = 0; is_new && i < std::min(stiffnesses, names.name.size()); ++i)
+      places->second.push_back(
+          is_stiffness(names.kind[i]) ? side.place_of(names.name[i], names.unit[i]) : -1);
+    gather(side, places->second, row, integer_of(*row[2]) >= t.after_us ? 1 : 0);
   }
-  for (auto& [id, side] : sides) {
+  for (const auto& [id, side] : sides) {
     if (side.periods[0] < least || side.periods[1] < least) continue;
     ComparedBuilding& out = buildings.at(id);
     out.period_s = t.period_s;
-    out.before = side.periods[0];
-    out.after = side.periods[1];
-    for (const std::string& name : side.order) {
-      const Gathered& g = side.values.at(name);
-      Comparison both{name, g.unit, level_of(g.medians[0], g.errors[0]),
-                      level_of(g.medians[1], g.errors[1])};
-      compare(both);
-      out.stiffness.push_back(std::move(both));
-    }
+    compare_sides(side, out);
   }
   return true;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fleet/store/database.h"
@@ -42,7 +43,8 @@ class PeriodReader {
     std::vector<std::string> name, unit;
     std::vector<std::int32_t> kind;
   };
-  const Names* names_of(std::int64_t building, const std::string& config);
+  /// Of these buildings, into names_; stiffnesses: the longest list up to its last one.
+  bool read_names(const std::string& ids, std::size_t& stiffnesses);
   bool read_some(const std::vector<std::int64_t>& ids,
                  std::map<std::int64_t, ComparedBuilding>& buildings, const ComparedTime& time,
                  int least);

@@ -24,13 +24,15 @@ struct Point {
   double median = kNone, q1 = kNone, q3 = kNone, std_error = kNone;
 };
 
-// The place of a parameter depends on the configuration that the period was identified with.
+// The place of a parameter depends on the configuration that the period was identified with: it is
+// looked up once for each.
 constexpr const char* kPoints =
     "SELECT start_us, n[i], median[i], q1[i], q3[i], std_error[i], unit FROM ("
-    " SELECT s.*, array_position(p.name, $2) AS i, p.unit[array_position(p.name, $2)] AS unit"
-    " FROM summary s JOIN parameters p ON p.building = s.building AND p.config = s.config"
-    " WHERE s.building = (SELECT id FROM building WHERE name = $1) AND s.period_s = $3"
-    " AND s.start_us >= $4 AND s.start_us < $5) o WHERE i IS NOT NULL ORDER BY start_us";
+    " SELECT config AS of, unit[array_position(name, $2)], array_position(name, $2) AS i"
+    " FROM parameters WHERE building = (SELECT id FROM building WHERE name = $1) OFFSET 0) p"
+    " JOIN summary s ON s.config = p.of"
+    " WHERE i IS NOT NULL AND s.building = (SELECT id FROM building WHERE name = $1)"
+    " AND s.period_s = $3 AND s.start_us >= $4 AND s.start_us < $5 ORDER BY start_us";
 constexpr const char* kLengths =
     "SELECT p FROM unnest(ARRAY[60, 600, 3600]) p WHERE EXISTS (SELECT 1 FROM summary"
     " WHERE building = (SELECT id FROM building WHERE name = $1) AND period_s = p"
