@@ -29,5 +29,6 @@ void add_worker(daemon::CommandList& commands);
 void add_fleet_serve(daemon::CommandList& commands);
 void add_person(daemon::CommandList& commands);
 void add_describe(daemon::CommandList& commands);
+void add_export(daemon::CommandList& commands);
 
 }  // namespace framewatch::fleet

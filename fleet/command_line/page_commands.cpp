@@ -2,6 +2,7 @@
 
 #include "daemon/command_line/command_list.h"
 #include "fleet/command_line/fleet_commands.h"
+#include "fleet/sds/export_command.h"
 #include "fleet/serve/person_command.h"
 #include "fleet/serve/serve_command.h"
 
@@ -87,9 +88,30 @@ void add_describe(daemon::CommandList& commands) {
       ->check(CLI::Range(-90.0, 90.0));
   command->add_option("--longitude", arguments.longitude, "degrees east")
       ->check(CLI::Range(-180.0, 180.0));
+  command->add_option("--network", arguments.network, "its network in SEED, for fleet export (XX)");
+  command->add_option("--station", arguments.station, "its station in SEED (B and a number)");
   CLI::Option* retired = command->add_flag("--retired", arguments.retired, "it is no more");
   command->add_flag("--not-retired", arguments.not_retired, "it is again")->excludes(retired);
   commands.set_action(command, [&arguments] { return describe_command(arguments); });
+}
+
+void add_export(daemon::CommandList& commands) {
+  ExportArguments& arguments = commands.arguments<ExportArguments>();
+  CLI::App* command = commands.add(
+      "export", "raw samples that were fetched from buildings, as miniSEED in the folders of SDS");
+  command->footer(
+      "DIR/YEAR/NET/STA/CHAN.D/NET.STA.LOC.CHAN.D.YEAR.DAY, which SeisComP, slarchive, ringserver\n"
+      "and ObsPy read. What is there already stays: the same again changes nothing. Exit status: "
+      "0\n"
+      "done, 1 a stretch is not whole or cannot be read, 2 bad usage or no database.\n"
+      "Example: framewatch fleet export --sds archive --database postgresql:///fleet");
+  command->add_option("--sds", arguments.root, "folder of the archive; made if missing")
+      ->type_name("DIR")
+      ->required();
+  add_database(command, arguments.database);
+  command->add_option("--building", arguments.building, "of this one alone");
+  command->add_option("--request", arguments.request, "of this command alone: the page names it");
+  commands.set_action(command, [&arguments] { return export_command(arguments); });
 }
 
 }  // namespace framewatch::fleet

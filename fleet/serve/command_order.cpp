@@ -36,7 +36,8 @@ bool put_time(json& out, const CommandWords& words, std::string& why) {
 
 std::optional<std::string> command_content(const CommandWords& words, std::string& why) {
   json out = json::object();
-  if (std::find(std::begin(kCommandVerbs), std::end(kCommandVerbs), words.verb) == std::end(kCommandVerbs)) {
+  if (std::find(std::begin(kCommandVerbs), std::end(kCommandVerbs), words.verb) ==
+      std::end(kCommandVerbs)) {
     why = "a verb is ping, acknowledge, minutes, resend or raw";
     return std::nullopt;
   }

@@ -10,6 +10,7 @@
 #include "drivers/base/input_file.h"
 #include "drivers/base/number_text.h"
 #include "fleet/hub/users_file.h"
+#include "fleet/sds/sds_archive.h"
 #include "fleet/serve/people.h"
 #include "fleet/store/database.h"
 #include "fleet/store/fleet_schema.h"
@@ -21,13 +22,14 @@ constexpr const char* kPerson = "fleet person";
 constexpr const char* kDescribe = "fleet describe";
 
 constexpr const char* kPut =
-    "INSERT INTO building (name, title, place, latitude, longitude, retired) VALUES ($1,"
-    " coalesce($2, ''), coalesce($3, ''), $4::double precision, $5::double precision,"
-    " coalesce($6::boolean, false)) ON CONFLICT (name) DO UPDATE SET"
+    "INSERT INTO building (name, title, place, latitude, longitude, retired, network, station)"
+    " VALUES ($1, coalesce($2, ''), coalesce($3, ''), $4::double precision, $5::double precision,"
+    " coalesce($6::boolean, false), coalesce($7, 'XX'), $8) ON CONFLICT (name) DO UPDATE SET"
     " title = coalesce($2, building.title), place = coalesce($3, building.place),"
     " latitude = coalesce($4::double precision, building.latitude),"
     " longitude = coalesce($5::double precision, building.longitude),"
-    " retired = coalesce($6::boolean, building.retired)"
+    " retired = coalesce($6::boolean, building.retired),"
+    " network = coalesce($7, building.network), station = coalesce($8, building.station)"
     " RETURNING name, title, place, latitude, longitude, retired";
 
 SqlValue sql(const std::optional<double>& value) {
@@ -60,6 +62,9 @@ int person_command(const PersonArguments& a) {
 int describe_command(const DescribeArguments& a) {
   if (const std::string rule = problem_of_building(a.building); !rule.empty())
     return daemon::refuse(kDescribe, fmt::format("'{}': a building {}", a.building, rule));
+  if ((a.network && !is_network_code(*a.network)) || (a.station && !is_station_code(*a.station)))
+    return daemon::refuse(kDescribe,
+                          "codes have A-Z and 0-9: 1 or 2 of a network, 1 to 5 of a station");
   Database database;
   if (!database.open(a.database)) return daemon::refuse(kDescribe, database.error());
   if (const std::string problem = upgrade(database); !problem.empty())

@@ -18,6 +18,7 @@ int person_command(const PersonArguments& arguments);
 struct DescribeArguments {
   std::string building, database;
   std::optional<std::string> title, place;
+  std::optional<std::string> network, station;  ///< codes of SEED
   std::optional<double> latitude, longitude;
   bool retired = false, not_retired = false;
 };

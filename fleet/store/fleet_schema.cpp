@@ -103,7 +103,9 @@ CREATE TABLE flooding (
 )sql",
     // When an event came, so that what is newer than a heartbeat is known; commands and answers.
     R"sql(
-ALTER TABLE building ADD COLUMN retired boolean NOT NULL DEFAULT false;
+ALTER TABLE building ADD COLUMN retired boolean NOT NULL DEFAULT false,
+  ADD COLUMN network text NOT NULL DEFAULT 'XX', ADD COLUMN station text,
+  ADD UNIQUE (network, station);
 ALTER TABLE event ADD COLUMN came timestamptz NOT NULL DEFAULT now();
 CREATE INDEX event_came ON event (building, came);
 CREATE INDEX event_shaken ON event (time_us)
