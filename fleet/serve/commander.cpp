@@ -30,9 +30,7 @@ std::string answer_of(const Message& message) {
 }  // namespace
 
 Commander::Commander(Link& link, std::function<void(const CommandResult&)> tell)
-    : link_(link), tell_(std::move(tell)) {
-  link_.listen(link_.inbox() + ".>");
-}
+    : link_(link), tell_(std::move(tell)) {}
 
 bool Commander::give(CommandOrder order) {
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -73,7 +73,8 @@ int describe_command(const DescribeArguments& a) {
       database.query(kPut, {a.building, a.title, a.place, sql(a.latitude), sql(a.longitude),
                             a.retired       ? SqlValue("true")
                             : a.not_retired ? SqlValue("false")
-                                            : SqlValue()});
+                                            : SqlValue(),
+                            a.network, a.station});
   if (!rows || rows->empty()) return daemon::refuse(kDescribe, database.error());
   const Database::Row& row = rows->front();
   fmt::print("{}: {}, {}, latitude {}, longitude {}{}\n", row[0].value_or(""), row[1].value_or(""),

@@ -62,10 +62,13 @@ def check(hub, port, postgres):
     hub.enroll("kobe")
     Process([hub.program, "fleet", "worker", *urls, "--dir", hub.certificates, "--database", postgres.where],
             f"{hub.folder}/worker.log")
-    listener = subprocess.Popen(["mosquitto_sub", "-h", "localhost", "-p", str(port), "--cafile", f"{hub.certificates}/ca.pem",
-                                 "-u", USER, "-P", PASSWORD, "-q", "1", "-v", "-t", "framewatch/#", "-C", "2", "-W", "90"],
-                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    time.sleep(3)
+    for _ in range(15):  # an account's JetStream may begin after the server
+        listener = subprocess.Popen(["mosquitto_sub", "-h", "localhost", "-p", str(port), "--cafile",
+                                     f"{hub.certificates}/ca.pem", "-u", USER, "-P", PASSWORD, "-q", "1", "-v", "-t",
+                                     "framewatch/#", "-W", "30"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(3)
+        if listener.poll() is None:
+            break
     building = Client(hub.client[0], hub.certificates, "kobe")
     event = newest_of(hub.root, b"FRAMEWATCH_EVENT")
     for kind, type_, content in (("service", "service_t", newest_of(hub.root, b"FRAMEWATCH_SERVICE")),
@@ -74,11 +77,12 @@ def check(hub, port, postgres):
         building.publish(f"fw.up.kobe.{kind}", content, {"Nats-Msg-Id": key, "Fw-Type": type_})
     building.round_trip()
     heard, trouble = listener.communicate(timeout=120)
-    topics = {}
+    topics, times = {}, {}
     for line in heard.splitlines():
         topic, text = line.split(" ", 1)
+        times[topic] = times.get(topic, 0) + 1
         topics[topic] = json.loads(text)
-    print(f"  heard over MQTT: {', '.join(sorted(topics)) or 'nothing'} {trouble.strip()}")
+    print(f"  heard over MQTT, times: {times or 'nothing'} {trouble.strip()}")
     if topics.get("framewatch/kobe/state", {}).get("schema") != "framewatch.state/1":
         problems.append(f"no state of the building came over MQTT: {heard}{trouble}")
     if topics.get("framewatch/kobe/event", {}).get("schema") != "framewatch.event/1":
