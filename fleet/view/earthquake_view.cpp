@@ -1,6 +1,7 @@
 #include "fleet/view/earthquake_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>

@@ -60,8 +60,8 @@ Point joined(const std::vector<Point>& points, std::size_t from, std::size_t to)
     if (std::isnan(p.median)) continue;
     medians.push_back(p.median);
     squares += p.std_error * p.std_error;
-    out.q1 = std::fmin(out.q1, p.q1);
-    out.q3 = std::fmax(out.q3, p.q3);
+    out.q1 = std::isnan(out.q1) ? p.q1 : std::min(out.q1, p.q1);
+    out.q3 = std::isnan(out.q3) ? p.q3 : std::max(out.q3, p.q3);
   }
   if (medians.empty()) return out;
   const auto middle = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 2);

@@ -1,5 +1,8 @@
 #include "fleet/view/building_state.h"
 
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace framewatch::fleet {
