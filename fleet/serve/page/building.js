@@ -67,9 +67,9 @@ function drawValues(d) {
     const ratio = known && base ? p.median / base - 1 : null, error = known && base ? Math.hypot(p.std_error, (p.median / base) * (p.baseline_std_error || 0)) / base : 0;
     const far = ratio !== null && ratio < 0 && -ratio > 3 * error;
     return el('tr', {}, el('td', {}, el('a', {href: `#/building/${d.name}`, onclick: e => { e.preventDefault(); seen.parameter = seen.select.value = p.name; loadSeries(); seen.box.scrollIntoView({block: 'center'}); }}, p.name), el('div', {className: 'soft'}, placeOf(p.name))),
-      numbers('', known ? withError(p.median, p.std_error, p.unit) : el('span', {className: 'soft'}, 'not observable')), numbers('', ratio === null ? '' : el('span', {className: far ? 'loss' : ''}, percent(ratio, error))), numbers('', known ? `${span((d.now_us - p.observed_us) / 1e6)} ago` : ''));
+      numbers('', known ? withError(p.median, p.std_error, p.unit) : el('span', {className: 'soft'}, 'not observable')), numbers('', ratio === null ? '' : el('span', {className: far ? 'loss' : ''}, percent(ratio, error))), numbers('', known ? when(p.observed_us) : ''));
   });
-  seen.values.replaceChildren(rows.length ? table(['parameter', '#median', '#from baseline', '#begun'], rows) : el('p', {className: 'soft'}, 'The building has not said what its parameters are.'));
+  seen.values.replaceChildren(rows.length ? table(['parameter', '#median', '#from baseline', '#period from'], rows) : el('p', {className: 'soft'}, 'The building has not said what its parameters are.'));
 }
 
 function drawChannels(d) {
@@ -98,7 +98,7 @@ async function loadSeries() {
   const d = seen.data;
   if (!d || !seen.parameter) { seen.note.textContent = 'Nothing can be drawn yet.'; return; }
   const last = Math.max(d.now_us, ...d.events.slice(0, 1).map(e => e.time_us)), parameter = seen.parameter;
-  const s = await ask('series.json', {name: seen.name, parameter, from_us: Math.max(0, last - seen.range * 1e6), to_us: last + 1e6}).catch(e => ({problem: e.message}));
+  const s = await ask('series.json', {name: seen.name, parameter, from_us: Math.max(0, last - seen.range * 1e6), to_us: last + 86400e6}).catch(e => ({problem: e.message}));
   if (parameter !== seen.parameter) return;
   if (s.problem) { seen.note.textContent = s.problem; return; }
   seen.series = s;
@@ -127,7 +127,7 @@ function drawSeries() {
   seen.plot = new uPlot({
     width: Math.max(240, seen.box.clientWidth), height: 300, legend: {live: false}, tzDate: ts => zone === 'UTC' ? uPlot.tzDate(new Date(ts * 1e3), 'Etc/UTC') : new Date(ts * 1e3),
     scales: {y: {range: (u, low, high) => low === null ? [0, 1] : uPlot.rangeNum(Math.min(low, base ?? low), Math.max(high, base ?? high), 0.12, true)}},
-    axes: [axis, {...axis, size: 64, label: `${seen.parameter}, ${e.unit}`, labelSize: 22, labelFont: '12px system-ui'}],
+    axes: [{...axis, space: 90, values: (u, ts) => ts.map((x, i) => i && dateText(x * 1e6).slice(0, 10) === dateText(ts[i - 1] * 1e6).slice(0, 10) ? clock(x * 1e6) : `${clock(x * 1e6)}\n${dateText(x * 1e6).slice(0, 10)}`)}, {...axis, size: 64, label: `${seen.parameter}, ${e.unit}`, labelSize: 22, labelFont: '12px system-ui'}],
     series: [{}, {label: 'median', stroke: style.blue, width: 1.8, points: {size: 5, filter: alone}}, {label: 'lower quartile', stroke: style.blue + '66', width: 0.7, points: {show: false}}, {label: 'upper quartile', stroke: style.blue + '66', width: 0.7, points: {show: false}}, {label: 'baseline', stroke: style.soft, dash: [5, 4], points: {show: false}}],
     bands: [{series: [3, 2], fill: style.blue + '33'}],
     hooks: {draw: [u => {
