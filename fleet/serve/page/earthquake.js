@@ -4,7 +4,7 @@ const quake = {time_us: null, data: null};
 const kResults = {loss: 'loss', none: 'no significant loss', not_observable: 'not observable', nothing: 'nothing is known'};
 
 function openEarthquake(main, time) {
-  quake.list = el('div', {className: 'list plain'});
+  quake.list = el('div', {id: 'quakes', className: 'list plain'});
   quake.time = el('input', {type: 'datetime-local', step: 1, id: 'q-time', value: formTime(time ? +time : Date.now() * 1e3)});
   quake.result = wide('Before and after');
   const go = () => { const us = timeOfForm(quake.time.value); if (Number.isFinite(us)) location.hash = `#/earthquake/${us}`; };
