@@ -21,7 +21,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.abspath(f"{HERE}/../..")
 sys.path.insert(0, HERE)
 from hub import Hub, Process, free_ports  # noqa: E402
-from postgres import OwnPostgres, newest_bin  # noqa: E402
+from own_postgres import OwnPostgres, newest_bin  # noqa: E402
 
 BUILDINGS = [("kobe-01", "Harbour tower", "Kobe", 34.682, 135.187), ("kobe-02", "City hall", "Kobe", 34.690, 135.195),
              ("kobe-03", "Hospital", "Kobe", 34.701, 135.212), ("osaka-01", "Station block", "Osaka", 34.702, 135.495),

@@ -13,7 +13,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 from hub import Hub, Process, free_ports  # noqa: E402
 from nats_client import Client  # noqa: E402
-from postgres import OwnPostgres, newest_bin  # noqa: E402
+from own_postgres import OwnPostgres, newest_bin  # noqa: E402
 
 USER, PASSWORD = "bms", "a-password-of-this-test"
 
