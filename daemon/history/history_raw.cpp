@@ -57,9 +57,10 @@ class RawJob {
     check_patterns("--channel", a_.channels, names, problems_);
     if (samples == 0) problem("there are no raw samples in that time");
     if (!problems_.empty()) return;
-    std::erase_if(names, [&](const std::string& name) { return !is_chosen(a_.channels, name); });
     std::vector<RawChannel> channels;
-    for (const std::string& name : names) channels.push_back(placed(name, channels.size()));
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (is_chosen(a_.channels, names[i])) channels.push_back(placed(names[i], i));
+    std::erase_if(names, [&](const std::string& name) { return !is_chosen(a_.channels, name); });
     const auto out =
         raw_export(a_.raw, channels, rate_hz, resolution_mps2, {a_.network, a_.station}, why);
     if (!out) return fails();
@@ -76,9 +77,9 @@ class RawJob {
     if (request_.config) {
       const auto all = addresses(request_.config->sources);
       for (std::size_t i = 0; i < all.size(); ++i)
-        if (request_.config->pipeline.axes[i].name == name) return {name, all[i]};
+        if (request_.config->pipeline.axes[i].name == name) return {name, all[i], i};
     }
-    return {name, {"ACCEL", static_cast<std::int32_t>(index), 0}};
+    return {name, {"ACCEL", static_cast<std::int32_t>(index), 0}, index};
   }
 
   void write_raw(const std::vector<RawLog>& logs, const std::vector<std::string>& names,

@@ -176,8 +176,8 @@ class SeedExport : public RawExport {
   static std::vector<SeedChannel> seed_channels(const std::vector<RawChannel>& channels,
                                                 double rate_hz, const SeedNames& names) {
     std::vector<SeedChannel> out;
-    for (std::size_t c = 0; c < channels.size(); ++c)
-      out.push_back(seed_channel(names.network, names.station, c, rate_hz));
+    for (const RawChannel& channel : channels)
+      out.push_back(seed_channel(names.network, names.station, channel.number, rate_hz));
     return out;
   }
 

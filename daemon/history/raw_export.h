@@ -14,6 +14,7 @@ namespace framewatch::daemon {
 struct RawChannel {
   std::string name;
   drivers::AxisAddress address;  ///< on LCM
+  std::size_t number = 0;        ///< among all channels, from 0: the same whichever are exported
 };
 
 /// Writes raw samples of a history in the order in which they were received, m/s^2 before

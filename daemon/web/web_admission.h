@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/web/web_settings.h"
@@ -27,6 +29,20 @@ enum class Admission {
   malformed,
   has_body
 };
+/// By everything but the token. `verbs`: paths that may be posted to.
+Admission admit_form(const WebSettings& settings, const WebRequest& request,
+                     std::span<const std::string_view> verbs);
+/// To this program's own page, with its token.
 Admission admit(const WebSettings& settings, const WebRequest& request);
+
+/// Compares in constant time, so that the time tells nothing about the token.
+bool same_token(const std::string& a, const std::string& b);
+
+/// What a request that is not served is told; `served`: 200 and nothing.
+struct Refusal {
+  unsigned code;
+  const char* text;
+};
+Refusal refusal_of(Admission admission);
 
 }  // namespace framewatch::daemon

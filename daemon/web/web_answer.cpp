@@ -1,6 +1,9 @@
 #include "daemon/web/web_answer.h"
 
+#include <netdb.h>
+#include <netinet/in.h>
 #include <strings.h>
+#include <sys/socket.h>
 
 #include <utility>
 
@@ -28,6 +31,31 @@ int count_of_header(MHD_Connection* c, const char* name) {
       },
       &counted);
   return counted.second;
+}
+
+WebRequest web_request(MHD_Connection* c, const std::string& method, const std::string& path,
+                       const char* cookie) {
+  return {method,
+          path,
+          header(c, "Host"),
+          header(c, "Origin"),
+          header(c, cookie, MHD_COOKIE_KIND),
+          header(c, "Authorization"),
+          header(c, "token", MHD_GET_ARGUMENT_KIND),
+          header(c, "Content-Length"),
+          header(c, "Transfer-Encoding"),
+          count_of_header(c, "Host")};
+}
+
+std::string viewer_of(MHD_Connection* c) {
+  const MHD_ConnectionInfo* info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
+  if (info == nullptr || info->client_addr == nullptr) return "an unknown address";
+  char name[NI_MAXHOST];
+  const socklen_t size =
+      info->client_addr->sa_family == AF_INET6 ? sizeof(sockaddr_in6) : sizeof(sockaddr_in);
+  if (::getnameinfo(info->client_addr, size, name, sizeof name, nullptr, 0, NI_NUMERICHOST) != 0)
+    return "an unknown address";
+  return name;
 }
 
 MHD_Result send_answer(MHD_Connection* c, unsigned code, MHD_Response* response,

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <string>
 
+#include "daemon/web/web_admission.h"
+
 namespace framewatch::daemon {
 
 class ConnectionGuard;
@@ -24,6 +26,11 @@ int socket_of(MHD_Connection* connection);
 std::string header(MHD_Connection* connection, const char* name,
                    MHD_ValueKind kind = MHD_HEADER_KIND);
 int count_of_header(MHD_Connection* connection, const char* name);
+/// What decides on its admission; the token may be in a cookie of this name.
+WebRequest web_request(MHD_Connection* connection, const std::string& method,
+                       const std::string& path, const char* cookie);
+/// The address that a request came from; behind a proxy the proxy's.
+std::string viewer_of(MHD_Connection* connection);
 
 /// Sends `response`, which is released, and ends the connection with it: a connection carries one
 /// request, so that nothing hides behind its first one.

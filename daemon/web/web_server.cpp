@@ -1,7 +1,6 @@
 #include "daemon/web/web_server.h"
 
 #include <microhttpd.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -35,18 +34,6 @@ constexpr const char* kSessionPath = "/session/";
 constexpr const char* kEventReportPath = "/event-report/";
 constexpr std::size_t kBlock = 32768;
 constexpr int kOtherDescriptors = 64;  // LCM, the history's files, logs
-
-/// The address that a request came from; behind a proxy the proxy's.
-std::string viewer_of(MHD_Connection* c) {
-  const MHD_ConnectionInfo* info = MHD_get_connection_info(c, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
-  if (info == nullptr || info->client_addr == nullptr) return "an unknown address";
-  char name[NI_MAXHOST];
-  const socklen_t size =
-      info->client_addr->sa_family == AF_INET6 ? sizeof(sockaddr_in6) : sizeof(sockaddr_in);
-  if (::getnameinfo(info->client_addr, size, name, sizeof name, nullptr, 0, NI_NUMERICHOST) != 0)
-    return "an unknown address";
-  return name;
-}
 
 int port_of(int socket) {
   sockaddr_storage address{};
@@ -145,31 +132,10 @@ class WebServer::Implementation {
   }
 
   MHD_Result respond(MHD_Connection* c, const std::string& method, const std::string& path) {
-    const WebRequest request{method,
-                             path,
-                             header(c, "Host"),
-                             header(c, "Origin"),
-                             header(c, "framewatch", MHD_COOKIE_KIND),
-                             header(c, "Authorization"),
-                             header(c, "token", MHD_GET_ARGUMENT_KIND),
-                             header(c, "Content-Length"),
-                             header(c, "Transfer-Encoding"),
-                             count_of_header(c, "Host")};
-    switch (admit(settings_, request)) {
-      case Admission::malformed:
-        return plain(c, MHD_HTTP_BAD_REQUEST, "no path, or several hosts");
-      case Admission::has_body:
-        return plain(c, MHD_HTTP_CONTENT_TOO_LARGE, "a request has no body here");
-      case Admission::wrong_host:
-        return plain(c, 421, "this name is not served here");
-      case Admission::wrong_method:
-        return plain(c, MHD_HTTP_METHOD_NOT_ALLOWED, "only GET");
-      case Admission::wrong_origin:
-        return plain(c, MHD_HTTP_FORBIDDEN, "from another page");
-      case Admission::no_token:
-        return plain(c, MHD_HTTP_FORBIDDEN, "open the address with its token: /?token=...");
-      case Admission::served:
-        break;
+    const WebRequest request = web_request(c, method, path, "framewatch");
+    if (const Admission admission = admit(settings_, request); admission != Admission::served) {
+      const Refusal refusal = refusal_of(admission);
+      return plain(c, refusal.code, refusal.text);
     }
     if (method == "POST") return act(c, path);
     if (path == "/" && !request.token.empty()) return exchange(c, request.token);

@@ -11,7 +11,8 @@ int run_fleet_command_line(int argc, const char* const* argv) {
                                 "framewatch fleet: many buildings, each with its own framewatch.",
                                 "`framewatch uplink` is `framewatch fleet uplink`.",
                                 {add_manifest, add_task, add_uplink, add_setup, add_authority,
-                                 add_request, add_enroll, add_revoke, add_worker, daemon::add_help},
+                                 add_request, add_enroll, add_revoke, add_worker, add_fleet_serve,
+                                 add_person, add_describe, add_export, daemon::add_help},
                                 {"uplink", "worker", "serve"}};
   return daemon::run_program(program, argc, argv);
 }

@@ -25,4 +25,10 @@ void add_revoke(daemon::CommandList& commands);
 // centre_commands.cpp: what the hub does with what buildings say.
 void add_worker(daemon::CommandList& commands);
 
+// page_commands.cpp: what people see of it.
+void add_fleet_serve(daemon::CommandList& commands);
+void add_person(daemon::CommandList& commands);
+void add_describe(daemon::CommandList& commands);
+void add_export(daemon::CommandList& commands);
+
 }  // namespace framewatch::fleet

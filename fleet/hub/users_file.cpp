@@ -1,7 +1,6 @@
 #include "fleet/hub/users_file.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <sstream>
 
@@ -9,7 +8,7 @@
 
 #include "daemon/base/file_digest.h"
 #include "drivers/base/input_file.h"
-#include "drivers/base/partial_file.h"
+#include "fleet/hub/replace_file.h"
 #include "fleet/message/subject.h"
 
 namespace framewatch::fleet {
@@ -35,18 +34,6 @@ users: [
                  "$JS.ACK.FW_LAST.page.>" ]
       subscribe: [ "_INBOX_page.>", "fw.up.>" ] } }
 )";
-
-/// Replaces a file as a whole. Empty, or why not.
-std::string replace_file(const std::string& path, const std::string& text) {
-  drivers::PartialFile file;
-  if (!file.open(path)) return fmt::format("{}: {}", path, file.error());
-  std::FILE* stream = file.stream();
-  const bool written = stream != nullptr &&
-                       std::fwrite(text.data(), 1, text.size(), stream) == text.size() &&
-                       std::fclose(stream) == 0;
-  if (!written || !file.commit()) return fmt::format("{}: {}", path, file.error());
-  return {};
-}
 
 }  // namespace
 

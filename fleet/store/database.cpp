@@ -129,13 +129,24 @@ bool Database::run(const std::string& sql, const std::vector<SqlValue>& values) 
 
 std::optional<std::vector<Database::Row>> Database::query(const std::string& sql,
                                                           const std::vector<SqlValue>& values) {
+  return ask(sql, values, false);
+}
+
+std::optional<std::vector<Database::Row>> Database::query_binary(
+    const std::string& sql, const std::vector<SqlValue>& values) {
+  return ask(sql, values, true);
+}
+
+std::optional<std::vector<Database::Row>> Database::ask(const std::string& sql,
+                                                        const std::vector<SqlValue>& values,
+                                                        bool binary) {
   if (!is_open()) {
     fail(nullptr);
     return std::nullopt;
   }
   const Result result(
       PQexecParams(connection_->pg.get(), sql.c_str(), static_cast<int>(values.size()), nullptr,
-                   pointers(values).data(), nullptr, nullptr, 0),
+                   pointers(values).data(), nullptr, nullptr, binary ? 1 : 0),
       &PQclear);
   if (!good(result.get())) {
     fail(PQerrorMessage(connection_->pg.get()), PQresultErrorField(result.get(), PG_DIAG_SQLSTATE));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace framewatch::fleet {
@@ -21,6 +22,12 @@ std::string sql_array(std::span<const float> values);
 std::string sql_array(std::span<const double> values);
 std::string sql_array(const std::vector<std::string>& values);
 std::string sql_bytes(std::span<const std::uint8_t> bytes);
+
+/// What Database::query_binary() returns of an int[], a real[], an int or a bigint; of anything
+/// else nothing, or 0.
+std::vector<std::int32_t> integers_of(std::string_view array);
+std::vector<float> reals_of(std::string_view array);
+std::int64_t integer_of(std::string_view number);
 
 /// A connection to PostgreSQL, used by one thread. Nothing throws: a call that fails returns false,
 /// and error() says why. A connection that is lost is made again by the next open().
@@ -50,6 +57,9 @@ class Database {
   /// The same with what it returns. Empty on failure.
   std::optional<std::vector<Row>> query(const std::string& sql,
                                         const std::vector<SqlValue>& values = {});
+  /// The same, with values as PostgreSQL has them in memory: for many numbers.
+  std::optional<std::vector<Row>> query_binary(const std::string& sql,
+                                               const std::vector<SqlValue>& values = {});
   /// Runs `work` as one transaction: all of it or nothing is stored.
   [[nodiscard]] bool transaction(const std::function<bool()>& work);
 
@@ -60,6 +70,8 @@ class Database {
  private:
   struct Connection;
   bool fail(const char* why, const char* sql_state = nullptr);
+  std::optional<std::vector<Row>> ask(const std::string& sql, const std::vector<SqlValue>& values,
+                                      bool binary);
   std::unique_ptr<Connection> connection_;
   std::string error_;
   bool of_values_ = false;

@@ -101,6 +101,33 @@ CREATE TABLE flooding (
   PRIMARY KEY (building, hour)
 );
 )sql",
+    // When an event came, so that what is newer than a heartbeat is known; commands and answers.
+    R"sql(
+ALTER TABLE building ADD COLUMN retired boolean NOT NULL DEFAULT false,
+  ADD COLUMN network text NOT NULL DEFAULT 'XX', ADD COLUMN station text,
+  ADD UNIQUE (network, station);
+ALTER TABLE event ADD COLUMN came timestamptz NOT NULL DEFAULT now();
+CREATE INDEX event_came ON event (building, came);
+CREATE INDEX event_shaken ON event (time_us)
+  WHERE state = 1 AND kind IN ('strong_motion', 'stiffness_change');
+CREATE TABLE journal (
+  request text PRIMARY KEY,
+  came    timestamptz NOT NULL DEFAULT now(),
+  who     text NOT NULL,
+  verb    text NOT NULL,
+  content text NOT NULL
+);
+CREATE INDEX journal_came ON journal (came);
+CREATE TABLE journal_answer (
+  request  text NOT NULL REFERENCES journal,
+  building int NOT NULL REFERENCES building,
+  came     timestamptz,
+  done     boolean,
+  answer   text NOT NULL DEFAULT '',
+  PRIMARY KEY (request, building)
+);
+CREATE INDEX journal_answer_building ON journal_answer (building);
+)sql",
 };
 
 constexpr const char* kOneAtATime = "SELECT pg_advisory_xact_lock(791403826)";

@@ -8,6 +8,7 @@
 
 #include "daemon/base/clocks.h"
 #include "fleet/message/subject.h"
+#include "fleet/worker/automation.h"
 #include "fleet/worker/judge.h"
 
 namespace framewatch::fleet {
@@ -92,6 +93,9 @@ void Worker::count(const FleetBatch& batch, std::size_t messages) {
     ++(other.reason.empty() ? counters_.unknown : counters_.refused);
   for (const ReceivedFlood& flood : batch.floods) counters_.flooding += flood.messages;
   ++counters_.batches;
+  // What is stored is told to building automation, which acknowledges nothing: the next heartbeat
+  // says it again.
+  for (const Message& message : automation_messages(batch)) (void)link_.publish(message);
 }
 
 void Worker::acknowledge(const Message& message) {

@@ -82,7 +82,8 @@ class Hub:
                 assert count in (1, 6), (old, count)
             with open(f"{self.certificates}/hub{i + 1}.conf", "w") as file:
                 file.write(text)
-        shutil.copy(f"{root}/deploy/fleet/accounts.conf", self.certificates)
+        for name in ("accounts.conf", "mqtt-users.conf"):
+            shutil.copy(f"{root}/deploy/fleet/{name}", self.certificates)
         self.servers = [None, None, None]
 
     def fleet(self, command, *arguments, good=(0,)):

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "daemon/web/web_files.h"
+
+namespace framewatch::fleet {
+
+/// The files of the page of many buildings, by path.
+const std::map<std::string, daemon::WebFile>& fleet_files();
+
+}  // namespace framewatch::fleet

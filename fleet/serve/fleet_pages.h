@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "daemon/base/log.h"
+#include "fleet/serve/command_order.h"
+#include "fleet/serve/database_pool.h"
+#include "fleet/serve/people.h"
+
+namespace framewatch::fleet {
+
+/// A request that was admitted, of a person.
+struct PageRequest {
+  std::string method, path;
+  std::map<std::string, std::string> arguments;
+  std::string who;  ///< whose journal entry it would be
+  Role role = Role::viewer;
+
+  std::string argument(const std::string& name) const;
+};
+struct PageAnswer {
+  unsigned code = 200;
+  std::string text, type;
+};
+
+/// What the page of many buildings answers, without the connection (docs/fleet.md): the overview, a
+/// building, its series, earthquakes, the journal, and commands of operators. Any thread may call.
+class FleetPages {
+ public:
+  static constexpr std::int64_t kFresh_us = 500'000;  ///< that an overview is given again
+  /// Sends a command; false: too many wait. Null where there is no hub.
+  using Give = std::function<bool(CommandOrder)>;
+
+  FleetPages(std::string database, Give give);
+
+  PageAnswer answer(const PageRequest& request);
+  /// Writes what became of a command.
+  void note(const CommandResult& result);
+
+ private:
+  PageAnswer overview(const PageRequest& request);
+  PageAnswer building(const PageRequest& request);
+  PageAnswer series(const PageRequest& request);
+  PageAnswer earthquake(const PageRequest& request);
+  PageAnswer me(const PageRequest& request) const;
+  PageAnswer command(const PageRequest& request);
+
+  DatabasePool pool_;
+  Give give_;
+  std::mutex mutex_;  ///< guards what is below
+  std::string overview_, version_;
+  std::int64_t overview_us_ = INT64_MIN;  ///< steady clock
+  daemon::RateLimitedLog failures_{daemon::LogLevel::warning};
+};
+
+}  // namespace framewatch::fleet

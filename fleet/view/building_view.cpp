@@ -1,0 +1,221 @@
+#include "fleet/view/building_view.h"
+
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/service_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/watch_t.hpp>
+
+#include "daemon/base/clocks.h"
+#include "drivers/lcm/message_check.h"
+#include "fleet/view/overview.h"
+#include "fleet/view/rows.h"
+
+namespace framewatch::fleet {
+namespace {
+
+using daemon::kDay_us;
+using nlohmann::json;
+
+constexpr const char* kNewest =
+    "SELECT kind, content FROM newest WHERE building = (SELECT id FROM building WHERE name = $1)";
+constexpr const char* kNewestEvents =
+    "SELECT time_us, since_us, id, state, severity, kind, place, value, std_error, unit, message"
+    " FROM event WHERE building = (SELECT id FROM building WHERE name = $1)"
+    " ORDER BY time_us DESC LIMIT 200";
+// Of a day, newest first. Partitions are left out by the constant limit alone.
+constexpr const char* kDayOfPeriods =
+    "SELECT start_us, period_s, config, n, median, std_error FROM summary"
+    " WHERE building = (SELECT id FROM building WHERE name = $1) AND period_s IN (60, 600)"
+    " AND start_us > $2 AND start_us <= $2 + 86400000000 ORDER BY start_us DESC LIMIT 300";
+constexpr const char* kNewestPeriod =
+    "SELECT max(m) FROM unnest(ARRAY[60, 600]) p, LATERAL (SELECT max(start_us) AS m FROM summary"
+    " WHERE building = (SELECT id FROM building WHERE name = $1) AND period_s = p) o";
+constexpr const char* kStretches =
+    "SELECT request, count(*), max(pieces), sum(octet_length(content)), min(file), {}"
+    " FROM raw_piece WHERE building = (SELECT id FROM building WHERE name = $1)"
+    " GROUP BY request ORDER BY max(came) DESC LIMIT 50";
+
+/// Messages that the hub keeps the newest of; those that cannot be read are absent.
+struct NewestOf {
+  std::optional<service_t> service;
+  std::optional<status_t> status;
+  std::optional<watch_t> watch;
+  std::optional<parameter_table_t> table;
+
+  explicit NewestOf(const Rows& rows) {
+    for (const Database::Row& row : rows) {
+      const std::string kind = text_at(row, 0);
+      const Bytes content = bytes_at(row, 1);
+      if (kind == "service") service = drivers::decoded<service_t>(content);
+      if (kind == "status") status = drivers::decoded<status_t>(content);
+      if (kind == "watch") watch = drivers::decoded<watch_t>(content);
+      if (kind == "parameters") table = drivers::decoded<parameter_table_t>(content);
+    }
+  }
+};
+
+std::string hexadecimal(std::string_view bytes) {
+  std::string out;
+  for (const char c : bytes) out += fmt::format("{:02x}", static_cast<unsigned char>(c));
+  return out;
+}
+
+json raised_json(const BuildingState& state) {
+  json out = json::array();
+  for (const event_t& e : state.raised)
+    out.push_back({{"id", e.id},
+                   {"since_us", e.since_us},
+                   {"severity", e.severity},
+                   {"kind", e.kind},
+                   {"place", e.place},
+                   {"message", e.message},
+                   {"known", state.is_known(e)}});
+  return out;
+}
+
+json events_json(const Rows& rows) {
+  json out = json::array();
+  for (const Database::Row& row : rows)
+    out.push_back({{"time_us", integer_at(row, 0)},
+                   {"since_us", integer_at(row, 1)},
+                   {"id", integer_at(row, 2)},
+                   {"state", integer_at(row, 3)},
+                   {"severity", integer_at(row, 4)},
+                   {"kind", text_at(row, 5)},
+                   {"place", text_at(row, 6)},
+                   {"value", number_at(row, 7).value_or(NAN)},
+                   {"std_error", number_at(row, 8).value_or(NAN)},
+                   {"unit", text_at(row, 9)},
+                   {"message", text_at(row, 10)}});
+  return out;
+}
+
+/// Parameters with the newest period in which each was observable.
+json parameters_json(const NewestOf& newest, const Rows& periods) {
+  json out = json::array();
+  if (!newest.table) return out;
+  const parameter_table_t& t = *newest.table;
+  const bool watched =
+      newest.watch && newest.watch->baseline.size() == static_cast<std::size_t>(t.parameters);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(t.parameters); ++i) {
+    json one{{"name", t.name[i]},   {"unit", t.unit[i]},     {"kind", t.kind[i]},
+             {"story", t.story[i]}, {"design", t.design[i]}, {"baseline", nullptr}};
+    if (watched) {
+      one["baseline"] = newest.watch->baseline[i];
+      one["baseline_std_error"] = newest.watch->baseline_std_error[i];
+    }
+    out.push_back(std::move(one));
+  }
+  std::size_t lacking = out.size();
+  for (const Database::Row& row : periods) {
+    if (lacking == 0) break;
+    if (hexadecimal(text_at(row, 2)) != t.config_sha256) continue;
+    const auto n = integers_of(text_at(row, 3));
+    const auto median = reals_of(text_at(row, 4)), error = reals_of(text_at(row, 5));
+    if (n.size() != out.size() || median.size() != n.size() || error.size() != n.size()) continue;
+    for (std::size_t i = 0; i < n.size(); ++i) {
+      if (n[i] <= 0 || out[i].contains("observed_us")) continue;
+      out[i]["observed_us"] = integer_of(text_at(row, 0));
+      out[i]["median"] = median[i];
+      out[i]["std_error"] = error[i];
+      out[i]["windows"] = n[i];
+      --lacking;
+    }
+  }
+  return out;
+}
+
+json channels_json(const NewestOf& newest) {
+  json out = json::array();
+  if (!newest.service) return out;
+  const service_t& s = *newest.service;
+  for (std::size_t i = 0; i < s.name.size(); ++i) {
+    json one{{"name", s.name[i]}, {"newest_us", s.newest_us[i]}};
+    if (newest.status && newest.status->name.size() == s.name.size())
+      for (const auto& [word, counts] : {std::pair{"received", &newest.status->received},
+                                         {"lost", &newest.status->lost},
+                                         {"late", &newest.status->late},
+                                         {"rejected", &newest.status->rejected},
+                                         {"stuck", &newest.status->stuck},
+                                         {"clipped", &newest.status->clipped}})
+        one[word] = (*counts)[i];
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+json process_json(const service_t& s) {
+  return {{"version", s.version},
+          {"config_sha256", s.config_sha256},
+          {"time_us", s.time_us},
+          {"started_us", s.started_us},
+          {"unclean_starts", s.unclean_starts},
+          {"reload_problem", s.reload_problem},
+          {"state_problem", s.state_problem},
+          {"disk_free_bytes", s.disk_free_bytes},
+          {"resident_bytes", s.resident_bytes},
+          {"received_us", s.received_us}};
+}
+
+json stretches_json(const Rows& rows) {
+  json out = json::array();
+  for (const Database::Row& row : rows)
+    out.push_back({{"request", text_at(row, 0)},
+                   {"came", integer_at(row, 1)},
+                   {"pieces", integer_at(row, 2)},
+                   {"bytes", integer_at(row, 3)},
+                   {"file", text_at(row, 4)},
+                   {"newest_us", integer_at(row, 5)}});
+  return out;
+}
+
+}  // namespace
+
+std::string building_json(Database& database, const std::string& name) {
+  const Overview overview = read_overview(database, name);
+  if (!overview.problem.empty()) return json{{"problem", overview.problem}}.dump();
+  if (overview.buildings.empty()) return json{{"problem", "no such building"}}.dump();
+  const auto newest = database.query(kNewest, {name});
+  const auto events = newest ? database.query(kNewestEvents, {name}) : std::nullopt;
+  const auto last = events ? database.query(kNewestPeriod, {name}) : std::nullopt;
+  const std::int64_t from_us = last && !last->empty() ? integer_at(last->front(), 0) - kDay_us : 0;
+  const auto periods =
+      last ? database.query_binary(kDayOfPeriods, {name, std::to_string(from_us)}) : std::nullopt;
+  const auto stretches =
+      periods ? database.query(fmt::format(kStretches, sql_us("max(came)")), {name}) : std::nullopt;
+  if (!stretches) return json{{"problem", database.error()}}.dump();
+  const BuildingState& state = overview.buildings.front();
+  const Judged verdict = judged(state, overview.now_us);
+  const NewestOf messages(*newest);
+  json out{{"name", state.name},
+           {"title", state.title},
+           {"place", state.place},
+           {"latitude", nullptr},
+           {"longitude", nullptr},
+           {"now_us", overview.now_us},
+           {"heard_us", state.heard_us ? json(*state.heard_us) : json(nullptr)},
+           {"urgency", urgency_word(verdict.urgency)},
+           {"since_us", verdict.since_us},
+           {"message", verdict.message},
+           {"raised", raised_json(state)},
+           {"parameters", parameters_json(messages, *periods)},
+           {"channels", channels_json(messages)},
+           {"events", events_json(*events)},
+           {"stretches", stretches_json(*stretches)}};
+  if (state.latitude) out["latitude"] = *state.latitude;
+  if (state.longitude) out["longitude"] = *state.longitude;
+  if (messages.service) out["process"] = process_json(*messages.service);
+  if (messages.table) out["structure"] = messages.table->structure;
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace framewatch::fleet

@@ -1,0 +1,150 @@
+#include "fleet/view/overview.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include <framewatch/service_t.hpp>
+
+#include "drivers/lcm/message_check.h"
+#include "fleet/view/rows.h"
+
+namespace framewatch::fleet {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMostNewEvents = 1000;  // of a building after its heartbeat
+
+constexpr const char* kHeartbeats =
+    "SELECT b.id, b.name, b.title, b.place, b.latitude, b.longitude, {}, {}, n.content, {}"
+    " FROM building b LEFT JOIN newest n ON n.building = b.id AND n.kind = 'service'"
+    " WHERE CASE WHEN $1 = '' THEN NOT b.retired ELSE b.name = $1 END ORDER BY b.name";
+// Those that came with the heartbeat too: which of them was first is not known, and an event that
+// the heartbeat has already changes nothing.
+constexpr const char* kNewEvents =
+    "SELECT b.id, e.id, e.state, e.severity, e.kind, e.place, e.since_us, e.time_us, e.message"
+    " FROM building b LEFT JOIN newest n ON n.building = b.id AND n.kind = 'service'"
+    " JOIN LATERAL (SELECT * FROM event WHERE building = b.id AND came >= coalesce(n.came,"
+    " '-infinity') ORDER BY came DESC LIMIT {}) e ON true"
+    " WHERE $1 = '' OR b.name = $1 ORDER BY e.time_us, e.came";
+constexpr const char* kKnown =
+    "SELECT a.building, j.content FROM journal j JOIN journal_answer a ON a.request = j.request"
+    " WHERE j.verb = 'acknowledge' AND a.done AND j.came > now() - interval '400 days'";
+
+void take_heartbeat(BuildingState& state, const Database::Row& row) {
+  if (!row[7]) return;
+  state.heard_us = integer_at(row, 7);
+  const auto service = drivers::decoded<service_t>(bytes_at(row, 8));
+  if (!service) return;
+  for (std::size_t i = 0; i < service->event_id.size(); ++i) {
+    event_t event{};
+    event.id = service->event_id[i];
+    event.since_us = service->event_since_us[i];
+    event.time_us = event.since_us;
+    event.severity = service->event_severity[i];
+    event.kind = service->event_kind[i];
+    event.place = service->event_place[i];
+    event.message = service->event_message[i];
+    event.state = 1;
+    state.raised.push_back(std::move(event));
+  }
+}
+
+event_t event_of(const Database::Row& row) {
+  event_t event{};
+  event.id = integer_at(row, 1);
+  event.state = static_cast<std::int32_t>(integer_at(row, 2));
+  event.severity = static_cast<std::int32_t>(integer_at(row, 3));
+  event.kind = text_at(row, 4);
+  event.place = text_at(row, 5);
+  event.since_us = integer_at(row, 6);
+  event.time_us = integer_at(row, 7);
+  event.message = text_at(row, 8);
+  return event;
+}
+
+}  // namespace
+
+Overview read_overview(Database& database, const std::string& only) {
+  Overview out;
+  const auto buildings = database.query(
+      fmt::format(kHeartbeats, sql_us("b.first_seen"), sql_us("n.came"), sql_us("now()")), {only});
+  if (!buildings) {
+    out.problem = database.error();
+    return out;
+  }
+  std::map<std::int64_t, std::size_t> index;
+  for (const Database::Row& row : *buildings) {
+    BuildingState state{text_at(row, 1),
+                        text_at(row, 2),
+                        text_at(row, 3),
+                        number_at(row, 4),
+                        number_at(row, 5),
+                        integer_at(row, 6),
+                        {},
+                        {},
+                        {}};
+    take_heartbeat(state, row);
+    out.now_us = integer_at(row, 9);
+    index[integer_at(row, 0)] = out.buildings.size();
+    out.buildings.push_back(std::move(state));
+  }
+  const auto events = database.query(fmt::format(kNewEvents, kMostNewEvents), {only});
+  const auto known = events ? database.query(kKnown) : std::nullopt;
+  if (!known) {
+    out.problem = database.error();
+    return out;
+  }
+  for (const Database::Row& row : *events)
+    if (const auto at = index.find(integer_at(row, 0)); at != index.end())
+      note_event(out.buildings[at->second].raised, event_of(row));
+  for (const Database::Row& row : *known) {
+    const json content = json::parse(text_at(row, 1), nullptr, false);
+    const auto at = index.find(integer_at(row, 0));
+    if (at == index.end() || !content.is_object() || !content.contains("id") ||
+        !content["id"].is_number_integer())
+      continue;
+    out.buildings[at->second].known.insert(content["id"].get<std::int64_t>());
+  }
+  return out;
+}
+
+std::string overview_json(const Overview& overview) {
+  json counts = json::object();
+  std::int64_t heard_us = 0;
+  std::vector<std::pair<Judged, const BuildingState*>> all;
+  for (const BuildingState& state : overview.buildings) {
+    all.emplace_back(judged(state, overview.now_us), &state);
+    heard_us = std::max(heard_us, state.heard_us.value_or(0));
+  }
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return std::tuple(a.first.urgency, -a.first.since_us) <
+           std::tuple(b.first.urgency, -b.first.since_us);
+  });
+  json list = json::array();
+  for (int u = 0; u <= static_cast<int>(Urgency::well); ++u)
+    counts[urgency_word(static_cast<Urgency>(u))] = 0;
+  for (const auto& [verdict, state] : all) {
+    const char* const word = urgency_word(verdict.urgency);
+    counts[word] = counts[word].get<int>() + 1;
+    json one{{"name", state->name},           {"title", state->title},
+             {"place", state->place},         {"urgency", word},
+             {"since_us", verdict.since_us},  {"message", verdict.message},
+             {"raised", state->raised.size()}};
+    if (state->latitude && state->longitude) {
+      one["latitude"] = *state->latitude;
+      one["longitude"] = *state->longitude;
+    }
+    list.push_back(std::move(one));
+  }
+  return json{
+      {"now_us", overview.now_us}, {"heard_us", heard_us}, {"counts", counts}, {"buildings", list}}
+      .dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace framewatch::fleet

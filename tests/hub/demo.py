@@ -1,0 +1,305 @@
+#!/usr/bin/env python3
+"""demo.py PROGRAM [--seconds S] [--speed N] [--port N] [--keep DIR]: a hub of three servers, PostgreSQL, six virtual
+buildings with a real `run` and `uplink` each, one earthquake, one building that loses 15 % of a frame; the overview in the
+browser. Ends by itself with a table of what happened. Exit status: 0 all of it is seen, 1 not, 2 something is missing."""
+import argparse
+import asyncio
+import json
+import math
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.request
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.abspath(f"{HERE}/../..")
+sys.path.insert(0, HERE)
+from hub import Hub, Process, free_ports  # noqa: E402
+from own_postgres import OwnPostgres, newest_bin  # noqa: E402
+
+BUILDINGS = [("kobe-01", "Harbour tower", "Kobe", 34.682, 135.187), ("kobe-02", "City hall", "Kobe", 34.690, 135.195),
+             ("kobe-03", "Hospital", "Kobe", 34.701, 135.212), ("osaka-01", "Station block", "Osaka", 34.702, 135.495),
+             ("osaka-02", "School", "Osaka", 34.674, 135.501), ("kyoto-01", "Library", "Kyoto", 35.003, 135.768)]
+DAMAGED, PARAMETER, FACTOR = "kobe-03", "kx_1_y2", 0.85
+QUAKE_S, LOSS_S = 150, 153  # sensor time since the beginning
+RATE = 100
+WAIT_S = 150  # at most, for the last minutes
+
+
+def missing():
+    for command, package in (("nats-server", "nats-server"), ("openssl", "openssl")):
+        if not shutil.which(command):
+            return f"no {command} (Debian package {package})"
+    if not newest_bin():
+        return "no PostgreSQL (Debian package postgresql)"
+    return ""
+
+
+def ground(path, seconds, seed):
+    """Weak motion throughout, strong for some seconds: noise through the soil's resonance at 4 Hz."""
+    chance = random.Random(seed)
+    w, zeta, dt = 2 * math.pi * 4, 0.6, 1 / RATE
+    speed = shift = 0.0
+    with open(path, "w") as file:
+        file.write("time_s,ground\n")
+        for i in range(int(seconds * RATE)):
+            t = i * dt
+            size = 0.2 + 0.6 * math.exp(-((t - QUAKE_S - 6) / 4) ** 2)
+            force = chance.gauss(0, 1) * size * w
+            speed += dt * (force - 2 * zeta * w * speed - w * w * shift)
+            shift += dt * speed
+            file.write(f"{t:.2f},{w * shift + 2 * zeta * speed:.5f}\n")
+
+
+class Building:
+    def __init__(self, hub, name, number, seconds, speed):
+        self.hub, self.name = hub, name
+        self.folder = f"{hub.folder}/{name}"
+        os.makedirs(f"{self.folder}/history")
+        hub.enroll(name)
+        (port,) = free_ports(1)
+        hubs = ", ".join(f'"tls://localhost:{one}"' for one in hub.client)
+        with open(f"{ROOT}/configs/table_two_story.toml") as file:
+            text = file.read().replace("hop_s = 0.01", "hop_s = 0.1")
+        with open(f"{self.folder}/building.toml", "w") as file:
+            file.write(f'{text}\n[lcm]\nurl = "udpm://239.255.76.67:{port}?ttl=0"\n[commands]\ndirectory = "."\n[history]\n'
+                       f'directory = "history"\n[watch]\nlearn_s = 30\n[event_report]\ndirectory = "reports"\n'
+                       f'trigger_mps2 = 0.7\nquiet_s = 10\nyellow_drift_ratio = 0.02\nred_drift_ratio = 0.03\n[fleet]\nbuilding = "{name}"\nhubs = [{hubs}]\n'
+                       f'certificate = "{hub.certificates}/{name}.pem"\nkey = "{hub.certificates}/{name}.key"\n'
+                       f'ca = "{hub.certificates}/ca.pem"\naccept = ["acknowledge", "raw", "resend", "minutes"]\n')
+        with open(f"{ROOT}/configs/scenario_table_two_story.toml") as file:
+            text = file.read()
+        begin, end = text.index("[motion]"), text.index("[sensors]")
+        change = f'\n[[change]]\nat_s = {LOSS_S}\nparameter = "{PARAMETER}"\nfactor = {FACTOR}\n' if name == DAMAGED else ""
+        with open(f"{self.folder}/scenario.toml", "w") as file:
+            file.write(text[:begin].replace("table_two_story.toml", "building.toml").replace("2019", str(2019 + number)) +
+                       '[motion]\nfile = "ground.csv"\nangle_deg = 30.0\n' + text[end:] + change)
+        ground(f"{self.folder}/ground.csv", seconds, number)
+        self.seconds, self.speed = seconds, speed
+
+    def start(self):
+        log = f"{self.folder}/log"
+        Process([self.hub.program, "run", f"{self.folder}/building.toml", "--quiet"], log)
+        Process([self.hub.program, "uplink", f"{self.folder}/building.toml", "--quiet"], log)
+
+    def shake(self):
+        self.simulation = Process([self.hub.program, "simulate", f"{self.folder}/scenario.toml", "--lcm", "--speed",
+                                   str(self.speed), "--seconds", str(self.seconds), "--quiet"], f"{self.folder}/log")
+
+
+class Page:
+    def __init__(self, port, token):
+        self.port, self.token = port, token
+
+    def ask(self, path, method="GET"):
+        request = urllib.request.Request(f"http://127.0.0.1:{self.port}/{path}", method=method,
+                                         headers={"Authorization": f"Bearer {self.token}"})
+        try:
+            with urllib.request.urlopen(request, timeout=60) as answer:
+                return json.load(answer)
+        except (OSError, ValueError):
+            return None
+
+
+async def pump(reader, writer):
+    try:
+        while data := await reader.read(65536):
+            writer.write(data)
+            await writer.drain()
+    except OSError:
+        pass
+    writer.close()
+
+
+async def join(reader, writer, connecting):
+    try:
+        there_reader, there_writer = await connecting
+    except OSError:
+        writer.close()
+        return
+    await asyncio.gather(pump(reader, there_writer), pump(there_reader, writer))
+
+
+def say(text=""):
+    print(text, flush=True)
+
+
+def inside(a):
+    """In a network of its own: everything but the browser."""
+    folder, program = a.inside, os.path.abspath(a.program)
+    say("a hub of three servers, PostgreSQL, a worker, the page ...")
+    hub = Hub(ROOT, program, folder)
+    hub.start()
+    postgres = OwnPostgres(folder)
+    hub.wait()
+    urls = [argument for url in hub.urls() for argument in ("--hub", url)]
+    for left in (4, 3, 2, 1, 0):  # a busy machine's servers may take longer than it waits
+        if hub.fleet("setup", *urls, "--buildings", "10", good=(0, 2) if left else (0,)).returncode == 0:
+            break
+    more = [*urls, "--dir", hub.certificates, "--database", postgres.where]
+    for name, title, place, north, east in BUILDINGS:
+        subprocess.run([program, "fleet", "describe", name, "--database", postgres.where, "--title", title, "--place", place,
+                        "--latitude", str(north), "--longitude", str(east)], stdout=subprocess.DEVNULL, check=True)
+    token = subprocess.run([program, "fleet", "person", "you", "--role", "operator", "--people", f"{folder}/people"],
+                           capture_output=True, text=True, check=True).stdout.strip()
+    (port,) = free_ports(1)
+    Process([program, "fleet", "worker", *more, "--quiet"], f"{folder}/worker.log")
+    Process([program, "fleet", "serve", *more, "--people", f"{folder}/people", "--port", str(port), "--quiet"],
+            f"{folder}/serve.log")
+
+    async def forward():
+        server = await asyncio.start_unix_server(
+            lambda r, w: join(r, w, asyncio.open_connection("127.0.0.1", port)), f"{folder}/page")
+        await server.serve_forever()
+
+    threading.Thread(target=lambda: asyncio.run(forward()), daemon=True).start()
+    page = Page(port, token)
+    say("six buildings: framewatch run and framewatch uplink in each ...")
+    buildings = [Building(hub, name, i, a.seconds, a.speed) for i, (name, *_) in enumerate(BUILDINGS)]
+    for one in buildings:
+        one.start()
+    time.sleep(2)
+    for one in buildings:
+        one.shake()
+    begin, host_us = time.monotonic(), time.time() * 1e6
+    say(f"\n  Open http://127.0.0.1:{a.port}/?token={token}\n")
+    say(f"The ground moves weakly. After {QUAKE_S / a.speed:.0f} s there is an earthquake, and the hospital in Kobe loses 15 % of "
+        f"one frame\n({PARAMETER}); nobody has told the hub. Time runs {a.speed:g} times as fast as a clock.")
+    return watch(a, page, begin, host_us)
+
+
+def watch(a, page, begin, host_us):
+    seen, told, asked = {}, False, False
+    quake_us = None
+    while (now := (time.monotonic() - begin) * a.speed) < a.seconds + 12 * a.speed:
+        time.sleep(0.5)
+        if not told and now > QUAKE_S:
+            told = True
+            say(f"{now / a.speed:4.0f} s  earthquake")
+        for one in (page.ask("overview.json") or {}).get("buildings", []):
+            word = one["urgency"]
+            if seen.get(one["name"], (0, "well"))[1] != word:
+                seen[one["name"]] = (now, word)
+                say(f"{now / a.speed:4.0f} s  {one['name']}: {word}{': ' + one['message'] if one['message'] else ''}")
+        if told and quake_us is None and now > QUAKE_S + 30:
+            quakes = page.ask("earthquakes.json?days=2") or []
+            if quakes:
+                quake_us = quakes[0]["time_us"]
+                say(f"{now / a.speed:4.0f} s  {quakes[0]['buildings']} buildings shook together; all are asked for their minutes")
+                page.ask(f"command?building=all&verb=minutes&from_us={quake_us - 600_000_000}&to_us="
+                         f"{quake_us + 3_600_000_000}", "POST")
+                asked = True
+    if not asked:
+        say("no earthquake was found by the hub: the time of the scenario is taken")
+        quake_us = int(host_us + QUAKE_S * 1e6)
+    return table(page, quake_us, seen)
+
+
+def table(page, quake_us, seen):
+    for _ in range(WAIT_S):  # a busy machine is behind its clock
+        result = page.ask(f"earthquake.json?time_us={quake_us}")
+        if result and all(one.get("compared") for one in result.get("buildings", [{}])):
+            break
+        time.sleep(1)
+    journal = page.ask("journal.json") or []
+    if not result or "buildings" not in result:
+        say("the page does not answer")
+        return 1
+    say(f"\n{'building':10} {'in truth':18} {'largest loss that is seen':34} {'compared':>8}  overview")
+    for one in result["buildings"]:
+        worst = one.get("worst")
+        loss = "nothing of the time is known"
+        if one["result"] == "loss":
+            loss = f"{worst['parameter']} {100 * worst['ratio']:+.1f} % +- {100 * worst['std_error']:.2f} %"
+        elif one["result"] == "none":
+            loss = "none that is significant"
+        elif one["result"] == "not_observable":
+            loss = "not observable"
+        truth = f"{PARAMETER} {100 * (FACTOR - 1):+.0f} %" if one["name"] == DAMAGED else "whole"
+        say(f"{one['name']:10} {truth:18} {loss:34} {one['compared']:8}  {seen.get(one['name'], (0, 'well'))[1]}")
+    if journal:
+        say(f"command minutes to {journal[-1]['buildings']} buildings: {journal[-1]['done']} obeyed")
+    first = result["buildings"][0]
+    good = (first["name"] == DAMAGED and first["result"] == "loss" and first["worst"]["parameter"] == PARAMETER and
+            all(one["result"] == "none" for one in result["buildings"][1:]))
+    say("the damaged building stands first, and no other is said to be damaged" if good else
+        "NOT what it should be: the damaged building first, and no other")
+    return 0 if good else 1
+
+
+def keep(folder, target):
+    """Configurations, histories and logs."""
+    for name in ["worker.log", "serve.log", "hub1.log", *(f"{one[0]}/{file}" for one in BUILDINGS for file in (
+            "log", "building.toml", "scenario.toml", "ground.csv", "history/history.sqlite", "history/history.sqlite-wal",
+            "history/uplink.sqlite", "history/uplink.sqlite-wal"))]:
+        if os.path.exists(f"{folder}/{name}"):
+            os.makedirs(os.path.dirname(f"{target}/{name}"), exist_ok=True)
+            shutil.copy(f"{folder}/{name}", f"{target}/{name}")
+
+
+def outside(a):
+    """The page's port, for a browser that is outside of the buildings' network."""
+    folder = tempfile.mkdtemp(prefix="fw-demo-")
+    child = subprocess.Popen([f"{HERE}/../support/private-network", sys.executable, os.path.abspath(__file__), a.program,
+                              "--inside", folder, "--port", str(a.port), "--seconds", str(a.seconds), "--speed",
+                              str(a.speed)])
+
+    async def serve():
+        server = await asyncio.start_server(
+            lambda r, w: join(r, w, asyncio.open_unix_connection(f"{folder}/page")), "127.0.0.1", a.port)
+        async with server:
+            while child.poll() is None:
+                await asyncio.sleep(0.2)
+
+    try:
+        asyncio.run(serve())
+    except OSError as error:
+        print(f"demo --fleet: port {a.port}: {error.strerror} (--port)", file=sys.stderr)
+        child.terminate()
+        child.wait()
+        return 2
+    except KeyboardInterrupt:
+        child.wait()
+    finally:
+        if child.poll() is None:
+            child.terminate()
+            child.wait()
+        if a.keep:
+            keep(folder, a.keep)
+        shutil.rmtree(folder, ignore_errors=True)
+    return child.returncode
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("program")
+    parser.add_argument("--seconds", type=int, default=520, help="of sensor time")
+    parser.add_argument("--speed", type=float, default=3, help="sensor time over clock time")
+    parser.add_argument("--port", type=int, default=8090, help="of the page")
+    parser.add_argument("--keep", help="folder for logs and configurations")
+    parser.add_argument("--inside", help=argparse.SUPPRESS)
+    a = parser.parse_args()
+    if why := missing():
+        print(f"demo --fleet: {why}: deploy/install-deps --with fleet installs what it takes", file=sys.stderr)
+        return 2
+    if not os.path.exists(f"{os.path.dirname(os.path.abspath(a.program))}/framewatch-fleet"):
+        print("demo --fleet: framewatch-fleet is not built: deploy/install-deps --with fleet, then again", file=sys.stderr)
+        return 2
+    if not a.inside:
+        return outside(a)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(2))
+    try:
+        return inside(a)
+    except KeyboardInterrupt:
+        return 2
+    finally:
+        Process.end_all()
+
+
+sys.exit(main())

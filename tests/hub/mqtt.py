@@ -1,0 +1,149 @@
+#!/usr/bin/env python3
+"""mqtt.py PROGRAM DIR: building automation hears of the hub's buildings over MQTT, from the real nats-server, and can say
+nothing. Exit 1 when it is otherwise; 77, with the reason, where what it takes is missing."""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
+from hub import Hub, Process, free_ports  # noqa: E402
+from nats_client import Client  # noqa: E402
+from own_postgres import OwnPostgres, newest_bin  # noqa: E402
+
+USER, PASSWORD = "bms", "a-password-of-this-test"
+
+
+def newest_of(root, channel):
+    """A message of the log of every type."""
+    with open(f"{root}/tests/golden/every_type.lcmlog", "rb") as file:
+        log = file.read()
+    at = 0
+    while at < len(log):
+        name, size = (int.from_bytes(log[at + k:at + k + 4], "big") for k in (20, 24))
+        if log[at + 28:at + 28 + name] == channel:
+            return log[at + 28 + name:at + 28 + name + size]
+        at += 28 + name + size
+    raise RuntimeError(f"no {channel}")
+
+
+def with_mqtt(hub):
+    """The files of deploy/fleet, for one server and one user."""
+    (port,) = free_ports(1)
+    with open(f"{hub.root}/deploy/fleet/mqtt.conf") as file:
+        text = file.read().replace("0.0.0.0:8883", f"127.0.0.1:{port}").replace("/etc/framewatch-hub/", f"{hub.certificates}/")
+    with open(f"{hub.certificates}/mqtt.conf", "w") as file:
+        file.write(text)
+    with open(f"{hub.certificates}/hub1.conf", "a") as file:
+        file.write('include "mqtt.conf"\n')
+    with open(f"{hub.root}/deploy/fleet/mqtt-users.conf") as file:
+        text = file.read().replace("# { user", "{ user").replace("SECRET", PASSWORD)
+    with open(f"{hub.certificates}/mqtt-users.conf", "w") as file:
+        file.write(text)
+    return port
+
+
+def mosquitto(hub, port, program, topic, *more, password=PASSWORD):
+    return subprocess.run([program, "-h", "localhost", "-p", str(port), "--cafile", f"{hub.certificates}/ca.pem", "-u", USER,
+                           "-P", password, "-q", "1", "-t", topic, *more], capture_output=True, text=True, check=False,
+                          timeout=120)
+
+
+def check(hub, port, postgres):
+    problems = []
+    urls = [argument for url in hub.urls() for argument in ("--hub", url)]
+    for left in (4, 3, 2, 1, 0):
+        if hub.fleet("setup", *urls, "--buildings", "10", good=(0, 2) if left else (0,)).returncode == 0:
+            break
+    hub.enroll("kobe")
+    Process([hub.program, "fleet", "worker", *urls, "--dir", hub.certificates, "--database", postgres.where],
+            f"{hub.folder}/worker.log")
+    for _ in range(15):  # an account's JetStream may begin after the server
+        listener = subprocess.Popen(["mosquitto_sub", "-h", "localhost", "-p", str(port), "--cafile",
+                                     f"{hub.certificates}/ca.pem", "-u", USER, "-P", PASSWORD, "-q", "1", "-v", "-t",
+                                     "framewatch/#", "-W", "30"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(3)
+        if listener.poll() is None:
+            break
+    building = Client(hub.client[0], hub.certificates, "kobe")
+    event = newest_of(hub.root, b"FRAMEWATCH_EVENT")
+    for kind, type_, content in (("service", "service_t", newest_of(hub.root, b"FRAMEWATCH_SERVICE")),
+                                 ("event", "event_t", event)):
+        key = f"kobe/{kind}/1" if kind == "service" else event_key(event)
+        building.publish(f"fw.up.kobe.{kind}", content, {"Nats-Msg-Id": key, "Fw-Type": type_})
+    building.round_trip()
+    heard, trouble = listener.communicate(timeout=120)
+    topics, times = {}, {}
+    for line in heard.splitlines():
+        topic, text = line.split(" ", 1)
+        times[topic] = times.get(topic, 0) + 1
+        topics[topic] = json.loads(text)
+    print(f"  heard over MQTT, times: {times or 'nothing'} {trouble.strip()}")
+    if topics.get("framewatch/kobe/state", {}).get("schema") != "framewatch.state/1":
+        problems.append(f"no state of the building came over MQTT: {heard}{trouble}")
+    if topics.get("framewatch/kobe/event", {}).get("schema") != "framewatch.event/1":
+        problems.append("no event came over MQTT")
+    if mosquitto(hub, port, "mosquitto_sub", "framewatch/#", "-C", "1", "-W", "3", password="wrong").returncode in (0, 27):
+        problems.append("a wrong password is let in")
+    # What is not allowed is dropped, or ends the connection: nobody may hear of it.
+    spy = subprocess.Popen(["mosquitto_sub", "-h", "localhost", "-p", str(port), "--cafile", f"{hub.certificates}/ca.pem", "-u",
+                            USER, "-P", PASSWORD, "-t", "framewatch/kobe/forged", "-C", "1", "-W", "5"],
+                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(2)
+    mosquitto(hub, port, "mosquitto_pub", "framewatch/kobe/forged", "-m", "it burns")
+    mosquitto(hub, port, "mosquitto_pub", "fw/up/kobe/event", "-m", "it burns")
+    forged, _ = spy.communicate(timeout=60)
+    if "burns" in forged:
+        problems.append("building automation can say what others hear")
+    foreign = mosquitto(hub, port, "mosquitto_sub", "fw/#", "-C", "1", "-W", "4")
+    if foreign.stdout:
+        problems.append("building automation hears what buildings send to the hub")
+    refused = postgres.ask("SELECT count(*) FROM refused")
+    print(f"  said over MQTT: nothing came anywhere ({refused} messages refused by the worker)")
+    if refused != "0":
+        problems.append("what was said over MQTT reached the worker")
+    return problems
+
+
+def event_key(event):
+    """Of the log's event_t: time_us, since_us, id, state, severity, kind."""
+    time_us, _, number = (int.from_bytes(event[8 + 8 * i:16 + 8 * i], "big", signed=True) for i in range(3))
+    state = int.from_bytes(event[32:36], "big", signed=True)
+    size = int.from_bytes(event[40:44], "big")
+    return f"kobe/event/{event[44:44 + size - 1].decode()}/{number}/{time_us}/{state}"
+
+
+def main():
+    program, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
+    for command in ("nats-server", "openssl", "mosquitto_sub", "mosquitto_pub"):
+        if not shutil.which(command):
+            print(f"mqtt: skipped: no {command} (deploy/install-deps --with fleet)")
+            return 77
+    if not newest_bin() or not os.path.exists(f"{os.path.dirname(program)}/framewatch-fleet"):
+        print("mqtt: skipped: no PostgreSQL or framewatch-fleet (deploy/install-deps --with fleet)")
+        return 77
+    shutil.rmtree(folder, ignore_errors=True)
+    os.makedirs(folder)
+    problems = []
+    socket_folder = tempfile.mkdtemp(prefix="fw-mqtt-")  # a socket's name is short
+    try:
+        hub = Hub(os.path.abspath(f"{HERE}/../.."), program, folder)
+        port = with_mqtt(hub)
+        hub.start()
+        postgres = OwnPostgres(socket_folder)
+        hub.wait()
+        problems = check(hub, port, postgres)
+    finally:
+        Process.end_all()
+        shutil.rmtree(socket_folder, ignore_errors=True)
+    for problem in problems:
+        print(f"mqtt: {problem}", file=sys.stderr)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
