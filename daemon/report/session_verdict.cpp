@@ -208,6 +208,12 @@ std::string verdict_sentence(const SessionReport& r) {
 
 std::string verdict_section(const SessionReport& r) {
   std::string out = "<p class=\"verdict\">" + html_text(verdict_sentence(r)) + "</p>\n";
+  const bool grown = std::any_of(r.changes.begin(), r.changes.end(),
+                                 [](const ElementChange& c) { return c.ratio > 0; });
+  if (grown)
+    out +=
+        "<p>Frames soften while they move strongly and recover: a stiffness that grows while the "
+        "motion dies away is no change of the building.</p>\n";
   const std::string rest = the_others(r) + sensors_sentence(r);
   if (!rest.empty()) out += "<p>" + html_text(rest) + "</p>\n";
   out += change_chart(r);

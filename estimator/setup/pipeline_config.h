@@ -30,8 +30,7 @@ struct PipelineConfig {
   std::vector<double> design_error = {};
 
   StoryGroups groups() const {
-    return story_groups(structure, axes,
-                        {group_floors, bending_nmprad.any()});
+    return story_groups(structure, axes, {group_floors, bending_nmprad.any()});
   }
   /// What is identified.
   ParameterTable parameters() const { return ParameterTable(structure, groups(), bending_nmprad); }

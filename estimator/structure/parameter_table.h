@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "estimator/structure/story_groups.h"
 #include "estimator/structure/bending_stiffness.h"
+#include "estimator/structure/story_groups.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
