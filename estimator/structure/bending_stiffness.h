@@ -11,7 +11,7 @@ namespace framewatch::estimator {
 /// every floor alike (effect frame_bending).
 struct BendingStiffness {
   std::array<double, 2> base_nmprad{};
-  std::array<std::vector<double>, 2> shares;
+  std::array<std::vector<double>, 2> shares{};
 
   double operator[](std::size_t direction) const { return base_nmprad[direction]; }
   bool any() const { return base_nmprad[0] > 0 || base_nmprad[1] > 0; }
