@@ -12,28 +12,9 @@ using Eigen::Index;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-namespace {
-
-/// A transform that has the factors of the last few sizes: they take as long as a transform.
-Eigen::FFT<double>& transform_of(Index size) {
-  constexpr std::size_t kSizes = 8;
-  thread_local Eigen::FFT<double> transform;
-  thread_local std::vector<Index> sizes;
-  if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) {
-    if (sizes.empty() || sizes.size() == kSizes) {
-      transform = Eigen::FFT<double>();
-      transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-      sizes.clear();
-    }
-    sizes.push_back(size);
-  }
-  return transform;
-}
-
-}  // namespace
-
 VectorXcd forward_fourier(const VectorXd& signal) {
-  Eigen::FFT<double>& transform = transform_of(signal.size());
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   const std::vector<double> in(signal.data(), signal.data() + signal.size());
   std::vector<std::complex<double>> out;
   transform.fwd(out, in);
@@ -41,7 +22,8 @@ VectorXcd forward_fourier(const VectorXd& signal) {
 }
 
 VectorXd inverse_fourier(const VectorXcd& half, Index size) {
-  Eigen::FFT<double>& transform = transform_of(size);
+  Eigen::FFT<double> transform;
+  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
   std::vector<std::complex<double>> in(static_cast<std::size_t>(size / 2 + 1));
   for (Index i = 0; i < std::min<Index>(half.size(), size / 2 + 1); ++i)
     in[static_cast<std::size_t>(i)] = half[i];
