@@ -14,7 +14,6 @@ class Building {
     this.factor = 1;
     this.chosen = 0;
     this.onChoose = onChoose;
-    this.begin();
     this.largest = 1e-6;
     const line = (spans, names, other) => {
       const at = [0];
@@ -48,6 +47,7 @@ class Building {
         y: plan.frames_y.map((_, f) => s === 0 ? -1 : this.axisOf(s, n + f)),
       });
     }
+    this.begin();
     this.faces = this.makeFaces();
     canvas.addEventListener('pointerdown', e => { this.drag = [e.clientX, e.clientY]; this.moved = 0; canvas.setPointerCapture(e.pointerId); });
     canvas.addEventListener('pointermove', e => this.pointer(e));
