@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -15,6 +16,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kSilent_s = 3;
+constexpr int kAllStories = 8, kMostSwayed = 5;
 constexpr double kStronger = 1.2;  // than the newest shake: worth a line of its own
 
 std::string capital(std::string text) {
@@ -139,6 +141,25 @@ std::string story_words(const Shake& shake, const estimator::Structure& s, int s
                      s.frame_name(peak.frame));
 }
 
+/// Every story, downward; of a tall building those that swayed most.
+void add_stories(const Shake& shake, const estimator::Structure& s, Answer& out) {
+  std::vector<int> stories(static_cast<std::size_t>(s.stories));
+  std::iota(stories.rbegin(), stories.rend(), 1);
+  if (s.stories > kAllStories) {
+    const auto swayed = [&](int story) {
+      const estimator::PeakDrift peak = peak_drift(shake.peak, s, story);
+      return peak.frame < 0 ? -1 : peak.ratio;
+    };
+    std::stable_sort(stories.begin(), stories.end(),
+                     [&](int a, int b) { return swayed(a) > swayed(b); });
+    stories.resize(kMostSwayed);
+  }
+  for (const int story : stories) out.more.push_back({story_words(shake, s, story), 0, 0});
+  if (s.stories > kAllStories)
+    out.more.push_back(
+        {fmt::format("The other {} stories swayed less.", s.stories - kMostSwayed), 0, 0});
+}
+
 std::string accel_words(const Shake& shake, const Config& config) {
   const auto words = [](double mps2) {
     return std::isfinite(mps2) ? fmt::format("{:.2f} m/s²", mps2) : std::string("not known");
@@ -194,8 +215,7 @@ Answer went_through(const Known& k, const Config& config) {
                   over ? "A shake" : "It is shaking", swayed, base_shear_words(shake.peak, s)),
       shake.from_us, over ? shake.to_us : 0};
   out.state = over ? AnswerState::good : AnswerState::look;
-  for (int story = s.stories; story >= 1; --story)
-    out.more.push_back({story_words(shake, s, story), 0, 0});
+  add_stories(shake, s, out);
   out.more.push_back({accel_words(shake, config), 0, 0});
   if (k.strongest != nullptr && largest_drift_ratio(k.strongest->peak, s) > kStronger * drift)
     out.more.push_back({fmt::format("The strongest so far: {} of a story's height, {}.",

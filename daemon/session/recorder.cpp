@@ -64,7 +64,7 @@ Recorder::Recorder(const Config& config, std::string sessions, Ended ended)
 
 std::vector<std::string> Recorder::channels() const {
   std::vector<std::string> out = heard_channels(config_);
-  for (const char* name : {"PARAMETERS", "STATUS", "EVENT", "GAP", "CAN"})
+  for (const char* name : {"PARAMETERS", "STATUS", "EVENT", "GAP", "MODEL_FIT", "CAN"})
     out.push_back(config_.lcm.prefix + name);
   for (std::string& channel : estimate_channels(config_)) out.push_back(std::move(channel));
   return out;

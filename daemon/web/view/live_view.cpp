@@ -95,8 +95,8 @@ void LiveView::restore(const StoredHistory& stored, std::int64_t now_us) {
 
 std::vector<std::string> LiveView::channels() const {
   std::vector<std::string> out = sample_channels(config_);
-  for (const char* name : {"PARAMETERS", "STATUS", "EVENT", "GAP", "CAN", "SESSION", "SERVICE",
-                           "ACKNOWLEDGED", "WATCH"})
+  for (const char* name : {"PARAMETERS", "STATUS", "EVENT", "GAP", "MODEL_FIT", "CAN", "SESSION",
+                           "SERVICE", "ACKNOWLEDGED", "WATCH"})
     out.push_back(config_.lcm.prefix + name);
   out.insert(out.end(), estimate_channels_.begin(), estimate_channels_.end());
   return out;

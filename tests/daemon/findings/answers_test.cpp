@@ -1,5 +1,7 @@
 #include "daemon/findings/answers.h"
 
+#include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "daemon/event_report/response_words.h"
@@ -112,6 +114,26 @@ TEST_F(AnswersTest, SilenceIsNoBelief) {
   known_.silent_s = 0;
   known_.estimates_silent_s = 10;
   EXPECT_NE(said(1).find("the estimator says nothing for 10 s"), std::string::npos);
+}
+
+TEST_F(AnswersTest, OfATallBuildingTheStoriesThatSwayedMostAreNamed) {
+  constexpr int kStories = 12, kMost = 7;
+  estimator::Structure& s = config_.pipeline.structure;
+  s.stories = kStories;
+  s.story_height.assign(kStories, 3.0);
+  Shake shake;
+  shake.over = true;
+  shake.peak = {config_.pipeline.axes.size(), static_cast<std::size_t>(s.degrees_of_freedom())};
+  for (int story = 1; story <= kStories; ++story)
+    shake.peak.drift_m[static_cast<std::size_t>(s.dof(story, 0))] =
+        0.03 / (1 + std::abs(story - kMost));
+  known_.newest = known_.strongest = &shake;
+  const Answer told = answer(2);
+  ASSERT_GE(told.more.size(), 7U);
+  EXPECT_EQ(told.more[0].text.substr(0, 17), "Story 7: 1.00 % (");
+  EXPECT_EQ(told.more[1].text.substr(0, 8), "Story 8:");
+  EXPECT_EQ(told.more[2].text.substr(0, 8), "Story 6:");
+  EXPECT_EQ(told.more[5].text, "The other 7 stories swayed less.");
 }
 
 TEST_F(AnswersTest, AShakeIsSaidByStoryWithItsBaseShear) {
