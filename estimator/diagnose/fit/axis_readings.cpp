@@ -16,7 +16,7 @@ MatrixXcd calibrated(const Model& model, const RecordSegment& segment) {
     if (e.form == LawForm::swapped) out.row(e.place.channel).swap(out.row(e.place.with_channel));
   for (Index a = 0; a < out.rows(); ++a)
     for (Index b = 0; b < out.cols(); ++b)
-      out(a, b) *= std::polar(1 / (1 + model.gain[a]), segment.w[b] * model.clock_s[a]);
+      out(a, b) *= 1 / (1 + model.gain[a]) * std::polar(1.0, segment.w[b] * model.clock_s[a]);
   const MatrixXcd straight = out;
   for (const ModelEffect& e : model.effects) {
     if (e.form != LawForm::misaligned) continue;

@@ -180,6 +180,7 @@ TEST(Watch, WhatIsLearnedInWeakMotionIsNoChangeInTraffic) {
     e.prior_share.assign(e.value.size(), quiet ? kPulledShare : 0.0);
     e.noise_share.assign(e.value.size(), 0);
     e.reason.assign(e.value.size(), Observability::observable);
+    e.amplitude.assign(e.value.size(), kNaN);
     for (const Alarm& alarm : watch.push(e)) {
       if (alarm.state != AlarmState::raised) continue;
       if (t > kDamage_s && alarm.parameter == 0)
