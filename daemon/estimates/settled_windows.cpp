@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
@@ -28,11 +29,17 @@ std::vector<std::uint8_t> settled_windows(const SessionEstimates& s, std::size_t
   const std::size_t bending = bending_of(s.table, p);
   if (bending == s.table.name.size()) return out;
   const std::vector<double>& held = s.value[bending];
-  const auto known = std::find_if(held.rbegin(), held.rend(), [](double v) { return v > 0; });
-  if (known == held.rend()) return out;
+  const double known = last_value(s, bending);
+  if (std::isnan(known)) return out;
   for (std::size_t w = 0; w < out.size(); ++w)
-    out[w] = std::abs(held[w] / *known - 1) < kSameBending ? 1 : 0;
+    out[w] = std::abs(held[w] / known - 1) < kSameBending ? 1 : 0;
   return out;
+}
+
+double last_value(const SessionEstimates& s, std::size_t p) {
+  const std::vector<double>& all = s.value[p];
+  const auto last = std::find_if(all.rbegin(), all.rend(), [](double v) { return v > 0; });
+  return last == all.rend() ? estimator::kNaN : *last;
 }
 
 }  // namespace framewatch::daemon

@@ -13,4 +13,7 @@ namespace framewatch::daemon {
 /// known in the end, because the two go together. A first record finds the bending on its way.
 std::vector<std::uint8_t> settled_windows(const SessionEstimates& session, std::size_t parameter);
 
+/// The newest value, SI; NaN: there is none.
+double last_value(const SessionEstimates& session, std::size_t parameter);
+
 }  // namespace framewatch::daemon

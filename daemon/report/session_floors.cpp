@@ -17,7 +17,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double kBegins = 0.05, kEnds = 0.95;  // of the Arias intensity
-constexpr double kSameBending = 0.15;           // relative
 constexpr double kLongestStrong_s = 300;
 constexpr double kLead_s = 60, kTail_s = 10;  // for the filters' and the inner floors' start
 
@@ -57,12 +56,6 @@ double settled_median(const SessionEstimates& estimates, std::size_t p) {
   for (std::size_t w = 0; w < settled.size(); ++w)
     if (settled[w] != 0) values.push_back(estimates.value[p][w]);
   return boxplot_of(std::move(values)).median;
-}
-
-double last_value(const SessionEstimates& estimates, std::size_t p) {
-  const std::vector<double>& all = estimates.value[p];
-  const auto last = std::find_if(all.rbegin(), all.rend(), [](double v) { return v > 0; });
-  return last == all.rend() ? estimator::kNaN : *last;
 }
 
 void take(double value, std::size_t p, SessionFloors& out) {

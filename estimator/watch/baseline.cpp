@@ -1,18 +1,9 @@
 #include "estimator/watch/baseline.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace framewatch::estimator {
-namespace {
-
-double end_s(const WindowEstimate& e) {
-  return std::chrono::duration<double>(e.end.time_since_epoch()).count();
-}
-
-}  // namespace
-
 Baseline::Baseline(std::size_t parameters)
     : value(parameters, std::numeric_limits<double>::quiet_NaN()),
       std_error(parameters, std::numeric_limits<double>::quiet_NaN()),
@@ -90,7 +81,8 @@ bool BaselineLearner::push(const WindowEstimate& e, double degc) {
     }
     if (amplitude_ && e.amplitude[p] > 0) {
       ++sum.with_amplitude;
-      sum.bins.push(recent_[p].at(end_s(e)), off / sum.first, weight * sum.first * sum.first);
+      sum.bins.push(recent_[p].at(seconds_of(e.end)), off / sum.first,
+                    weight * sum.first * sum.first);
     }
     sum.complete = enough(p);
     any = any || sum.complete;
@@ -101,7 +93,8 @@ bool BaselineLearner::push(const WindowEstimate& e, double degc) {
 void BaselineLearner::remember(const WindowEstimate& e) {
   if (!amplitude_ || e.status != WindowStatus::valid) return;
   for (std::size_t p = 0; p < recent_.size(); ++p)
-    if (watched_[p].counts(e, p) && e.amplitude[p] > 0) recent_[p].push(end_s(e), e.amplitude[p]);
+    if (!sums_[p].complete && watched_[p].counts(e, p) && e.amplitude[p] > 0)
+      recent_[p].push(seconds_of(e.end), e.amplitude[p]);
 }
 
 bool BaselineLearner::enough(std::size_t p) const {

@@ -6,6 +6,10 @@
 
 namespace framewatch::estimator {
 
+inline double seconds_of(Time time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
 /// Selects the windows to learn from: valid ones that do not overlap, so that their errors are
 /// nearly independent.
 class SeparateWindows {

@@ -1,7 +1,6 @@
 #include "estimator/watch/watch.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -41,10 +40,6 @@ void correct(WindowEstimate& e, std::size_t p, double baseline, double ratio, do
   e.value[p] = baseline + (off > 0 ? std::max(off - above * baseline, 0.0)
                                    : std::min(off + below * baseline, 0.0));
   e.std_error[p] /= ratio;
-}
-
-double seconds_of(Time time) {
-  return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
 DependenceOptions quiet_options(const WatchOptions& o) {
