@@ -22,6 +22,7 @@ ROOT = os.path.abspath(f"{HERE}/../..")
 sys.path.insert(0, HERE)
 from hub import Hub, Process, free_ports  # noqa: E402
 from own_postgres import OwnPostgres, newest_bin  # noqa: E402
+from proxy import join  # noqa: E402
 
 BUILDINGS = [("kobe-01", "Harbour tower", "Kobe", 34.682, 135.187), ("kobe-02", "City hall", "Kobe", 34.690, 135.195),
              ("kobe-03", "Hospital", "Kobe", 34.701, 135.212), ("osaka-01", "Station block", "Osaka", 34.702, 135.495),
@@ -105,25 +106,6 @@ class Page:
                 return json.load(answer)
         except (OSError, ValueError):
             return None
-
-
-async def pump(reader, writer):
-    try:
-        while data := await reader.read(65536):
-            writer.write(data)
-            await writer.drain()
-    except OSError:
-        pass
-    writer.close()
-
-
-async def join(reader, writer, connecting):
-    try:
-        there_reader, there_writer = await connecting
-    except OSError:
-        writer.close()
-        return
-    await asyncio.gather(pump(reader, there_writer), pump(there_reader, writer))
 
 
 def say(text=""):

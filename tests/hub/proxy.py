@@ -13,16 +13,18 @@ async def pump(reader, writer):
     writer.close()
 
 
-def forward(target):
-    async def serve(reader, writer):
-        try:
-            there_reader, there_writer = await asyncio.open_connection("127.0.0.1", target)
-        except OSError:
-            writer.close()
-            return
-        await asyncio.gather(pump(reader, there_writer), pump(there_reader, writer))
+async def join(reader, writer, connecting):
+    """A connection and the one that `connecting` opens, both ways."""
+    try:
+        there_reader, there_writer = await connecting
+    except OSError:
+        writer.close()
+        return
+    await asyncio.gather(pump(reader, there_writer), pump(there_reader, writer))
 
-    return serve
+
+def forward(target):
+    return lambda reader, writer: join(reader, writer, asyncio.open_connection("127.0.0.1", target))
 
 
 async def main():
@@ -31,4 +33,5 @@ async def main():
     await asyncio.gather(*(one.serve_forever() for one in held))
 
 
-asyncio.run(main())
+if __name__ == "__main__":
+    asyncio.run(main())
