@@ -26,8 +26,8 @@ struct Stream {
 
 std::vector<Stream> streams() {
   std::vector<std::string> last;
-  for (const char* kind :
-       {"service", "status", "history", "watch", "parameters", "config", "inventory"})
+  for (const char* kind : {"service", "status", "history", "watch", "acknowledged", "parameters",
+                           "config", "inventory"})
     last.push_back(std::string("fw.up.*.") + kind);
   return {
       {"FW_EVENT",

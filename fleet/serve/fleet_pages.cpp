@@ -16,6 +16,7 @@
 #include "fleet/view/earthquake_view.h"
 #include "fleet/view/overview.h"
 #include "fleet/view/series.h"
+#include "fleet/view/stretch.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -66,6 +67,7 @@ PageAnswer FleetPages::answer(const PageRequest& r) {
   if (r.path == "/building.json") return building(r);
   if (r.path == "/series.json") return series(r);
   if (r.path == "/earthquake.json") return earthquake(r);
+  if (r.path == "/raw.mseed") return raw(r);
   const auto lent = pool_.lend();
   if (r.path == "/earthquakes.json") {
     const auto days = drivers::parse_integer(r.argument("days"));
@@ -134,6 +136,15 @@ PageAnswer FleetPages::earthquake(const PageRequest& r) {
   if (!is_building_or_none(r.argument("name"))) return refuse(400, "name is none of a building");
   const auto lent = pool_.lend();
   return view(earthquake_json(*lent, {*time, r.argument("name")}));
+}
+
+PageAnswer FleetPages::raw(const PageRequest& r) {
+  if (!is_building_name(r.argument("name"))) return refuse(400, "name is none of a building");
+  const auto lent = pool_.lend();
+  std::string why;
+  const auto stretch = read_stretch(*lent, r.argument("name"), r.argument("request"), why);
+  if (!stretch) return refuse(why == lent->error() ? 503 : 404, why);
+  return {200, {stretch->miniseed.begin(), stretch->miniseed.end()}, "application/octet-stream"};
 }
 
 PageAnswer FleetPages::command(const PageRequest& r) {

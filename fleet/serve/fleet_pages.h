@@ -46,6 +46,7 @@ class FleetPages {
   PageAnswer building(const PageRequest& request);
   PageAnswer series(const PageRequest& request);
   PageAnswer earthquake(const PageRequest& request);
+  PageAnswer raw(const PageRequest& request);
   PageAnswer me(const PageRequest& request) const;
   PageAnswer command(const PageRequest& request);
 

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/history_status_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/status_t.hpp>
@@ -24,10 +25,11 @@ const Kind kKinds[] = {
     {"STATUS", "status", "status_t", [] { return status_t::getHash(); }},
     {"HISTORY", "history", "history_status_t", [] { return history_status_t::getHash(); }},
     {"WATCH", "watch", "watch_t", [] { return watch_t::getHash(); }},
+    {"ACKNOWLEDGED", "acknowledged", "acknowledged_t", [] { return acknowledged_t::getHash(); }},
     {"PARAMETERS", "parameters", "parameter_table_t", [] { return parameter_table_t::getHash(); }},
 };
 
-constexpr const char* kService = "service";
+constexpr const char *kService = "service", *kAcknowledged = "acknowledged";
 
 std::int64_t interval_us(const std::string& kind) {
   if (kind == kService) return NewestMessages::kService_us;
@@ -51,6 +53,7 @@ void NewestMessages::heard(std::string_view channel, std::span<const std::uint8_
   for (const Kind& kind : kKinds) {
     if (channel != kind.channel || !drivers::is_well_formed(bytes, kind.fingerprint())) continue;
     if (channel == "SERVICE") take_service(bytes);
+    if (channel == "ACKNOWLEDGED") take_acknowledged(bytes);
     if (channel == "PARAMETERS")
       if (auto table = drivers::decoded<parameter_table_t>(bytes)) {
         config_is(table->config_sha256);
@@ -68,6 +71,12 @@ void NewestMessages::take_service(std::span<const std::uint8_t> bytes) {
   config_is(service->config_sha256);
   if (std::exchange(raised_, service->event_id) != service->event_id)
     newest_[kService].given_us.reset();
+}
+
+void NewestMessages::take_acknowledged(std::span<const std::uint8_t> bytes) {
+  const auto message = drivers::decoded<acknowledged_t>(bytes);
+  if (message && std::exchange(acknowledged_, message->id) != message->id)
+    newest_[kAcknowledged].given_us.reset();
 }
 
 void NewestMessages::config_is(const std::string& sha256) {

@@ -15,9 +15,9 @@
 namespace framewatch::fleet {
 
 /// What the hub keeps the newest of (stream FW_LAST): when which is due. service every 60 s and
-/// when an event begins or ends, the others at the start, after every new connection, when the
-/// configuration has changed, and every 10 min, texts of our own every day. Times are of a clock
-/// that is never set.
+/// when an event begins or ends, what is acknowledged when that changes, all but service at the
+/// start, after every new connection, when the configuration has changed, and every 10 min, texts
+/// of our own every day. Times are of a clock that is never set.
 class NewestMessages {
  public:
   static constexpr std::int64_t kService_us = 60'000'000, kOther_us = 600'000'000,
@@ -51,12 +51,13 @@ class NewestMessages {
     std::optional<std::int64_t> given_us;
   };
   void take_service(std::span<const std::uint8_t> bytes);
+  void take_acknowledged(std::span<const std::uint8_t> bytes);
   void config_is(const std::string& sha256);
 
   std::map<std::string, Newest> newest_;  ///< by kind
   std::optional<parameter_table_t> table_;
   std::string config_sha256_;
-  std::vector<std::int64_t> raised_;
+  std::vector<std::int64_t> raised_, acknowledged_;  ///< ids of events, as they were heard last
 };
 
 }  // namespace framewatch::fleet

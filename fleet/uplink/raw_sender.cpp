@@ -25,6 +25,15 @@ std::int64_t size_of(const std::string& path) {
   return none ? -1 : static_cast<std::int64_t>(size);
 }
 
+Bytes piece_of(const std::string& path, std::int64_t number) {
+  std::ifstream file(path, std::ios::binary);
+  Bytes out(static_cast<std::size_t>(RawSender::kPiece_bytes));
+  file.seekg(number * RawSender::kPiece_bytes);
+  file.read(reinterpret_cast<char*>(out.data()), RawSender::kPiece_bytes);
+  out.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+  return out;
+}
+
 }  // namespace
 
 RawSender::RawSender(std::string directory, std::string building, double kbit_s, SentStore& store,
@@ -45,22 +54,28 @@ void RawSender::begin() {
   std::error_code none;
   fs::create_directories(directory_, none);
   if (!store_.raw_is_done(request_.request) || !store_.add_raw(request_)) return;
-  if (const std::string why = exporter_->begin(request_, path_); !why.empty()) return finish(why);
+  if (const std::string why = exporter_->begin(request_, path_); !why.empty()) return give_up(why);
   state_ = State::exporting;
 }
 
 void RawSender::begin_sending() {
   const std::int64_t size = size_of(path_);
-  if (size <= 0) return finish("the file of raw samples is gone");
+  if (size <= 0) return give_up("the file of raw samples is gone");
   if (size > request_.most_bytes)
-    return finish(fmt::format("it would be {} bytes, more than the {} that were allowed", size,
-                              request_.most_bytes));
+    return give_up(fmt::format("it would be {} bytes, more than the {} that were allowed", size,
+                               request_.most_bytes));
   done_.assign(static_cast<std::size_t>((size + kPiece_bytes - 1) / kPiece_bytes), false);
   for (const std::int64_t piece : store_.pieces_acknowledged(request_.request))
     if (piece >= 0 && piece < static_cast<std::int64_t>(done_.size()))
       done_[static_cast<std::size_t>(piece)] = true;
   state_ = State::sending;
   if (std::find(done_.begin(), done_.end(), false) == done_.end()) finish("");
+}
+
+void RawSender::give_up(const std::string& why) {
+  why_none_ = why;
+  done_.assign(1, false);
+  state_ = State::giving_up;
 }
 
 /// outcome: empty: every piece has arrived.
@@ -76,21 +91,18 @@ void RawSender::finish(const std::string& outcome) {
 }
 
 std::optional<Outgoing> RawSender::piece(std::int64_t number, const std::string& config_sha256) {
-  std::ifstream file(path_, std::ios::binary);
-  Bytes bytes(static_cast<std::size_t>(kPiece_bytes));
-  file.seekg(number * kPiece_bytes);
-  file.read(reinterpret_cast<char*>(bytes.data()), kPiece_bytes);
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
+  const bool gives_up = state_ == State::giving_up;
+  Bytes bytes = gives_up ? Bytes(why_none_.begin(), why_none_.end()) : piece_of(path_, number);
   if (bytes.empty()) {
-    finish("the file of raw samples cannot be read");
+    give_up("the file of raw samples cannot be read");
     return std::nullopt;
   }
   Outgoing out;
   out.message = packed(up_subject(building_, "raw." + request_.request),
-                       raw_key(building_, request_.request, number), "mseed", std::move(bytes),
-                       config_sha256);
+                       raw_key(building_, request_.request, number), gives_up ? "text" : "mseed",
+                       std::move(bytes), config_sha256);
   out.message.headers[header::kPiece] = fmt::format("{}", number);
-  out.message.headers[header::kPieces] = fmt::format("{}", done_.size());
+  out.message.headers[header::kPieces] = fmt::format("{}", gives_up ? 0 : done_.size());
   out.message.headers[header::kFile] = fs::path(path_).filename().string();
   out.request = request_.request;
   out.piece = number;
@@ -108,10 +120,10 @@ std::optional<Outgoing> RawSender::next(std::int64_t steady_us, const std::strin
     if (outcome && outcome->empty())
       begin_sending();
     else if (outcome)
-      finish(*outcome);
+      give_up(*outcome);
   }
-  if (state_ != State::sending || window.pieces() >= kUnderWay || steady_us < next_us_)
-    return std::nullopt;
+  const bool has_pieces = state_ == State::sending || state_ == State::giving_up;
+  if (!has_pieces || window.pieces() >= kUnderWay || steady_us < next_us_) return std::nullopt;
   for (std::size_t i = 0; i < done_.size(); ++i) {
     const auto number = static_cast<std::int64_t>(i);
     if (done_[i] || window.has(raw_key(building_, request_.request, number))) continue;
@@ -125,7 +137,9 @@ std::optional<Outgoing> RawSender::next(std::int64_t steady_us, const std::strin
 
 void RawSender::acknowledged(const Outgoing& piece) {
   if (!store_.piece_acknowledged(piece.request, piece.piece)) return;
-  if (state_ != State::sending || piece.request != request_.request) return;
+  if (piece.request != request_.request) return;
+  if (state_ == State::giving_up) return finish(why_none_);
+  if (state_ != State::sending) return;
   if (const auto at = static_cast<std::size_t>(piece.piece); at < done_.size()) done_[at] = true;
   if (std::find(done_.begin(), done_.end(), false) == done_.end()) finish("");
 }

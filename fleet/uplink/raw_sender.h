@@ -23,7 +23,8 @@ class RawExporter {
 };
 
 /// Sends raw samples that the hub asked for, piece by piece, at no more than raw_kbit_s. A piece
-/// that was acknowledged is not sent again, after a restart neither.
+/// that was acknowledged is not sent again, after a restart neither. Where there is nothing to send
+/// a piece 0 of 0 says why.
 class RawSender {
  public:
   static constexpr std::int64_t kPiece_bytes = 128 * 1024, kRefused_us = 60'000'000;
@@ -45,9 +46,10 @@ class RawSender {
   const std::string& trouble() const { return trouble_; }
 
  private:
-  enum class State { idle, exporting, sending };
+  enum class State { idle, exporting, sending, giving_up };
   void begin();
   void begin_sending();
+  void give_up(const std::string& why);
   void finish(const std::string& outcome);
   std::optional<Outgoing> piece(std::int64_t number, const std::string& config_sha256);
 
@@ -58,6 +60,7 @@ class RawSender {
   State state_ = State::idle;
   RawRequest request_;
   std::string path_, trouble_;
+  std::string why_none_;    ///< while giving up
   std::vector<bool> done_;  ///< by piece
   std::int64_t next_us_ = INT64_MIN, look_us_ = INT64_MIN;
 };

@@ -111,6 +111,7 @@ void Uplink::hear_command(const Message& command, Instant now) {
   Message answer;
   answer.subject = command.reply;
   const std::string text = desk_.obey(parts->kind, command, now.host_us);
+  if (parts->kind == "resend") again_ = command.header(header::kRequest);
   answer.bytes.assign(text.begin(), text.end());
   if (!command.reply.empty()) (void)link_.publish(answer);
   look_again_ = desk_.changed_what_waits() || look_again_;
@@ -273,7 +274,7 @@ void Uplink::send(Instant now) {
     message.reply = fmt::format("{}.{}", link_.inbox(), number);
     if (!settings_.secret.empty()) {
       std::string& key = message.headers[header::kKey];
-      key = sealed_key(key, settings_.secret, message.bytes);
+      key = sealed_key(key, settings_.secret + again_, message.bytes);
     }
     if (link_.publish(message))
       sent_bytes_ += static_cast<std::int64_t>(message.size());

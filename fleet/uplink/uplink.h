@@ -97,6 +97,7 @@ class Uplink {
   Waiting waiting_;           ///< what the newest look() found
   std::size_t next_event_ = 0, next_period_ = 0;
   bool look_again_ = true, rewind_ = false;
+  std::string again_;  ///< newest order to resend: keys are sealed anew, or all were repetitions
   std::int64_t look_us_ = INT64_MIN, store_us_ = INT64_MIN, older_us_ = INT64_MIN,
                inventory_us_ = INT64_MIN;
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -30,7 +30,7 @@ struct BuildingState {
   std::int64_t first_us = 0;                  ///< when it was first heard of
   std::optional<std::int64_t> heard_us;       ///< the newest heartbeat
   std::vector<event_t> raised;                ///< not cleared, oldest first
-  std::set<std::int64_t> known;               ///< ids of events that were acknowledged from here
+  std::map<std::int64_t, std::string> known;  ///< who acknowledged an event, by its id
 
   bool is_known(const event_t& event) const { return known.contains(event.id); }
   /// Whether there was no heartbeat for kSilent_us.

@@ -40,7 +40,8 @@ constexpr const char* kNewestPeriod =
     "SELECT max(m) FROM unnest(ARRAY[60, 600]) p, LATERAL (SELECT max(start_us) AS m FROM summary"
     " WHERE building = (SELECT id FROM building WHERE name = $1) AND period_s = p) o";
 constexpr const char* kStretches =
-    "SELECT request, count(*), max(pieces), sum(octet_length(content)), min(file), {}"
+    "SELECT request, count(*), max(pieces), sum(octet_length(content)), min(file), {},"
+    " min(CASE WHEN pieces = 0 THEN encode(content, 'escape') END)"
     " FROM raw_piece WHERE building = (SELECT id FROM building WHERE name = $1)"
     " GROUP BY request ORDER BY max(came) DESC LIMIT 50";
 
@@ -78,7 +79,8 @@ json raised_json(const BuildingState& state) {
                    {"kind", e.kind},
                    {"place", e.place},
                    {"message", e.message},
-                   {"known", state.is_known(e)}});
+                   {"known", state.is_known(e)},
+                   {"known_to", state.is_known(e) ? state.known.at(e.id) : ""}});
   return out;
 }
 
@@ -174,7 +176,8 @@ json stretches_json(const Rows& rows) {
                    {"pieces", integer_at(row, 2)},
                    {"bytes", integer_at(row, 3)},
                    {"file", text_at(row, 4)},
-                   {"newest_us", integer_at(row, 5)}});
+                   {"newest_us", integer_at(row, 5)},
+                   {"problem", text_at(row, 6)}});
   return out;
 }
 

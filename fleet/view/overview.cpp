@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/service_t.hpp>
 
 #include "drivers/lcm/message_check.h"
@@ -32,9 +33,12 @@ constexpr const char* kNewEvents =
     " JOIN LATERAL (SELECT * FROM event WHERE building = b.id AND came >= coalesce(n.came,"
     " '-infinity') ORDER BY came DESC LIMIT {}) e ON true"
     " WHERE $1 = '' OR b.name = $1 ORDER BY e.time_us, e.came";
-constexpr const char* kKnown =
-    "SELECT a.building, j.content FROM journal j JOIN journal_answer a ON a.request = j.request"
+constexpr const char* kOrdered =
+    "SELECT a.building, j.content, j.who FROM journal j JOIN journal_answer a ON a.request = "
+    "j.request"
     " WHERE j.verb = 'acknowledge' AND a.done AND j.came > now() - interval '400 days'";
+constexpr const char* kAcknowledged =
+    "SELECT building, content FROM newest WHERE kind = 'acknowledged'";
 
 void take_heartbeat(BuildingState& state, const Database::Row& row) {
   if (!row[7]) return;
@@ -68,6 +72,31 @@ event_t event_of(const Database::Row& row) {
   return event;
 }
 
+using Index = std::map<std::int64_t, std::size_t>;  ///< places in the overview by building
+
+/// What a person here had acknowledged.
+void note_orders(Overview& overview, const Index& index, const Rows& orders) {
+  for (const Database::Row& row : orders) {
+    const json content = json::parse(text_at(row, 1), nullptr, false);
+    const auto at = index.find(integer_at(row, 0));
+    if (at == index.end() || !content.is_object() || !content.contains("id") ||
+        !content["id"].is_number_integer())
+      continue;
+    overview.buildings[at->second].known[content["id"].get<std::int64_t>()] = text_at(row, 2);
+  }
+}
+
+/// What somebody had acknowledged, there or here, as the buildings say.
+void note_acknowledged(Overview& overview, const Index& index, const Rows& said) {
+  for (const Database::Row& row : said) {
+    const auto at = index.find(integer_at(row, 0));
+    const auto message = drivers::decoded<acknowledged_t>(bytes_at(row, 1));
+    if (at == index.end() || !message) continue;
+    for (std::size_t i = 0; i < message->id.size(); ++i)
+      overview.buildings[at->second].known.try_emplace(message->id[i], message->who[i]);
+  }
+}
+
 }  // namespace
 
 Overview read_overview(Database& database, const std::string& only) {
@@ -78,7 +107,7 @@ Overview read_overview(Database& database, const std::string& only) {
     out.problem = database.error();
     return out;
   }
-  std::map<std::int64_t, std::size_t> index;
+  Index index;
   for (const Database::Row& row : *buildings) {
     BuildingState state{text_at(row, 1),
                         text_at(row, 2),
@@ -95,22 +124,17 @@ Overview read_overview(Database& database, const std::string& only) {
     out.buildings.push_back(std::move(state));
   }
   const auto events = database.query(fmt::format(kNewEvents, kMostNewEvents), {only});
-  const auto known = events ? database.query(kKnown) : std::nullopt;
-  if (!known) {
+  const auto orders = events ? database.query(kOrdered) : std::nullopt;
+  const auto acknowledged = orders ? database.query(kAcknowledged) : std::nullopt;
+  if (!acknowledged) {
     out.problem = database.error();
     return out;
   }
   for (const Database::Row& row : *events)
     if (const auto at = index.find(integer_at(row, 0)); at != index.end())
       note_event(out.buildings[at->second].raised, event_of(row));
-  for (const Database::Row& row : *known) {
-    const json content = json::parse(text_at(row, 1), nullptr, false);
-    const auto at = index.find(integer_at(row, 0));
-    if (at == index.end() || !content.is_object() || !content.contains("id") ||
-        !content["id"].is_number_integer())
-      continue;
-    out.buildings[at->second].known.insert(content["id"].get<std::int64_t>());
-  }
+  note_orders(out, index, *orders);
+  note_acknowledged(out, index, *acknowledged);
   return out;
 }
 

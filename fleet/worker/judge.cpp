@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kMostBytes = 4 << 20;  // unpacked
 constexpr std::int64_t kMostPieces = 100'000;
+constexpr std::size_t kLongestWhy = 1000;
 constexpr std::size_t kDigestDigits = 64;
 
 /// Kinds of which the hub keeps the newest, with their types.
@@ -29,6 +30,7 @@ constexpr NewestKind kNewest[] = {{"service", "service_t"},
                                   {"status", "status_t"},
                                   {"history", "history_status_t"},
                                   {"watch", "watch_t"},
+                                  {"acknowledged", "acknowledged_t"},
                                   {"config", "toml"},
                                   {"inventory", "json"},
                                   {"parameters", "parameter_table_t"}};
@@ -140,8 +142,12 @@ class Judgement {
     const auto pieces = drivers::parse_integer(message_.header(header::kPieces));
     const std::string request = kind_.substr(4);
     if (!is_request_name(request)) return refuse("its request has no name of a-z, 0-9 and -");
-    if (!piece || !pieces || *piece < 0 || *piece >= *pieces || *pieces > kMostPieces)
+    const bool says_why_none = piece == 0 && pieces == 0;
+    if (!piece || !pieces || *piece < 0 || *pieces > kMostPieces ||
+        (*piece >= *pieces && !says_why_none))
       return refuse("its number is none of a piece");
+    if (says_why_none && content_.size() > kLongestWhy)
+      return refuse("it says at length that there is nothing");
     if (!is_key(raw_key(building_, request, *piece))) return;
     batch_.pieces.push_back({building_, request, message_.header(header::kFile),
                              static_cast<std::int32_t>(*piece), static_cast<std::int32_t>(*pieces),

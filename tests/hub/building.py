@@ -14,6 +14,14 @@ HISTORY = ("history.sqlite", "uplink.sqlite")
 PERIODS_S = (2, 4, 8)  # of summaries: minutes would be hours here
 
 
+def at_hub(hub, name, ports=None):
+    """The table [fleet] of a building's configuration."""
+    hubs = ", ".join(f'"tls://localhost:{port}"' for port in (ports or hub.client))
+    return (f'[fleet]\nbuilding = "{name}"\nhubs = [{hubs}]\ncertificate = "{hub.certificates}/{name}.pem"\n'
+            f'key = "{hub.certificates}/{name}.key"\nca = "{hub.certificates}/ca.pem"\n'
+            'accept = ["acknowledge", "raw", "resend", "minutes"]\n')
+
+
 class Building:
     def __init__(self, hub, name, ports=None, history=True):
         self.hub, self.name = hub, name
@@ -24,16 +32,13 @@ class Building:
         self.url = f"udpm://{lcm_event.GROUP}:{lcm}?ttl=0"
         self.lcm = lcm_event.Lcm(lcm)
         self.fingerprint = lcm_event.fingerprint(hub.root)
-        hubs = ", ".join(f'"tls://localhost:{port}"' for port in (ports or hub.client))
         with open(f"{hub.root}/configs/table_two_story.toml") as file:
             text = file.read()
         assert "\n[lcm]" not in text
         with open(self.config, "w") as file:
             file.write(f'{text}\n[lcm]\nurl = "{self.url}"\n[commands]\ndirectory = "."\n[history]\n'
                        f'directory = "history"\nsummary_s = {list(PERIODS_S)}\n[watch]\nlearn_s = 5\n'
-                       f'[fleet]\nbuilding = "{name}"\nhubs = [{hubs}]\n'
-                       f'certificate = "{hub.certificates}/{name}.pem"\nkey = "{hub.certificates}/{name}.key"\n'
-                       f'ca = "{hub.certificates}/ca.pem"\naccept = ["acknowledge", "raw", "resend", "minutes"]\n')
+                       f'{at_hub(hub, name, ports)}')
         self.uplink = self.run = self.samples = self.database = None
         self.events = 0
         self.before_cut = set()  # keys that were acknowledged before the building lost its power
@@ -50,12 +55,14 @@ class Building:
         self.run.end(number)
         self.run = None
 
-    def start_samples(self, seconds=36_000):
-        """A virtual building that moves, for run to hear."""
+    def start_samples(self, seconds=36_000, silent=(), silent_from_s=0):
+        """A virtual building that moves, for run to hear; channels that fall silent."""
         with open(f"{self.hub.root}/configs/scenario_table_two_story.toml") as file:
             scenario = file.read().replace("table_two_story.toml", "building.toml")
         with open(f"{self.folder}/scenario.toml", "w") as file:
             file.write(scenario)
+            for channel in silent:
+                file.write(f'[[sensor]]\nchannel = "{channel}"\nnoise_mps2_per_rthz = 1e-4\ndead_from_s = {silent_from_s}\n')
         self.samples = Process([self.hub.program, "simulate", f"{self.folder}/scenario.toml", "--lcm", "--seconds",
                                 str(seconds), "--quiet"], f"{self.folder}/simulate.log")
 

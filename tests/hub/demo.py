@@ -4,7 +4,6 @@ buildings with a real `run` and `uplink` each, one earthquake, one building that
 browser. Ends by itself with a table of what happened. Exit status: 0 all of it is seen, 1 not, 2 something is missing."""
 import argparse
 import asyncio
-import json
 import math
 import os
 import random
@@ -15,13 +14,14 @@ import sys
 import tempfile
 import threading
 import time
-import urllib.request
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.abspath(f"{HERE}/../..")
 sys.path.insert(0, HERE)
+import database_server  # noqa: E402
+from building import at_hub  # noqa: E402
 from hub import Hub, Process, free_ports  # noqa: E402
-from own_postgres import OwnPostgres, newest_bin  # noqa: E402
+from page import Page  # noqa: E402
 from proxy import join  # noqa: E402
 
 BUILDINGS = [("kobe-01", "Harbour tower", "Kobe", 34.682, 135.187), ("kobe-02", "City hall", "Kobe", 34.690, 135.195),
@@ -37,7 +37,7 @@ def missing():
     for command, package in (("nats-server", "nats-server"), ("openssl", "openssl")):
         if not shutil.which(command):
             return f"no {command} (Debian package {package})"
-    if not newest_bin():
+    if not database_server.is_there():
         return "no PostgreSQL (Debian package postgresql)"
     return ""
 
@@ -65,15 +65,12 @@ class Building:
         os.makedirs(f"{self.folder}/history")
         hub.enroll(name)
         (port,) = free_ports(1)
-        hubs = ", ".join(f'"tls://localhost:{one}"' for one in hub.client)
         with open(f"{ROOT}/configs/table_two_story.toml") as file:
             text = file.read().replace("hop_s = 0.01", "hop_s = 0.1")
         with open(f"{self.folder}/building.toml", "w") as file:
             file.write(f'{text}\n[lcm]\nurl = "udpm://239.255.76.67:{port}?ttl=0"\n[commands]\ndirectory = "."\n[history]\n'
                        f'directory = "history"\n[watch]\nlearn_s = 30\n[event_report]\ndirectory = "reports"\n'
-                       f'trigger_mps2 = 0.7\nquiet_s = 10\nyellow_drift_ratio = 0.02\nred_drift_ratio = 0.03\n[fleet]\nbuilding = "{name}"\nhubs = [{hubs}]\n'
-                       f'certificate = "{hub.certificates}/{name}.pem"\nkey = "{hub.certificates}/{name}.key"\n'
-                       f'ca = "{hub.certificates}/ca.pem"\naccept = ["acknowledge", "raw", "resend", "minutes"]\n')
+                       f'trigger_mps2 = 0.7\nquiet_s = 10\nyellow_drift_ratio = 0.02\nred_drift_ratio = 0.03\n{at_hub(hub, name)}')
         with open(f"{ROOT}/configs/scenario_table_two_story.toml") as file:
             text = file.read()
         begin, end = text.index("[motion]"), text.index("[sensors]")
@@ -94,31 +91,16 @@ class Building:
                                    str(self.speed), "--seconds", str(self.seconds), "--quiet"], f"{self.folder}/log")
 
 
-class Page:
-    def __init__(self, port, token):
-        self.port, self.token = port, token
-
-    def ask(self, path, method="GET"):
-        request = urllib.request.Request(f"http://127.0.0.1:{self.port}/{path}", method=method,
-                                         headers={"Authorization": f"Bearer {self.token}"})
-        try:
-            with urllib.request.urlopen(request, timeout=60) as answer:
-                return json.load(answer)
-        except (OSError, ValueError):
-            return None
-
-
 def say(text=""):
     print(text, flush=True)
 
 
-def inside(a):
+def inside(a, postgres):
     """In a network of its own: everything but the browser."""
     folder, program = a.inside, os.path.abspath(a.program)
     say("a hub of three servers, PostgreSQL, a worker, the page ...")
     hub = Hub(ROOT, program, folder)
     hub.start()
-    postgres = OwnPostgres(folder)
     hub.wait()
     urls = [argument for url in hub.urls() for argument in ("--hub", url)]
     for left in (4, 3, 2, 1, 0):  # a busy machine's servers may take longer than it waits
@@ -128,20 +110,17 @@ def inside(a):
     for name, title, place, north, east in BUILDINGS:
         subprocess.run([program, "fleet", "describe", name, "--database", postgres.where, "--title", title, "--place", place,
                         "--latitude", str(north), "--longitude", str(east)], stdout=subprocess.DEVNULL, check=True)
-    token = subprocess.run([program, "fleet", "person", "you", "--role", "operator", "--people", f"{folder}/people"],
-                           capture_output=True, text=True, check=True).stdout.strip()
-    (port,) = free_ports(1)
+    page = Page(hub, postgres)
+    token = page.person("you", "operator")
     Process([program, "fleet", "worker", *more, "--quiet"], f"{folder}/worker.log")
-    Process([program, "fleet", "serve", *more, "--people", f"{folder}/people", "--port", str(port), "--quiet"],
-            f"{folder}/serve.log")
+    page.start()
 
     async def forward():
         server = await asyncio.start_unix_server(
-            lambda r, w: join(r, w, asyncio.open_connection("127.0.0.1", port)), f"{folder}/page")
+            lambda r, w: join(r, w, asyncio.open_connection("127.0.0.1", page.port)), f"{folder}/page")
         await server.serve_forever()
 
     threading.Thread(target=lambda: asyncio.run(forward()), daemon=True).start()
-    page = Page(port, token)
     say("six buildings: framewatch run and framewatch uplink in each ...")
     buildings = [Building(hub, name, i, a.seconds, a.speed) for i, (name, *_) in enumerate(BUILDINGS)]
     for one in buildings:
@@ -153,10 +132,10 @@ def inside(a):
     say(f"\n  Open http://127.0.0.1:{a.port}/?token={token}\n")
     say(f"The ground moves weakly. After {QUAKE_S / a.speed:.0f} s there is an earthquake, and the hospital in Kobe loses 15 % of "
         f"one frame\n({PARAMETER}); nobody has told the hub. Time runs {a.speed:g} times as fast as a clock.")
-    return watch(a, page, begin, host_us)
+    return watch(a, lambda *words: page.ask(token, *words), begin, host_us)
 
 
-def watch(a, page, begin, host_us):
+def watch(a, ask, begin, host_us):
     seen, told, asked = {}, False, False
     quake_us = None
     while (now := (time.monotonic() - begin) * a.speed) < a.seconds + 12 * a.speed:
@@ -164,32 +143,32 @@ def watch(a, page, begin, host_us):
         if not told and now > QUAKE_S:
             told = True
             say(f"{now / a.speed:4.0f} s  earthquake")
-        for one in (page.ask("overview.json") or {}).get("buildings", []):
+        for one in (ask("overview.json") or {}).get("buildings", []):
             word = one["urgency"]
             if seen.get(one["name"], (0, "well"))[1] != word:
                 seen[one["name"]] = (now, word)
                 say(f"{now / a.speed:4.0f} s  {one['name']}: {word}{': ' + one['message'] if one['message'] else ''}")
         if told and quake_us is None and now > QUAKE_S + 30:
-            quakes = page.ask("earthquakes.json?days=2") or []
+            quakes = ask("earthquakes.json?days=2") or []
             if quakes:
                 quake_us = quakes[0]["time_us"]
                 say(f"{now / a.speed:4.0f} s  {quakes[0]['buildings']} buildings shook together; all are asked for their minutes")
-                page.ask(f"command?building=all&verb=minutes&from_us={quake_us - 600_000_000}&to_us="
+                ask(f"command?building=all&verb=minutes&from_us={quake_us - 600_000_000}&to_us="
                          f"{quake_us + 3_600_000_000}", "POST")
                 asked = True
     if not asked:
         say("no earthquake was found by the hub: the time of the scenario is taken")
         quake_us = int(host_us + QUAKE_S * 1e6)
-    return table(page, quake_us, seen)
+    return table(ask, quake_us, seen)
 
 
-def table(page, quake_us, seen):
+def table(ask, quake_us, seen):
     for _ in range(WAIT_S):  # a busy machine is behind its clock
-        result = page.ask(f"earthquake.json?time_us={quake_us}")
+        result = ask(f"earthquake.json?time_us={quake_us}")
         if result and all(one.get("compared") for one in result.get("buildings", [{}])):
             break
         time.sleep(1)
-    journal = page.ask("journal.json") or []
+    journal = ask("journal.json") or []
     if not result or "buildings" not in result:
         say("the page does not answer")
         return 1
@@ -276,12 +255,14 @@ def main():
     if not a.inside:
         return outside(a)
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(2))
+    postgres = database_server.Postgres()
     try:
-        return inside(a)
+        return inside(a, postgres)
     except KeyboardInterrupt:
         return 2
     finally:
         Process.end_all()
+        postgres.remove()
 
 
 sys.exit(main())

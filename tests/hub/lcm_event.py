@@ -3,6 +3,7 @@ import socket
 import struct
 
 MAGIC, GROUP = 0x4C433032, "239.255.76.67"
+FIRST_US = 1_700_000_000_000_000  # of events that have no other time
 
 
 def fingerprint(root, channel="FRAMEWATCH_EVENT"):
@@ -26,7 +27,7 @@ def encoded(print_, row):
 
 
 def event(number, time_us=None, kind="gap", message="it moves"):
-    return (kind, number, 1_700_000_000_000_000 + number if time_us is None else time_us, 1, 0, 0, "", 1.0, 0.1, "",
+    return (kind, number, FIRST_US + number if time_us is None else time_us, 1, 0, 0, "", 1.0, 0.1, "",
             message, "")
 
 

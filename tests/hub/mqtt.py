@@ -1,19 +1,10 @@
-#!/usr/bin/env python3
-"""mqtt.py PROGRAM DIR: building automation hears of the hub's buildings over MQTT, from the real nats-server, and can say
-nothing. Exit 1 when it is otherwise; 77, with the reason, where what it takes is missing."""
+"""Building automation hears of the hub's buildings over MQTT, from the real nats-server, and can say nothing."""
 import json
-import os
-import shutil
 import subprocess
-import sys
-import tempfile
 import time
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, HERE)
-from hub import Hub, Process, free_ports  # noqa: E402
-from nats_client import Client  # noqa: E402
-from own_postgres import OwnPostgres, newest_bin  # noqa: E402
+from hub import free_ports
+from nats_client import Client
 
 USER, PASSWORD = "bms", "a-password-of-this-test"
 
@@ -31,8 +22,8 @@ def newest_of(root, channel):
     raise RuntimeError(f"no {channel}")
 
 
-def with_mqtt(hub):
-    """The files of deploy/fleet, for one server and one user."""
+def configure(hub):
+    """The files of deploy/fleet, for the first server, before it begins, and one user; the port."""
     (port,) = free_ports(1)
     with open(f"{hub.root}/deploy/fleet/mqtt.conf") as file:
         text = file.read().replace("0.0.0.0:8883", f"127.0.0.1:{port}").replace("/etc/framewatch-hub/", f"{hub.certificates}/")
@@ -54,14 +45,9 @@ def mosquitto(hub, port, program, topic, *more, password=PASSWORD):
 
 
 def check(hub, port, postgres):
+    """A worker is at work. Problems, in words."""
     problems = []
-    urls = [argument for url in hub.urls() for argument in ("--hub", url)]
-    for left in (4, 3, 2, 1, 0):
-        if hub.fleet("setup", *urls, "--buildings", "10", good=(0, 2) if left else (0,)).returncode == 0:
-            break
     hub.enroll("kobe")
-    Process([hub.program, "fleet", "worker", *urls, "--dir", hub.certificates, "--database", postgres.where],
-            f"{hub.folder}/worker.log")
     for _ in range(15):  # an account's JetStream may begin after the server
         listener = subprocess.Popen(["mosquitto_sub", "-h", "localhost", "-p", str(port), "--cafile",
                                      f"{hub.certificates}/ca.pem", "-u", USER, "-P", PASSWORD, "-q", "1", "-v", "-t",
@@ -116,34 +102,3 @@ def event_key(event):
     size = int.from_bytes(event[40:44], "big")
     return f"kobe/event/{event[44:44 + size - 1].decode()}/{number}/{time_us}/{state}"
 
-
-def main():
-    program, folder = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
-    for command in ("nats-server", "openssl", "mosquitto_sub", "mosquitto_pub"):
-        if not shutil.which(command):
-            print(f"mqtt: skipped: no {command} (deploy/install-deps --with fleet)")
-            return 77
-    if not newest_bin() or not os.path.exists(f"{os.path.dirname(program)}/framewatch-fleet"):
-        print("mqtt: skipped: no PostgreSQL or framewatch-fleet (deploy/install-deps --with fleet)")
-        return 77
-    shutil.rmtree(folder, ignore_errors=True)
-    os.makedirs(folder)
-    problems = []
-    socket_folder = tempfile.mkdtemp(prefix="fw-mqtt-")  # a socket's name is short
-    try:
-        hub = Hub(os.path.abspath(f"{HERE}/../.."), program, folder)
-        port = with_mqtt(hub)
-        hub.start()
-        postgres = OwnPostgres(socket_folder)
-        hub.wait()
-        problems = check(hub, port, postgres)
-    finally:
-        Process.end_all()
-        shutil.rmtree(socket_folder, ignore_errors=True)
-    for problem in problems:
-        print(f"mqtt: {problem}", file=sys.stderr)
-    return 1 if problems else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -15,11 +15,12 @@ function openBuilding(main, name) {
   seen.channels = el('div', {className: 'list plain'});
   seen.events = el('div', {className: 'list plain cards'});
   seen.commands = el('div');
+  seen.stretches = el('div', {className: 'list plain cards'});
   seen.journal = el('div', {className: 'list plain cards'});
   main.replaceChildren(seen.head, seen.findings,
     wide(['Over time', el('span', {className: 'tools'}, seen.select, seen.ranges)], seen.box, seen.note),
     card('Newest values', seen.values), card('Sensors and process', seen.channels),
-    wide('Commands', seen.commands), wide('Journal', seen.journal), wide('Events', seen.events));
+    wide('Commands', seen.commands), wide('Raw samples', seen.stretches), wide('Journal', seen.journal), wide('Events', seen.events));
   drawCommands();
   let rounds = 0;
   return async () => {
@@ -51,11 +52,12 @@ function drawBuilding() {
   }
   drawValues(d);
   drawChannels(d);
+  drawStretches(d);
   drawEvents(d);
 }
 
 function drawFindings(d) {
-  const items = d.raised.map(r => el('li', {className: r.severity >= 2 && !r.known ? 'bad' : ''}, el('span', {}, `${r.message || r.kind}`), el('span', {className: 'soft'}, `${r.kind}, since ${when(r.since_us)}${r.known ? ', acknowledged here' : ''}`),
+  const items = d.raised.map(r => el('li', {className: r.severity >= 2 && !r.known ? 'bad' : ''}, el('span', {}, `${r.message || r.kind}`), el('span', {className: 'soft'}, `${r.kind}, since ${when(r.since_us)}${r.known ? ', acknowledged by ' + r.known_to : ''}`),
     me.commands && !r.known ? el('button', {onclick: () => command(d.name, {verb: 'acknowledge', id: r.id})}, 'Acknowledge') : null));
   seen.findings.replaceChildren(el('h2', {}, 'Findings'), items.length ? el('ul', {id: 'findings'}, items) : el('p', {className: 'soft'}, 'none is raised'));
 }
@@ -86,6 +88,12 @@ function drawChannels(d) {
   }
   const count = (title, n) => numbers(title, n === undefined ? '' : n.toLocaleString('en'));
   seen.channels.replaceChildren(el('dl', {className: 'facts'}, facts), d.channels.length ? table(['channel', '#newest', '#lost', '#rejected', '#stuck', '#clipped'], d.channels.map(c => el('tr', {}, el('td', {}, c.name), numbers('', c.newest_us ? when(c.newest_us) : 'none'), count('', c.lost), count('', c.rejected), count('', c.stuck), count('', c.clipped)))) : el('p', {className: 'soft'}, 'No heartbeat has come.'));
+}
+
+function drawStretches(d) {
+  const state = s => s.problem ? cell(null, `there is nothing: ${s.problem}`) : s.came < s.pieces ? cell(null, `${s.came} of ${s.pieces} pieces have come`)
+    : cell(null, el('a', {href: `raw.mseed?${new URLSearchParams({name: d.name, request: s.request})}`, download: `${d.name}-${s.file}`}, `${d.name}-${s.file}`), `, ${bytes(s.bytes)}`);
+  seen.stretches.replaceChildren(d.stretches.length ? table(['newest piece', 'request', 'miniSEED'], d.stretches.map(s => el('tr', {}, cell(null, when(s.newest_us)), cell(null, s.request), state(s)))) : el('p', {className: 'soft'}, 'None was fetched.'));
 }
 
 const kStates = ['cleared', 'raised', 'changed'];

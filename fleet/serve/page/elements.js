@@ -24,7 +24,7 @@ function table(titles, rows, className = '') {
 const kUrgencies = ['alarm', 'warning', 'silent', 'changed', 'known', 'well'];
 const kMeaning = {
   alarm: 'an alarm is raised that nobody acknowledged', warning: 'a warning is raised that nobody acknowledged', silent: 'no heartbeat for three minutes',
-  changed: 'something has changed, for information', known: 'what is raised was acknowledged here', well: 'nothing is raised, and it is heard',
+  changed: 'something has changed, for information', known: 'what is raised was acknowledged', well: 'nothing is raised, and it is heard',
 };
 function shape(urgency) {
   switch (urgency) {

@@ -129,6 +129,21 @@ TEST_F(Commands, ResendSendsWhatIsThereAgain) {
   EXPECT_EQ(kept_twice(), 3U);
 }
 
+// Within minutes a stream takes one Nats-Msg-Id once, and it is the database that lacks something.
+TEST_F(Commands, WhatIsSentAgainOnOrderIsNoRepetitionToTheHub) {
+  secret_ = "mine";
+  for (int i = 0; i < 10; ++i) add_event(i, test::kStart_us + i * test::kHour_us);
+  begin();
+  run(5);
+  EXPECT_EQ(hub_.count("a/event/"), 10U);
+  EXPECT_EQ(
+      answer(command("resend", "r1", range(test::kStart_us, test::kStart_us + 3 * test::kHour_us))),
+      kDone);
+  run(5);
+  EXPECT_EQ(hub_.count("a/event/"), 13U);
+  EXPECT_EQ(kept_twice(), 0U);
+}
+
 TEST_F(Commands, MinutesThatAreAskedForAreSentTheFutureOnesToo) {
   add_hour(test::kStart_us);
   begin();

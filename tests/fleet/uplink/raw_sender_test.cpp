@@ -100,14 +100,17 @@ TEST_F(Raw, AFullHubKeepsThePiecesInTheBuilding) {
   EXPECT_EQ(hub_.count("a/raw/r1/"), 10U);
 }
 
-TEST_F(Raw, WhatIsTooMuchOrCannotBeMadeIsGivenUp) {
+TEST_F(Raw, OfWhatIsTooMuchOrCannotBeMadeItSaysWhy) {
   begin_raw();
   ask("r1", R"(,"bytes":1000)");
   run(5);
-  EXPECT_EQ(hub_.count("a/raw/"), 0U);
+  EXPECT_EQ(hub_.count("a/raw/r1/"), 1U);
+  EXPECT_EQ(hub_.published.back().header(header::kPieces), "0");
+  EXPECT_NE(received("r1").find("more than the 1000 that were allowed"), std::string::npos);
   begin_raw("there are no raw samples in that time");
   ask("r2");
   run(5);
+  EXPECT_EQ(received("r2"), "there are no raw samples in that time");
   EXPECT_EQ(uplink_->status(now()).pieces_waiting, 0);
   begin_raw();
   ask("r3");

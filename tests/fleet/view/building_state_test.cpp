@@ -40,9 +40,9 @@ TEST(BuildingState, TheMostUrgentSpeaks) {
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::alarm);
   EXPECT_EQ(judged(state, kNow_us).message, "event 2");
   EXPECT_EQ(judged(state, kNow_us).since_us, 102);
-  state.known = {2};
+  state.known = {{2, "alice"}};
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::warning);
-  state.known = {2, 3};
+  state.known = {{2, "alice"}, {3, "bob"}};
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::changed);
   state.raised.erase(state.raised.begin());
   EXPECT_EQ(judged(state, kNow_us).urgency, Urgency::known);

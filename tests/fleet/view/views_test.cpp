@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/service_t.hpp>
 #include <framewatch/watch_t.hpp>
@@ -16,6 +17,7 @@
 #include "fleet/view/earthquake_view.h"
 #include "fleet/view/overview.h"
 #include "fleet/view/series.h"
+#include "fleet/view/stretch.h"
 #include "tests/fleet/support/own_postgres.h"
 
 namespace framewatch::fleet {
@@ -56,6 +58,18 @@ ReceivedNewest heartbeat(const std::string& building, const std::vector<event_t>
     s.event_message.push_back(e.message);
   }
   return {building, "service", "service_t", drivers::encoded(s)};
+}
+
+ReceivedNewest acknowledged(const std::string& building, std::int64_t id, const std::string& who) {
+  acknowledged_t a{};
+  a.events = 1;
+  a.id = {id};
+  a.kind = {"gap"};
+  a.place = {"kx_1_y1"};
+  a.since_us = {kQuake_us};
+  a.who = {who};
+  a.comment = {""};
+  return {building, "acknowledged", "acknowledged_t", drivers::encoded(a)};
 }
 
 parameter_table_t parameters() {
@@ -107,9 +121,13 @@ TEST_F(Views, TheOverviewIsHeartbeatsAndWhatCameAfterThem) {
   event_t over = event(5, "gap", 1);
   over.state = 0;
   FleetBatch heartbeats, events;
-  heartbeats.newest = {heartbeat("well"), heartbeat("damaged", {event(5, "gap", 1)}),
-                       heartbeat("silent"), heartbeat("gone"),
-                       heartbeat("known", {event(8, "gap", 2)})};
+  heartbeats.newest = {heartbeat("well"),
+                       heartbeat("damaged", {event(5, "gap", 1)}),
+                       heartbeat("silent"),
+                       heartbeat("gone"),
+                       heartbeat("known", {event(8, "gap", 2)}),
+                       heartbeat("told", {event(7, "gap", 2)}),
+                       acknowledged("told", 7, "bob")};
   events.events = {{"damaged", event(9, "stiffness_change", 2)}, {"damaged", over}};
   store(heartbeats);
   store(events);
@@ -126,12 +144,15 @@ TEST_F(Views, TheOverviewIsHeartbeatsAndWhatCameAfterThem) {
   const Overview overview = read_overview(look_);
   ASSERT_EQ(overview.problem, "");
   const json d = json::parse(overview_json(overview));
-  ASSERT_EQ(d["buildings"].size(), 4u);
+  ASSERT_EQ(d["buildings"].size(), 5u);
   EXPECT_EQ(d["buildings"][0]["name"], "damaged");
   EXPECT_EQ(of(d["buildings"], "damaged")["urgency"], "alarm");
   EXPECT_EQ(of(d["buildings"], "damaged")["raised"], 1);
   EXPECT_EQ(of(d["buildings"], "silent")["urgency"], "silent");
   EXPECT_EQ(of(d["buildings"], "known")["urgency"], "known");
+  EXPECT_EQ(of(d["buildings"], "told")["urgency"], "known");  // acknowledged in the building
+  EXPECT_EQ(json::parse(building_json(look_, "told"))["raised"][0]["known_to"], "bob");
+  EXPECT_EQ(json::parse(building_json(look_, "known"))["raised"][0]["known_to"], "alice");
   EXPECT_EQ(of(d["buildings"], "well")["latitude"], 34.5);
   EXPECT_EQ(d["counts"]["well"], 1);
 
@@ -141,6 +162,30 @@ TEST_F(Views, TheOverviewIsHeartbeatsAndWhatCameAfterThem) {
   EXPECT_EQ(one["process"]["version"], "1.0");
   EXPECT_EQ(one["events"].size(), 2u);
   EXPECT_EQ(json::parse(building_json(look_, "nobody"))["problem"], "no such building");
+}
+
+TEST_F(Views, RawSamplesAreWholeOrItIsSaidWhyNot) {
+  FleetBatch batch;
+  batch.newest = {heartbeat("tower")};
+  batch.pieces = {{"tower", "whole", "whole.mseed", 1, 2, {0xff, 4}},
+                  {"tower", "whole", "whole.mseed", 0, 2, {1, 2}},
+                  {"tower", "part", "part.mseed", 1, 2, {3, 4}},
+                  {"tower", "none", "none.mseed", 0, 0, {'n', 'o'}}};
+  store(batch);
+  std::string why;
+  const auto whole = read_stretch(look_, "tower", "whole", why);
+  ASSERT_TRUE(whole) << why;
+  EXPECT_EQ(whole->miniseed, (Bytes{1, 2, 0xff, 4}));
+  EXPECT_EQ(whole->file, "whole.mseed");
+  EXPECT_FALSE(read_stretch(look_, "tower", "part", why));
+  EXPECT_EQ(why, "1 of 2 pieces have come");
+  EXPECT_FALSE(read_stretch(look_, "tower", "none", why));
+  EXPECT_EQ(why, "there is nothing: no");
+  EXPECT_FALSE(read_stretch(look_, "tower", "other", why));
+  EXPECT_EQ(why, "nothing of it has come");
+  const json all = json::parse(building_json(look_, "tower"))["stretches"];
+  ASSERT_EQ(all.size(), 3u);
+  for (const json& one : all) EXPECT_EQ(one["problem"], one["request"] == "none" ? "no" : "");
 }
 
 TEST_F(Views, AParameterOverTime) {

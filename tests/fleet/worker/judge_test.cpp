@@ -53,6 +53,14 @@ TEST(Judge, TakesAPieceOfRawSamples) {
   const ReceivedPiece taken = judged(piece).pieces.at(0);
   EXPECT_EQ(taken.request, "r-17");
   EXPECT_EQ(taken.content, (Bytes{1, 2, 3}));
+  piece.headers[header::kPieces] = "0";
+  EXPECT_EQ(reason(piece), "its number is none of a piece");
+  Message none =
+      packed(up_subject("kobe", "raw.r-18"), raw_key("kobe", "r-18", 0), "text", {'n', 'o'}, "");
+  none.headers[header::kPiece] = none.headers[header::kPieces] = "0";
+  EXPECT_EQ(judged(none).pieces.at(0).pieces, 0);
+  none.bytes.assign(2000, 'n');
+  EXPECT_EQ(reason(none), "it says at length that there is nothing");
   for (const auto& [number, of] : {std::pair("3", "3"), std::pair("-1", "3"), std::pair("x", "3"),
                                    std::pair("2", ""), std::pair("2", "99999999999")}) {
     piece.headers[header::kPiece] = number;

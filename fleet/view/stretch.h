@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "fleet/message/message.h"
+#include "fleet/store/database.h"
+
+namespace framewatch::fleet {
+
+/// Raw samples that a building sent on request.
+struct Stretch {
+  std::string file;  ///< name that says the format
+  Bytes miniseed;
+};
+
+/// Of a request to a building, when all pieces have come; else empty, with the reason: none has,
+/// some have not, or why the building has nothing to send.
+std::optional<Stretch> read_stretch(Database& database, const std::string& building,
+                                    const std::string& request, std::string& why);
+
+}  // namespace framewatch::fleet
