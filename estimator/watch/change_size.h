@@ -11,8 +11,8 @@ class ChangeSize {
   static constexpr double kFar = 5;
 
   /// Deviation of a window that overlaps none before, relative to the baseline, and its standard
-  /// error > 0.
-  void push(double ratio, double std_error);
+  /// error > 0. common_error >= 0: of what all windows have in common, which no mean makes smaller.
+  void push(double ratio, double std_error, double common_error = 0);
 
   bool known() const { return mean_.weight > 0; }
   /// Only while known(); the standard error is without that of the baseline.
@@ -21,13 +21,13 @@ class ChangeSize {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a.finite(mean_.weight, mean_.sum, aside_.weight, aside_.sum);
+    for (Mean* m : {&mean_, &aside_}) a.finite(m->weight, m->sum, m->common);
   }
 
  private:
   struct Mean {
-    double weight = 0, sum = 0;
-    void add(double ratio, double std_error);
+    double weight = 0, sum = 0, common = 0;
+    void add(double ratio, double std_error, double common_error);
   };
   Mean mean_, aside_;  ///< aside_: a window that was far off
 };

@@ -27,21 +27,6 @@ constexpr double kMostBias_k = 0.1, kMostBias_g = 0.25;
 /// The same in long windows, whose baseline has the same bias.
 constexpr double kMostBiasQuiet = 0.4;
 
-/// The value as it would be under the conditions of the baseline, which make `ratio` of it, or
-/// anything from `below` under that to `above` over it, relative: what the conditions may explain
-/// is no deviation, because it is the same in every window.
-void correct(WindowEstimate& e, std::size_t p, double baseline, double ratio, double below,
-             double above) {
-  if (!std::isfinite(below) || !std::isfinite(above) || !(ratio > 0)) {
-    e.reason[p] = Observability::quiet;
-    return;
-  }
-  const double off = e.value[p] / ratio - baseline;
-  e.value[p] = baseline + (off > 0 ? std::max(off - above * baseline, 0.0)
-                                   : std::min(off + below * baseline, 0.0));
-  e.std_error[p] /= ratio;
-}
-
 DependenceOptions quiet_options(const WatchOptions& o) {
   return {kSeconds * o.quiet_learn_hours, o.temperature, o.amplitude};
 }
@@ -95,6 +80,7 @@ Watch::Watch(const ParameterTable& table, const WatchOptions& options,
       quiet_baseline_(watched_.size()),
       dependence_(watched_.size()),
       corrected_(watched_.size()),
+      explained_(watched_.size()),
       states_(watched_.size()) {
   for (int p = 0; p < table.size(); ++p)
     if (table[p].kind == ParameterKind::bending_stiffness)
@@ -125,6 +111,7 @@ const std::vector<Alarm>& Watch::push(const WindowEstimate& estimate) {
   const auto window = static_cast<std::size_t>(estimate.window);
   if (window > windows_s_.size()) return news_;
   const bool quiet = window == windows_s_.size();
+  explained_.assign(watched_.size(), {});
   const WindowEstimate& judged = quiet ? corrected_quiet(estimate) : corrected(estimate);
   detectors_[window].push(judged);
   for (std::size_t p = 0; p < states_.size(); ++p) measure(p, judged);
@@ -185,6 +172,23 @@ Dependence::Expected Watch::expected(std::size_t p, double degc) const {
   return {1, per_degc * off};
 }
 
+/// The value as it would be under the conditions of the baseline, which make intact.ratio of it, or
+/// anything between low and high: what the conditions may explain is no deviation, because it is
+/// the same in every window. What is found nevertheless is measured without that.
+Watch::Explained Watch::correct(WindowEstimate& e, std::size_t p, double baseline,
+                                const Intact& intact) const {
+  const double below = 1 - intact.low / intact.ratio, above = intact.high / intact.ratio - 1;
+  if (!std::isfinite(below) || !std::isfinite(above) || !(intact.ratio > 0)) {
+    e.reason[p] = Observability::quiet;
+    return {};
+  }
+  const double off = e.value[p] / intact.ratio / baseline - 1;
+  const double left = off > 0 ? std::max(off - above, 0.0) : std::min(off + below, 0.0);
+  e.value[p] = baseline * (1 + left);
+  e.std_error[p] /= intact.ratio;
+  return {off - left, (off > 0 ? above : below) / kExpectedErrors};
+}
+
 bool Watch::is_shorter(const WindowEstimate& e) const {
   return windows_s_[static_cast<std::size_t>(e.window)] < windows_s_[0];
 }
@@ -237,9 +241,7 @@ const WindowEstimate& Watch::corrected(const WindowEstimate& e) {
   if (e.window == 0) remember_amplitudes(e);
   for (std::size_t p = 0; p < watched_.size(); ++p) {
     if (!baseline_.knows(p) || !watched(p) || e.reason[p] != Observability::observable) continue;
-    const Intact now = intact(p, e, degc);
-    correct(corrected_, p, baseline_.value[p], now.ratio, 1 - now.low / now.ratio,
-            now.high / now.ratio - 1);
+    explained_[p] = correct(corrected_, p, baseline_.value[p], intact(p, e, degc));
   }
   return corrected_;
 }
@@ -252,8 +254,9 @@ const WindowEstimate& Watch::corrected_quiet(const WindowEstimate& e) {
     const Dependence::Expected now =
         dependence_.expected(p, {degc, DependenceLearner::log_amplitude(e, p)});
     const double explained = kExpectedErrors * now.std_error;
-    correct(corrected_, p, quiet_baseline_.value[p], now.ratio, explained + recovering(p, e.end),
-            explained);
+    explained_[p] = correct(corrected_, p, quiet_baseline_.value[p],
+                            {now.ratio, now.ratio * (1 - explained - recovering(p, e.end)),
+                             now.ratio * (1 + explained)});
   }
   return corrected_;
 }
@@ -283,15 +286,24 @@ void Watch::measure(std::size_t p, const WindowEstimate& e) {
   const double baseline =
       window == windows_s_.size() ? quiet_baseline_.value[p] : baseline_.value[p];
   const double error = e.std_error[p] / baseline;
-  state.size.push(e.value[p] / baseline - 1,
-                  std::max(error, detectors_[window].usual_error(static_cast<int>(p))));
+  state.size.push(e.value[p] / baseline - 1 + explained_[p].off,
+                  std::max(error, detectors_[window].usual_error(static_cast<int>(p))),
+                  explained_[p].std_error);
+}
+
+Change Watch::found_by(std::size_t detector, int parameter) const {
+  Change out = detectors_[detector].change(parameter);
+  const Explained& explained = explained_[static_cast<std::size_t>(parameter)];
+  out.ratio += explained.off;
+  out.std_error = std::hypot(out.std_error, explained.std_error);
+  return out;
 }
 
 /// From the first windows that saw it until one lies wholly behind it.
 Change Watch::size_of(int parameter) const {
   const auto p = static_cast<std::size_t>(parameter);
   const State& state = states_[p];
-  if (!state.size.known()) return detectors_[state.detector].change(parameter);
+  if (!state.size.known()) return found_by(state.detector, parameter);
   const Baseline& b = state.detector == windows_s_.size() ? quiet_baseline_ : baseline_;
   return {state.size.ratio(), std::hypot(state.size.std_error(), b.std_error[p] / b.value[p]),
           state.reported.since};
@@ -303,7 +315,7 @@ void Watch::report(int parameter, const WindowEstimate& estimate) {
   const bool changed = detectors_[window].changed(parameter);
   if (state.id == 0) {
     if (!changed) return;
-    const Change found = detectors_[window].change(parameter);
+    const Change found = found_by(window, parameter);
     // The change lies within the first window that shows it.
     state = {++last_id_, window, found, {}, found.since + (estimate.end - estimate.start)};
     news_.push_back({state.id, AlarmState::raised, parameter, state.reported, estimate.end});

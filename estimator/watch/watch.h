@@ -140,6 +140,13 @@ class Watch {
     double ratio;      ///< most likely
     double low, high;  ///< what it may be
   };
+  /// What was taken off a deviation because the conditions may explain it, and a standard error of
+  /// that, relative to the baseline.
+  struct Explained {
+    double off = 0, std_error = 0;
+  };
+  Explained correct(WindowEstimate& estimate, std::size_t parameter, double baseline,
+                    const Intact& intact) const;
   bool is_shorter(const WindowEstimate& estimate) const;  ///< than the main window
   Intact intact(std::size_t parameter, const WindowEstimate& estimate, double degc) const;
   /// Whether anything looks at this window's values.
@@ -153,6 +160,7 @@ class Watch {
   /// The window that sizes of the changes a detector has found are measured in.
   std::size_t sizing_window(std::size_t detector) const;
   void measure(std::size_t parameter, const WindowEstimate& corrected);
+  Change found_by(std::size_t detector, int parameter) const;
   Change size_of(int parameter) const;
   void report(int parameter, const WindowEstimate& estimate);
 
@@ -173,6 +181,7 @@ class Watch {
   Dependence dependence_;
   std::vector<ChangeDetector> detectors_;  ///< by window, the long one last
   WindowEstimate corrected_;
+  std::vector<Explained> explained_;  ///< in the newest window
   std::vector<State> states_;
   std::vector<Alarm> news_;
   std::int64_t last_id_ = 0;

@@ -24,6 +24,17 @@ TEST(ChangeSize, IsTheWeightedMeanAndSharpens) {
   EXPECT_NEAR(size.std_error(), 0.01 / std::sqrt(1.25), 1e-12);
 }
 
+TEST(ChangeSize, WhatWindowsHaveInCommonStays) {
+  ChangeSize size;
+  for (int i = 0; i < 100; ++i) size.push(-0.1, kError, 0.05);
+  EXPECT_NEAR(size.ratio(), -0.1, 1e-9);
+  EXPECT_GT(size.std_error(), 0.05);
+  EXPECT_LT(size.std_error(), 0.051);
+  for (int i = 0; i < 100; ++i) size.push(-0.15, kError, 0.001);
+  EXPECT_NEAR(size.ratio(), -0.15, 0.003);  // who knows better counts more
+  EXPECT_LT(size.std_error(), 0.005);
+}
+
 TEST(ChangeSize, LeavesOutOneWildWindowAndFollowsTwo) {
   ChangeSize size;
   for (int i = 0; i < 20; ++i) size.push(-0.1, kError);
