@@ -1,8 +1,10 @@
 #include "estimator/diagnose/model/plant.h"
 
-#include "estimator/structure/natural_frequencies.h"
-
+#include <algorithm>
 #include <utility>
+
+#include "estimator/diagnose/model/partial_plant.h"
+#include "estimator/structure/natural_frequencies.h"
 
 namespace framewatch::estimator {
 
@@ -84,9 +86,18 @@ Plant with_force_axis(const Plant& plant, const SensorAxis& axis) {
 }
 
 std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
-                                const VectorXd& design, double rate_hz) {
+                                const VectorXd& design, double rate_hz,
+                                const BendingStiffness& bending) {
   const ParameterTable table(structure);
   const double highest_hz = natural_frequencies_hz(structure, table, design).back();
+  const bool at_places =
+      std::any_of(axes.begin(), axes.end(), [](const SensorAxis& a) { return a.plan.has_value(); });
+  const auto partial = [&] {
+    auto out = partial_plant(structure, axes, design, bending, rate_hz);
+    if (out) out->highest_hz = highest_hz;
+    return out;
+  };
+  if (at_places || has_force(axes) || bending.any()) return partial();
   Structure flexible = structure;
   flexible.floor = FloorModel::flexible;
   const ParameterTable all(flexible);
@@ -100,7 +111,7 @@ std::optional<Plant> make_plant(const Structure& structure, const std::vector<Se
     }
   }
   auto building = measured_building(structure, table, axes, rate_hz);
-  if (!building) return std::nullopt;
+  if (!building) return partial();
   Plant out(structure, axes, design, std::move(*building));
   out.highest_hz = highest_hz;
   return out;
