@@ -104,8 +104,9 @@ void warn_about_bus_load(CheckReport& report) {
 
 void warn_about_force(CheckReport& report) {
   const estimator::PipelineConfig& c = report.config.pipeline;
-  const bool rests = std::none_of(c.axes.begin(), c.axes.end(),
-                                  [](const estimator::SensorAxis& a) { return a.story == 0; });
+  const bool rests = std::none_of(c.axes.begin(), c.axes.end(), [](const estimator::SensorAxis& a) {
+    return a.story == 0 && a.horizontal();
+  });
   if (rests)
     report.warnings.push_back(
         "no base channel: the base is taken to rest while a force drives the building");

@@ -98,7 +98,7 @@ StoryResponse::At StoryResponse::base(Direction direction) const {
   At sum{0, 0};
   double count = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (axes_[a].story == 0 && axes_[a].direction == direction) {
+    if (axes_[a].story == 0 && axes_[a].horizontal() && axes_[a].direction == direction) {
       sum.accel_mps2 += motion_accel_[a];
       sum.moved_m += moved_[a];
       ++count;
@@ -163,7 +163,7 @@ double largest_drift_ratio(const PeakResponse& peak, const Structure& structure)
 double peak_accel_mps2(const PeakResponse& peak, const std::vector<SensorAxis>& axes, int level) {
   double most = kNaN;
   for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story == level && !axes[a].is_force) raise_peak(most, peak.accel_mps2[a]);
+    if (axes[a].story == level && axes[a].horizontal()) raise_peak(most, peak.accel_mps2[a]);
   return most;
 }
 

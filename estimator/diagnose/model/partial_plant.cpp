@@ -1,5 +1,6 @@
 #include "estimator/diagnose/model/partial_plant.h"
 
+#include <array>
 #include <cstdint>
 #include <utility>
 
@@ -110,6 +111,7 @@ std::optional<Plant> partial_plant(const Structure& s, const std::vector<SensorA
   const ReadMotion seen = read_motion(s, axes, constraint);
   const FloorCoordinates base = base_coordinates(s, axes, all);
   const MatrixXd base_frames = base.frames * base.from_axes;
+  const std::array<Eigen::RowVectorXd, 2> rocking = base_rotations(axes, all);
   const auto count = static_cast<Index>(axes.size());
 
   MeasuredBuilding building;
@@ -121,8 +123,11 @@ std::optional<Plant> partial_plant(const Structure& s, const std::vector<SensorA
   MatrixXd ground = MatrixXd::Zero(table.elements(), motion.cols());
   for (const Element& e : estimator::elements(s, table)) {
     for (const auto& [dof, coefficient] : e.b) vectors(dof, e.stiffness) += coefficient;
-    if (e.frame >= 0 && e.story == 1)
-      ground.row(e.stiffness).head(count) = base_frames.row(e.frame);
+    if (e.frame < 0) continue;
+    auto moved = ground.row(e.stiffness).head(count);
+    if (e.story == 1) moved = base_frames.row(e.frame);
+    const Eigen::RowVectorXd& turned = rocking[s.direction(e.frame) == Direction::x ? 0 : 1];
+    if (turned.size() > 0) moved += s.story_height[static_cast<std::size_t>(e.story - 1)] * turned;
   }
   building.act = constraint.transpose() * vectors;
   building.sense = building.act.transpose() * motion - ground;
