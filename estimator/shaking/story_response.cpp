@@ -153,6 +153,20 @@ PeakDrift peak_drift(const PeakResponse& peak, const Structure& structure, int s
   return out;
 }
 
+bool drift_is_measured(const PipelineConfig& c, int story) {
+  const auto has = [&](int floor, Direction along) {
+    return floor == 0 || std::any_of(c.axes.begin(), c.axes.end(), [&](const SensorAxis& a) {
+             const Direction own = a.frame >= 0 ? c.structure.direction(a.frame) : a.direction;
+             return a.horizontal() && !a.check && a.story == floor && own == along;
+           });
+  };
+  for (const Direction along : {Direction::x, Direction::y}) {
+    if ((along == Direction::x ? c.structure.n() : c.structure.m()) == 0) continue;
+    if (!has(story, along) || !has(story - 1, along)) return false;
+  }
+  return true;
+}
+
 double largest_drift_ratio(const PeakResponse& peak, const Structure& structure) {
   double most = 0;
   for (int story = 1; story <= structure.stories; ++story)
