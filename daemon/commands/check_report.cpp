@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <cstdlib>
+#include <numeric>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -121,8 +121,8 @@ void warn_about_force(CheckReport& report) {
 
 /// Tall or slender frames lengthen and shorten their columns, which makes them bend as a whole.
 void warn_about_bending(CheckReport& report) {
-  constexpr int kTall = 10;           // stories
-  constexpr double kSlender = 3;      // height over width
+  constexpr int kTall = 10;       // stories
+  constexpr double kSlender = 3;  // height over width
   const estimator::PipelineConfig& c = report.config.pipeline;
   const estimator::Structure& s = c.structure;
   const double height = std::accumulate(s.story_height.begin(), s.story_height.end(), 0.0);
@@ -133,7 +133,8 @@ void warn_about_bending(CheckReport& report) {
     const bool slender = width > 0 && height > kSlender * width;
     if (s.stories < kTall && !slender) continue;
     report.warnings.push_back(fmt::format(
-        "frames parallel to {0} of {1} stories, {2:.3g} m high{3}: such frames bend as a whole, and "
+        "frames parallel to {0} of {1} stories, {2:.3g} m high{3}: such frames bend as a whole, "
+        "and "
         "a model without it finds upper stories too soft; give kr{0}_nmprad in [structure.design], "
         "or let framewatch refine say of the first strong record whether it is needed",
         x ? "x" : "y", s.stories, height,

@@ -10,6 +10,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/base/progress.h"
+#include "daemon/commands/lost_headers.h"
 #include "daemon/config/config.h"
 #include "daemon/config/header_differences.h"
 #include "daemon/estimates/estimates_csv.h"
@@ -228,21 +229,6 @@ void report(const Record& record) {
   for (const std::string& note : record.notes) log(LogLevel::notice, note);
 }
 
-/// What the files' headers say stays behind: neither a table nor a log of samples has a place for
-/// it, and a log none for names.
-void tell_lost_headers(const Record& record, const std::string& out) {
-  std::vector<std::string> described;
-  for (std::size_t c = 0; c < record.headers.size(); ++c)
-    if (record.headers[c] != drivers::AxisHeader{}) described.push_back(record.names[c]);
-  if (described.empty()) return;
-  log(LogLevel::notice,
-      fmt::format("{} does not keep what the headers say of {}: {}direction, place and unit; "
-                  "framewatch init --record makes a configuration of the same files, and convert "
-                  "--config holds them against one",
-                  out, list(described),
-                  is_csv(out) ? "" : "name (nodes are numbered in the order of the files), "));
-}
-
 /// The paper's removal of noise, P1 (22)-(27), on every channel.
 void denoise(Record& record, Problems& problems) {
   const estimator::SvdDenoising denoising;
@@ -318,7 +304,9 @@ void convert_records(const ConvertArguments& a, ProgressLine& progress, Problems
   auto record = read_merged(a, config, devices, problems);
   if (!record) return;
   auto where = numbered(*record, devices, a.channel);
-  if (!config) tell_lost_headers(*record, a.out);
+  if (!config)
+    if (const std::string lost = lost_headers(*record, a.out, is_csv(a.out)); !lost.empty())
+      log(LogLevel::notice, lost);
   if (config) {
     for (const std::string& difference : header_differences(*config, *record))
       log(LogLevel::warning, difference);

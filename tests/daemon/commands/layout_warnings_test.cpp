@@ -68,9 +68,10 @@ TEST(LayoutWarnings, TallOrSlenderFramesThatDoNotBend) {
   // Nine stories of 35 m in all: by their shape, along x alone of which the width is known.
   const std::string lower = test::replaced(
       test::replaced(building(level(0) + level(9)), "stories = 10", "stories = 9"), "20.0", "8.0");
-  const CheckReport r = make_check_report(
-      test::good(test::replaced(test::replaced(lower, "x_m = 20", "x_m = 8"), "x_m = 20", "x_m = 8")),
-      0);
+  const CheckReport r =
+      make_check_report(test::good(test::replaced(test::replaced(lower, "x_m = 20", "x_m = 8"),
+                                                  "x_m = 20", "x_m = 8")),
+                        0);
   EXPECT_TRUE(warns(r, "frames parallel to x of 9 stories, 31.5 m high and 8 m wide")) << all_of(r);
   EXPECT_FALSE(warns(r, "frames parallel to y of"));
 }
