@@ -22,7 +22,9 @@ Json channels(const Config& config) {
     const AxisSource& source = config.sources[i];
     Json channel{{"name", axis.name},
                  {"story", axis.story},
-                 {"direction", axis.direction == estimator::Direction::x ? "x" : "y"}};
+                 {"direction", axis.vertical                               ? "z"
+                               : axis.direction == estimator::Direction::x ? "x"
+                                                                           : "y"}};
     if (axis.frame >= 0) channel["frame"] = config.pipeline.structure.frame_name(axis.frame);
     if (axis.plan)
       channel["plan"] = {

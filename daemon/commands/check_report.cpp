@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numeric>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -104,8 +105,9 @@ void warn_about_bus_load(CheckReport& report) {
 
 void warn_about_force(CheckReport& report) {
   const estimator::PipelineConfig& c = report.config.pipeline;
-  const bool rests = std::none_of(c.axes.begin(), c.axes.end(),
-                                  [](const estimator::SensorAxis& a) { return a.story == 0; });
+  const bool rests = std::none_of(c.axes.begin(), c.axes.end(), [](const estimator::SensorAxis& a) {
+    return a.story == 0 && a.horizontal();
+  });
   if (rests)
     report.warnings.push_back(
         "no base channel: the base is taken to rest while a force drives the building");
@@ -115,6 +117,29 @@ void warn_about_force(CheckReport& report) {
   report.warnings.push_back(
       "how well a test with a force shows its parameters is not predicted: the standard errors of "
       "its windows say it");
+}
+
+/// Tall or slender frames lengthen and shorten their columns, which makes them bend as a whole.
+void warn_about_bending(CheckReport& report) {
+  constexpr int kTall = 10;       // stories
+  constexpr double kSlender = 3;  // height over width
+  const estimator::PipelineConfig& c = report.config.pipeline;
+  const estimator::Structure& s = c.structure;
+  const double height = std::accumulate(s.story_height.begin(), s.story_height.end(), 0.0);
+  for (const bool x : {true, false}) {
+    if ((x ? s.n() : s.m()) == 0 || c.bending_nmprad[x ? 0 : 1] > 0) continue;
+    const std::vector<double>& spans = x ? s.span_x : s.span_y;
+    const double width = std::accumulate(spans.begin(), spans.end(), 0.0);
+    const bool slender = width > 0 && height > kSlender * width;
+    if (s.stories < kTall && !slender) continue;
+    report.warnings.push_back(fmt::format(
+        "frames parallel to {0} of {1} stories, {2:.3g} m high{3}: such frames bend as a whole, "
+        "and "
+        "a model without it finds upper stories too soft; give kr{0}_nmprad in [structure.design], "
+        "or let framewatch refine say of the first strong record whether it is needed",
+        x ? "x" : "y", s.stories, height,
+        width > 0 ? fmt::format(" and {:.3g} m wide", width) : std::string()));
+  }
 }
 
 }  // namespace
@@ -138,6 +163,7 @@ CheckReport make_check_report(const Config& config, int advise) {
   }
   for (const ConfigProblem& doubt : config.doubts)
     report.warnings.push_back(fmt::format("{}: {}", doubt.where, doubt.message));
+  warn_about_bending(report);
   warn_about_rounding(report);
   warn_about_bus_load(report);
   const bool small = c.structure.degrees_of_freedom() <= kMaxDegreesOfFreedom;

@@ -53,7 +53,10 @@ std::string channel_text(const estimator::Structure& s, const estimator::SensorA
                                : fmt::format("LCM {}, node {}, axis {}", source.lcm_channel,
                                              source.sensor_node, "xyz"[source.axis]);
   return fmt::format("  {:<16} {}{}, along {}; {}\n", axis.name, place, frame,
-                     axis.direction == estimator::Direction::x ? "x" : "y", from);
+                     axis.vertical                               ? "z"
+                     : axis.direction == estimator::Direction::x ? "x"
+                                                                 : "y",
+                     from);
 }
 
 std::string identifiable_text(const CheckReport& r) {

@@ -10,6 +10,7 @@
 
 #include "daemon/base/log.h"
 #include "daemon/base/progress.h"
+#include "daemon/commands/lost_headers.h"
 #include "daemon/config/config.h"
 #include "daemon/config/header_differences.h"
 #include "daemon/estimates/estimates_csv.h"
@@ -303,6 +304,9 @@ void convert_records(const ConvertArguments& a, ProgressLine& progress, Problems
   auto record = read_merged(a, config, devices, problems);
   if (!record) return;
   auto where = numbered(*record, devices, a.channel);
+  if (!config)
+    if (const std::string lost = lost_headers(*record, a.out, is_csv(a.out)); !lost.empty())
+      log(LogLevel::notice, lost);
   if (config) {
     for (const std::string& difference : header_differences(*config, *record))
       log(LogLevel::warning, difference);

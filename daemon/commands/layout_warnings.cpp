@@ -99,7 +99,7 @@ void contradictions(const Config& config, std::vector<std::string>& out) {
   for (std::size_t a = 0; a < c.axes.size(); ++a)
     for (std::size_t b = a + 1; b < c.axes.size(); ++b) {
       const estimator::SensorAxis &one = c.axes[a], &two = c.axes[b];
-      if (one.story != two.story ||
+      if (one.story != two.story || one.vertical || two.vertical ||
           std::abs(across_m(c.structure, one) - across_m(c.structure, two)) > kSameSpot_m)
         continue;
       // A place that nobody gave is no place that two share.
@@ -122,7 +122,7 @@ void contradictions(const Config& config, std::vector<std::string>& out) {
 
 void oblique(const Config& config, std::vector<std::string>& out) {
   for (const estimator::SensorAxis& axis : config.pipeline.axes) {
-    if (!axis.plan) continue;
+    if (!axis.plan || axis.vertical) continue;
     const double off = std::asin(std::min(std::abs(std::cos(axis.plan->angle_rad)),
                                           std::abs(std::sin(axis.plan->angle_rad)))) *
                        180 / M_PI;

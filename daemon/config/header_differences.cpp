@@ -78,6 +78,7 @@ const char* letter(const SensorAxis& axis) {
 
 std::string about_direction(const Both& both, double azimuth_y_deg) {
   const SensorAxis& axis = *both.axis;
+  if (is_vertical(*both.header) && axis.vertical) return {};
   if (is_vertical(*both.header))
     return fmt::format(
         "it measures {}, the configuration has it along {}: its values are no motion "

@@ -16,6 +16,7 @@
 #include "daemon/base/progress.h"
 #include "daemon/base/workers.h"
 #include "daemon/config/sections/config_problems.h"
+#include "daemon/diagnosis/compared_channels.h"
 #include "daemon/diagnosis/diagnose_json.h"
 #include "daemon/diagnosis/diagnose_model.h"
 #include "daemon/diagnosis/diagnose_output.h"
@@ -109,17 +110,6 @@ estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
   return diagnose(input.plant, input.segments, options);
 }
 
-/// Floors whose motion would follow from that of others have laws of their own inside.
-bool on_frames_of_every_floor(const estimator::PipelineConfig& c) {
-  std::vector<bool> seen(static_cast<std::size_t>(c.structure.stories) + 1, false);
-  seen[0] = true;
-  for (const estimator::SensorAxis& axis : c.axes) {
-    if (axis.plan) return false;
-    seen[static_cast<std::size_t>(axis.story)] = true;
-  }
-  return std::find(seen.begin(), seen.end(), false) == seen.end();
-}
-
 bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {
   std::error_code failure;
   std::filesystem::create_directories(directory, failure);
@@ -145,22 +135,18 @@ int diagnose_command(const DiagnoseArguments& a) {
   const estimator::PipelineConfig& pipeline = config->pipeline;
   if (a.component.any() && (pipeline.structure.stories != 1 || pipeline.structure.frames() != 1))
     problems.push_back(a.config + ": a component test has one story and one frame");
-  if (!on_frames_of_every_floor(pipeline))
-    problems.push_back(a.config +
-                       ": floors without a channel, or channels at places in plan: a diagnosis "
-                       "needs channels on the frames of every floor; framewatch refine, and report "
-                       "with --raw, say how far the model is off here");
   estimator::DiagnosisOptions options;
   options.holdout_from = a.event.empty() ? a.train.size() : 1;
-  options.known = config->effects;
   options.without = excluded_kinds(a.without, problems);
   std::vector<DiagnoseRecord> records = read_records(*config, a, problems);
   if (print_all(problems)) return kBadInput;
 
+  const ComparedChannels compared = compared_channels(*config, records);
+  options.known = compared.known;
   std::vector<estimator::RecordSamples> samples;
   for (DiagnoseRecord& record : records) samples.push_back(std::move(record.samples));
-  const auto input = estimator::diagnosis_input(pipeline.structure, pipeline.axes, pipeline.design,
-                                                a.component, samples);
+  const auto input = estimator::diagnosis_input(pipeline.structure, compared.axes, pipeline.design,
+                                                a.component, samples, pipeline.bending_nmprad);
   if (!input) {
     fmt::print(stderr, "{}: the channels do not measure every motion that diagnose needs\n",
                a.config);

@@ -7,6 +7,7 @@
 #include "daemon/simulation/effect_json.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
+#include "estimator/structure/group_design.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -101,6 +102,36 @@ Json trial_json(const DiagnoseOutput& o, const estimator::Trial& t) {
   return out;
 }
 
+/// Identified parameters beside those of the design.
+Json parameters_of(const DiagnoseOutput& o) {
+  const estimator::Plant& plant = o.plant;
+  const estimator::Model& model = o.diagnosis.model;
+  Json out = Json::object();
+  const auto add = [&](const estimator::Parameter& p, double value, double design) {
+    out[p.name] = {{"value", json_value(value)}, {"unit", p.unit}, {"design", json_value(design)}};
+  };
+  if (plant.groups.empty()) {
+    for (int p = 0; p < plant.table.size(); ++p)
+      if (!plant.stiff_floors || plant.table[p].panel < 0)
+        add(plant.table[p], model.theta[p], plant.design[p]);
+    return out;
+  }
+  const estimator::StoryGroups groups =
+      story_groups(plant.structure, plant.axes, {{}, plant.bending.any()});
+  const estimator::ParameterTable table(plant.structure, groups, plant.bending);
+  estimator::BendingStiffness bending = plant.bending;
+  for (const estimator::ModelEffect& e : model.effects) {
+    const std::size_t along = e.place.direction == estimator::Direction::x ? 0 : 1;
+    if (e.form == estimator::LawForm::bending && plant.bending[along] > 0)
+      bending.base_nmprad[along] = 1 / e.parameters[0].plain();
+  }
+  const Eigen::VectorXd value = group_parameters(plant.structure, table, {model.theta, bending});
+  const Eigen::VectorXd design =
+      group_parameters(plant.structure, table, {plant.design, plant.bending});
+  for (int p = 0; p < table.size(); ++p) add(table[p], value[p], design[p]);
+  return out;
+}
+
 }  // namespace
 
 std::string diagnosis_json(const DiagnoseOutput& o) {
@@ -157,13 +188,7 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
          {"peak", w.peak > 0 ? json_value(w.peak) : Json(nullptr)},
          {"peak_unit", w.place.kind == estimator::PlaceKind::channel ? "m/s^2" : "N"},
          {"kind", kind_json(w)}});
-  Json parameters = Json::object();
-  for (int p = 0; p < o.plant.table.size(); ++p)
-    if (!o.plant.stiff_floors || o.plant.table[p].panel < 0)
-      parameters[o.plant.table[p].name] = {{"value", json_value(d.model.theta[p])},
-                                           {"unit", o.plant.table[p].unit},
-                                           {"design", json_value(o.plant.design[p])}};
-  out["parameters"] = parameters;
+  out["parameters"] = parameters_of(o);
   Json files = Json::array();
   for (std::size_t r = 0; r < o.records.size(); ++r)
     files.push_back({{"file", o.records[r].path},

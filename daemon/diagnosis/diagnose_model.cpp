@@ -48,6 +48,23 @@ std::string panels(const estimator::Structure& s, const estimator::ParameterTabl
   return out + "]";
 }
 
+/// Rotational stiffness of frames whose bending is part of the design, of every floor.
+std::string bending(const estimator::Plant& plant, const estimator::Model& model) {
+  std::string out;
+  for (const estimator::ModelEffect& e : model.effects) {
+    const std::size_t along = e.place.direction == estimator::Direction::x ? 0 : 1;
+    if (e.form != estimator::LawForm::bending || !(plant.bending[along] > 0)) continue;
+    const double flexibility = std::max(e.parameters[0].plain(), kLeast / plant.bending[along]);
+    out += along == 0 ? "krx_nmprad = [" : "kry_nmprad = [";
+    for (int floor = 0; floor < plant.structure.stories; ++floor)
+      out += fmt::format("{}{:.9g}", floor > 0 ? ", " : "",
+                         plant.bending.of_floor(along, static_cast<std::size_t>(floor)) /
+                             plant.bending[along] / flexibility);
+    out += "]\n";
+  }
+  return out;
+}
+
 /// Removes the table [name] or the tables [[name]] from a TOML text.
 std::string without(const std::string& text, const std::string& name) {
   std::string out;
@@ -89,6 +106,7 @@ std::string diagnosis_model_toml(const DiagnoseOutput& o) {
     if (s.panels() > 0 && !o.plant.stiff_floors)
       out += fmt::format("{} = {}\n", damping ? "gc" : "gk", panels(s, table, theta, damping));
   }
+  out += bending(o.plant, o.diagnosis.declared);
   std::vector<estimator::Effect> effects;
   for (const auto* list : {&o.diagnosis.known, &o.diagnosis.effects})
     for (const estimator::FoundEffect& f : *list)

@@ -63,9 +63,9 @@ std::string gap_section(const DiagnoseOutput& o) {
             "to all records."
           : "Both models were fitted to the training records alone.";
   return "<h2>Gap between simulation and measurement</h2>\n"
-         "<p>Free run from the measured motion of the base alone, as a share of " +
-         html_text(denominator_words(o)) + ". " + fitted + "</p>\n" +
-         html_table({"record", "before", "after", "noise floor"}, rows) +
+         "<p>Free run from the measured " +
+         driver_words(o) + " alone, as a share of " + html_text(denominator_words(o)) + ". " +
+         fitted + "</p>\n" + html_table({"record", "before", "after", "noise floor"}, rows) +
          html_figure(plots, "Gap per channel, over what the sensors' noise alone would make.");
 }
 

@@ -133,6 +133,16 @@ const char* gap_unit(const DiagnoseOutput& o) {
   return "m/s^2";
 }
 
+std::string driver_words(const DiagnoseOutput& o) {
+  bool base = false, force = false;
+  for (Eigen::Index a = 0; a < o.plant.axis_count(); ++a) {
+    force = force || o.plant.is_force(a);
+    base = base || o.plant.axes[static_cast<std::size_t>(a)].story == 0;
+  }
+  if (!force || o.plant.prescribed) return "motion of the base";
+  return base ? "force and motion of the base" : "force";
+}
+
 std::string denominator_words(const DiagnoseOutput& o) {
   const std::string_view unit = gap_unit(o);
   const Eigen::VectorXd& w = o.segments.front().w;
@@ -150,10 +160,15 @@ std::string gap_sentence(const DiagnoseOutput& o) {
   const std::size_t from = held_out ? o.holdout_from : 0;
   return fmt::format(
       "In the {} simulation and measurement differ by {} before and {} after; noise "
-      "alone would make {} (of {}).",
+      "alone would make {} (of {}).{}",
       held_out ? "held-out records" : "records", gap_percent(estimator::mean_gap(d.before, from)),
       gap_percent(estimator::mean_gap(d.after, from)), gap_percent(mean_floor(d.before, from)),
-      denominator_words(o));
+      denominator_words(o),
+      o.plant.unread.cols() == 0
+          ? ""
+          : " Compared are the channels that there are: floors without one follow from the others, "
+            "stories between measured floors share one factor, and laws inside such groups are "
+            "not looked for.");
 }
 
 std::string diagnosis_text(const DiagnoseOutput& o) {

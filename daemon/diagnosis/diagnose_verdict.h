@@ -16,6 +16,9 @@ std::string verdict_sentence(const DiagnoseOutput& output);
 std::string gap_sentence(const DiagnoseOutput& output);
 
 /// What every overall gap is a share of, and its unit.
+/// What drives every free run: "motion of the base", "force", or both.
+std::string driver_words(const DiagnoseOutput& output);
+
 std::string denominator_words(const DiagnoseOutput& output);
 const char* gap_unit(const DiagnoseOutput& output);
 

@@ -63,15 +63,4 @@ const ModelFitTold* model_fit_at_end(const SessionEstimates& session, WindowRang
 /// that are not finite do not count.
 estimator::BoxplotStatistics boxplot_of(std::vector<double> values);
 
-/// One parameter over some windows.
-struct ParameterSummary {
-  double mean = 0;       ///< of the windows with a value, SI; NaN: none has
-  double std_error = 0;  ///< of one window: root mean square of the published ones
-  double observable_ratio = 0;
-  estimator::BoxplotStatistics boxplot{};
-  std::vector<double> outliers;
-};
-ParameterSummary summarise(const SessionEstimates& session, std::size_t parameter,
-                           WindowRange windows);
-
 }  // namespace framewatch::daemon

@@ -54,16 +54,30 @@ double drift_ratio(const EventReport& r, const Config& config, int story) {
   return peak_drift(r.shaking.peak, config.pipeline.structure, story).ratio;
 }
 
+bool any_computed(const Config& config) {
+  for (int story = 1; story <= config.pipeline.structure.stories; ++story)
+    if (!drift_is_measured(config.pipeline, story)) return true;
+  return false;
+}
+
 std::string drift_section(const EventReport& r, const Config& config) {
   const EventReportSettings& s = *config.event_report;
   SvgAxis stories{""};
   SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
   std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> columns{"", "peak acceleration, m/s^2",
+                                   "peak drift of the story below, % of its height"};
+  const bool computed = any_computed(config);
+  if (computed) columns.push_back("that drift is");
   for (int story = config.pipeline.structure.stories; story >= 0; --story) {
     const double peak = peak_accel_mps2(r.shaking.peak, config.pipeline.axes, story);
     const double drift = story > 0 ? drift_ratio(r, config, story) : NAN;
     rows.push_back({story > 0 ? fmt::format("floor {}", story) : "base", number(peak, "{:.3f}"),
                     number(100 * drift, "{:.3f}")});
+    if (computed)
+      rows.back().push_back(story == 0                                  ? ""
+                            : drift_is_measured(config.pipeline, story) ? "measured"
+                                                                        : "computed");
   }
   for (int story = 1; story <= config.pipeline.structure.stories; ++story) {
     if (stories.categories.size() == kMostBars) break;
@@ -80,10 +94,12 @@ std::string drift_section(const EventReport& r, const Config& config) {
                                  "yellow from {:g} %, red from {:g} %.",
                                  100 * s.yellow_drift_ratio, 100 * s.red_drift_ratio)) +
          "<p>Peak base shear: " + base_shear_words(r.shaking.peak, config.pipeline.structure) +
-         ".</p>\n" +
-         html_table(
-             {"", "peak acceleration, m/s^2", "peak drift of the story below, % of its height"},
-             rows);
+         ".</p>\n" + html_table(columns, rows) +
+         (computed ? "<p>Computed: the floor, or the one below, has no channel; its motion follows "
+                     "from the measured floors by what was identified of the stories between them, "
+                     "each with its share of the design. A loss inside such a group shows in its "
+                     "own story's drift only as far as the group's stiffness shows it.</p>\n"
+                   : "");
 }
 
 std::string stiffness_section(const EventReport& r, const Config& config) {

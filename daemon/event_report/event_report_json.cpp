@@ -89,7 +89,8 @@ std::string event_report_json(const EventReport& r, const Config& config) {
     out["stories"].push_back(
         {{"story", story},
          {"peak_drift_ratio",
-          json_value(peak_drift(r.shaking.peak, config.pipeline.structure, story).ratio)}});
+          json_value(peak_drift(r.shaking.peak, config.pipeline.structure, story).ratio)},
+         {"drift_is", drift_is_measured(config.pipeline, story) ? "measured" : "computed"}});
   out["base_shear_n"] = {{"x", json_value(r.shaking.peak.base_shear_n[0])},
                          {"y", json_value(r.shaking.peak.base_shear_n[1])}};
   out["stiffness"] = stiffness_json(r, config);

@@ -42,9 +42,11 @@ void judge_drifts(const EventReport& r, const Config& config, EventVerdict& out,
     const EventColor color = color_of(ratio, s.yellow_drift_ratio, s.red_drift_ratio);
     const double limit = color == EventColor::red ? s.red_drift_ratio : s.yellow_drift_ratio;
     if (color != EventColor::green)
-      reasons.push_back({color, ratio / limit,
-                         fmt::format("story {} drifted by {:.2f} % of its height (limit {:g} %)",
-                                     story, 100 * ratio, 100 * limit)});
+      reasons.push_back(
+          {color, ratio / limit,
+           fmt::format("story {} drifted by {:.2f} % of its height ({}limit {:g} %)", story,
+                       100 * ratio, drift_is_measured(config.pipeline, story) ? "" : "computed, ",
+                       100 * limit)});
   }
 }
 

@@ -42,7 +42,8 @@ const Option kOptions[] = {
      .choices = "x|y|z",
      .meaning =
          "Direction it measures; needed without a frame and an azimuth. Vertical channels, z, "
-         "are accepted and not used.",
+         "positive upward, show how the base rocks: three of the base at places x_m, y_m that are "
+         "no line, or two along x or y. Others are accepted and not used.",
      .reload = restart,
      .by_hand = kPlace},
     {.section = "channel",

@@ -105,7 +105,7 @@ TallRecord tall_record(const TallTrial& t) {
   ground.strong_s = t.duration_s;
   ground.step_s = 1e-3;
   ground.seed = t.seed;
-  std::vector<estimator::Effect> effects;
+  std::vector<estimator::Effect> effects = t.hidden;
   if (t.bending_nmprad > 0) {
     estimator::EffectPlace place;
     place.kind = estimator::PlaceKind::building;

@@ -27,7 +27,8 @@ struct TallTrial {
   /// Damping ratio that dashpots from the floors to the ground, proportional to mass, give the
   /// lowest mode besides; no model of ours has them.
   double ground_damping_ratio = 0;
-  double believed_bending_nmprad = 0;  ///< of the design; 0: it does not bend
+  double believed_bending_nmprad = 0;          ///< of the design; 0: it does not bend
+  std::vector<estimator::Effect> hidden = {};  ///< besides; of plane buildings only
   double duration_s = 60;
   double from_s = 20;  ///< windows count from here on
   std::uint64_t seed = 1;

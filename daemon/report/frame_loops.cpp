@@ -27,7 +27,7 @@ Places places(const estimator::Structure& s, const SessionMotion& m) {
   Places out{std::vector<int>(static_cast<std::size_t>(s.degrees_of_freedom()), -1), {}};
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
     const estimator::SensorAxis& axis = m.axes[a];
-    if (axis.is_force) continue;
+    if (!axis.horizontal()) continue;
     if (axis.story == 0)
       out.base[axis.direction == estimator::Direction::x ? 0 : 1].push_back(static_cast<int>(a));
     else if (axis.frame >= 0)

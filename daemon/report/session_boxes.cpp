@@ -5,6 +5,7 @@
 
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
+#include "daemon/estimates/parameter_summary.h"
 #include "daemon/report/session_report.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"

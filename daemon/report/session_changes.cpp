@@ -96,7 +96,41 @@ void add_announced(const SessionEstimates& s, std::vector<ElementChange>& out) {
   }
 }
 
+/// Median of a window's standard error over its value, of the windows within two times.
+double usual_error(const SessionEstimates& s, std::size_t p, std::int64_t from_us,
+                   std::int64_t to_us) {
+  const std::vector<std::uint8_t> settled = settled_windows(s, p);
+  std::vector<double> errors;
+  for (std::size_t w = 0; w < s.windows(); ++w)
+    if (settled[w] != 0 && s.start_us[w] >= from_us && s.end_us[w] <= to_us)
+      errors.push_back(s.std_error[p][w] / s.value[p][w]);
+  return boxplot_of(std::move(errors)).median;
+}
+
+bool is_recovery(const SessionEstimates& s, const std::vector<ElementChange>& all,
+                 const ElementChange& c) {
+  constexpr double kDied = 1.5;  // of the errors, after over before
+  if (!(c.ratio > 0) || !c.measured()) return false;
+  const auto lost_before = [&](const ElementChange& other) {
+    return other.parameter == c.parameter && other.ratio < 0 && other.measured() &&
+           other.since_us < c.since_us &&
+           c.after.value < (1 + least_change(s, c.parameter)) * other.before.value;
+  };
+  if (std::any_of(all.begin(), all.end(), lost_before)) return true;
+  return usual_error(s, c.parameter, c.since_us, s.end_us.back()) >
+         kDied * usual_error(s, c.parameter, s.start_us.front(), c.since_us);
+}
+
 }  // namespace
+
+std::vector<ElementChange> take_recoveries(const SessionEstimates& s,
+                                           std::vector<ElementChange>& changes) {
+  std::vector<ElementChange> recoveries, others;
+  for (const ElementChange& c : changes)
+    (is_recovery(s, changes, c) ? recoveries : others).push_back(c);
+  changes = std::move(others);
+  return recoveries;
+}
 
 std::vector<ElementChange> session_changes(const SessionEstimates& s) {
   std::vector<ElementChange> out;

@@ -25,6 +25,12 @@ struct ElementChange {
 /// that only an event of the log tells, the size is the event's, against its baseline.
 std::vector<ElementChange> session_changes(const SessionEstimates& session);
 
+/// Takes out of `changes` those that are recovery: a stiffness that grows back toward what it was
+/// before an earlier loss, or grows while the motion dies away. The messages have no amplitudes:
+/// where the motion is weaker, a window's error over its value is larger.
+std::vector<ElementChange> take_recoveries(const SessionEstimates& session,
+                                           std::vector<ElementChange>& changes);
+
 /// Stiffnesses with windows enough that session_changes() would have found a change.
 std::vector<std::size_t> judged_elements(const SessionEstimates& session);
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "daemon/report/session_report.h"
+#include "daemon/estimates/parameter_summary.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"
 #include "estimator/structure/parameter_table.h"
@@ -99,6 +100,7 @@ void evaluate(SessionReport& r) {
     if (!(value > 0)) value = estimator::kNaN;
   r.reference_dynamic.assign(count, estimator::kNaN);
   r.changes = session_changes(r.estimates);
+  r.recoveries = take_recoveries(r.estimates, r.changes);
   r.judged = judged_elements(r.estimates);
   if (r.motion) r.stages = find_stages(*r.motion);
   compare(r);

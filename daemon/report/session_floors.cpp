@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/documents/json_values.h"
+#include "daemon/estimates/parameter_summary.h"
 #include "daemon/estimates/settled_windows.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/nan.h"
@@ -50,14 +51,6 @@ std::pair<Index, Index> strong_rows(const SessionMotion& m) {
                                    first + static_cast<Index>(kLongestStrong_s * m.rate_hz))};
 }
 
-double settled_median(const SessionEstimates& estimates, std::size_t p) {
-  const std::vector<std::uint8_t> settled = settled_windows(estimates, p);
-  std::vector<double> values;
-  for (std::size_t w = 0; w < settled.size(); ++w)
-    if (settled[w] != 0) values.push_back(estimates.value[p][w]);
-  return boxplot_of(std::move(values)).median;
-}
-
 void take(double value, std::size_t p, SessionFloors& out) {
   if (!(value > 0)) return;
   out.theta[p] = value;
@@ -83,7 +76,7 @@ void choose_parameters(const Config& config, const SessionEstimates& estimates,
     if (bending && !parameter.frames.empty()) {  // panels have none
       take(parameter.kind == estimator::ParameterKind::bending_stiffness
                ? last_value(estimates, p)
-               : settled_median(estimates, p),
+               : summarise(estimates, p, all).boxplot.median,
            p, out);
       continue;
     }

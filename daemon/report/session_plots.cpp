@@ -5,6 +5,7 @@
 
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
+#include "daemon/estimates/parameter_summary.h"
 #include "daemon/report/session_report.h"
 
 namespace framewatch::daemon {
@@ -28,7 +29,7 @@ std::string motion_plot(const SessionReport& r, bool base) {
   for (Eigen::Index i = 0; i < m.accel.rows(); ++i) t.push_back(session_seconds(r, m.time_us(i)));
   int color = 0;
   for (std::size_t a = 0; a < m.axes.size() && color < 4; ++a) {
-    if (m.axes[a].story != story || m.axes[a].is_force) continue;
+    if (m.axes[a].story != story || !m.axes[a].horizontal()) continue;
     const auto column = m.accel.col(static_cast<Eigen::Index>(a));
     plot.add(
         SvgSeries{m.axes[a].name, color++, SvgMark::thin_line, t, {column.begin(), column.end()}});

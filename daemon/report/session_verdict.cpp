@@ -7,6 +7,7 @@
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/number_words.h"
 #include "daemon/documents/svg_plot.h"
+#include "daemon/estimates/parameter_summary.h"
 #include "daemon/events/event_words.h"
 #include "daemon/report/session_report.h"
 
@@ -138,6 +139,21 @@ std::string change_chart(const SessionReport& r) {
                      "Stiffness after the change against before it, with its standard error.");
 }
 
+/// Frames soften while they move strongly: what grows back is no change of the building.
+std::string recovery_sentence(const SessionReport& r) {
+  const std::vector<ElementChange> recoveries = largest_first(r.recoveries);
+  std::string out;
+  for (std::size_t i = 0; i < std::min(recoveries.size(), kMostNamed); ++i)
+    out += fmt::format("{}{} by {:.1f} % (+-{:.1f} %)", i == 0 ? "" : ", ",
+                       element_words(r.estimates.table, recoveries[i].parameter),
+                       100 * recoveries[i].ratio, error_percent(recoveries[i]));
+  if (recoveries.size() > kMostNamed)
+    out += fmt::format(", and {} more", recoveries.size() - kMostNamed);
+  return capital(out) +
+         " grew stiffer again while the motion died away: frames soften while they move strongly "
+         "and recover, which is no change of the building.";
+}
+
 /// The stiffness of a changed element over time, its means as lines.
 std::string change_history(const SessionReport& r, const ElementChange& c) {
   const auto [factor, unit] = paper_unit(r.estimates.table.kind[c.parameter]);
@@ -208,12 +224,7 @@ std::string verdict_sentence(const SessionReport& r) {
 
 std::string verdict_section(const SessionReport& r) {
   std::string out = "<p class=\"verdict\">" + html_text(verdict_sentence(r)) + "</p>\n";
-  const bool grown = std::any_of(r.changes.begin(), r.changes.end(),
-                                 [](const ElementChange& c) { return c.ratio > 0; });
-  if (grown)
-    out +=
-        "<p>Frames soften while they move strongly and recover: a stiffness that grows while the "
-        "motion dies away is no change of the building.</p>\n";
+  if (!r.recoveries.empty()) out += "<p>" + html_text(recovery_sentence(r)) + "</p>\n";
   const std::string rest = the_others(r) + sensors_sentence(r);
   if (!rest.empty()) out += "<p>" + html_text(rest) + "</p>\n";
   out += change_chart(r);

@@ -27,7 +27,7 @@ Eigen::VectorXd mean_of(const SessionMotion& m, Index from, Index to, Wanted wan
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(to - from);
   double count = 0;
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
-    if (m.axes[a].is_force || !wanted(m.axes[a])) continue;
+    if (!m.axes[a].horizontal() || !wanted(m.axes[a])) continue;
     sum += m.accel.col(static_cast<Index>(a)).segment(from, to - from);
     ++count;
   }

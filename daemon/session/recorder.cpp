@@ -35,7 +35,7 @@ bool has_lcm_axes(const Config& config) {
 std::vector<std::size_t> axes_that_trigger(const std::vector<estimator::SensorAxis>& axes) {
   std::vector<std::size_t> base, all;
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    if (axes[a].is_force) continue;
+    if (!axes[a].horizontal()) continue;
     all.push_back(a);
     if (axes[a].story == 0) base.push_back(a);
   }

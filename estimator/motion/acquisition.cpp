@@ -8,10 +8,13 @@
 namespace framewatch::estimator {
 namespace {
 
+constexpr int kVertical = 2;  ///< beside the two directions
+
 std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
   std::vector<AxisGuard::Axis> out;
   for (const SensorAxis& axis : axes)
-    out.push_back({axis.range, static_cast<int>(axis.direction), !axis.is_force});
+    out.push_back(
+        {axis.range, axis.vertical ? kVertical : static_cast<int>(axis.direction), !axis.is_force});
   return out;
 }
 

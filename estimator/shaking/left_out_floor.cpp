@@ -49,7 +49,7 @@ std::vector<Index> axes_of(const PipelineConfig& c, int floor, Direction directi
                            bool used = false) {
   std::vector<Index> out;
   for (std::size_t a = 0; a < c.axes.size(); ++a)
-    if (c.axes[a].story == floor && !c.axes[a].is_force && !(used && c.axes[a].check) &&
+    if (c.axes[a].story == floor && c.axes[a].horizontal() && !(used && c.axes[a].check) &&
         along(c.structure, c.axes[a], direction))
       out.push_back(static_cast<Index>(a));
   return out;
@@ -73,7 +73,7 @@ MatrixXd predicted(const PipelineConfig& c, const VectorXd& theta, const MatrixX
                    int floor) {
   std::vector<std::uint8_t> present = identifying(c.axes);
   for (std::size_t a = 0; a < present.size(); ++a)
-    if (c.axes[a].story == floor && !c.axes[a].is_force) present[a] = 0;
+    if (c.axes[a].story == floor && c.axes[a].horizontal()) present[a] = 0;
   FloorMotion motion(c);
   motion.tune(theta, present);
   MatrixXd weights = MatrixXd::Zero(accel.cols(), c.structure.frames());

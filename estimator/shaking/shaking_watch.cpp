@@ -72,10 +72,10 @@ ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& o
       after_(kEnds, elements_),
       during_(any_windows(2 * elements_)) {
   for (std::size_t a = 0; a < config.axes.size(); ++a)
-    if (config.axes[a].story == 0) trigger_axes_.push_back(a);
+    if (config.axes[a].story == 0 && config.axes[a].horizontal()) trigger_axes_.push_back(a);
   if (!trigger_axes_.empty()) return;
   for (std::size_t a = 0; a < config.axes.size(); ++a)
-    if (!config.axes[a].is_force) trigger_axes_.push_back(a);
+    if (config.axes[a].horizontal()) trigger_axes_.push_back(a);
 }
 
 bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {

@@ -98,7 +98,7 @@ StoryResponse::At StoryResponse::base(Direction direction) const {
   At sum{0, 0};
   double count = 0;
   for (std::size_t a = 0; a < axes_.size(); ++a)
-    if (axes_[a].story == 0 && axes_[a].direction == direction) {
+    if (axes_[a].story == 0 && axes_[a].horizontal() && axes_[a].direction == direction) {
       sum.accel_mps2 += motion_accel_[a];
       sum.moved_m += moved_[a];
       ++count;
@@ -153,6 +153,20 @@ PeakDrift peak_drift(const PeakResponse& peak, const Structure& structure, int s
   return out;
 }
 
+bool drift_is_measured(const PipelineConfig& c, int story) {
+  const auto has = [&](int floor, Direction along) {
+    return floor == 0 || std::any_of(c.axes.begin(), c.axes.end(), [&](const SensorAxis& a) {
+             const Direction own = a.frame >= 0 ? c.structure.direction(a.frame) : a.direction;
+             return a.horizontal() && !a.check && a.story == floor && own == along;
+           });
+  };
+  for (const Direction along : {Direction::x, Direction::y}) {
+    if ((along == Direction::x ? c.structure.n() : c.structure.m()) == 0) continue;
+    if (!has(story, along) || !has(story - 1, along)) return false;
+  }
+  return true;
+}
+
 double largest_drift_ratio(const PeakResponse& peak, const Structure& structure) {
   double most = 0;
   for (int story = 1; story <= structure.stories; ++story)
@@ -163,7 +177,7 @@ double largest_drift_ratio(const PeakResponse& peak, const Structure& structure)
 double peak_accel_mps2(const PeakResponse& peak, const std::vector<SensorAxis>& axes, int level) {
   double most = kNaN;
   for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story == level && !axes[a].is_force) raise_peak(most, peak.accel_mps2[a]);
+    if (axes[a].story == level && axes[a].horizontal()) raise_peak(most, peak.accel_mps2[a]);
   return most;
 }
 

@@ -112,6 +112,9 @@ struct PeakDrift {
 };
 /// story: from 1.
 PeakDrift peak_drift(const PeakResponse& peak, const Structure& structure, int story);
+/// Whether the drift of a story is that of channels on its floor and on the one below; else it is
+/// computed, with the motion that the identified model gives floors without.
+bool drift_is_measured(const PipelineConfig& config, int story);
 /// Of all stories; 0 where none is known.
 double largest_drift_ratio(const PeakResponse& peak, const Structure& structure);
 /// Of the axes at a level, 0: the base; NaN: of none it is known.

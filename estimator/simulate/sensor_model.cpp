@@ -54,7 +54,8 @@ std::vector<ResponseChannel> response_channels(const Structure& structure,
         out.back().also.emplace_back(column, weight);
       }
     };
-    if (axis.is_force) {  // all of it that acts where the axis is
+    if (axis.vertical) continue;  // the ground does not rock
+    if (axis.is_force) {          // all of it that acts where the axis is
       const std::vector<double> weights = frame_weights(structure, axis);
       for (int f = 0; f < structure.frames(); ++f)
         if (weights[static_cast<std::size_t>(f)] > 0.5)

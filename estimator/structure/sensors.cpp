@@ -19,10 +19,10 @@ bool has_force(const std::vector<SensorAxis>& axes) {
   return std::any_of(axes.begin(), axes.end(), [](const SensorAxis& a) { return a.is_force; });
 }
 
-std::vector<SensorAxis> accelerometers(const std::vector<SensorAxis>& axes) {
+std::vector<SensorAxis> horizontals(const std::vector<SensorAxis>& axes) {
   std::vector<SensorAxis> out;
   std::copy_if(axes.begin(), axes.end(), std::back_inserter(out),
-               [](const SensorAxis& a) { return !a.is_force; });
+               [](const SensorAxis& a) { return a.horizontal(); });
   return out;
 }
 
@@ -76,7 +76,8 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
       continue;
     }
     const Direction along = a.frame >= 0 ? s.direction(a.frame) : a.direction;
-    if (!a.is_force) (a.story == 0 ? base : above).insert(along);
+    if (a.horizontal()) (a.story == 0 ? base : above).insert(along);
+    if (a.vertical) continue;
     if (a.plan) {
       if ((along == Direction::x ? s.n() : s.m()) == 0)
         add("direction", std::string("the building has no frame parallel to ") +

@@ -37,6 +37,12 @@ struct SensorAxis {
   double noise_density = 0.0;  ///< m/s^2/sqrt(Hz); 0 = unknown
   bool check = false;          ///< compared with what the others predict, not identified from
   bool is_force = false;       ///< of the building, not of an accelerometer
+  /// Of the base at a place in plan, positive upward; its direction says nothing then. Several show
+  /// how the base rocks (base_rotations()).
+  bool vertical = false;
+
+  /// An accelerometer that measures along x or y.
+  bool horizontal() const { return !is_force && !vertical; }
 };
 
 /// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
@@ -49,8 +55,8 @@ std::vector<double> noise_densities(const std::vector<SensorAxis>& axes);
 std::vector<std::uint8_t> identifying(const std::vector<SensorAxis>& axes);
 /// Whether any axis is a force: without base axes the base then rests.
 bool has_force(const std::vector<SensorAxis>& axes);
-/// Those that are none, in their order.
-std::vector<SensorAxis> accelerometers(const std::vector<SensorAxis>& axes);
+/// Accelerometers along x or y, in their order.
+std::vector<SensorAxis> horizontals(const std::vector<SensorAxis>& axes);
 
 /// Every way in which the sensors do not fit the structure: two axes on one frame, a frame or story
 /// that does not exist, a direction that is measured above the base and not there (unless a force

@@ -195,7 +195,7 @@ std::vector<double> frame_weights(const Structure& s, const SensorAxis& axis) {
 
 StoryGroups story_groups(const Structure& s, const std::vector<SensorAxis>& all,
                          const WantedGroups& wanted) {
-  std::vector<SensorAxis> axes = accelerometers(all);
+  std::vector<SensorAxis> axes = horizontals(all);
   const bool forced = axes.size() < all.size();
   std::erase_if(axes, [](const SensorAxis& axis) { return axis.check; });
   StoryGroups out;

@@ -35,8 +35,8 @@ struct WantedGroups {
 /// On flexible floors a frame's groups end where the frame itself has an axis; frames without any
 /// share those of the nearest one of their direction that has. On rigid floors groups end where the
 /// direction is measured; two frames of a direction are told apart where every measured floor shows
-/// its translations and its rotation. Forces show nothing; with one, stories are groups of one
-/// where every floor is measured. Precondition: find_problems() of both is empty.
+/// its translations and its rotation. Forces and verticals show nothing; with one, stories are
+/// groups of one where every floor is measured. Precondition: find_problems() of both is empty.
 StoryGroups story_groups(const Structure& structure, const std::vector<SensorAxis>& axes,
                          const WantedGroups& wanted = {});
 

@@ -12,6 +12,7 @@
 #include "daemon/keys/section.h"
 #include "daemon/keys/suggest.h"
 #include "daemon/keys/target.h"
+#include "estimator/identify/groups/floor_coordinates.h"
 #include "estimator/structure/story_groups.h"
 
 namespace framewatch::daemon {
@@ -158,17 +159,47 @@ void read_channel(const TomlValue& table, const StructureReading& reading, Confi
   if (section.given("name"))
     if (const std::string rule = problem_of_name(axis.name); !rule.empty())
       section.problem("name", rule);
-  const bool vertical = section.given("direction") && section.text("direction") == "z";
-  if (vertical || (section.given("use") && !section.boolean("use"))) {
-    config.unused.push_back(
-        {axis.name, vertical ? "it measures vertical motion" : "its use is false"});
-    return;
+  axis.vertical = section.given("direction") && section.text("direction") == "z";
+  const auto leave = [&](const char* why) { config.unused.push_back({axis.name, why}); };
+  if (section.given("use") && !section.boolean("use")) return leave("its use is false");
+  if (axis.vertical) {
+    if (section.good("story")) axis.story = section.integer("story");
+    if (axis.story > 0) return leave("it measures vertical motion above the base");
+    if (!section.given("x_m") || !section.given("y_m"))
+      return leave("it measures vertical motion, and where in plan (x_m, y_m) is not said");
+    axis.plan = estimator::PlanPlace{section.number("x_m"), section.number("y_m"), 0};
+  } else {
+    read_quantity(section, axis);
+    read_place(section, reading, axis);
   }
-  read_quantity(section, axis);
-  read_place(section, reading, axis);
   config.pipeline.axes.push_back(axis);
   config.sources.push_back(read_source(section, label, problems));
   channels.push_back(std::move(section));
+}
+
+/// Leaves out verticals that do not show how the base rocks, and all where floor panels are
+/// identified: rocking is known to groups of stories alone.
+void leave_idle_verticals(const StructureReading& reading, Config& config, Channels& channels) {
+  std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
+  const std::vector<std::uint8_t> all(axes.size(), 1);
+  const auto rotations = base_rotations(axes, all);
+  const bool shown = rotations[0].size() > 0 || rotations[1].size() > 0;
+  const bool panels = reading.structure.panels() > 0 && reading.frames_known &&
+                      reading.stories_known && find_problems(reading.structure, axes).empty() &&
+                      story_groups(reading.structure, horizontals(axes)).every_story;
+  if (shown && !panels) return;
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    if (!axes[a].vertical) continue;
+    config.unused.push_back(
+        {axes[a].name, panels ? "it measures vertical motion, and floor panels are identified, for "
+                                "which the base does not rock"
+                              : "it measures vertical motion: how the base rocks is shown by three "
+                                "such channels that are no line, or by two along x or y"});
+    const auto at = static_cast<std::ptrdiff_t>(a);
+    axes.erase(axes.begin() + at);
+    config.sources.erase(config.sources.begin() + at);
+    channels.erase(channels.begin() + at);
+  }
 }
 
 /// Cross channels are names: known once all channels are.
@@ -246,6 +277,7 @@ void read_channels(const TomlValue& document, const StructureReading& reading, C
     for (const TomlValue& table : entry->value.items)
       read_channel(table, reading, config, channels, problems);
   }
+  leave_idle_verticals(reading, config, channels);
   find_cross_channels(config, channels);
   check_sources(config, channels);
   check_against_structure(reading, config, where, channels, problems);

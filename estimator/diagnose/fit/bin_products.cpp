@@ -41,7 +41,7 @@ BinProducts::BinProducts(const Linearised& at, std::size_t record, const std::ve
 
 void BinProducts::put_axes(Index bin) {
   const Eigen::MatrixXcd operation = system_.operation[static_cast<std::size_t>(bin)];
-  for (Index a = 0; a < operation.cols(); ++a) {
+  for (Index a = 0; a < at_.plant->axis_count(); ++a) {
     Direction& axis = axes_[static_cast<std::size_t>(a)];
     axis.clear();
     for (Index i = 0; i < operation.rows(); ++i)

@@ -5,7 +5,10 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/model/run_system.h"
 #include "estimator/identify/elements/guessed_design.h"
+#include "estimator/numeric/eigenvalues.h"
+#include "estimator/numeric/solve.h"
 #include "estimator/structure/natural_frequencies.h"
 
 namespace framewatch::estimator {
@@ -15,6 +18,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kBandLow = 0.4, kBandHigh = 1.6;  ///< of the lowest and highest natural frequency
+constexpr double kBandOfRead = 2;                  ///< of the highest frequency of what axes read
 constexpr double kComponentBandLow = 0.1;  ///< displacement is accurate at far lower frequencies
 constexpr double kHighest = 0.4;           ///< of the sampling rate
 /// Bins times equations^1.5, about the work of a fit: the band of a large building ends where it
@@ -25,12 +29,35 @@ constexpr int kDesignFits = 2;      ///< of a building that has no design
 constexpr double kLeastOfGuess = 0.01;
 constexpr double kLeastSignal = 5;  ///< rms of a floor's motion in the band over its noise
 
+/// Natural frequencies of the design, with the bending of its frames.
+std::vector<double> design_frequencies(const Structure& structure, const Plant& plant,
+                                       const VectorXd& design) {
+  if (!plant.bending.any())
+    return natural_frequencies_hz(structure, ParameterTable(structure), design);
+  const RunSystem system = run_system(plant, initial_model(plant), {});
+  const VectorXd squares = generalized_eigenvalues(system.stiffness, system.mass);
+  std::vector<double> out;
+  for (const double w2 : squares) out.push_back(std::sqrt(std::max(w2, 0.0)) / (2 * M_PI));
+  return out;
+}
+
+/// Twice the highest frequency of motions that axes read while the other ones that they read rest
+/// and unread ones follow as if slow, Hz: above it what axes read says little of what is between.
+double highest_read_hz(const Plant& plant) {
+  const RunSystem system = run_system(plant, initial_model(plant), {});
+  const Eigen::MatrixXd own = plant.unread.transpose() * system.stiffness * plant.unread;
+  const Eigen::MatrixXd coupled = plant.unread.transpose() * system.stiffness * plant.read;
+  const Eigen::MatrixXd shapes = plant.read - plant.unread * solve_lu(own, coupled);
+  const VectorXd stiffness = (shapes.transpose() * system.stiffness * shapes).diagonal();
+  const VectorXd mass = (shapes.transpose() * system.mass * shapes).diagonal();
+  return kBandOfRead * std::sqrt(stiffness.cwiseQuotient(mass).maxCoeff()) / (2 * M_PI);
+}
+
 /// The records in the band of the design's natural frequencies.
 std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& plant,
                                        const VectorXd& design, const ComponentTest& component,
                                        const std::vector<RecordSamples>& records) {
-  const std::vector<double> hz =
-      natural_frequencies_hz(structure, ParameterTable(structure), design);
+  const std::vector<double> hz = design_frequencies(structure, plant, design);
   const std::vector<char> displaced = displaced_axes(plant, component);
   std::vector<RecordSegment> out;
   for (const RecordSamples& record : records) {
@@ -42,7 +69,8 @@ std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& 
     const double bins = kMostWork / std::pow(static_cast<double>(plant.equations()), 1.5);
     const double seconds = static_cast<double>(record.accel.rows() - record.lead) / record.rate_hz;
     const double most = std::max(low + bins / seconds, kLowestModes * hz.front());
-    const Band band{low, std::min({kHighest * record.rate_hz, kBandHigh * hz.back(), most})};
+    const double high = plant.unread.cols() > 0 ? highest_read_hz(plant) : kBandHigh * hz.back();
+    const Band band{low, std::min({kHighest * record.rate_hz, high, most})};
     out.push_back(make_segment(record.accel, record.rate_hz, noise, band, displaced, record.lead));
   }
   return out;
@@ -73,11 +101,12 @@ VectorXd fitted_linear(const Plant& plant, const std::vector<RecordSegment>& seg
 std::optional<DiagnosisInput> diagnosis_input(const Structure& structure,
                                               const std::vector<SensorAxis>& axes,
                                               const VectorXd& given, const ComponentTest& component,
-                                              const std::vector<RecordSamples>& records) {
+                                              const std::vector<RecordSamples>& records,
+                                              const BendingStiffness& bending) {
   const ParameterTable table(structure);
   VectorXd design = given.size() > 0 ? given : guessed_design(structure, table);
   const auto input_of = [&]() -> std::optional<DiagnosisInput> {
-    const auto plant = make_plant(structure, axes, design, records.front().rate_hz);
+    const auto plant = make_plant(structure, axes, design, records.front().rate_hz, bending);
     if (!plant) return std::nullopt;
     DiagnosisInput out{component_plant(*plant, component), {}};
     out.segments = segments_of(structure, out.plant, design, component, records);

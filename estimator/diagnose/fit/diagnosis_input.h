@@ -31,13 +31,14 @@ Eigen::VectorXd fitted_linear(const Plant& plant, const std::vector<RecordSegmen
                               const Tolerances& tolerances);
 
 /// Plant and segments of records (at least one). design: theta order, > 0; empty: estimated from
-/// the records, beginning with guessed_design(). Empty when the axes do not measure every motion
-/// that the equations need.
+/// the records, beginning with guessed_design(). Empty when the base is not measured in a direction
+/// that is measured above it.
 std::optional<DiagnosisInput> diagnosis_input(const Structure& structure,
                                               const std::vector<SensorAxis>& axes,
                                               const Eigen::VectorXd& design,
                                               const ComponentTest& component,
-                                              const std::vector<RecordSamples>& records);
+                                              const std::vector<RecordSamples>& records,
+                                              const BendingStiffness& bending = {});
 
 constexpr Eigen::Index kFewestBins = 30;  ///< of a segment, else it is too short
 

@@ -48,10 +48,12 @@ Fitter::Fitter(const Plant& plant, const std::vector<RecordSegment>& segments,
 }
 
 double Fitter::expected(std::size_t record, const Model& model) const {
-  double n = static_cast<double>(plant_.equations());
+  double n = static_cast<double>(plant_.read_equations());
   for (const ModelEffect& e : model.effects)
     n -= e.form == LawForm::clipped || e.form == LawForm::broadband;
-  return n * static_cast<double>(segments_[record].bins()) - 2 * n;
+  // The ends of motions that no axis reads have two values each.
+  return n * static_cast<double>(segments_[record].bins()) - 2 * n -
+         static_cast<double>(plant_.unread.cols());
 }
 
 double Fitter::expected(const Model& model) const {

@@ -103,6 +103,24 @@ VectorXd along(const Plant& plant, const Whitened& system, const Acting& one) {
   return whiten_rows(system, direction, one.size);
 }
 
+/// Those of all stories of a group.
+VectorXd along_tied(const Plant& plant, const Model& model, const RecordSegment& segment,
+                    const Whitened& system, const Unknown& unknown, const Acting& first) {
+  MatrixXcd forces = MatrixXcd::Zero(plant.equations(), system.bins());
+  const auto add = [&](const Acting& one) {
+    for (Index i = 0; i < forces.rows(); ++i)
+      if (const double share = plant.building.act(i, one.direction); share != 0)
+        forces.row(i) += share * one.size.transpose();
+  };
+  add(first);
+  for (const auto& [index, scale] : unknown.tied) {
+    Unknown one{unknown.kind, index};
+    one.scale = scale;
+    add(acting(plant, model, segment, system, one));
+  }
+  return whiten_rows(system, forces);
+}
+
 }  // namespace
 
 Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& segment,
@@ -123,18 +141,18 @@ Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& 
       run = run_column(plant, model, segment, record, system, unknown, ratio);
     Acting one;
     if (!parameter) one = acting(plant, model, segment, system, unknown);
-    out.direction.push_back(parameter || run ? -1 : one.direction);
+    const bool own_rows = parameter || run || !unknown.tied.empty();
+    out.direction.push_back(own_rows ? -1 : one.direction);
     out.row.push_back(-1);
-    if (out.direction.back() >= 0) {
-      out.size.col(static_cast<Index>(u)) = one.size;
-      continue;
-    }
+    if (!own_rows || !unknown.tied.empty()) out.size.col(static_cast<Index>(u)) = one.size;
+    if (out.direction.back() >= 0) continue;
     out.row.back() = static_cast<Index>(effects.size());
     const bool of_law =
         parameter && model.effects[static_cast<std::size_t>(unknown.index)].element_law();
     VectorXd column = VectorXd::Zero(system.residual.size());
     if (!parameter)
-      column = along(plant, system, one);
+      column = unknown.tied.empty() ? along(plant, system, one)
+                                    : along_tied(plant, model, segment, system, unknown, one);
     else if (!elsewhere && !(of_law && run))
       column = parameter_column(plant, model, segment, record, system, unknown, ratio);
     if (run) column += *run;

@@ -14,7 +14,8 @@ struct Columns {
   /// Of every unknown: index among the elements, then the axes, then the coordinates; -1: of an
   /// effect.
   std::vector<Eigen::Index> direction;
-  Eigen::MatrixXcd size;          ///< bins x unknowns: the spectrum along the direction
+  /// Bins x unknowns: the spectrum along the direction; of stories that are tied the first one's.
+  Eigen::MatrixXcd size;
   std::vector<Eigen::Index> row;  ///< of every unknown in `effects`; -1: it has a direction
   Eigen::MatrixXd effects;        ///< whitened rows x unknowns of effects
 

@@ -8,6 +8,7 @@
 #include "estimator/diagnose/fit/model_error.h"
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"
+#include "estimator/structure/story_groups.h"
 
 namespace framewatch::estimator {
 
@@ -27,6 +28,13 @@ void subtract_forces(const MatrixXcd& directions, const MatrixXcd& covariance, V
   const VectorXcd white = factor.whitened(e);
   const VectorXcd force = solve_ldlt(u.adjoint() * u, u.adjoint() * white);
   e -= directions * force;
+}
+
+/// What an axis above the base reads of the coordinates.
+Eigen::RowVectorXd reading_of(const Plant& plant, const SensorAxis& axis) {
+  const std::vector<double> weights = frame_weights(plant.structure, axis);
+  return Eigen::Map<const Eigen::RowVectorXd>(weights.data(), plant.structure.frames()) *
+         plant.constraint.middleRows(plant.structure.dof(axis.story, 0), plant.structure.frames());
 }
 
 /// Sets the difference of a clipped axis: the simulated reading is clipped like the measured one.
@@ -64,7 +72,7 @@ Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segme
     VectorXcd e(n);
     e.real() = system.rest.segment(2 * n * b, n);
     e.imag() = system.rest.segment(2 * n * b + n, n);
-    system.weights->whitener(b).triangularView<Eigen::Lower>().solveInPlace(e);
+    e = system.weights->forces_of(b, e);
     out.difference(axis, b) = plant.push.col(axis).cast<Complex>().dot(e);
     const VectorXcd row = system.operation[at].adjoint() * plant.push.col(axis).cast<Complex>();
     error += std::norm(out.difference(axis, b));
@@ -93,7 +101,7 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
       is_base[a] = 1;
       bases.push_back(a);
     } else {
-      seen.row(a) = plant.constraint.row(plant.structure.dof(axis.story, axis.frame));
+      seen.row(a) = reading_of(plant, axis);
     }
   }
   if (plant.prescribed) return force_gap(plant, model, segment, system);
@@ -113,10 +121,12 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
     VectorXcd e(n);
     e.real() = system.rest.segment(2 * n * b, n);
     e.imag() = system.rest.segment(2 * n * b + n, n);
-    system.weights->whitener(b).triangularView<Eigen::Lower>().solveInPlace(e);
+    e = system.weights->forces_of(b, e);
     if (pushed.cols() > 0)
-      subtract_forces(
-          pushed, system.operation[at] * variance.asDiagonal() * system.operation[at].adjoint(), e);
+      subtract_forces(pushed,
+                      system.operation[at].leftCols(axes) * variance.asDiagonal() *
+                          system.operation[at].leftCols(axes).adjoint(),
+                      e);
     const MatrixXcd operation = system.operation[at];
     const MatrixXcd own = operation * back.cast<Complex>();
     const ComplexLu solver(own);
@@ -130,7 +140,7 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
       if (segment.is_displaced(a)) square[a] *= std::pow(segment.w[b], -4);
     out.difference.col(b).array() *= square.array().sqrt();
     noise += square.cwiseProduct(carried.cwiseAbs2() * variance(bases) + variance);
-    power += square.cwiseProduct(system.calibrated.col(b).cwiseAbs2());
+    power += square.cwiseProduct(system.calibrated.col(b).head(axes).cwiseAbs2());
   }
   for (const ModelEffect& effect : model.effects)
     if (effect.form == LawForm::clipped)

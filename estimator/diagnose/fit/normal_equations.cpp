@@ -30,7 +30,7 @@ VectorXd gradient_of(const Linearised& at, std::size_t record) {
     along.head(elements).real().noalias() = plant.building.act.transpose() * along.tail(n).real();
     along.head(elements).imag().noalias() = plant.building.act.transpose() * along.tail(n).imag();
     along.segment(elements, axes).noalias() =
-        system.operation[static_cast<std::size_t>(b)].adjoint() * along.tail(n);
+        system.operation[static_cast<std::size_t>(b)].leftCols(axes).adjoint() * along.tail(n);
     for (Index u = 0; u < out.size(); ++u) {
       const Index d = columns.direction[static_cast<std::size_t>(u)];
       if (d >= 0) out[u] += (std::conj(columns.size(b, u)) * along[d]).real();

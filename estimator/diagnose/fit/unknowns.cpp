@@ -22,7 +22,16 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
                                  const Tolerances& tolerances) {
   std::vector<Unknown> out;
   const auto elements = static_cast<int>(plant.element_count());
-  for (int p = 0; p < 2 * elements; ++p) {
+  for (const int first : {0, elements})
+    for (const TiedStories& group : plant.groups) {
+      const auto scale = [&](int element) { return plant.design[first + element]; };
+      const int at = group.elements.front();
+      out.push_back({Kind::theta, first + at, 0, 0, scale(at), first == 0 ? kTightK : kTightC, 1.0,
+                     kLeast, kAny});
+      for (std::size_t i = 1; i < group.elements.size(); ++i)
+        out.back().tied.emplace_back(first + group.elements[i], scale(group.elements[i]));
+    }
+  for (int p = 0; p < 2 * elements && plant.groups.empty(); ++p) {
     const bool panel = plant.table[p].panel >= 0;
     if (panel && plant.stiff_floors) continue;
     const double sigma = (p < elements ? (panel ? kTightG : kTightK) : kTightC);
@@ -104,7 +113,9 @@ double value_of(const Model& model, const Unknown& u) {
 }
 
 void set_value(Model& model, const Unknown& u, double value) {
-  member(model, u) = std::clamp(value, u.low, u.high) * u.scale;
+  const double within = std::clamp(value, u.low, u.high);
+  member(model, u) = within * u.scale;
+  for (const auto& [index, scale] : u.tied) model.theta[index] = within * scale;
 }
 
 }  // namespace framewatch::estimator

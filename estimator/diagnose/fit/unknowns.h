@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "estimator/diagnose/model/model.h"
@@ -25,6 +26,8 @@ struct Unknown {
   double centre = 0;
   double low = -std::numeric_limits<double>::infinity();  ///< bounds, in units of the unknown
   double high = std::numeric_limits<double>::infinity();
+  /// Further members of theta with the same value, and their scales.
+  std::vector<std::pair<int, double>> tied = {};
 };
 
 std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,

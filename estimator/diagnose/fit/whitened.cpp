@@ -9,6 +9,7 @@
 #include "estimator/diagnose/model/linear_operation.h"
 #include "estimator/diagnose/spectra/whiteners.h"
 #include "estimator/numeric/complex.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -77,26 +78,42 @@ HiddenOscillator hidden_oscillator(const Plant& plant, const ModelEffect& e, con
 
 /// The likeliest motion, docs/equations.md (34), with which the gradient is exact. Where the model
 /// does not fit, less of the residual is subtracted: it is not noise.
-MatrixXcd shown_motion(const Model& model, const RecordSegment& segment, const Whitened& system) {
+MatrixXcd shown_motion(const Plant& plant, const Model& model, const RecordSegment& segment,
+                       const Whitened& system) {
   MatrixXcd out = system.calibrated;
-  const Index bins = segment.bins(), n = system.rest.size() / (2 * bins);
+  const Index bins = segment.bins(), n = plant.equations(), axes = plant.axis_count();
+  const double rows = static_cast<double>(plant.read_equations());
   VectorXd level(bins);
   for (Index b = 0; b < bins; ++b) level[b] = system.rest.segment(2 * n * b, 2 * n).squaredNorm();
-  const bool fits = level.mean() < kNearNoise * static_cast<double>(n);
+  const bool fits = level.mean() < kNearNoise * rows;
   const Index around = std::max<Index>(kLeastNeighbours, bins / 60);
   for (Index b = 0; b < bins; ++b) {
     const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
-    const double local = level.segment(from, to - from).mean() / static_cast<double>(n);
+    const double local = level.segment(from, to - from).mean() / rows;
     const double share = fits ? 1.0 : std::min(1.0, 1 / std::max(local, 1e-300));
     VectorXcd r(n);
     r.real() = system.rest.segment(2 * n * b, n);
     r.imag() = system.rest.segment(2 * n * b + n, n);
     const std::size_t at = static_cast<std::size_t>(b);
     const VectorXd noise = believed_noise(model, segment, b);
-    out.col(b) -= share * (noise.asDiagonal() * (system.operation[at].adjoint() *
-                                                 (system.weights->whitener(b).adjoint() * r)));
+    out.col(b).head(axes) -=
+        share * (noise.asDiagonal() * (system.operation[at].leftCols(axes).adjoint() *
+                                       (system.weights->whitener(b).adjoint() * r)));
   }
   return out;
+}
+
+/// Sets the motions that no axis reads so that the equations along them hold.
+void follow_unread(const Plant& plant, const MatrixXcd& forces, const Operations& operation,
+                   MatrixXcd& motion) {
+  const Index hidden = plant.unread.cols(), axes = plant.axis_count();
+  if (hidden == 0) return;
+  const MatrixXcd along = plant.unread.transpose().cast<Complex>();
+  for (Index b = 0; b < motion.cols(); ++b) {
+    const MatrixXcd kept = along * operation[static_cast<std::size_t>(b)];
+    const VectorXcd force = kept.leftCols(axes) * motion.col(b).head(axes) + along * forces.col(b);
+    motion.col(b).tail(hidden) = -ComplexLu(kept.rightCols(hidden)).solve(force);
+  }
 }
 
 }  // namespace
@@ -113,7 +130,8 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
                 std::shared_ptr<const Weights> weights) {
   Whitened out;
   const Index n = plant.equations(), bins = segment.bins(), elements = plant.element_count();
-  out.calibrated = calibrated(model, segment);
+  out.calibrated = MatrixXcd::Zero(plant.building.axes(), bins);
+  out.calibrated.topRows(plant.axis_count()) = calibrated(model, segment);
   out.tracks = std::move(tracks);
 
   MatrixXcd forces = MatrixXcd::Zero(n, bins);
@@ -121,7 +139,8 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   std::vector<HiddenOscillator> hidden;
   std::vector<LinearOperation> additions;
   std::size_t law = 0;
-  MatrixXd stiffness = MatrixXd::Zero(n, plant.axis_count()), damping = stiffness;  // of the laws
+  MatrixXd stiffness = MatrixXd::Zero(n, plant.building.axes()),
+           damping = stiffness;  // of the laws
   for (const ActiveLaw& active : active_laws(plant, model)) {
     const LawTrack& track = out.tracks[law++];
     if (!track.force.allFinite()) return out;
@@ -158,13 +177,18 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   damping += act * model.theta.tail(elements).asDiagonal() * sense;
   out.operation = Operations(mass, stiffness, damping, std::move(additions), segment.w);
   if (!weights) {
+    const auto operation = [&](Index b) { return out.operation[static_cast<std::size_t>(b)]; };
+    const MatrixXd noise = noise_of(model, segment);
+    const bool all_read = plant.unread.cols() == 0;
     std::vector<MatrixXcd> own =
-        whiteners([&](Index b) { return out.operation[static_cast<std::size_t>(b)]; },
-                  noise_of(model, segment), kArbitrary * pushed);
+        all_read ? whiteners(operation, noise, kArbitrary * pushed)
+                 : whiteners(operation, noise, kArbitrary * pushed, {plant.read, plant.unread});
     if (own.empty()) return out;
-    weights = std::make_shared<const Weights>(std::move(own), segment.w, std::move(hidden));
+    weights = std::make_shared<const Weights>(std::move(own), segment.w, std::move(hidden),
+                                              all_read ? MatrixXd() : plant.read);
   }
   out.weights = std::move(weights);
+  follow_unread(plant, forces, out.operation, out.calibrated);
   out.residual.resize(2 * n * bins);
   for (Index b = 0; b < bins; ++b)
     put(out.residual, b,
@@ -173,7 +197,8 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   out.rest = out.weights->without_ends(out.residual);
   out.misfit = out.rest.squaredNorm();
   if (!std::isfinite(out.misfit)) return out;
-  out.motion = shown_motion(model, segment, out);
+  out.motion = shown_motion(plant, model, segment, out);
+  follow_unread(plant, forces, out.operation, out.motion);
   out.good = true;
   return out;
 }

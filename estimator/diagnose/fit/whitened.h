@@ -23,8 +23,10 @@ struct Whitened {
   bool good = false;
   Operations operation;  ///< D of every bin
   std::shared_ptr<const Weights> weights;
-  Eigen::MatrixXcd calibrated;          ///< axes x bins: spectra without the axes' errors
-  Eigen::MatrixXcd motion;              ///< the likeliest motion: less noise where the model fits
+  /// Axes x bins: spectra without the axes' errors; below them motions that no axis reads
+  /// (Plant::unread), as they follow from the axes'.
+  Eigen::MatrixXcd calibrated;
+  Eigen::MatrixXcd motion;              ///< the likeliest such motion: less noise where it fits
   std::vector<LawTrack> tracks;         ///< of the element laws
   std::vector<Equivalent> linear;       ///< of the element laws
   std::vector<Eigen::VectorXcd> force;  ///< of the element laws: spectrum, N

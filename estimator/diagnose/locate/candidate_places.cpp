@@ -1,5 +1,6 @@
 #include "estimator/diagnose/locate/candidate_places.h"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <utility>
@@ -17,6 +18,21 @@ bool same_direction(const MatrixXd& a, const MatrixXd& b) {
   if (a.cols() != 1 || b.cols() != 1) return false;
   const double cosine = std::abs(a.col(0).dot(b.col(0))) / (a.norm() * b.norm());
   return cosine > 1 - 1e-9;
+}
+
+/// Whether the axes read most of a motion.
+bool is_read(const Plant& plant, const VectorXd& motion) {
+  constexpr double kMost = 0.5;
+  return plant.unread.cols() == 0 ||
+         (plant.read.transpose() * motion).squaredNorm() > kMost * motion.squaredNorm();
+}
+
+/// Whether an element shares its factors with others: its own force cannot be told from theirs.
+bool is_tied(const Plant& plant, int element) {
+  return !plant.groups.empty() &&
+         std::none_of(plant.groups.begin(), plant.groups.end(), [&](const TiedStories& group) {
+           return group.elements == std::vector<int>{element};
+         });
 }
 
 void add_forces(std::vector<CandidatePlace>& out, CandidatePlace candidate_place) {
@@ -66,7 +82,7 @@ void add_floors(const Plant& plant, std::vector<CandidatePlace>& out) {
 
 void add_elements(const Plant& plant, std::vector<CandidatePlace>& out) {
   for (const Element& e : plant.elements) {
-    if (plant.stiff_floors && e.panel >= 0) continue;
+    if ((plant.stiff_floors && e.panel >= 0) || is_tied(plant, e.stiffness)) continue;
     CandidatePlace element;
     element.kind = CandidatePlace::Kind::element;
     element.element = e.stiffness;
@@ -90,8 +106,9 @@ void add_nodes_and_links(const Plant& plant, std::vector<CandidatePlace>& out) {
       node.place.story = story;
       node.place.frame = f;
       node.directions = node_direction(plant, story, f);
+      if (!is_read(plant, node.directions)) continue;
       add_forces(out, node);
-      for (int to = 1; to <= story - 2; ++to) {
+      for (int to = 1; to <= story - 2 && plant.groups.empty(); ++to) {
         CandidatePlace link = node;
         link.kind = CandidatePlace::Kind::link;
         link.place.kind = PlaceKind::node_pair;
@@ -115,7 +132,8 @@ void add_crossings(const Plant& plant, std::vector<CandidatePlace>& out) {
       const std::vector<int> frames = frames_at(s, crossing);
       mass.directions << node_direction(plant, story, frames[0]),
           node_direction(plant, story, frames[1]);
-      add_forces(out, mass);
+      if (is_read(plant, mass.directions.col(0)) && is_read(plant, mass.directions.col(1)))
+        add_forces(out, mass);
     }
 }
 
@@ -123,6 +141,7 @@ void add_rocking(const Plant& plant, const Model& model, std::vector<CandidatePl
   const Structure& s = plant.structure;
   for (const Direction direction : {Direction::x, Direction::y}) {
     if ((direction == Direction::x ? s.n() : s.m()) == 0) continue;
+    if (plant.bending[direction == Direction::x ? 0 : 1] > 0) continue;  // part of the design
     CandidatePlace rocking;
     rocking.kind = CandidatePlace::Kind::rocking;
     rocking.place.kind = PlaceKind::building;

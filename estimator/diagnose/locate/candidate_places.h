@@ -21,7 +21,9 @@ struct CandidatePlace {
   Eigen::Index size() const { return kind == Kind::axis ? 1 : directions.cols(); }
 };
 
-/// Every place of a plant. Two places whose forces have the same direction appear once.
+/// Every place of a plant. Two places whose forces have the same direction appear once. Where axes
+/// do not read every motion: axes, what they read of the floors, and stories between two floors
+/// that they read, by frame.
 std::vector<CandidatePlace> candidate_places_of(const Plant& plant, const Model& model);
 
 /// Recomputes directions that depend on the model's stiffnesses.

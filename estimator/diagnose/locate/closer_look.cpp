@@ -51,8 +51,7 @@ VectorXcd effect_force(const Whitened& system, const Columns& columns, Index unk
   VectorXcd out(n);
   out.real() = rows.segment(2 * n * bin, n);
   out.imag() = rows.segment(2 * n * bin + n, n);
-  system.weights->whitener(bin).triangularView<Eigen::Lower>().solveInPlace(out);
-  return out;
+  return system.weights->forces_of(bin, out);
 }
 
 /// Curvature times x, a column a list, the signals of its places free.
@@ -66,7 +65,7 @@ MatrixXd curvature_times(const Linearised& at, const std::vector<Index>& kept,
     const Whitened& system = at.systems[r];
     const Columns& columns = at.columns[r];
     for (Index b = 0; b < system.bins(); ++b) {
-      const MatrixXcd operation = system.operation[static_cast<std::size_t>(b)];
+      const MatrixXcd operation = system.operation[static_cast<std::size_t>(b)].leftCols(axes);
       const MatrixXcd metric = system.weights->metric(b);
       MatrixXcd along = MatrixXcd::Zero(elements + axes + n, x.cols());
       MatrixXcd forces = MatrixXcd::Zero(n, x.cols());

@@ -90,7 +90,7 @@ Index size_of(const std::vector<CandidatePlace>& candidate_places) {
 double expected_of(const Fitter& fitter, const Model& model,
                    const std::vector<CandidatePlace>& places) {
   return fitter.expected(model) * (1 - static_cast<double>(size_of(places)) /
-                                           static_cast<double>(fitter.plant().equations()));
+                                           static_cast<double>(fitter.plant().read_equations()));
 }
 
 /// Normal equations with the places of each list projected out. squares: of each segment.
@@ -98,7 +98,7 @@ std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Mo
                             const std::vector<Index>& kept, const std::vector<MatrixXd>& squares,
                             std::span<const std::vector<CandidatePlace>> lists) {
   const auto count = static_cast<Index>(kept.size());
-  const double n = static_cast<double>(fitter.plant().equations());
+  const double n = static_cast<double>(fitter.plant().read_equations());
   std::vector<Reduced> out(lists.size(),
                            {{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0}, 0, {}});
   for (std::size_t r = 0; r < at.systems.size(); ++r) {
@@ -133,7 +133,7 @@ VectorXd step_of(const Reduced& reduced, const Linearised& at, const Model& mode
 
 bool explains_everything(const Fitter& fitter,
                          const std::vector<CandidatePlace>& candidate_places) {
-  return size_of(candidate_places) >= fitter.plant().equations();
+  return size_of(candidate_places) >= fitter.plant().read_equations();
 }
 
 /// Places with as many directions as there are equations explain any misfit: the localisation

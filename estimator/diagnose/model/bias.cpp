@@ -133,9 +133,11 @@ void remove_common(const Plant& plant, Means& means) {
     const Direction along = plant.axes[static_cast<std::size_t>(a)].direction;
     std::vector<Index> alike;
     for (Index b = 0; b < plant.axis_count(); ++b)
-      if (plant.axes[static_cast<std::size_t>(b)].direction == along && !plant.is_force(b))
+      if (plant.axes[static_cast<std::size_t>(b)].direction == along &&
+          plant.axes[static_cast<std::size_t>(b)].horizontal() && !plant.is_force(b))
         alike.push_back(b);
-    if (alike.size() < 3 || plant.is_force(a)) continue;
+    const bool other = plant.is_force(a) || plant.axes[static_cast<std::size_t>(a)].vertical;
+    if (alike.size() < 3 || other) continue;
     for (Index i = 0; i < means.value.rows(); ++i) {
       std::vector<double> values;
       for (const Index b : alike) values.push_back(means.value(i, b));

@@ -49,7 +49,7 @@ std::optional<InitialMotion> initial_motion(const Plant& plant, const Model& mod
   InitialMotion out;
   out.sample = std::max(lead / kOfLead, static_cast<Index>(kTaper * static_cast<double>(size)) + 1);
   if (out.sample >= lead) return std::nullopt;
-  VectorXd place(plant.axis_count()), rate(plant.axis_count());
+  VectorXd place = VectorXd::Zero(plant.building.axes()), rate = place;
   for (Index a = 0; a < plant.axis_count(); ++a) {
     VectorXd reading(size);
     for (Index i = 0; i < size; ++i)

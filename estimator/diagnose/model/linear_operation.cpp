@@ -17,12 +17,13 @@ Eigen::RowVectorXd ground_row(const Plant& plant, int frame) {
   return plant.ground.row(plant.structure.dof(1, frame));
 }
 
-/// Heights h and hinge membership: rows hinges x elements, entry h_i where the hinge turns element
-/// i.
+}  // namespace
+
 MatrixXd hinges(const Plant& plant, const ModelEffect& effect) {
   const Structure& s = plant.structure;
   const bool bending = effect.form == LawForm::bending;
   std::vector<VectorXd> rows;
+  const auto along = static_cast<std::size_t>(effect.place.direction == Direction::x ? 0 : 1);
   const auto add = [&](int frame, int above) {
     VectorXd row = VectorXd::Zero(plant.element_count());
     for (const Element& e : plant.elements)
@@ -36,14 +37,17 @@ MatrixXd hinges(const Plant& plant, const ModelEffect& effect) {
   } else {
     for (int f = 0; f < s.frames(); ++f)
       if (s.direction(f) == effect.place.direction)
-        for (int j = 0; j < s.stories; ++j) add(f, j);
+        for (int j = 0; j < s.stories; ++j) {
+          add(f, j);
+          if (plant.bending[along] > 0)
+            rows.back() *= std::sqrt(plant.bending[along] /
+                                     plant.bending.of_floor(along, static_cast<std::size_t>(j)));
+        }
   }
   MatrixXd out(static_cast<Index>(rows.size()), plant.element_count());
   for (std::size_t r = 0; r < rows.size(); ++r) out.row(static_cast<Index>(r)) = rows[r];
   return out;
 }
-
-}  // namespace
 
 Complex transmissibility(const ModelEffect& resonator, double w) {
   const double wr = 2 * M_PI * resonator.parameters[1].plain();
@@ -52,7 +56,7 @@ Complex transmissibility(const ModelEffect& resonator, double w) {
 }
 
 LinearOperation::LinearOperation(const Plant& plant, const Model& model, const ModelEffect& effect)
-    : rows_(plant.equations()), cols_(plant.axis_count()), effect_(effect) {
+    : rows_(plant.equations()), cols_(plant.building.axes()), effect_(effect) {
   using Factor = Shape::Factor;
   const Structure& s = plant.structure;
   const EffectPlace& place = effect.place;

@@ -7,6 +7,12 @@ namespace framewatch::estimator {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+namespace {
+
+constexpr double kBendingStep = 0.1, kMostBending = 100;  ///< of the design's flexibility
+
+}  // namespace
+
 LawValues ModelEffect::law(std::size_t record) const {
   LawValues out{form, {}, deformation, rate, 1.0};
   for (const LawParameter& parameter : parameters) out.p.push_back(parameter.plain());
@@ -24,6 +30,18 @@ Model initial_model(const Plant& plant) {
   out.clock_s = VectorXd::Zero(plant.axis_count());
   for (Index a = 0; a < plant.axis_count(); ++a)
     out.clock_s[a] = plant.axes[static_cast<std::size_t>(a)].delay;
+  for (const Direction along : {Direction::x, Direction::y}) {
+    const double stiffness = plant.bending[along == Direction::x ? 0 : 1];
+    if (!(stiffness > 0)) continue;
+    ModelEffect bending;
+    bending.form = LawForm::bending;
+    bending.place.kind = PlaceKind::building;
+    bending.place.direction = along;
+    bending.parameters = {
+        bounded_parameter(1 / stiffness, kBendingStep / stiffness, 0, kMostBending / stiffness)};
+    bending.parameters[0].sigma = bending.parameters[0].centre = 1 / stiffness;
+    out.effects.push_back(bending);
+  }
   return out;
 }
 

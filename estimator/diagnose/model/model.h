@@ -37,7 +37,8 @@ struct Model {
   std::vector<int> free_gain, free_clock;
 };
 
-/// The design without effects, masses and gains as declared, delays as configured.
+/// The design without effects but the bending of its frames, masses and gains as declared, delays
+/// as configured.
 Model initial_model(const Plant& plant);
 
 /// Index in theta of the stiffness that a frame or panel place names.

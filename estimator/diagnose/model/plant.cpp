@@ -1,8 +1,10 @@
 #include "estimator/diagnose/model/plant.h"
 
-#include "estimator/structure/natural_frequencies.h"
-
+#include <algorithm>
 #include <utility>
+
+#include "estimator/diagnose/model/partial_plant.h"
+#include "estimator/structure/natural_frequencies.h"
 
 namespace framewatch::estimator {
 
@@ -49,13 +51,14 @@ Plant::Plant(const Structure& s, const std::vector<SensorAxis>& sensors, VectorX
   motion = mass.cwiseInverse().asDiagonal() * building.mass;
   push = MatrixXd::Zero(building.equations(), building.axes());
   ground = MatrixXd::Zero(s.degrees_of_freedom(), building.axes());
-  for (const Element& e : elements) {
-    if (e.frame < 0 || e.story != 1) continue;
-    const VectorXd share =
-        building.act.col(e.stiffness).transpose() * motion - building.sense.row(e.stiffness);
-    for (int story = 1; story <= s.stories; ++story)
-      ground.row(s.dof(story, e.frame)) = share.transpose();
-  }
+  // Of every story upward: a base that rocks moves a floor the more the higher it lies.
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f) {
+      const int at = table.frame_stiffness(story, f);
+      ground.row(s.dof(story, f)) =
+          building.act.col(at).transpose() * motion - building.sense.row(at);
+      if (story > 1) ground.row(s.dof(story, f)) += ground.row(s.dof(story - 1, f));
+    }
 }
 
 Plant with_force_axis(const Plant& plant, const SensorAxis& axis) {
@@ -84,9 +87,18 @@ Plant with_force_axis(const Plant& plant, const SensorAxis& axis) {
 }
 
 std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
-                                const VectorXd& design, double rate_hz) {
+                                const VectorXd& design, double rate_hz,
+                                const BendingStiffness& bending) {
   const ParameterTable table(structure);
   const double highest_hz = natural_frequencies_hz(structure, table, design).back();
+  const bool at_places =  // verticals are
+      std::any_of(axes.begin(), axes.end(), [](const SensorAxis& a) { return a.plan.has_value(); });
+  const auto partial = [&] {
+    auto out = partial_plant(structure, axes, design, bending, rate_hz);
+    if (out) out->highest_hz = highest_hz;
+    return out;
+  };
+  if (at_places || has_force(axes) || bending.any()) return partial();
   Structure flexible = structure;
   flexible.floor = FloorModel::flexible;
   const ParameterTable all(flexible);
@@ -100,7 +112,7 @@ std::optional<Plant> make_plant(const Structure& structure, const std::vector<Se
     }
   }
   auto building = measured_building(structure, table, axes, rate_hz);
-  if (!building) return std::nullopt;
+  if (!building) return partial();
   Plant out(structure, axes, design, std::move(*building));
   out.highest_hz = highest_hz;
   return out;

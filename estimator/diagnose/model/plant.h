@@ -6,12 +6,18 @@
 #include <Eigen/Core>
 
 #include "estimator/refine/measured_building.h"
+#include "estimator/structure/bending_stiffness.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
+
+/// Frames' stories that keep their shares of the design: one stiffness and one damping factor.
+struct TiedStories {
+  std::vector<int> elements;  ///< in theta, the lowest story first
+};
 
 /// The building under diagnosis: its equations of motion in terms of the sensor axes, and its
 /// design parameters. One equation per coordinate (degree of freedom; of rigid floors: see
@@ -39,10 +45,19 @@ struct Plant {
   Eigen::MatrixXd push;
   /// Component test with prescribed motion and measured force: the model's output is the force.
   bool prescribed = false;
+  /// Motions of the coordinates that no axis reads, orthonormal columns, and what completes them:
+  /// coordinates x motions. They are the columns of the building's `mass` and `sense`, and of
+  /// `motion`, behind those of the axes, and follow from the axes' by the equations of motion.
+  /// Without columns where the axes read all.
+  Eigen::MatrixXd unread, read;
+  std::vector<TiedStories> groups;  ///< empty: every element has factors of its own
+  BendingStiffness bending;         ///< of the design
 
   Eigen::Index equations() const { return building.equations(); }
   Eigen::Index element_count() const { return building.elements(); }
-  Eigen::Index axis_count() const { return building.axes(); }
+  Eigen::Index axis_count() const { return building.axes() - unread.cols(); }
+  /// Equations that are left when the motions that no axis reads are eliminated.
+  Eigen::Index read_equations() const { return equations() - unread.cols(); }
   /// Whether a fit's work must be saved: docs/diagnosis.md, "Large buildings".
   bool is_large() const {
     constexpr Eigen::Index kLarge = 40;  // equations
@@ -59,9 +74,11 @@ struct Plant {
 /// that of the frame and story of `axis`.
 Plant with_force_axis(const Plant& plant, const SensorAxis& axis);
 
-/// design: theta order of `structure`. Empty when the equations need a motion that no axis
-/// measures.
+/// design: theta order of `structure`. Where axes stand at places in plan or floors have none, the
+/// plant of partial_plant(). Empty when the base is not measured in a direction that is measured
+/// above it.
 std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
-                                const Eigen::VectorXd& design, double rate_hz);
+                                const Eigen::VectorXd& design, double rate_hz,
+                                const BendingStiffness& bending = {});
 
 }  // namespace framewatch::estimator

@@ -82,6 +82,7 @@ void add_axis_proposals(const Fitter& fitter, const Localisation& place,
   for (std::size_t other = 0; other < plant.axes.size(); ++other) {
     const SensorAxis& b = plant.axes[other];
     if (b.story != a.story || b.direction == a.direction) continue;
+    if (!a.horizontal() || !b.horizontal()) continue;
     ModelEffect e;
     e.form = LawForm::misaligned;
     e.place = here;

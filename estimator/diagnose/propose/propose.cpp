@@ -9,6 +9,7 @@
 #include "estimator/diagnose/propose/element_proposals.h"
 #include "estimator/diagnose/propose/node_proposals.h"
 #include "estimator/diagnose/propose/scalar_fit.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -30,14 +31,30 @@ void add_masses(const Plant& plant, const Localisation& place, std::vector<Propo
   out.push_back(with_effect(place, e, EffectKind::extra_mass));
 }
 
+/// The flexibility of rotations that stores a twentieth of what the elements store under their
+/// floors' inertia.
+double small_flexibility(const Plant& plant, const Model& model, const ModelEffect& effect) {
+  constexpr double kShare = 0.05;
+  const Structure& s = plant.structure;
+  const Eigen::MatrixXd& act = plant.building.act;
+  const Eigen::VectorXd k = model.theta.head(plant.element_count());
+  Eigen::VectorXd along = Eigen::VectorXd::Zero(s.degrees_of_freedom());
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f)
+      if (s.direction(f) == effect.place.direction) along[s.dof(story, f)] = s.frame_mass(story, f);
+  const Eigen::VectorXd load = plant.constraint.transpose() * along;
+  const Eigen::MatrixXd stiffness = act * k.asDiagonal() * act.transpose();
+  const Eigen::VectorXd d = act.transpose() * Ldlt(stiffness).solve(load);
+  const Eigen::VectorXd force = k.cwiseProduct(d);
+  return kShare * force.dot(d) / (hinges(plant, effect) * force).squaredNorm();
+}
+
 void add_rotations(const Plant& plant, const Localisation& place, std::vector<Proposal>& out) {
-  const double k = plant.design.head(plant.table.panel_stiffness(1, 0)).mean();
-  const double h = plant.structure.story_height[0];
-  const double flexibility = 0.05 / (k * h * h * plant.structure.frames());
   for (const LawForm form : {LawForm::rocking, LawForm::bending}) {
     ModelEffect e;
     e.form = form;
     e.place = place.candidate_places.front().place;
+    const double flexibility = small_flexibility(plant, place.model, e);
     e.parameters = {bounded_parameter(flexibility, 0.1 * flexibility, 0, 1e15)};
     out.push_back(with_effect(
         place, e, form == LawForm::rocking ? EffectKind::base_rocking : EffectKind::frame_bending));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/numeric/complex.h"
 #include "estimator/numeric/kernels.h"
 
 namespace framewatch::estimator {
@@ -10,16 +11,18 @@ namespace framewatch::estimator {
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
+using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr Index kEndTerms = 4;
 constexpr Index kSmall = 24;  ///< equations below which the kernels do not pay
 
 Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
-                 std::vector<HiddenOscillator> hidden)
+                 std::vector<HiddenOscillator> hidden, MatrixXd read)
     : whitener_(std::move(whitener)),
       relative_(w / std::sqrt(w[0] * w[w.size() - 1])),
-      hidden_(std::move(hidden)) {
+      hidden_(std::move(hidden)),
+      read_(std::move(read)) {
   const Index n = equations();
   scale_ = VectorXd::Ones(kEndTerms * n + 2 * static_cast<Index>(hidden_.size()));
   RowMatrix sum = RowMatrix::Zero(ends(), ends());
@@ -37,8 +40,18 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
   scale_ = sum.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
   square_ = scale_.asDiagonal() * sum * scale_.asDiagonal();
   MatrixXd regular = square_;
-  regular.diagonal().array() += 1e-12;
+  // End terms of motions that no axis reads are nearly alike far from their frequencies.
+  regular.diagonal().array() += read_.size() > 0 ? 1e-10 : 1e-12;
   factor_ = Ldlt(regular);
+}
+
+VectorXcd Weights::forces_of(Index bin, const VectorXcd& rows) const {
+  const MatrixXcd& w = whitener(bin);
+  if (read_.size() == 0) return w.triangularView<Eigen::Lower>().solve(rows);
+  const Index count = read_.cols();
+  const MatrixXcd own = w.topRows(count) * read_.cast<Complex>();
+  return read_.cast<Complex>() *
+         own.triangularView<Eigen::Lower>().solve(VectorXcd(rows.head(count)));
 }
 
 MatrixXcd Weights::metric(Index bin) const {
@@ -61,8 +74,9 @@ void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const 
   const MatrixXcd& w = whitener(bin);
   const Index n = w.rows();
   out.setZero(2 * n, padded(static_cast<int>(2 * n)));
+  const bool triangular = read_.size() == 0;
   for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j <= i; ++j) {
+    for (Index j = 0; j < (triangular ? i + 1 : n); ++j) {
       const Index row = transposed ? j : i, column = transposed ? i : j;
       out(row, column) = w(i, j).real();
       out(n + row, n + column) = -w(i, j).real();

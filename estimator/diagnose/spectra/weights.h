@@ -21,15 +21,19 @@ struct HiddenOscillator {
 /// equation, bin by bin.
 class Weights {
  public:
-  /// whitener: inverse of L of every bin, L L^H = N D S D^H. w: rad/s of the bins.
+  /// whitener: inverse of L of every bin, L L^H = N D S D^H. w: rad/s of the bins. read: of
+  /// whiteners of motions that not all are read (ReadMotions); empty where all are.
   Weights(std::vector<Eigen::MatrixXcd> whitener, const Eigen::VectorXd& w,
-          std::vector<HiddenOscillator> hidden);
+          std::vector<HiddenOscillator> hidden, Eigen::MatrixXd read = {});
 
   Eigen::Index bins() const { return static_cast<Eigen::Index>(whitener_.size()); }
   Eigen::Index equations() const { return whitener_.front().rows(); }
   const Eigen::MatrixXcd& whitener(Eigen::Index bin) const {
     return whitener_[static_cast<std::size_t>(bin)];
   }
+
+  /// Forces on the equations whose whitened rows in a bin, complex, are `rows`.
+  Eigen::VectorXcd forces_of(Eigen::Index bin, const Eigen::VectorXcd& rows) const;
 
   /// Inverse of the equations' noise covariance in a bin: whitener^H whitener.
   Eigen::MatrixXcd metric(Eigen::Index bin) const;
@@ -57,6 +61,7 @@ class Weights {
   std::vector<Eigen::MatrixXcd> whitener_;
   Eigen::VectorXd relative_;  ///< frequency of every bin over the band's middle
   std::vector<HiddenOscillator> hidden_;
+  Eigen::MatrixXd read_;
   Eigen::VectorXd scale_;  ///< of the columns
   Eigen::MatrixXd square_;
   Ldlt factor_;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "estimator/numeric/complex.h"
 #include "estimator/numeric/kernels.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -81,6 +83,33 @@ std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operatio
       out.push_back(matrix.lower_triangle(k));
       if (!out.back().allFinite()) return {};
     }
+  }
+  return out;
+}
+
+std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operation,
+                                 const MatrixXd& noise, const MatrixXd& pushed,
+                                 const ReadMotions& motions) {
+  const Index n = motions.unread.rows(), axes = noise.rows(), hidden = motions.unread.cols();
+  std::vector<MatrixXcd> out;
+  for (Index b = 0; b < noise.cols(); ++b) {
+    const MatrixXcd d = operation(b), of_hidden = d.rightCols(hidden);
+    const MatrixXcd into = motions.read.transpose().cast<Complex>() * of_hidden;
+    const ComplexLu own(MatrixXcd(of_hidden.transpose() * motions.unread.cast<Complex>()));
+    const MatrixXcd left = motions.read.transpose().cast<Complex>() -
+                           own.solve(MatrixXcd(into.transpose())).transpose() *
+                               motions.unread.transpose().cast<Complex>();
+    const MatrixXcd kept = left * d.leftCols(axes);
+    MatrixXcd covariance = kept * noise.col(b).asDiagonal() * kept.adjoint();
+    if (pushed.size() > 0) {
+      const double mean = covariance.diagonal().real().mean();
+      covariance += mean * left * pushed.cast<Complex>() * left.adjoint();
+    }
+    const ComplexCholesky factor(covariance);
+    if (!factor.good()) return {};
+    out.push_back(MatrixXcd::Zero(n, n));
+    out.back().topRows(n - hidden) = factor.whitened(left);
+    if (!out.back().allFinite()) return {};
   }
   return out;
 }

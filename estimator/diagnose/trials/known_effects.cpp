@@ -27,7 +27,7 @@ void set_scales(const Plant& plant, const std::vector<RecordSegment>& segments, 
   e.deformation = e.rate = 1e-12;
   for (const LawPort& port : law_ports(plant, initial_model(plant), e))
     for (const RecordSegment& s : segments) {
-      const VectorXcd q = (port.sense * s.spectrum).transpose();
+      const VectorXcd q = (port.sense.leftCols(plant.axis_count()) * s.spectrum).transpose();
       const VectorXcd d = -q.array() / s.w.array().square();
       const VectorXcd v = d.array() * s.w.array() * std::complex<double>(0, 1);
       e.deformation = std::max(e.deformation, signal_of(d, s, 1).cwiseAbs().maxCoeff());

@@ -1,12 +1,23 @@
 #include "estimator/diagnose/trials/round_trials.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
+
+/// Frames that bend turn at every floor. Where not every floor is read, a force at the top explains
+/// more of that than a moment at the base: the latter is tried all the same.
+void add_moments(const std::vector<Localisation>& all, std::vector<Localisation>& places) {
+  const auto is_moment = [](const Localisation& place) {
+    return place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
+  };
+  if (std::any_of(places.begin(), places.end(), is_moment)) return;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(places), is_moment);
+}
 
 }  // namespace
 
@@ -15,7 +26,7 @@ bool is_element(const Localisation& place) {
 }
 
 double bound_of(const Plant& plant, const Localisation& places) {
-  const auto equations = static_cast<double>(plant.equations());
+  const auto equations = static_cast<double>(plant.read_equations());
   double unseen = 0;
   for (const CandidatePlace& s : places.candidate_places) unseen += static_cast<double>(s.size());
   return places.misfit * equations / std::max(equations - unseen, 1.0);
@@ -41,6 +52,7 @@ std::vector<Trial> trials_of_places(const TrialContext& context, const Located& 
   const std::vector<Localisation> more =
       as_likely(context.fitter, context.now, located, context.parallel);
   places.insert(places.end(), more.begin(), more.end());
+  if (context.fitter.plant().unread.cols() > 0) add_moments(located.places, places);
   return try_places(context, places);
 }
 

@@ -14,14 +14,14 @@ Deformations::Deformations(const Structure& s, const FloorLayout& layout,
     return place_[static_cast<std::size_t>(floor * frames + frame)];
   };
   for (std::size_t a = 0; a < axes.size(); ++a) {
-    if (axes[a].is_force) continue;
+    if (!axes[a].horizontal()) continue;
     if (axes[a].frame >= 0) place(axes[a].story, axes[a].frame) = {{static_cast<int>(a), 1.0}};
   }
   for (int f = 0; f < frames; ++f) {
     if (!place(0, f).empty()) continue;
     std::vector<int> own_frame;  // base axes on other frames of this direction
     for (std::size_t a = 0; a < axes.size(); ++a) {
-      if (axes[a].story != 0 || axes[a].is_force) continue;
+      if (axes[a].story != 0 || !axes[a].horizontal()) continue;
       if (axes[a].frame < 0 && axes[a].direction == s.direction(f))
         place(0, f) = {{static_cast<int>(a), 1.0}};
       if (axes[a].frame >= 0 && s.direction(axes[a].frame) == s.direction(f))

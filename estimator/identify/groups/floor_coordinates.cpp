@@ -18,7 +18,7 @@ std::vector<int> axes_at(const std::vector<SensorAxis>& axes,
                          const std::vector<std::uint8_t>& present, int story) {
   std::vector<int> at;
   for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story == story && !axes[a].is_force && present[a] != 0)
+    if (axes[a].story == story && axes[a].horizontal() && present[a] != 0)
       at.push_back(static_cast<int>(a));
   return at;
 }
@@ -97,6 +97,34 @@ FloorCoordinates floor_coordinates(const Structure& s, const std::vector<SensorA
   change.rightCols(motions.cols() - out.measured) = basis.rightCols(motions.cols() - out.measured);
   out.frames = motions * change;
   out.from_axes = weights(seen * change.leftCols(out.measured), at, axes.size());
+  return out;
+}
+
+std::array<Eigen::RowVectorXd, 2> base_rotations(const std::vector<SensorAxis>& axes,
+                                                 const std::vector<std::uint8_t>& present) {
+  std::vector<Eigen::Index> at;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (axes[a].vertical && axes[a].plan && present[a] != 0)
+      at.push_back(static_cast<Eigen::Index>(a));
+  const auto count = static_cast<Eigen::Index>(at.size());
+  // What a unit rotation lifts each axis by, less their mean: the base also moves up as a whole.
+  Eigen::MatrixXd lifted(count, 2);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const PlanPlace& place = *axes[static_cast<std::size_t>(at[static_cast<std::size_t>(i)])].plan;
+    lifted.row(i) << -place.x_m, -place.y_m;
+  }
+  if (count > 0) lifted.rowwise() -= lifted.colwise().mean().eval();
+  const Eigen::Vector2d reach = lifted.colwise().norm();
+  std::vector<Eigen::Index> shown;
+  for (const Eigen::Index d : {0, 1})
+    if (reach[d] > kIndependent * reach.maxCoeff()) shown.push_back(d);
+  std::array<Eigen::RowVectorXd, 2> out;
+  if (shown.empty()) return out;
+  const Eigen::MatrixXd own = lifted(Eigen::all, shown);
+  if (independent_rows(own.transpose()).size() < shown.size()) return out;  // a line across both
+  const Eigen::MatrixXd plane = weights(own, std::vector<int>(at.begin(), at.end()), axes.size());
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    out[static_cast<std::size_t>(shown[i])] = plane.row(static_cast<Eigen::Index>(i));
   return out;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -27,5 +28,11 @@ FloorCoordinates floor_coordinates(const Structure& structure, const std::vector
 /// All of these are measured; what no axis shows is taken as none.
 FloorCoordinates base_coordinates(const Structure& structure, const std::vector<SensorAxis>& axes,
                                   const std::vector<std::uint8_t>& present);
+
+/// Rotation of the base in the vertical planes along x and along y, rad per m of what its vertical
+/// axes read, from the plane through them: rows over all axes, empty where they do not show it. A
+/// rotation r moves a floor at the height h above the base by h r toward +x, +y.
+std::array<Eigen::RowVectorXd, 2> base_rotations(const std::vector<SensorAxis>& axes,
+                                                 const std::vector<std::uint8_t>& present);
 
 }  // namespace framewatch::estimator

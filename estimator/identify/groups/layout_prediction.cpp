@@ -204,8 +204,9 @@ class Prediction {
     const Index p = table_.size(), dofs = springs_.cols();
     const MatrixXcd by_springs = rows(f, f.motion.transpose() * springs_);
     const MatrixXcd by_masses = rows(f, f.motion.transpose() * masses_);
-    // Base directions are independent of each other, each with this density.
-    for (Index input = 0; input < inputs; ++input) {
+    // Base directions are independent of each other, each with this density; rocking is not
+    // foreseen.
+    for (Index input = 0; input < inputs - building_.rotations; ++input) {
       const Eigen::VectorXcd all = f.motion * motion.col(input);
       const Eigen::VectorXcd stretched = springs_.transpose() * all;
       const Eigen::VectorXcd moving = masses_.transpose() * all;

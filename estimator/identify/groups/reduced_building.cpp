@@ -1,6 +1,7 @@
 #include "estimator/identify/groups/reduced_building.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -28,6 +29,8 @@ struct Coordinates {
   std::vector<FloorCoordinates> floor;  ///< base first
   std::vector<std::vector<int>> index;  ///< of every floor's coordinates
   std::vector<int> forces;              ///< axes of the coordinates behind the base's
+  std::array<Eigen::RowVectorXd, 2> rotation_of_axes;
+  std::array<int, 2> rotation{-1, -1};  ///< coordinates behind the forces'; -1: not known
   int inputs = 0, measured = 0, total = 0;
 };
 
@@ -40,6 +43,9 @@ Coordinates number_coordinates(const Structure& s, const std::vector<SensorAxis>
   for (std::size_t a = 0; a < axes.size(); ++a)
     if (axes[a].is_force && present[a] != 0) c.forces.push_back(static_cast<int>(a));
   c.inputs = c.floor[0].measured + static_cast<int>(c.forces.size());
+  c.rotation_of_axes = base_rotations(axes, present);
+  for (std::size_t along = 0; along < c.rotation.size(); ++along)
+    if (c.rotation_of_axes[along].size() > 0) c.rotation[along] = c.inputs++;
   c.index.resize(c.floor.size());
   for (const bool inner : {false, true}) {
     for (std::size_t l = 0; l < c.floor.size(); ++l) {
@@ -86,6 +92,8 @@ std::vector<Spring> springs(const Structure& s, const ParameterTable& table,
       add_motion(c, floor, c.floor[floor].frames.row(e.frame), 1, spring);
       add_motion(c, floor - 1, c.floor[floor - 1].frames.row(e.frame), -1, spring);
       const double height = s.story_height[floor - 1];
+      const int rocking = c.rotation[s.direction(e.frame) == Direction::x ? 0 : 1];
+      if (rocking >= 0) spring.deformation.emplace_back(rocking, -height);
       const int hinge = first_hinge[static_cast<std::size_t>(e.frame)];
       for (int j = 0; hinge >= 0 && j < e.story; ++j)
         spring.deformation.emplace_back(hinge + j, -height);
@@ -274,6 +282,11 @@ ReducedBuilding reduced_building(const Structure& s, const std::vector<SensorAxi
     if (l > 0) continue;
     out.from_axes.middleRows(row, c.inputs - row).setZero();
     for (const int axis : c.forces) out.from_axes(row++, axis) = 1;
+    for (const Eigen::RowVectorXd& of_axes : c.rotation_of_axes) {
+      if (of_axes.size() == 0) continue;
+      out.from_axes.row(row++) = of_axes;
+      ++out.rotations;
+    }
   }
   out.floors.push_back(row);
   const Eigen::Index size = basis.shapes.cols();
@@ -316,8 +329,8 @@ bool shows_groups(const Structure& s, const std::vector<SensorAxis>& axes,
   for (std::size_t a = 0; a < axes.size(); ++a) {
     if (axes[a].is_force && present[a] == 0) return false;
     driven = driven || axes[a].is_force;
-    base_has_axes = base_has_axes || axes[a].story == 0;
-    if (present[a] == 0 || axes[a].is_force) continue;
+    base_has_axes = base_has_axes || (axes[a].story == 0 && axes[a].horizontal());
+    if (present[a] == 0 || !axes[a].horizontal()) continue;
     const Direction along = axes[a].frame >= 0 ? s.direction(axes[a].frame) : axes[a].direction;
     (axes[a].story == 0 ? base : above)[along == Direction::x ? 0 : 1] = true;
   }

@@ -13,12 +13,14 @@
 namespace framewatch::estimator {
 
 /// A linear building in coordinates of which the first are measured: those of the base, of which
-/// nothing else is asked, measured forces, then those of the measured floors, then inner ones. A
-/// force is a coordinate whose "acceleration" it is: less its lever on the others in the mass
-/// matrix. Absolute motion. Its stiffness is K = constant + sum over parameters of x_p K_p, damping
-/// likewise, with x_p = 1 at the design. docs/equations.md, groups of stories.
+/// nothing else is asked, measured forces, rotations of the base in vertical planes, rad/s^2, then
+/// those of the measured floors, then inner ones. A force is a coordinate whose "acceleration" it
+/// is: less its lever on the others in the mass matrix. Absolute motion. Its stiffness is K =
+/// constant + sum over parameters of x_p K_p, damping likewise, with x_p = 1 at the design.
+/// docs/equations.md, groups of stories.
 struct ReducedBuilding {
-  int inputs = 0;             ///< coordinates of the base, and forces
+  int inputs = 0;             ///< coordinates of the base, forces, rotations of the base
+  int rotations = 0;          ///< of the inputs, the last ones (base_rotations())
   int measured = 0;           ///< coordinates that are measured, inputs among them
   Eigen::MatrixXd from_axes;  ///< measured x axes
   /// Where the measured coordinates of each measured floor begin, behind the inputs; then their

@@ -14,6 +14,7 @@
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_log.h"
 #include "tests/support/data.h"
+#include "tests/support/station_files.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {
@@ -50,6 +51,24 @@ TEST_F(Convert, CsvToLogAndBackIsTheSameText) {
   ASSERT_EQ(convert(from({path("rec.lcmlog")}, "back.csv")), 0);
   EXPECT_EQ(test::read_file(path("back.csv")), text);
   EXPECT_EQ(directory_.names(), (std::vector<std::string>{"back.csv", "rec.csv", "rec.lcmlog"}));
+}
+
+TEST_F(Convert, SaysWhatOfTheHeadersItDoesNotKeep) {
+  test::write_file(path("station.v1"), test::cosmos());
+  test::write_file(path("plain.csv"), "time_s,a\n0,1\n0.5,2\n");
+  const auto said = [&](const std::string& in, const std::string& out) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(convert(from({path(in)}, out)), 0);
+    return testing::internal::GetCapturedStderr();
+  };
+  const std::string of_log = said("station.v1", "station.lcmlog"),
+                    of_table = said("station.v1", "station.csv");
+  EXPECT_NE(of_log.find("does not keep what the headers say of NP.8040.01.HNE: name"),
+            std::string::npos)
+      << of_log;
+  EXPECT_NE(of_table.find("NP.8040.01.HNE: direction, place and unit"), std::string::npos)
+      << of_table;
+  EXPECT_EQ(said("plain.csv", "plain.lcmlog").find("headers"), std::string::npos);
 }
 
 TEST_F(Convert, StartsAtTheSensorTimeAskedFor) {

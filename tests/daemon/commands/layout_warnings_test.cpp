@@ -54,6 +54,28 @@ TEST(LayoutWarnings, AGoodLayoutHasNone) {
   EXPECT_EQ(all_of(r).find("roof"), std::string::npos) << all_of(r);
 }
 
+TEST(LayoutWarnings, TallOrSlenderFramesThatDoNotBend) {
+  const std::string channels = level(0) + level(5) + level(10);
+  const auto warned = [&](const std::string& what, const std::string& by, const char* direction) {
+    const CheckReport r =
+        make_check_report(test::good(test::replaced(building(channels), what, by)), 0);
+    return warns(r, std::string("frames parallel to ") + direction + " of");
+  };
+  EXPECT_TRUE(warned("name", "name", "x"));
+  EXPECT_TRUE(warned("name", "name", "y"));
+  EXPECT_FALSE(warned("[structure.design]", "[structure.design]\nkrx_nmprad = 3e12", "x"));
+  EXPECT_TRUE(warned("[structure.design]", "[structure.design]\nkrx_nmprad = 3e12", "y"));
+  // Nine stories of 35 m in all: by their shape, along x alone of which the width is known.
+  const std::string lower = test::replaced(
+      test::replaced(building(level(0) + level(9)), "stories = 10", "stories = 9"), "20.0", "8.0");
+  const CheckReport r =
+      make_check_report(test::good(test::replaced(test::replaced(lower, "x_m = 20", "x_m = 8"),
+                                                  "x_m = 20", "x_m = 8")),
+                        0);
+  EXPECT_TRUE(warns(r, "frames parallel to x of 9 stories, 31.5 m high and 8 m wide")) << all_of(r);
+  EXPECT_FALSE(warns(r, "frames parallel to y of"));
+}
+
 TEST(LayoutWarnings, ADirectionThatNothingMeasures) {
   const std::string x = "azimuth_deg = 90";
   const CheckReport r = checked(channel("b", 0, x) + channel("m", 5, x) + channel("t", 10, x));

@@ -75,6 +75,54 @@ TEST_F(EventReportTest, IsYellowOrRedByDrift) {
   EXPECT_FALSE(green_and_past(event_of(report_, *config_), INT64_MAX));
 }
 
+TEST_F(EventReportTest, SaysWhichDriftsAreComputed) {
+  EXPECT_EQ(event_report_html(report_, *config_).find("computed"), std::string::npos);
+  std::vector<ConfigProblem> problems;
+  const auto partial = parse_config("six.toml", R"([structure]
+stories = 6
+frames_x = ["y1"]
+story_height_m = 3.5
+node_mass_kg = 300e3
+[structure.design]
+kx_npm = 400e6
+damping_ratio = 0.02
+[event_report]
+directory = "reports"
+[[channel]]
+name = "base"
+story = 0
+direction = "x"
+[[channel]]
+name = "F1"
+story = 1
+frame = "y1"
+[[channel]]
+name = "F3"
+story = 3
+frame = "y1"
+check = true
+[[channel]]
+name = "roof"
+story = 6
+frame = "y1"
+)",
+                                    problems);
+  ASSERT_TRUE(partial);
+  report_.shaking.peak.accel_mps2.assign(4, 1.5);
+  report_.shaking.peak.drift_m.assign(6, 0.003);
+  report_.shaking.peak.drift_m[3] = 0.03;  // story 4
+  report_.shaking.stiffness.clear();
+  report_.shaking.stiffness.resize(
+      static_cast<std::size_t>(partial->pipeline.parameters().elements()));
+  report_.axes.resize(4);
+  const std::string html = event_report_html(report_, *partial);
+  EXPECT_NE(html.find("that drift is"), std::string::npos);
+  EXPECT_NE(judge(report_, *partial).reasons.front().find("(computed, limit"), std::string::npos);
+  const auto told = nlohmann::json::parse(event_report_json(report_, *partial));
+  for (const auto& story : told["stories"])
+    EXPECT_EQ(story["drift_is"], story["story"] == 1 ? "measured" : "computed") << story;
+}
+
 TEST_F(EventReportTest, IsYellowOrRedByALossThatIsCertain) {
   report_.shaking.stiffness[1].after.value = 900;
   EXPECT_EQ(verdict().color, EventColor::yellow);

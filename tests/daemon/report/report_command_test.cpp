@@ -1,3 +1,4 @@
+#include "daemon/estimates/parameter_summary.h"
 #include "daemon/report/report_command.h"
 
 #include <unistd.h>

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "daemon/estimates/parameter_summary.h"
 #include "daemon/replay/replay_command.h"
 #include "daemon/report/report_command.h"
 #include "daemon/report/session_report.h"
@@ -136,6 +137,38 @@ TEST(SessionVerdict, ModesArePairedByShape) {
           << "mode " << mode << ": " << t.measured_mode_hz << " Hz, model " << t.model_mode_hz;
     }
   }
+}
+
+/// The changed session turned round: the frame is stiffer after the change. weaker: the errors of
+/// the windows after it, times these.
+SessionReport grown(double weaker) {
+  SessionReport r = changed().report;
+  const std::size_t p = changed().index(kChanged);
+  const std::int64_t at_us = r.changes.front().since_us;
+  for (std::size_t w = 0; w < r.estimates.windows(); ++w) {
+    if (r.estimates.end_us[w] <= at_us) continue;
+    r.estimates.value[p][w] *= r.estimates.start_us[w] >= at_us ? 1 / (1 - kLost) / (1 - kLost) : 1;
+    r.estimates.std_error[p][w] *= weaker;
+  }
+  r.changes = session_changes(r.estimates);
+  r.recoveries = take_recoveries(r.estimates, r.changes);
+  return r;
+}
+
+TEST(SessionVerdict, WhatGrowsWhileTheMotionDiesIsRecoveryAndNoHeadline) {
+  const SessionReport r = grown(2);
+  ASSERT_FALSE(r.recoveries.empty());
+  EXPECT_TRUE(r.changes.empty());
+  EXPECT_EQ(verdict_sentence(r).find("stiffer"), std::string::npos) << verdict_sentence(r);
+  EXPECT_NE(verdict_section(r).find("Frame y2 of story 1 by 1"), std::string::npos);
+  EXPECT_NE(verdict_section(r).find("no change of the building"), std::string::npos);
+}
+
+TEST(SessionVerdict, WhatGrowsUnderMotionAsStrongIsAChange) {
+  const SessionReport r = grown(1);
+  EXPECT_TRUE(r.recoveries.empty());
+  EXPECT_NE(verdict_sentence(r).find("has become stiffer by 1"), std::string::npos)
+      << verdict_sentence(r);
 }
 
 TEST(SessionVerdict, OfABuildingThatStaysTheSameSaysSo) {

@@ -4,4 +4,5 @@ the base is taken to rest
 kx_2
 kx_3
 converged
+Nothing is missing
 '

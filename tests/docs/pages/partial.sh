@@ -4,4 +4,5 @@ advice +with channels on floor
 kx_1to3
 converged
 kx_4to6
+Nothing is missing
 '

@@ -39,6 +39,29 @@ struct Some {
   }
 };
 
+TEST(Weights, ForcesAreThoseOfTheirWhitenedRows) {
+  constexpr double kRounding = 1e-10;
+  const Some some;
+  MatrixXd read = MatrixXd::Zero(kEquations, 2);
+  read << 0.8, 0, 0.6, 0, 0, 1;
+  // Rows of zeros stand for what is eliminated.
+  std::vector<MatrixXcd> eliminated;
+  for (const MatrixXcd& w : some.whitener) {
+    eliminated.push_back(MatrixXcd::Zero(kEquations, kEquations));
+    eliminated.back().topRows(2) = w.topLeftCorner(2, 2) * read.transpose().cast<Complex>().eval();
+    eliminated.back().topRows(2) += MatrixXcd::Ones(2, 1) * Eigen::RowVector3cd(0.6, -0.8, 0);
+  }
+  const Weights all(some.whitener, some.w, {}), of_some(eliminated, some.w, {}, read);
+  Eigen::VectorXcd rows(kEquations);
+  rows << Complex(1, 2), Complex(-3, 0.5), Complex(0, 1);
+  for (const Index b : {0, 7, 39}) {
+    EXPECT_LT((all.whitener(b) * all.forces_of(b, rows) - rows).norm(), kRounding);
+    const Eigen::VectorXcd forces = of_some.forces_of(b, rows);
+    EXPECT_LT((of_some.whitener(b) * forces - rows).head(2).norm(), kRounding);
+    EXPECT_LT(std::abs(Complex(0.6 * forces[0] - 0.8 * forces[1])), kRounding);
+  }
+}
+
 /// The end terms' columns as docs/equations.md (32) has them, each of length one.
 MatrixXd columns_of_ends(const Some& some) {
   MatrixXd out(2 * kEquations * kBins, 4 * kEquations + 2);

@@ -98,6 +98,26 @@ TEST(Whiteners, PushedForcesAddTheirCovariance) {
   }
 }
 
+TEST(Whiteners, UnreadMotionsAreEliminated) {
+  constexpr Index kHidden = 2;
+  Equations e(9, 4, kAxes + kHidden);
+  e.noise = e.noise.topRows(kAxes).eval();
+  MatrixXd basis = MatrixXd::Identity(4, 4);
+  basis.topLeftCorner(2, 2) << 0.8, 0.6, -0.6, 0.8;
+  const ReadMotions motions{basis.leftCols(2), basis.rightCols(2)};
+  const std::vector<MatrixXcd> all = whiteners(e.of_bin(), e.noise, {}, motions);
+  ASSERT_EQ(all.size(), 9U);
+  for (Index b = 0; b < 9; ++b) {
+    const auto at = static_cast<std::size_t>(b);
+    const MatrixXcd hidden = e.operation[at].rightCols(kHidden), w = all[at];
+    EXPECT_EQ(w.bottomRows(kHidden).norm(), 0);
+    EXPECT_LT((w * hidden).norm(), kRounding * w.norm() * hidden.norm());
+    const MatrixXcd d = e.operation[at].leftCols(kAxes);
+    const MatrixXcd kept = w.topRows(2) * d * e.noise.col(b).cwiseSqrt().asDiagonal();
+    EXPECT_LT((kept * kept.adjoint() - MatrixXcd::Identity(2, 2)).norm(), kRounding);
+  }
+}
+
 TEST(Whiteners, ThereAreNoneWhereAnEquationHasNoNoise) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (const Index bad : {0, 8, 10}) {
