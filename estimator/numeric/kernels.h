@@ -89,13 +89,15 @@ struct Table {
                          double entering);
 
   /// covariance = sum_a noise_a d_a d_a^H at kBins frequencies, its lower triangle. d: n x axes and
-  /// covariance: n x n complex numbers, row-major; noise: axes x kBins.
-  void (*noise_covariance)(const double* d, const double* noise, int n, int axes,
-                           double* covariance);
+  /// covariance: n x n complex numbers, row-major; noise: axes x kBins. d is zero before first[row]
+  /// and from end[row] on.
+  void (*noise_covariance)(const double* d, const double* noise, const int* first, const int* end,
+                           int n, int axes, double* covariance);
 
   /// In place, n x n complex numbers at kBins frequencies, lower triangles: a Hermitian matrix
   /// becomes the inverse of its Cholesky factor. Not finite where it is not positive definite.
-  void (*inverse_cholesky)(double* matrix, int n);
+  /// first: of every row the column before which the matrix is zero.
+  void (*inverse_cholesky)(double* matrix, const int* first, int n);
 };
 
 /// Null where the machine or the compiler does not have the instruction set.

@@ -33,7 +33,12 @@ inline FRAMEWATCH_INLINE void subtract_conjugate(Complex<Vector>& sum, const Com
   sum.im += a.re * b.im;
 }
 
-void noise_covariance(const double* d, const double* noise, int n, int axes, double* covariance) {
+inline int larger(int a, int b) {
+  return a > b ? a : b;
+}
+
+void noise_covariance(const double* d, const double* noise, const int* first, const int* end, int n,
+                      int axes, double* covariance) {
   constexpr int kNumber = 2 * kBins;
   for_lanes(0, kBins, [&](auto of, int bin) FRAMEWATCH_INLINE {
     using Vector = decltype(of);
@@ -43,7 +48,8 @@ void noise_covariance(const double* d, const double* noise, int n, int axes, dou
       for (int j = 0; j <= i; ++j) {
         Complex<Vector> sum{}, a, b;
         typename Vector::Type variance;
-        for (int axis = 0; axis < axes; ++axis) {
+        const int last = end[i] < end[j] ? end[i] : end[j];
+        for (int axis = larger(first[i], first[j]); axis < last; ++axis) {
           load<Vector>(a, from + (i * axes + axis) * kNumber);
           load<Vector>(b, from + (j * axes + axis) * kNumber);
           load<Vector>(variance, noise + axis * kBins + bin);
@@ -66,13 +72,13 @@ inline FRAMEWATCH_INLINE void inverse_root(typename Vector::Type& v) {
 }
 
 template <typename Vector>
-inline FRAMEWATCH_INLINE void factorise(double* matrix, int n) {
+inline FRAMEWATCH_INLINE void factorise(double* matrix, const int* first, int n) {
   constexpr int kNumber = 2 * kBins;
   const auto at = [&](int i, int j) FRAMEWATCH_INLINE { return matrix + (i * n + j) * kNumber; };
   Complex<Vector> sum, a, b;
   for (int j = 0; j < n; ++j) {
     load<Vector>(sum, at(j, j));
-    for (int k = 0; k < j; ++k) {
+    for (int k = first[j]; k < j; ++k) {
       load<Vector>(a, at(j, k));
       subtract_conjugate(sum, a, a);
     }
@@ -80,8 +86,9 @@ inline FRAMEWATCH_INLINE void factorise(double* matrix, int n) {
     inverse_root<Vector>(inverse);
     store<Vector>(at(j, j), {inverse, sum.im - sum.im});
     for (int i = j + 1; i < n; ++i) {
+      if (first[i] > j) continue;
       load<Vector>(sum, at(i, j));
-      for (int k = 0; k < j; ++k) {
+      for (int k = larger(first[i], first[j]); k < j; ++k) {
         load<Vector>(a, at(i, k));
         load<Vector>(b, at(j, k));
         subtract_conjugate(sum, a, b);
@@ -95,7 +102,7 @@ inline FRAMEWATCH_INLINE void factorise(double* matrix, int n) {
 
 /// Of a lower triangle whose diagonal, real, is inverted already.
 template <typename Vector>
-inline FRAMEWATCH_INLINE void invert_triangle(double* matrix, int n) {
+inline FRAMEWATCH_INLINE void invert_triangle(double* matrix, const int* first, int n) {
   constexpr int kNumber = 2 * kBins;
   const auto at = [&](int i, int j) FRAMEWATCH_INLINE { return matrix + (i * n + j) * kNumber; };
   Complex<Vector> sum, a, b;
@@ -103,7 +110,7 @@ inline FRAMEWATCH_INLINE void invert_triangle(double* matrix, int n) {
   for (int j = 0; j < n; ++j)
     for (int i = j + 1; i < n; ++i) {
       sum = Complex<Vector>{};
-      for (int k = j; k < i; ++k) {
+      for (int k = larger(j, first[i]); k < i; ++k) {
         load<Vector>(a, at(i, k));
         load<Vector>(b, at(k, j));
         b.im = -b.im;
@@ -116,10 +123,10 @@ inline FRAMEWATCH_INLINE void invert_triangle(double* matrix, int n) {
     }
 }
 
-void inverse_cholesky(double* matrix, int n) {
+void inverse_cholesky(double* matrix, const int* first, int n) {
   for_lanes(0, kBins, [&](auto of, int bin) FRAMEWATCH_INLINE {
-    factorise<decltype(of)>(matrix + bin, n);
-    invert_triangle<decltype(of)>(matrix + bin, n);
+    factorise<decltype(of)>(matrix + bin, first, n);
+    invert_triangle<decltype(of)>(matrix + bin, first, n);
   });
 }
 

@@ -105,6 +105,26 @@ TEST(Practice, IsImportedInTheCataloguesWords) {
   EXPECT_FALSE(import_practice(folder.path("nowhere"), directory, error));
 }
 
+/// A floor of two digits, and of two effects the one that is not a lower stiffness in every record.
+TEST(Practice, TellsWhatThereIsToFind) {
+  FRAMEWATCH_DATA_OR_SKIP(data, "practice/case-009/truth.json");
+  const std::filesystem::path cases = std::filesystem::path(data).parent_path().parent_path();
+  const test::TemporaryDirectory folder;
+  const auto is_right = [&](const std::string& name, const std::string& found) {
+    const std::string directory = folder.path(name);
+    std::string error;
+    EXPECT_TRUE(import_practice((cases / name).string(), directory, error)) << error;
+    std::filesystem::create_directory(directory + "/out");
+    std::ofstream(directory + "/out/diagnosis.json")
+        << R"({"verdict": "explained", "effects": [)" << found << "]}";
+    return score(directory).value().all_right();
+  };
+  EXPECT_TRUE(is_right("case-007", R"({"effect": "tuned_mass_damper", "location":
+      {"kind": "node", "direction": "y", "story": 12, "frame": "x3"}})"));
+  EXPECT_TRUE(is_right("case-032", R"({"effect": "bilinear_hysteresis", "location":
+      {"kind": "frame", "direction": "x", "story": 1, "frame": "y1"}})"));
+}
+
 TEST(StudyScore, JudgesNamePlaceAndGap) {
   const test::TemporaryDirectory folder;
   const std::string directory = folder.path("case");

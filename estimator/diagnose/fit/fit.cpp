@@ -17,14 +17,20 @@ using Eigen::VectorXd;
 
 constexpr double kLongestStep = 0.5;  ///< of a stiffness, relative to the design
 constexpr int kTries = 7;
-/// Misfit, over that when the weights were those of the model, below which a large building's are
-/// made anew: they take longer than a step.
-constexpr double kNewWeights = 0.5;
-
 double total_misfit(const std::vector<Whitened>& systems) {
   double out = 0;
   for (const Whitened& s : systems) out += s.misfit;
   return out;
+}
+
+void store_misfit(const std::vector<Whitened>& systems, double prior, FitResult& out) {
+  out.motion.clear();
+  out.misfit.clear();
+  for (const Whitened& s : systems) {
+    out.motion.push_back(s.motion);
+    out.misfit.push_back(s.misfit);
+  }
+  out.cost = out.total_misfit() + prior;
 }
 
 }  // namespace
@@ -117,13 +123,7 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   FitResult out;
   out.model = start;
   const auto store = [&](const std::vector<Whitened>& systems) {
-    out.motion.clear();
-    out.misfit.clear();
-    for (const Whitened& s : systems) {
-      out.motion.push_back(s.motion);
-      out.misfit.push_back(s.misfit);
-    }
-    out.cost = out.total_misfit() + prior_cost(out.model);
+    store_misfit(systems, prior_cost(out.model), out);
   };
   std::vector<Whitened> now = systems(out.model, motion, options.forcing);
   if (now.empty()) return out;
@@ -134,6 +134,14 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   double weighted = total_misfit(now);  // when the weights were those of the model
   bool own_weights = true;
   for (; out.steps < options.max_steps; ++out.steps) {
+    if (!own_weights && total_misfit(now) < kNearNoise * expected(out.model)) {
+      now = reweighted(out.model, now);
+      if (now.empty()) break;
+      weighted = total_misfit(now);
+      own_weights = true;
+      store(now);
+      best = out;
+    }
     const Linearised at = linearise(out.model, std::move(now), options.through_run);
     NormalEquations equations = normal_equations(at);
     // Within a step the weights stay those of `at`: a wrong model must not reduce its misfit by
@@ -154,10 +162,11 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
       std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems);
       const bool falls =
           !then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before;
-      if (falls && plant_.is_large() && total_misfit(then) > kNewWeights * weighted) {
+      const bool near = at.level < kNearNoise;
+      if (falls && plant_.is_large() && !near && total_misfit(then) > kNewWeights * weighted) {
         now = then;
         own_weights = false;
-      } else if (falls || (!then.empty() && !plant_.is_large() && at.level < kNearNoise)) {
+      } else if (falls || (!then.empty() && near)) {
         now = reweighted(trial, then);
         own_weights = true;
         if (!now.empty()) weighted = total_misfit(now);

@@ -8,6 +8,10 @@
 
 namespace framewatch::estimator {
 
+/// Misfit, over that when the weights were those of the model, below which a large building's are
+/// made anew: they take longer than a step.
+inline constexpr double kNewWeights = 0.5;
+
 struct FitOptions {
   Forcing forcing = Forcing::measured;
   int max_steps = 12;

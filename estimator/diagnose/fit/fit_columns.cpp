@@ -51,10 +51,31 @@ VectorXd parameter_column(const Plant& plant, const Model& model, const RecordSe
     return whiten_axis(system, e.place.channel, (raw - std::sin(b) * other) / std::cos(b) - own);
   }
   const LinearOperation from(plant, model, e), then(plant, moved, to);
-  MatrixXcd change(plant.equations(), system.bins());
-  for (Index b = 0; b < system.bins(); ++b)
-    change.col(b) = (then.at(segment.w[b]) - from.at(segment.w[b])) * system.motion.col(b);
+  MatrixXcd change = MatrixXcd::Zero(plant.equations(), system.bins()), before = change;
+  then.add_times(segment.w, system.motion, false, change);
+  from.add_times(segment.w, system.motion, false, before);
+  change -= before;
   return whiten_rows(system, change);
+}
+
+/// Motions that the linear building's unknowns act on: bins x elements, bins x coordinates, bins x
+/// axes.
+struct Motions {
+  MatrixXcd deformation, inertia, readings;
+};
+
+Motions motions_of(const Plant& plant, const RecordSegment& segment, const Whitened& system) {
+  const MatrixXd real = system.motion.real().transpose(),
+                 imaginary = system.motion.imag().transpose();
+  const auto seen = [&](const MatrixXd& rows) {
+    MatrixXcd out(real.rows(), rows.rows());
+    out.real().noalias() = real * rows.transpose();
+    out.imag().noalias() = imaginary * rows.transpose();
+    return out;
+  };
+  Motions out{seen(plant.building.sense), seen(plant.building.mass), system.motion.transpose()};
+  out.deformation.array().colwise() /= -segment.w.array().square().cast<Complex>();
+  return out;
 }
 
 /// Derivative by an unknown of the linear building or of an axis: a direction times a spectrum.
@@ -64,26 +85,19 @@ struct Acting {
 };
 
 Acting acting(const Plant& plant, const Model& model, const RecordSegment& segment,
-              const Whitened& system, const Unknown& unknown) {
+              const Motions& motions, const Unknown& unknown) {
   const Index i = unknown.index, elements = plant.element_count(), axes = plant.axis_count();
-  const auto w = segment.w.array();
-  const auto motion_of = [&](const MatrixXd& rows, Index row) {
-    return (unknown.scale * rows.row(row) * system.motion).transpose().array().eval();
-  };
+  const Eigen::ArrayXcd rate = kJ * unknown.scale * segment.w.array();
   switch (unknown.kind) {
-    case Kind::theta: {
-      const Eigen::ArrayXcd d = motion_of(plant.building.sense, i % elements) / w.square();
-      if (i < elements) return {i, -d};
-      return {i - elements, -kJ * w * d};
-    }
+    case Kind::theta:
+      if (i < elements) return {i, unknown.scale * motions.deformation.col(i)};
+      return {i - elements, (rate * motions.deformation.col(i - elements).array()).matrix()};
     case Kind::gain:
-      return {elements + i,
-              -unknown.scale / (1 + model.gain[i]) * system.motion.row(i).transpose()};
+      return {elements + i, -unknown.scale / (1 + model.gain[i]) * motions.readings.col(i)};
     case Kind::clock:
-      return {elements + i,
-              (unknown.scale * kJ * w * system.motion.row(i).transpose().array()).matrix()};
+      return {elements + i, (rate * motions.readings.col(i).array()).matrix()};
     case Kind::mass:
-      return {elements + axes + i, motion_of(plant.building.mass, i).matrix()};
+      return {elements + axes + i, unknown.scale * motions.inertia.col(i)};
     case Kind::parameter:
     case Kind::record_parameter:
       return {};
@@ -105,7 +119,8 @@ VectorXd along(const Plant& plant, const Whitened& system, const Acting& one) {
 
 /// Those of all stories of a group.
 VectorXd along_tied(const Plant& plant, const Model& model, const RecordSegment& segment,
-                    const Whitened& system, const Unknown& unknown, const Acting& first) {
+                    const Whitened& system, const Motions& motions, const Unknown& unknown,
+                    const Acting& first) {
   MatrixXcd forces = MatrixXcd::Zero(plant.equations(), system.bins());
   const auto add = [&](const Acting& one) {
     for (Index i = 0; i < forces.rows(); ++i)
@@ -116,7 +131,7 @@ VectorXd along_tied(const Plant& plant, const Model& model, const RecordSegment&
   for (const auto& [index, scale] : unknown.tied) {
     Unknown one{unknown.kind, index};
     one.scale = scale;
-    add(acting(plant, model, segment, system, one));
+    add(acting(plant, model, segment, motions, one));
   }
   return whiten_rows(system, forces);
 }
@@ -129,6 +144,7 @@ Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& 
   Columns out;
   out.size = MatrixXcd::Zero(system.bins(), static_cast<Index>(unknowns.size()));
   std::vector<VectorXd> effects;
+  const Motions motions = motions_of(plant, segment, system);
   const bool runs = through_run && !system.tracks.empty() && !plant.prescribed;
   for (std::size_t u = 0; u < unknowns.size(); ++u) {
     const Unknown& unknown = unknowns[u];
@@ -140,7 +156,7 @@ Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& 
     if (runs && !elsewhere && moves_run(plant, model, unknown))
       run = run_column(plant, model, segment, record, system, unknown, ratio);
     Acting one;
-    if (!parameter) one = acting(plant, model, segment, system, unknown);
+    if (!parameter) one = acting(plant, model, segment, motions, unknown);
     const bool own_rows = parameter || run || !unknown.tied.empty();
     out.direction.push_back(own_rows ? -1 : one.direction);
     out.row.push_back(-1);
@@ -152,7 +168,7 @@ Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& 
     VectorXd column = VectorXd::Zero(system.residual.size());
     if (!parameter)
       column = unknown.tied.empty() ? along(plant, system, one)
-                                    : along_tied(plant, model, segment, system, unknown, one);
+                                    : along_tied(plant, model, segment, system, motions, unknown, one);
     else if (!elsewhere && !(of_law && run))
       column = parameter_column(plant, model, segment, record, system, unknown, ratio);
     if (run) column += *run;

@@ -21,24 +21,18 @@ VectorXd gradient_of(const Linearised& at, std::size_t record) {
   const Whitened& system = at.systems[record];
   const Columns& columns = at.columns[record];
   const Index n = plant.equations(), elements = plant.element_count(), axes = plant.axis_count();
-  VectorXd out = VectorXd::Zero(columns.count());
-  Eigen::VectorXcd rest(n), along(elements + axes + n);
-  for (Index b = 0; b < system.bins(); ++b) {
-    rest.real() = system.rest.segment(2 * n * b, n);
-    rest.imag() = system.rest.segment(2 * n * b + n, n);
-    along.tail(n).noalias() = system.weights->whitener(b).adjoint() * rest;
-    along.head(elements).real().noalias() = plant.building.act.transpose() * along.tail(n).real();
-    along.head(elements).imag().noalias() = plant.building.act.transpose() * along.tail(n).imag();
-    along.segment(elements, axes).noalias() =
-        system.operation[static_cast<std::size_t>(b)].leftCols(axes).adjoint() * along.tail(n);
-    for (Index u = 0; u < out.size(); ++u) {
-      const Index d = columns.direction[static_cast<std::size_t>(u)];
-      if (d >= 0) out[u] += (std::conj(columns.size(b, u)) * along[d]).real();
-    }
+  Eigen::MatrixXcd along(system.bins(), elements + axes + n);
+  along.leftCols(elements).real() = system.by_forces.real().transpose() * plant.building.act;
+  along.leftCols(elements).imag() = system.by_forces.imag().transpose() * plant.building.act;
+  along.middleCols(elements, axes) = system.by_readings.topRows(axes).transpose();
+  along.rightCols(n) = system.by_forces.transpose();
+  VectorXd out(columns.count());
+  for (Index u = 0; u < out.size(); ++u) {
+    const auto i = static_cast<std::size_t>(u);
+    const Index d = columns.direction[i];
+    out[u] = d >= 0 ? columns.size.col(u).dot(along.col(d)).real()
+                    : columns.effects.col(columns.row[i]).dot(system.rest);
   }
-  for (Index u = 0; u < out.size(); ++u)
-    if (columns.direction[static_cast<std::size_t>(u)] < 0)
-      out[u] = columns.effects.col(columns.row[static_cast<std::size_t>(u)]).dot(system.rest);
   return out;
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "estimator/diagnose/model/linear_operation.h"
+#include "estimator/numeric/row_matrix.h"
 
 namespace framewatch::estimator {
 
@@ -15,18 +15,9 @@ class Operations {
  public:
   Operations() = default;
   /// D = mass - stiffness / w^2 - j damping / w + additions, all equations x axes; w: rad/s.
-  Operations(Eigen::MatrixXd mass, Eigen::MatrixXd stiffness, Eigen::MatrixXd damping,
-             std::vector<LinearOperation> additions, Eigen::VectorXd w)
-      : mass_(std::move(mass)),
-        stiffness_(std::move(stiffness)),
-        damping_(std::move(damping)),
-        additions_(std::move(additions)),
-        w_(std::move(w)) {
-    constexpr Eigen::Index kMostKept = 1'000'000;  // numbers
-    const Eigen::Index bins = w_.size();
-    if (mass_.size() * bins > kMostKept) return;
-    for (Eigen::Index b = 0; b < bins; ++b) kept_.push_back(made(b));
-  }
+  Operations(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& stiffness,
+             const Eigen::MatrixXd& damping, std::vector<LinearOperation> additions,
+             Eigen::VectorXd w);
 
   bool empty() const { return w_.size() == 0; }
   Eigen::Index equations() const { return mass_.rows(); }
@@ -34,17 +25,18 @@ class Operations {
     return kept_.empty() ? made(static_cast<Eigen::Index>(bin)) : kept_[bin];
   }
 
- private:
-  Eigen::MatrixXcd made(Eigen::Index bin) const {
-    const double w = w_[bin];
-    Eigen::MatrixXcd out(mass_.rows(), mass_.cols());
-    out.real() = mass_ - stiffness_ / (w * w);
-    out.imag() = damping_ / -w;
-    for (const LinearOperation& addition : additions_) addition.add_to(w, out);
-    return out;
-  }
+  /// D motion of every bin: equations x bins. motion: axes x bins.
+  Eigen::MatrixXcd times(const Eigen::MatrixXcd& motion) const;
+  /// D^H forces of every bin: axes x bins. forces: equations x bins.
+  Eigen::MatrixXcd adjoint_times(const Eigen::MatrixXcd& forces) const;
+  /// An axis' column of every bin: equations x bins.
+  Eigen::MatrixXcd of_axis(Eigen::Index axis) const;
 
-  Eigen::MatrixXd mass_, stiffness_, damping_;
+ private:
+  Eigen::MatrixXcd made(Eigen::Index bin) const;
+  Eigen::MatrixXcd product(const Eigen::MatrixXcd& columns, bool adjoint) const;
+
+  RowMatrix mass_, stiffness_, damping_;
   std::vector<LinearOperation> additions_;
   Eigen::VectorXd w_;
   std::vector<Eigen::MatrixXcd> kept_;

@@ -22,35 +22,18 @@ using Eigen::VectorXd;
 constexpr double kArbitrary = 1e6;     ///< variance of an arbitrary signal, over that of noise
 constexpr Index kLeastNeighbours = 8;  ///< bins either side over which the misfit is averaged
 
-void put(VectorXd& rows, Index bin, const VectorXcd& values) {
-  const Index n = values.size();
-  rows.segment(2 * n * bin, n) = values.real();
-  rows.segment(2 * n * bin + n, n) = values.imag();
-}
-
 }  // namespace
 
 VectorXd whiten_rows(const Whitened& s, const MatrixXcd& forces) {
-  VectorXd out(2 * forces.size());
-  for (Index b = 0; b < forces.cols(); ++b) put(out, b, s.weights->whitener(b) * forces.col(b));
-  return out;
+  return s.weights->whitened(forces);
 }
 
 VectorXd whiten_rows(const Whitened& s, const VectorXd& direction, const VectorXcd& signal) {
-  VectorXd out(2 * direction.size() * signal.size());
-  for (Index b = 0; b < signal.size(); ++b)
-    put(out, b, s.weights->whitener(b) * (direction.cast<Complex>() * signal[b]));
-  return out;
+  return s.weights->whitened(direction.cast<Complex>() * signal.transpose());
 }
 
 VectorXd whiten_axis(const Whitened& s, Index axis, const VectorXcd& signal) {
-  const Index n = s.operation.equations();
-  VectorXd out(2 * n * signal.size());
-  for (Index b = 0; b < signal.size(); ++b) {
-    const auto at = static_cast<std::size_t>(b);
-    put(out, b, s.weights->whitener(b) * (s.operation[at].col(axis) * signal[b]));
-  }
-  return out;
+  return s.weights->whitened(s.operation.of_axis(axis) * signal.asDiagonal());
 }
 
 namespace {
@@ -78,10 +61,9 @@ HiddenOscillator hidden_oscillator(const Plant& plant, const ModelEffect& e, con
 
 /// The likeliest motion, docs/equations.md (34), with which the gradient is exact. Where the model
 /// does not fit, less of the residual is subtracted: it is not noise.
-MatrixXcd shown_motion(const Plant& plant, const Model& model, const RecordSegment& segment,
-                       const Whitened& system) {
+MatrixXcd shown_motion(const Plant& plant, const MatrixXd& noise, const Whitened& system) {
   MatrixXcd out = system.calibrated;
-  const Index bins = segment.bins(), n = plant.equations(), axes = plant.axis_count();
+  const Index bins = system.bins(), n = plant.equations(), axes = plant.axis_count();
   const double rows = static_cast<double>(plant.read_equations());
   VectorXd level(bins);
   for (Index b = 0; b < bins; ++b) level[b] = system.rest.segment(2 * n * b, 2 * n).squaredNorm();
@@ -91,14 +73,8 @@ MatrixXcd shown_motion(const Plant& plant, const Model& model, const RecordSegme
     const Index from = std::max<Index>(0, b - around), to = std::min(bins, b + around + 1);
     const double local = level.segment(from, to - from).mean() / rows;
     const double share = fits ? 1.0 : std::min(1.0, 1 / std::max(local, 1e-300));
-    VectorXcd r(n);
-    r.real() = system.rest.segment(2 * n * b, n);
-    r.imag() = system.rest.segment(2 * n * b + n, n);
-    const std::size_t at = static_cast<std::size_t>(b);
-    const VectorXd noise = believed_noise(model, segment, b);
     out.col(b).head(axes) -=
-        share * (noise.asDiagonal() * (system.operation[at].leftCols(axes).adjoint() *
-                                       (system.weights->whitener(b).adjoint() * r)));
+        share * noise.col(b).cwiseProduct(system.by_readings.col(b).head(axes));
   }
   return out;
 }
@@ -176,9 +152,9 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   stiffness += act * model.theta.head(elements).asDiagonal() * sense;
   damping += act * model.theta.tail(elements).asDiagonal() * sense;
   out.operation = Operations(mass, stiffness, damping, std::move(additions), segment.w);
+  const MatrixXd noise = noise_of(model, segment);
   if (!weights) {
     const auto operation = [&](Index b) { return out.operation[static_cast<std::size_t>(b)]; };
-    const MatrixXd noise = noise_of(model, segment);
     const bool all_read = plant.unread.cols() == 0;
     std::vector<MatrixXcd> own =
         all_read ? whiteners(operation, noise, kArbitrary * pushed)
@@ -189,15 +165,13 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   }
   out.weights = std::move(weights);
   follow_unread(plant, forces, out.operation, out.calibrated);
-  out.residual.resize(2 * n * bins);
-  for (Index b = 0; b < bins; ++b)
-    put(out.residual, b,
-        out.weights->whitener(b) *
-            (out.operation[static_cast<std::size_t>(b)] * out.calibrated.col(b) + forces.col(b)));
+  out.residual = out.weights->whitened(out.operation.times(out.calibrated) + forces);
   out.rest = out.weights->without_ends(out.residual);
   out.misfit = out.rest.squaredNorm();
   if (!std::isfinite(out.misfit)) return out;
-  out.motion = shown_motion(plant, model, segment, out);
+  out.by_forces = out.weights->turned_back(out.rest);
+  out.by_readings = out.operation.adjoint_times(out.by_forces);
+  out.motion = shown_motion(plant, noise, out);
   follow_unread(plant, forces, out.operation, out.motion);
   out.good = true;
   return out;

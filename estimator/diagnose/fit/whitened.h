@@ -33,6 +33,9 @@ struct Whitened {
   Eigen::VectorXd residual;             ///< whitened rows, end terms still in them
   Eigen::VectorXd rest;                 ///< residual with the end terms projected out
   double misfit = 0;                    ///< sum of squares of `rest`
+  /// Derivative of half the misfit by forces on the equations, equations x bins: whitener^H rest;
+  /// and by the axes' readings, axes x bins: D^H of that.
+  Eigen::MatrixXcd by_forces, by_readings;
 
   Eigen::Index bins() const { return calibrated.cols(); }
 };

@@ -239,13 +239,16 @@ Localisation localise(const Fitter& fitter, const Model& start,
   Model model = start;
   std::vector<MatrixXcd> driving = motion;
   driving.resize(fitter.segments().size());
-  double before = 1e300;
-  std::vector<Whitened> weights;  // of a large building: those of the first step stay
+  double before = 1e300, weighted = 0;
+  std::vector<Whitened> weights;  // of a large building: until the misfit has halved
+  bool own_weights = true;        // of the best misfit
   for (int step = 0; step <= steps; ++step) {
+    const bool renewed = weights.empty() || step == steps || before < kNewWeights * weighted ||
+                         before < kNearNoise * expected_of(fitter, model, candidate_places);
     std::vector<Whitened> systems =
-        fitter.systems(model, driving, Forcing::measured, weights.empty() ? nullptr : &weights);
+        fitter.systems(model, driving, Forcing::measured, renewed ? nullptr : &weights);
     if (systems.empty()) return out;
-    if (plant.is_large() && weights.empty()) weights = systems;
+    if (plant.is_large() && renewed) weights = systems;
     const Linearised at = fitter.linearise(model, std::move(systems));
     if (explains_everything(fitter, candidate_places))
       return everything(fitter, model, candidate_places, at.systems);
@@ -257,7 +260,9 @@ Localisation localise(const Fitter& fitter, const Model& start,
     const Reduced reduced =
         reduce(fitter, at, model, kept, squares, std::span(&current, 1)).front();
     const double left = reduced.equations.misfit, misfit = left + fitter.prior_cost(model);
-    if (misfit < out.misfit) {
+    if (renewed) weighted = left;
+    if (misfit < out.misfit || (renewed && !own_weights)) {
+      own_weights = renewed;
       out.candidate_places = current;
       out.misfit = misfit;
       out.ratio = left / reduced.expected;
@@ -267,7 +272,8 @@ Localisation localise(const Fitter& fitter, const Model& start,
       for (const Whitened& system : at.systems) out.motion.push_back(system.calibrated);
     }
     out.converged = std::abs(before - left) < kConverged * left;
-    if (step == steps || out.converged) break;
+    const bool rises = plant.is_large() && !renewed && left > before;
+    if (step == steps || out.converged || rises) break;
     before = left;
     const VectorXd change =
         step_of(reduced, at, model, std::max(1.0, left / reduced.expected), kept);

@@ -18,8 +18,10 @@ constexpr std::size_t kPairLeaders = 6, kPairs = 3;
 constexpr std::size_t kAxesOfPairs = 24;
 constexpr std::size_t kMostOfPairs = 150;  ///< places of a large building, best first
 constexpr int kSteps = 8, kPairSteps = 6;
-constexpr int kTrialSteps = 3;     ///< before the ratios are compared
-constexpr double kWideMargin = 2;  ///< times the margin: places above it then are not iterated on
+constexpr int kTrialSteps = 3;       ///< before the ratios are compared
+constexpr double kLeastNoise = 0.5;  ///< ratio that noise alone may have
+constexpr double kHardly = 0.5;      ///< of what chance may leave
+constexpr double kWideMargin = 2;    ///< times the margin: places above it then are not iterated on
 
 void sort_by_ratio(std::vector<Localisation>& list) {
   std::stable_sort(list.begin(), list.end(),
@@ -95,6 +97,15 @@ std::vector<Localisation> best_lists(const Fitter& fitter, const FitResult& now,
   return iterated(fitter, now, starts, kPairSteps, wide_margin_of, parallel);
 }
 
+/// Whether far less than chance is left for the likeliest place: near the noise one step tells it.
+bool leaves_nothing(const Fitter& fitter, const FitResult& now,
+                    const std::vector<Localisation>& once) {
+  if (once.empty()) return true;
+  const double ratio = now.total_misfit() / fitter.expected(now.model);
+  const double excess = ratio - std::clamp(once.front().ratio, kLeastNoise, 1.0);
+  return ratio < kNearNoise && excess < kHardly * chance_of(fitter, now.model);
+}
+
 bool is_global(const CandidatePlace& s) {
   return s.kind == CandidatePlace::Kind::rocking || s.kind == CandidatePlace::Kind::floor;
 }
@@ -113,12 +124,14 @@ Located locate(const Fitter& fitter, const FitResult& now, const Parallel& paral
   out.once = one_step(fitter, now, lists, parallel);
   std::vector<const Localisation*> starts;
   std::size_t global = 0, single = 0;
+  const bool nothing = leaves_nothing(fitter, now, out.once);
   for (std::size_t i = 0; i < out.once.size(); ++i) {
     const CandidatePlace& place = out.once[i].candidate_places.front();
     // Of a large building, both directions of its masses come before either of them.
     const bool alone = fitter.plant().is_large() && place.size() == 1 && single < kSingle;
     const bool more = (is_global(place) && global < kOfOneKind) || alone;
     if (i >= kPlaces && !more) continue;
+    if (nothing && i > 0) break;
     global += is_global(place);
     single += place.size() == 1;
     starts.push_back(&out.once[i]);

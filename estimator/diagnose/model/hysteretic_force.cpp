@@ -14,6 +14,8 @@ constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units 
 constexpr double kYielded = 1e-12;  ///< change of z below which the rest of a step changes nothing
 constexpr double kMostSlides = 5000;
 constexpr double kLargestZ = 1e3;  ///< of hysteresis that hardens
+/// Square of the distance from a slip zone, in its widths, beyond which it changes nothing.
+constexpr double kOutside = 40;
 
 /// dz/dd of one law, in units of dy.
 class Slope {
@@ -33,14 +35,13 @@ class Slope {
   }
 
   double operator()(double z, double d, double direction) const {
-    double slip = 1;
-    if (slip_ != 0) {
-      const double at = form_ == LawForm::pinched ? z * direction - offset_ : d;
-      slip -= slip_ * std::exp(-(at / p_[H::width]) * (at / p_[H::width]));
-    }
+    return slip(z, d, direction) * without_slip(z, direction);
+  }
+
+  double without_slip(double z, double direction) const {
     const double level = weaker_ * power_of(std::abs(z), p_[H::exponent]);
     const double turn = p_[H::beta] * (z * direction > 0 ? 1.0 : -1.0) + loading_ - p_[H::beta];
-    return slip * (1 - level * turn) / softer_;
+    return (1 - level * turn) / softer_;
   }
 
   double most() const {
@@ -48,6 +49,13 @@ class Slope {
   }
 
  private:
+  /// Share of the slope that the slip zone leaves.
+  double slip(double z, double d, double direction) const {
+    if (slip_ == 0) return 1;
+    const double at = (form_ == LawForm::pinched ? z * direction - offset_ : d) / p_[H::width];
+    return at * at < kOutside ? 1 - slip_ * std::exp(-at * at) : 1.0;
+  }
+
   const std::vector<double>& p_;
   LawForm form_;
   double loading_ = 1, weaker_ = 1, softer_ = 1, slip_ = 0, offset_ = 0;
@@ -85,10 +93,9 @@ double advanced_z(const LawValues& values, double from, double d, double d_now, 
   const double longest = std::max(kLongestSlide, std::abs(travel) / kMostSlides);
   double z = from, at = d / dy;
   for (double left = std::abs(travel); left > 0; left -= longest) {
+    const double rising = slope.without_slip(z, direction);
+    if (z * direction > 0 && rising * left < kYielded && rising > -kYielded) break;
     const double at_start = slope(z, at, direction);
-    if (z * direction > 0 && at_start * left < kYielded && at_start > -kYielded &&
-        values.form != LawForm::slip_lock)
-      break;
     const double h = direction * std::min(left, longest);
     z = std::clamp(z + h * slope(z + 0.5 * h * at_start, at + 0.5 * h, direction), -most, most);
     at += h;

@@ -149,6 +149,20 @@ void LinearOperation::add_to(double w, Eigen::MatrixXcd& operation) const {
   }
 }
 
+void LinearOperation::add_times(const VectorXd& w, const Eigen::MatrixXcd& motion, bool adjoint,
+                                Eigen::MatrixXcd& out) const {
+  for (const Shape& shape : shapes_) {
+    const MatrixXd matrix = adjoint ? MatrixXd(shape.of_axes.transpose()) : shape.of_axes;
+    Eigen::MatrixXcd product(out.rows(), out.cols());
+    product.real() = matrix * motion.real();
+    product.imag() = matrix * motion.imag();
+    for (Index b = 0; b < w.size(); ++b) {
+      const Complex f = factor(shape.factor, w[b]);
+      out.col(b) += (adjoint ? std::conj(f) : f) * product.col(b);
+    }
+  }
+}
+
 Eigen::MatrixXcd LinearOperation::at(double w) const {
   Eigen::MatrixXcd out = Eigen::MatrixXcd::Zero(rows_, cols_);
   add_to(w, out);

@@ -27,6 +27,10 @@ class LinearOperation {
   /// equations x axes; w: rad/s.
   Eigen::MatrixXcd at(double w) const;
   void add_to(double w, Eigen::MatrixXcd& operation) const;
+  /// Adds the operation, or its adjoint, times the column of every frequency. motion: axes x
+  /// frequencies, or equations x frequencies.
+  void add_times(const Eigen::VectorXd& w, const Eigen::MatrixXcd& motion, bool adjoint,
+                 Eigen::MatrixXcd& out) const;
 
  private:
   struct Shape {

@@ -91,21 +91,29 @@ ScalarFit fit_of(const Fitter& fitter, const Localisation& place,
   return scalar_fit(needed, columns);
 }
 
+/// A spring or damper at the place, as large as a twentieth of a frame's.
+ModelEffect link_at(const Plant& plant, const EffectPlace& place, bool spring) {
+  ModelEffect e;
+  e.form = spring ? LawForm::spring : LawForm::damper;
+  e.place = place;
+  e.place.kind = PlaceKind::node_pair;
+  const Index element = plant.table.frame_stiffness(1, place.frame);
+  const double size = plant.design[spring ? element : element + plant.element_count()];
+  e.parameters = {bounded_parameter(0.05 * size, 0.02 * size, spring ? -10 * size : 0, 1e15)};
+  return e;
+}
+
+EffectKind kind_of_link(const ModelEffect& link) {
+  return link.form == LawForm::spring ? EffectKind::added_spring : EffectKind::added_damper;
+}
+
 void add_links(const Fitter& fitter, const Localisation& place,
                const std::vector<NeededSignal>& needed, std::vector<Proposal>& out) {
-  const Plant& plant = fitter.plant();
   for (const bool spring : {true, false}) {
-    ModelEffect e;
-    e.form = spring ? LawForm::spring : LawForm::damper;
-    e.place = place.candidate_places.front().place;
-    e.place.kind = PlaceKind::node_pair;
-    const Index element = plant.table.frame_stiffness(1, e.place.frame);
-    const double size = plant.design[spring ? element : element + plant.element_count()];
-    e.parameters = {bounded_parameter(0.05 * size, 0.02 * size, spring ? -10 * size : 0, 1e15)};
+    ModelEffect e = link_at(fitter.plant(), place.candidate_places.front().place, spring);
     const ScalarFit fit = fit_of(fitter, place, needed, e);
     if (spring || fit.coefficients[0] > 0) e.parameters[0].value = fit.coefficients[0];
-    out.push_back(
-        with_effect(place, e, spring ? EffectKind::added_spring : EffectKind::added_damper));
+    out.push_back(with_effect(place, e, kind_of_link(e)));
     out.back().misfit = fit.misfit;
   }
 }
@@ -156,6 +164,20 @@ std::vector<Proposal> propose(const Fitter& fitter, const Localisation& all, std
   }
   std::stable_sort(out.begin(), out.end(),
                    [](const Proposal& x, const Proposal& y) { return x.misfit < y.misfit; });
+  return out;
+}
+
+std::vector<Proposal> propose_linear(const Plant& plant, const Localisation& place) {
+  const CandidatePlace& candidate = place.candidate_places.front();
+  std::vector<Proposal> out;
+  if (candidate.kind == CandidatePlace::Kind::crossing) add_masses(plant, place, out);
+  if (candidate.kind == CandidatePlace::Kind::rocking) add_rotations(plant, place, out);
+  const bool above = candidate.kind == CandidatePlace::Kind::node && candidate.place.story >= 2;
+  if (candidate.kind == CandidatePlace::Kind::link || above)
+    for (const bool spring : {true, false}) {
+      const ModelEffect e = link_at(plant, candidate.place, spring);
+      out.push_back(with_effect(place, e, kind_of_link(e)));
+    }
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include "estimator/diagnose/spectra/weights.h"
 
 #include <cmath>
+#include <complex>
 #include <utility>
 
 #include "estimator/numeric/complex.h"
@@ -8,6 +9,7 @@
 
 namespace framewatch::estimator {
 
+using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
@@ -17,26 +19,73 @@ using Eigen::VectorXd;
 constexpr Index kEndTerms = 4;
 constexpr Index kSmall = 24;  ///< equations below which the kernels do not pay
 
+namespace {
+
+/// Every end term is a power of the relative frequency, its sign, times a real force (even) or one
+/// of value -j (odd) on each equation.
+constexpr int kPower[kEndTerms] = {-2, -1, 0, 1};
+constexpr double kSign[kEndTerms] = {1, 1, 1, -1};
+constexpr int kLeastPower = 2 * kPower[0], kPowers = 2 * kPower[kEndTerms - 1] - kLeastPower + 1;
+
+/// Sums over the bins of the metric's real part (even powers) or imaginary part (odd powers) times
+/// that power of the relative frequency.
+class MetricMoments {
+ public:
+  explicit MetricMoments(Index n) : sums_(kPowers, MatrixXd::Zero(n, n)) {}
+
+  void add(const MatrixXcd& metric, double relative) {
+    double factor = std::pow(relative, kLeastPower);
+    for (std::size_t p = 0; p < kPowers; ++p, factor *= relative) {
+      if (p % 2 == 0)
+        sums_[p] += factor * metric.real();
+      else
+        sums_[p] += factor * metric.imag();
+    }
+  }
+
+  /// Products of the columns of two end terms.
+  MatrixXd between(Index a, Index b) const {
+    const MatrixXd& sum = sums_[static_cast<std::size_t>(kPower[a] + kPower[b] - kLeastPower)];
+    const bool turned = a % 2 != 0 && b % 2 == 0;
+    return (turned ? -kSign[a] : kSign[a]) * kSign[b] * sum;
+  }
+
+ private:
+  std::vector<MatrixXd> sums_;
+};
+
+}  // namespace
+
 Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
                  std::vector<HiddenOscillator> hidden, MatrixXd read)
     : whitener_(std::move(whitener)),
       relative_(w / std::sqrt(w[0] * w[w.size() - 1])),
       hidden_(std::move(hidden)),
       read_(std::move(read)) {
-  const Index n = equations();
-  scale_ = VectorXd::Ones(kEndTerms * n + 2 * static_cast<Index>(hidden_.size()));
-  RowMatrix sum = RowMatrix::Zero(ends(), ends());
-  RowMatrix square(2 * n, 2 * n), along, turned;
+  const Index n = equations(), columns = 2 * static_cast<Index>(hidden_.size());
+  scale_ = VectorXd::Ones(kEndTerms * n + columns);
+  MatrixXd sum = MatrixXd::Zero(ends(), ends());
+  MetricMoments moments(n);
+  MatrixXcd forces(n, columns);
+  RowMatrix along(2 * n, columns), shares = RowMatrix::Zero(ends(), columns);
   for (Index b = 0; b < bins(); ++b) {
-    const MatrixXcd inner = metric(b);  // of unit forces, real ones and then those of value -j
-    square.topLeftCorner(n, n) = square.bottomRightCorner(n, n) = inner.real();
-    square.topRightCorner(n, n) = inner.imag();
-    square.bottomLeftCorner(n, n) = -inner.imag();
-    along.setZero(ends(), 2 * n);
-    add_shares(b, square, along);
-    turned = along.transpose();
-    add_shares(b, turned, sum);
+    const MatrixXcd inner = metric(b);
+    moments.add(inner, relative_[b]);
+    if (columns == 0) continue;
+    for (std::size_t h = 0; h < hidden_.size(); ++h) {
+      const auto c = 2 * static_cast<Index>(h);
+      forces.col(c) = hidden_[h].direction * hidden_[h].transmissibility[b];
+      forces.col(c + 1) = Complex(0, relative_[b]) * forces.col(c);
+    }
+    const MatrixXcd under = inner * forces;
+    along.topRows(n) = under.real();
+    along.bottomRows(n) = -under.imag();
+    add_shares(b, along, shares);
   }
+  for (Index i = 0; i < kEndTerms; ++i)
+    for (Index j = 0; j < kEndTerms; ++j) sum.block(i * n, j * n, n, n) = moments.between(i, j);
+  sum.rightCols(columns) = shares;
+  sum.bottomRows(columns) = shares.transpose();
   scale_ = sum.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
   square_ = scale_.asDiagonal() * sum * scale_.asDiagonal();
   MatrixXd regular = square_;
@@ -128,20 +177,53 @@ RowMatrix Weights::times_ends(Index bin, const RowMatrix& left) const {
   return out.transpose();
 }
 
-VectorXd Weights::without_ends(const VectorXd& rows) const {
+VectorXd Weights::whitened(const MatrixXcd& forces) const {
   const Index n = equations();
-  RowMatrix forces, sum = RowMatrix::Zero(ends(), 1);
-  for (Index b = 0; b < bins(); ++b) {
-    put_unit_forces(b, true, forces);
-    add_shares(b, forces.leftCols(2 * n) * rows.segment(2 * n * b, 2 * n), sum);
-  }
-  const VectorXd size = scale_.cwiseProduct(factor_.solve(VectorXd(sum)));
-  VectorXd out = rows;
-  for (Index b = 0; b < bins(); ++b) {
-    put_unit_forces(b, false, forces);
-    out.segment(2 * n * b, 2 * n).noalias() -= forces.leftCols(2 * n) * shared(b, size);
+  VectorXd out(2 * forces.size());
+  VectorXcd row(n);
+  for (Index b = 0; b < forces.cols(); ++b) {
+    if (n < kSmall)
+      row.noalias() = whitener(b) * forces.col(b);
+    else
+      row.noalias() = whitener(b).triangularView<Eigen::Lower>() * forces.col(b);
+    out.segment(2 * n * b, n) = row.real();
+    out.segment(2 * n * b + n, n) = row.imag();
   }
   return out;
+}
+
+MatrixXcd Weights::turned_back(const VectorXd& rows) const {
+  const Index n = equations();
+  MatrixXcd out(n, bins());
+  VectorXcd row(n);
+  for (Index b = 0; b < bins(); ++b) {
+    row.real() = rows.segment(2 * n * b, n);
+    row.imag() = rows.segment(2 * n * b + n, n);
+    if (n < kSmall)
+      out.col(b).noalias() = whitener(b).adjoint() * row;
+    else
+      out.col(b).noalias() = whitener(b).adjoint().triangularView<Eigen::Upper>() * row;
+  }
+  return out;
+}
+
+VectorXd Weights::without_ends(const VectorXd& rows) const {
+  const Index n = equations();
+  const MatrixXcd turned = turned_back(rows);
+  RowMatrix along(2 * n, 1), sum = RowMatrix::Zero(ends(), 1);
+  for (Index b = 0; b < bins(); ++b) {
+    along.col(0).head(n) = turned.col(b).real();
+    along.col(0).tail(n) = -turned.col(b).imag();
+    add_shares(b, along, sum);
+  }
+  const VectorXd size = scale_.cwiseProduct(factor_.solve(VectorXd(sum)));
+  MatrixXcd forces(n, bins());
+  for (Index b = 0; b < bins(); ++b) {
+    const VectorXd of_bin = shared(b, size);
+    forces.col(b).real() = of_bin.head(n);
+    forces.col(b).imag() = -of_bin.tail(n);
+  }
+  return rows - whitened(forces);
 }
 
 }  // namespace framewatch::estimator

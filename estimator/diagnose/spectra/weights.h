@@ -38,6 +38,11 @@ class Weights {
   /// Inverse of the equations' noise covariance in a bin: whitener^H whitener.
   Eigen::MatrixXcd metric(Eigen::Index bin) const;
 
+  /// Forces, equations x bins, as whitened rows.
+  Eigen::VectorXd whitened(const Eigen::MatrixXcd& forces) const;
+  /// whitener^H of rows: equations x bins.
+  Eigen::MatrixXcd turned_back(const Eigen::VectorXd& rows) const;
+
   /// Number of end terms. Their columns, each of unit length, are E: rows x ends().
   Eigen::Index ends() const { return scale_.size(); }
   /// E'E.

@@ -1,6 +1,8 @@
 #include "estimator/diagnose/spectra/whiteners.h"
 
 #include <algorithm>
+#include <complex>
+#include <cstddef>
 
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/kernels.h"
@@ -22,7 +24,13 @@ class SideBySide {
         columns_(columns),
         numbers_(static_cast<std::size_t>(rows * columns * kNumber)) {}
 
+  Index rows() const { return rows_; }
+  Index columns() const { return columns_; }
   double* data() { return numbers_.data(); }
+  bool is_zero(Index row, Index column) {
+    const double* of_bins = at(row, column, 0);
+    return std::all_of(of_bins, of_bins + kNumber, [](double x) { return x == 0; });
+  }
   double& real(Index row, Index column, Index k) { return *at(row, column, k); }
 
   void put(const MatrixXcd& from, Index k) {
@@ -61,6 +69,55 @@ void add_pushed(const MatrixXd& pushed, Index k, SideBySide& covariance) {
 
 }  // namespace
 
+namespace {
+
+/// The axes in the order of the first equation that each is in: then the axes of an equation lie
+/// together, and the kernels pass over the others.
+std::vector<Index> by_first_equation(const MatrixXcd& operation) {
+  const auto first = [&](Index axis) {
+    Index i = 0;
+    while (i < operation.rows() && operation(i, axis) == std::complex<double>()) ++i;
+    return i;
+  };
+  std::vector<Index> out;
+  for (Index a = 0; a < operation.cols(); ++a) out.push_back(a);
+  std::stable_sort(out.begin(), out.end(), [&](Index a, Index b) { return first(a) < first(b); });
+  return out;
+}
+
+/// Of every row, the columns that are not zero in all bins lie in [first, end).
+struct Extent {
+  std::vector<int> first, end;
+
+  explicit Extent(SideBySide& matrix) {
+    for (Index i = 0; i < matrix.rows(); ++i) {
+      Index from = 0, to = matrix.columns();
+      while (from < to && matrix.is_zero(i, from)) ++from;
+      while (to > from && matrix.is_zero(i, to - 1)) --to;
+      first.push_back(static_cast<int>(from));
+      end.push_back(static_cast<int>(to));
+    }
+  }
+};
+
+/// The same of the lower triangle of the covariance of rows whose axes have this extent.
+std::vector<int> first_of_covariance(const Extent& axes, const MatrixXd& pushed) {
+  std::vector<int> out;
+  for (std::size_t i = 0; i < axes.first.size(); ++i) {
+    std::size_t j = 0;
+    const auto apart = [&] {
+      const bool by_axes = axes.end[j] <= axes.first[i] || axes.end[i] <= axes.first[j];
+      const auto row = static_cast<Index>(i), column = static_cast<Index>(j);
+      return by_axes && (pushed.size() == 0 || pushed(row, column) == 0);
+    };
+    while (j < i && apart()) ++j;
+    out.push_back(static_cast<int>(j));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operation,
                                  const MatrixXd& noise, const MatrixXd& pushed) {
   const MatrixXcd first_of_all = operation(0);
@@ -68,17 +125,21 @@ std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operatio
   std::vector<MatrixXcd> out;
   SideBySide d(n, axes), matrix(n, n);
   Eigen::Matrix<double, kBins, Eigen::Dynamic> variance(kBins, axes);
+  const std::vector<Index> order = by_first_equation(first_of_all);
   for (Index first = 0; first < bins; first += kBins) {
     const Index here = std::min<Index>(kBins, bins - first);
     for (Index k = 0; k < kBins; ++k) {  // the last bin fills up the block
       const Index b = first + std::min(k, here - 1);
-      d.put(operation(b), k);
-      variance.row(k) = noise.col(b).transpose();
+      d.put(operation(b)(Eigen::all, order), k);
+      variance.row(k) = noise.col(b)(order).transpose();
     }
-    kernels::in_use->noise_covariance(d.data(), variance.data(), static_cast<int>(n),
+    const Extent extent(d);
+    const std::vector<int> before = first_of_covariance(extent, pushed);
+    kernels::in_use->noise_covariance(d.data(), variance.data(), extent.first.data(),
+                                      extent.end.data(), static_cast<int>(n),
                                       static_cast<int>(axes), matrix.data());
     for (Index k = 0; k < kBins && pushed.size() > 0; ++k) add_pushed(pushed, k, matrix);
-    kernels::in_use->inverse_cholesky(matrix.data(), static_cast<int>(n));
+    kernels::in_use->inverse_cholesky(matrix.data(), before.data(), static_cast<int>(n));
     for (Index k = 0; k < here; ++k) {
       out.push_back(matrix.lower_triangle(k));
       if (!out.back().allFinite()) return {};

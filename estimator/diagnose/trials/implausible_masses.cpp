@@ -1,13 +1,21 @@
 #include "estimator/diagnose/trials/implausible_masses.h"
 
 #include <algorithm>
+#include <cstddef>
+
+#include "estimator/diagnose/propose/propose.h"
+#include "estimator/diagnose/trials/linear_gains.h"
+#include "estimator/diagnose/trials/trial_names.h"
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr double kExplained = 0.9;  ///< of the masses' excess cost, by one effect
 constexpr double kAsWell = 0.8;     ///< of the best one's gain: the effect remains ambiguous
-constexpr double kBeyond = 2;       ///< standard deviations of a frame's mass
+constexpr double kPromises = 0.5;   ///< of what is needed, by one step
+constexpr std::size_t kTried = 8;
+constexpr std::size_t kMostPlaces = 64;  ///< of a large building, likeliest first
+constexpr double kBeyond = 2;            ///< standard deviations of a frame's mass
 
 /// Whether an extra mass lies within the tolerance of the masses of all its frames.
 bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
@@ -18,11 +26,36 @@ bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
   });
 }
 
-/// Whether a linear effect other than an element's stiffness or damping may act there.
-bool is_linear_place(const CandidatePlace& s) {
-  return s.kind == CandidatePlace::Kind::crossing || s.kind == CandidatePlace::Kind::link ||
-         s.kind == CandidatePlace::Kind::rocking ||
-         (s.kind == CandidatePlace::Kind::node && s.place.story >= 2);
+/// The linear effects that one step of the fit finds to do away with enough, best first. located:
+/// whose places are tried.
+std::vector<Proposal> promising(const TrialContext& context, const Located& located,
+                                double needed) {
+  const Plant& plant = context.fitter.plant();
+  std::vector<Proposal> all;
+  std::size_t places = 0;
+  for (Localisation place : located.once) {
+    if (plant.is_large() && places == kMostPlaces) break;
+    place.model = context.now.model;
+    const std::vector<Proposal> here = propose_linear(plant, place);
+    places += !here.empty();
+    for (const Proposal& p : here)
+      if (!is_excluded(context, p.kind)) all.push_back(p);
+  }
+  std::vector<ModelEffect> effects;
+  for (const Proposal& p : all) effects.push_back(p.model.effects.back());
+  const std::vector<LinearGain> gains = linear_gains(context, effects);
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (gains[i].value > 0 && gains[i].cost > kPromises * needed) order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return gains[a].cost > gains[b].cost; });
+  if (order.size() > kTried) order.resize(kTried);
+  std::vector<Proposal> out;
+  for (const std::size_t i : order) {
+    all[i].model.effects.back().parameters.front().value = gains[i].value;
+    out.push_back(all[i]);
+  }
+  return out;
 }
 
 }  // namespace
@@ -34,21 +67,10 @@ std::vector<Trial> implausible_masses(const TrialContext& context, const Located
   const double by_chance = 0.5 * static_cast<double>(model.mass_change.size());
   const double excess = 0.5 * (model.mass_change / sigma).squaredNorm() - by_chance;
   if (excess < kImplausibleMasses) return {};
-  std::vector<Localisation> places;
-  for (const Localisation& l : located.once) {
-    if (!is_linear_place(l.candidate_places.front())) continue;
-    places.push_back(l);
-    places.back().model = model;
-    places.back().motion = context.now.motion;
-  }
-  std::vector<EffectKind> without = context.without;
-  without.insert(without.end(), {EffectKind::tuned_mass_damper, EffectKind::unmeasured_force});
-  const TrialContext linear{context.fitter, context.now, without, context.parallel,
-                            context.progress};
-  std::vector<Trial> out = try_places(linear, places);
+  const double needed = std::max(kImplausibleMasses, kExplained * excess);
+  std::vector<Trial> out = try_effects(context, promising(context, located, needed));
   std::erase_if(out, [&](const Trial& t) {
-    return t.outcome != TrialOutcome::fitted ||
-           context.now.cost - t.cost < std::max(kImplausibleMasses, kExplained * excess) ||
+    return t.outcome != TrialOutcome::fitted || context.now.cost - t.cost < needed ||
            !(t.model.effects.back().parameters[0].plain() > 0) ||
            is_tolerated(context.fitter.plant().structure, t.model.effects.back(), sigma);
   });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "estimator/diagnose/fit/onset.h"
 
@@ -13,6 +14,7 @@ constexpr double kExplainsMost = 0.9;  ///< the same where the rest is within ch
 constexpr double kSharp = 0.995;       ///< share above which a fit need not be sharpened
 constexpr double kBlunt = 0.4;         ///< share below which it is not worth it
 constexpr std::size_t kSharpened = 3;
+constexpr double kBehind = 2;    ///< reductions that are more than chance
 constexpr double kWorse = 1.02;  ///< misfit of a record, relative
 /// By how much an arbitrary force must be better than a law, of the misfit beyond noise.
 constexpr double kArbitraryPrice = 1 - kExplains;
@@ -32,12 +34,22 @@ double fitted_values(const Model& model) {
   return out;
 }
 
+bool is_arbitrary_force(const Trial& t) {
+  return !t.model.effects.empty() && t.model.effects.back().form == LawForm::broadband;
+}
+
 /// Fits the leading trials on with everything free. enough: cost above which more than chance is
-/// left.
-void sharpen(const TrialContext& context, double enough, std::vector<Trial>& trials) {
+/// left; needed: a reduction that is more than chance. Where the best one leaves no more than
+/// chance, those far behind it are no rivals.
+void sharpen(const TrialContext& context, double enough, double needed,
+             std::vector<Trial>& trials) {
+  const Trial& best = trials.front();
+  const bool done = best.cost <= enough && !is_arbitrary_force(best);
+  const double limit =
+      done ? best.cost + kBehind * needed : std::numeric_limits<double>::infinity();
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
-    if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt) return;
+    if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit) return;
     const bool late = ends_with_harmonic(t.model) && t.cost > enough;
     if (late || t.fraction < kSharp) t = sharpened(context, t, t.model);
   });
@@ -85,7 +97,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
     for (Trial& t : trials) t.fraction = (now.cost - t.cost) / std::max(to_explain, 1e-9);
   };
   rank();
-  sharpen(context, bound + needed, trials);
+  sharpen(context, bound + needed, needed, trials);
   rank();
   if (trials.front().fraction < kExplains) {
     approach(context, trials);

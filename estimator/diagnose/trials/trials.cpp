@@ -199,6 +199,14 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
   return fit_all(c, candidates);
 }
 
+std::vector<Trial> try_effects(const TrialContext& c, const std::vector<Proposal>& proposals) {
+  std::vector<Candidate> candidates;
+  for (const Proposal& p : proposals)
+    candidates.push_back(
+        {p.model, c.now.motion, p.kind, p.place, {}, candidates.size(), kFirstSteps});
+  return fit_all(c, candidates);
+}
+
 std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
   const CandidatePlace &a = pair.candidate_places[0], &b = pair.candidate_places[1];
   std::vector<Candidate> candidates;

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "estimator/diagnose/locate/localise.h"
+#include "estimator/diagnose/propose/proposal.h"
 #include "estimator/diagnose/trials/trial_context.h"
 
 namespace framewatch::estimator {
@@ -20,6 +21,9 @@ void free_shapes(Model& model);
 
 /// Fits the laws of each place.
 std::vector<Trial> try_places(const TrialContext& context, const std::vector<Localisation>& places);
+
+/// Fits effects that are proposed for the present model and its motion.
+std::vector<Trial> try_effects(const TrialContext& context, const std::vector<Proposal>& proposals);
 
 /// Fits two laws at the two places of a pair, and of two axes their exchange.
 std::vector<Trial> try_pair(const TrialContext& context, const Localisation& pair);

@@ -13,6 +13,7 @@
 #include "estimator/diagnose/trials/parameter_errors.h"
 #include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/select_trial.h"
+#include "estimator/diagnose/trials/wrong_labels.h"
 #include "estimator/diagnose/verdict/ramps.h"
 #include "estimator/diagnose/verdict/verdict.h"
 #include "estimator/diagnose/verdict/where.h"
@@ -85,6 +86,9 @@ class Search {
     }
     out_.linear = now.model;
     out_.ratio_before = ratio(now);
+    report("labels", 0.05);
+    const std::vector<Trial> labels = wrong_labels(context_of(now));
+    if (!labels.empty()) adopt(labels, now);
     bool more = true;
     for (int round = 0; round < options_.rounds && more; ++round) more = one_round(now, round);
     report("what stays", 0.92);

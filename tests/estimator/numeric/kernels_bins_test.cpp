@@ -1,7 +1,7 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -16,19 +16,31 @@ namespace kernels_bins_test {
 using kernels::kBins;
 constexpr int kNumber = 2 * kBins;
 
+/// Each row has its own axes: those far from the diagonal are zero where `band` is not zero.
 struct Case {
   int n, axes;
   std::vector<double> d, noise;
+  std::vector<int> first, end;        ///< of the axes
+  std::vector<int> covariance_first;  ///< of the covariance's columns
 
-  Case(int equations, int sensors) : n(equations), axes(sensors) {
+  Case(int equations, int sensors, int band = 0) : n(equations), axes(sensors) {
     Random random(static_cast<std::uint64_t>(100 * equations + sensors));
-    for (int i = 0; i < n * axes * kNumber; ++i) d.push_back(random.normal());
+    for (int i = 0; i < n; ++i) {
+      first.push_back(band > 0 ? std::max(0, i - band) : 0);
+      end.push_back(band > 0 ? std::min(axes, i + band + 1) : axes);
+      covariance_first.push_back(band > 0 ? std::max(0, i - 2 * band) : 0);
+      for (int a = 0; a < axes; ++a)
+        for (int k = 0; k < kNumber; ++k) {
+          const double any = random.normal();
+          d.push_back(a >= first.back() && a < end.back() ? any : 0.0);
+        }
+    }
     for (int i = 0; i < axes * kBins; ++i) noise.push_back(0.1 + random.uniform());
   }
 
   std::vector<double> covariance(const kernels::Table& table) const {
     std::vector<double> out(static_cast<std::size_t>(n * n * kNumber), 0.0);
-    table.noise_covariance(d.data(), noise.data(), n, axes, out.data());
+    table.noise_covariance(d.data(), noise.data(), first.data(), end.data(), n, axes, out.data());
     return out;
   }
 };
@@ -45,10 +57,10 @@ Eigen::MatrixXcd at_bin(const std::vector<double>& numbers, int rows, int column
 
 TEST(KernelsOfBins, InverseFactorWhitensTheNoise) {
   constexpr double kRounding = 1e-12;
-  for (const auto& [n, axes] : {std::pair(1, 2), std::pair(8, 10), std::pair(17, 20)}) {
-    const Case c(n, axes);
+  for (const Case& c : {Case(1, 2), Case(8, 10), Case(17, 20), Case(17, 17, 3)}) {
+    const int n = c.n, axes = c.axes;
     std::vector<double> matrix = c.covariance(*kernels::in_use);
-    kernels::in_use->inverse_cholesky(matrix.data(), n);
+    kernels::in_use->inverse_cholesky(matrix.data(), c.covariance_first.data(), n);
     for (int bin = 0; bin < kBins; ++bin) {
       const Eigen::MatrixXcd d = at_bin(c.d, n, axes, bin);
       Eigen::VectorXd noise(axes);
@@ -69,7 +81,8 @@ TEST(KernelsOfBins, WhatIsNotPositiveDefiniteIsNotFinite) {
     matrix[static_cast<std::size_t>(2 * kNumber + bin)] = 2;  // (1, 0)
     matrix[static_cast<std::size_t>(3 * kNumber + bin)] = bin == 3 ? 5 : 1;
   }
-  kernels::in_use->inverse_cholesky(matrix.data(), 2);
+  const int first[] = {0, 0};
+  kernels::in_use->inverse_cholesky(matrix.data(), first, 2);
   for (int bin = 0; bin < kBins; ++bin)
     EXPECT_EQ(std::isfinite(matrix[static_cast<std::size_t>(3 * kNumber + bin)]), bin == 3);
 }
@@ -79,11 +92,10 @@ TEST(KernelsOfBins, EveryInstructionSetGivesTheSameBits) {
   for (const kernels::Table* table : {kernels::x86_64_v3(), kernels::x86_64_v4()}) {
     if (table == nullptr) continue;
     ++others;
-    for (const auto& [n, axes] : {std::pair(1, 2), std::pair(8, 10), std::pair(17, 20)}) {
-      const Case c(n, axes);
+    for (const Case& c : {Case(1, 2), Case(8, 10), Case(17, 20), Case(17, 17, 3)}) {
       std::vector<double> wanted = c.covariance(*kernels::portable()), got = c.covariance(*table);
-      kernels::portable()->inverse_cholesky(wanted.data(), n);
-      table->inverse_cholesky(got.data(), n);
+      kernels::portable()->inverse_cholesky(wanted.data(), c.covariance_first.data(), c.n);
+      table->inverse_cholesky(got.data(), c.covariance_first.data(), c.n);
       for (std::size_t i = 0; i < got.size(); ++i)
         ASSERT_EQ(std::bit_cast<std::uint64_t>(got[i]), std::bit_cast<std::uint64_t>(wanted[i]));
     }

@@ -175,6 +175,18 @@ TEST(Law, SlipLocksAwayFromZeroDeformation) {
   EXPECT_GT(force[3] - force[2], 0.5 * 0.1 * kStiffness * kYields_m);
 }
 
+/// A slip zone does not keep friction from yielding: with a tiny yield deformation it moves a
+/// thousand of them in every step.
+TEST(Law, FrictionWithASlipZoneSlidesAtItsForce) {
+  constexpr double kTiny_m = 1e-6;
+  constexpr Index kSteps = 20000;
+  const LawValues law{LawForm::slip_lock, {kStiffness, kTiny_m, 1, 0.5, 0.9, 0.1}, 1, 1};
+  VectorXd d(kSteps);
+  for (Index i = 0; i < kSteps; ++i) d[i] = 1e-3 * (i % 20 < 10 ? i % 10 : 10 - i % 10);
+  const VectorXd force = force_over(law, d) / (kStiffness * kTiny_m);
+  for (Index i = 2; i < kSteps; ++i) EXPECT_NEAR(force[i], d[i] > d[i - 1] ? 1 : -1, 1e-9) << i;
+}
+
 TEST(Law, FrictionMayFallWithTheRateAndAContactOnlyPushes) {
   const LawMotion stribeck({LawForm::friction, {10, 1e-4, 0.5, 0.1}, 1, 1});
   EXPECT_NEAR(stribeck.force(0, 0.002, 0), 15, 0.1);

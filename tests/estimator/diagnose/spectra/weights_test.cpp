@@ -146,6 +146,41 @@ TEST(Weights, UnitForcesAreTheWhitenerInRealParts) {
   }
 }
 
+TEST(Weights, WhitensForcesAndTurnsRowsBack) {
+  constexpr double kExact = 1e-12;
+  Random random(7);
+  for (const Index equations : {3, 30}) {  // dense and triangular
+    std::vector<MatrixXcd> whiteners;
+    MatrixXcd forces(equations, kBins);
+    VectorXd rows(2 * equations * kBins);
+    for (Index b = 0; b < kBins; ++b) {
+      MatrixXcd one = MatrixXcd::Zero(equations, equations);
+      for (Index i = 0; i < equations; ++i)
+        for (Index j = 0; j <= i; ++j) one(i, j) = Complex(random.normal(), random.normal());
+      one.diagonal().array() += 5;
+      whiteners.push_back(one);
+      for (Index i = 0; i < equations; ++i)
+        forces(i, b) = Complex(random.normal(), random.normal());
+    }
+    for (Index i = 0; i < rows.size(); ++i) rows[i] = random.normal();
+    const Weights weights(whiteners, VectorXd::LinSpaced(kBins, 2, 9), {});
+    const VectorXd whitened = weights.whitened(forces);
+    const MatrixXcd back = weights.turned_back(rows);
+    for (Index b = 0; b < kBins; ++b) {
+      const Eigen::VectorXcd row = weights.whitener(b) * forces.col(b);
+      VectorXd expected(2 * equations);
+      expected << row.real(), row.imag();
+      EXPECT_LT((whitened.segment(2 * equations * b, 2 * equations) - expected).norm(),
+                kExact * expected.norm());
+      const Eigen::VectorXcd of_bin =
+          rows.segment(2 * equations * b, equations) +
+          Complex(0, 1) * rows.segment(2 * equations * b + equations, equations);
+      EXPECT_LT((back.col(b) - weights.whitener(b).adjoint() * of_bin).norm(),
+                kExact * of_bin.norm() * weights.whitener(b).norm());
+    }
+  }
+}
+
 TEST(Weights, MetricIsTheInverseOfTheCovariance) {
   constexpr double kExact = 1e-12;
   for (const Index equations : {3, 30}) {  // with and without the kernels

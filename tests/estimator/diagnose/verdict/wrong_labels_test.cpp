@@ -1,3 +1,4 @@
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -34,6 +35,30 @@ TEST(WrongLabels, ABaseSensorTurnedByHalfATurnIsFound) {
     EXPECT_EQ(d.effects[0].chosen.place.channel, axis);
     EXPECT_EQ(d.verdict, Verdict::explained);
   }
+}
+
+TEST(WrongLabels, OneStoryWithTwoChannelsExchangedIsFound) {
+  for (const auto& [a, b] : {std::pair<Index, Index>{0, 1}, {1, 3}}) {
+    std::vector<MatrixXd> records = test::records_with({}, {1, 2});
+    for (MatrixXd& record : records) record.col(a).swap(record.col(b));
+    const Diagnosis d = diagnosed(records);
+    ASSERT_EQ(d.effects.size(), 1U) << a << " " << b;
+    EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::swapped);
+    EXPECT_EQ(d.effects[0].chosen.place.channel, a);
+    EXPECT_EQ(d.effects[0].chosen.place.with_channel, b);
+  }
+}
+
+TEST(WrongLabels, ALawBesideATurnedBaseSensorIsFound) {
+  const Diagnosis d = diagnosed(
+      turned(test::records_with(
+                 {test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {2e9})}, {1, 2}),
+             kBaseX));
+  ASSERT_EQ(d.effects.size(), 2U);
+  EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::polarity);
+  EXPECT_EQ(d.effects[0].chosen.place.channel, kBaseX);
+  EXPECT_EQ(d.effects[1].chosen.kind, EffectKind::cubic_stiffness);
+  EXPECT_EQ(d.effects[1].chosen.place.frame, 1);
 }
 
 }  // namespace wrong_labels_test
