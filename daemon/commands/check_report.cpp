@@ -136,7 +136,7 @@ void warn_about_bending(CheckReport& report) {
         "frames parallel to {0} of {1} stories, {2:.3g} m high{3}: such frames bend as a whole, "
         "and "
         "a model without it finds upper stories too soft; give kr{0}_nmprad in [structure.design], "
-        "or let framewatch refine say of the first strong record whether it is needed",
+        "or compare what framewatch refine leaves of the first strong record without and with it",
         x ? "x" : "y", s.stories, height,
         width > 0 ? fmt::format(" and {:.3g} m wide", width) : std::string()));
   }

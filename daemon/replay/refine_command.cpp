@@ -13,7 +13,6 @@
 #include "daemon/documents/json_values.h"
 #include "daemon/estimation/estimation.h"
 #include "daemon/estimation/segment_collector.h"
-#include "daemon/replay/bending_trial.h"
 #include "daemon/replay/replay_survey.h"
 #include "daemon/replay/stored_samples.h"
 #include "drivers/lcm/accel_intake.h"
@@ -32,7 +31,6 @@ struct Report {
   estimator::Refinement refinement;
   std::vector<double> streaming;    ///< theta order; NaN: not published
   std::vector<std::string> silent;  ///< channels without samples, which were done without
-  std::optional<BendingTrial> bending;
 };
 
 /// What is refined: the stretch without the channels that have no sample in it.
@@ -101,35 +99,11 @@ std::string json(const RefineArguments& a, const Config& config,
                                    {"std_error", json_value(r.std_error[p])},
                                    {"cramer_rao_bound", json_value(r.bound[p])}});
   }
-  if (report.bending) {
-    const BendingTrial& b = *report.bending;
-    out["bending"] = {{"needed", b.needed},
-                      {"misfit_ratio", json_value(b.misfit_ratio)},
-                      {"krx_nmprad", json_value(b.stiffness_nmprad[0])},
-                      {"kry_nmprad", json_value(b.stiffness_nmprad[1])}};
-  }
   return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string value_text(double value) {
   return std::isfinite(value) ? fmt::format("{:.5g}", value) : "-";
-}
-
-/// Whether frames that bend would explain more.
-std::string bending_text(const BendingTrial& b) {
-  if (!b.needed)
-    return fmt::format("bending of the frames would leave a misfit of {:.3g}: it is not needed\n",
-                       b.misfit_ratio);
-  std::string values;
-  for (const std::size_t along : {0, 1})
-    if (std::isfinite(b.stiffness_nmprad[along]))
-      values += fmt::format("{}kr{}_nmprad = {:.3g} (+-{:.1f} %)", values.empty() ? "" : ", ",
-                            along == 0 ? "x" : "y", b.stiffness_nmprad[along],
-                            100 * b.std_error_nmprad[along] / b.stiffness_nmprad[along]);
-  return fmt::format(
-      "the frames bend: with {} the misfit is {:.3g}; the stiffnesses above take that over and are "
-      "wrong: put it into [structure.design]\n",
-      values, b.misfit_ratio);
 }
 
 std::string text(const estimator::ParameterTable& table, const Report& report) {
@@ -152,7 +126,6 @@ std::string text(const estimator::ParameterTable& table, const Report& report) {
   out +=
       "streaming: the last published value up to the end of the stretch, - if none; least "
       "error: Cramer-Rao bound\n";
-  if (report.bending) out += bending_text(*report.bending);
   return out;
 }
 
@@ -233,7 +206,6 @@ int refine(const RefineArguments& a) {
   options.prior = a.prior && pipeline_config.options.prior && pipeline_config.design.size() > 0;
   report.refinement = refine_max_likelihood(segment.config, segment.accel,
                                             options.prior ? design : start, start, options);
-  report.bending = try_bending(segment.config, segment.accel, report.refinement, options);
   fmt::print("{}", a.json ? json(a, *config, table, report) : text(table, report));
   return report.refinement.status == estimator::RefineStatus::converged ? 0 : kNotRefined;
 }

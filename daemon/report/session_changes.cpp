@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "daemon/estimates/settled_windows.h"
 #include "daemon/events/event_words.h"

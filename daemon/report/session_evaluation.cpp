@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "daemon/report/session_report.h"
 #include "daemon/estimates/parameter_summary.h"
+#include "daemon/report/session_report.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"
 #include "estimator/structure/parameter_table.h"

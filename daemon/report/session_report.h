@@ -44,7 +44,7 @@ struct SessionReport {
   std::optional<SessionFile> session;  ///< of `framewatch record`
   std::optional<Config> config;
   std::optional<SessionMotion> motion;
-  std::vector<Stage> stages;  ///< empty without motion
+  std::vector<Stage> stages;                       ///< empty without motion
   std::vector<ElementChange> changes, recoveries;  ///< a recovery is no change
   std::vector<std::size_t> judged;    ///< stiffnesses in which a change would have been found
   std::vector<ReportStage> compared;  ///< at least one

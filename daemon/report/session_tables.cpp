@@ -36,14 +36,6 @@ std::string model_error(const ModelFitTold* fit, std::size_t p, double value) {
   return fit->word[p] == 3 ? word : number(fit->error[p] * value, 2) + ", " + word;
 }
 
-/// Whether any stiffness' absolute value was not to be believed in the end.
-bool doubts_model(const SessionReport& r) {
-  const ModelFitTold* fit = model_fit_at_end(r.estimates, {0, r.estimates.windows()});
-  return fit != nullptr && std::any_of(fit->word.begin(), fit->word.end(), [](auto word) {
-           return static_cast<int>(word) >= 2;
-         });
-}
-
 }  // namespace
 
 std::string parameter_section(const SessionReport& r) {
@@ -54,11 +46,6 @@ std::string parameter_section(const SessionReport& r) {
       "a mean of many is not that much better. It is the error of changes; the model's error is "
       "that of "
       "the absolute value, the same in every window, and the larger one counts for it.</p>\n";
-  if (r.config && doubts_model(r) && !r.config->pipeline.bending_nmprad.any())
-    out +=
-        "<p>The model does not describe all that was measured, and its frames do not bend: those "
-        "of tall or slender buildings do. framewatch refine says of a strong stretch whether "
-        "krx_nmprad, kry_nmprad in [structure.design] are needed.</p>\n";
   for (const ReportStage& stage : r.compared) {
     std::vector<std::vector<std::string>> rows;
     const ModelFitTold* fit = model_fit_at_end(r.estimates, stage.whole);

@@ -1,5 +1,5 @@
-#include "daemon/estimates/parameter_summary.h"
 #include "daemon/report/report_command.h"
+#include "daemon/estimates/parameter_summary.h"
 
 #include <unistd.h>
 

@@ -156,7 +156,7 @@ SessionReport grown(double weaker) {
 }
 
 TEST(SessionVerdict, WhatGrowsWhileTheMotionDiesIsRecoveryAndNoHeadline) {
-  const SessionReport r = grown(2);
+  const SessionReport r = grown(3);
   ASSERT_FALSE(r.recoveries.empty());
   EXPECT_TRUE(r.changes.empty());
   EXPECT_EQ(verdict_sentence(r).find("stiffer"), std::string::npos) << verdict_sentence(r);
