@@ -6,6 +6,7 @@
 
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/model/run_system.h"
+#include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/solve.h"
@@ -20,7 +21,8 @@ using Eigen::VectorXd;
 constexpr double kBandLow = 0.4, kBandHigh = 1.6;  ///< of the lowest and highest natural frequency
 constexpr double kBandOfRead = 2;                  ///< of the highest frequency of what axes read
 constexpr double kComponentBandLow = 0.1;  ///< displacement is accurate at far lower frequencies
-constexpr double kHighest = 0.4;           ///< of the sampling rate
+constexpr double kForceTail = 5e-4;  ///< of a measured force's power, below its band and above
+constexpr double kHighest = 0.4;     ///< of the sampling rate
 /// Bins times equations^1.5, about the work of a fit: the band of a large building ends where it
 /// has so many, but includes the lowest modes.
 constexpr double kMostWork = 4e5;
@@ -53,6 +55,25 @@ double highest_read_hz(const Plant& plant) {
   return kBandOfRead * std::sqrt(stiffness.cwiseQuotient(mass).maxCoeff()) / (2 * M_PI);
 }
 
+/// Where nearly all of a force lies that a prescribed motion needs. Nothing else limits the band: a
+/// component may have any mass, or none.
+Band band_of_force(const VectorXd& force, double rate_hz) {
+  const Index size = smooth_size(force.size());
+  VectorXd periodic = force.head(size).array() - force.head(size).mean();
+  periodic[0] = 0.5 * (periodic[0] + periodic[size - 1]);
+  const VectorXd power = forward_fourier(periodic).cwiseAbs2();
+  const double step_hz = rate_hz / static_cast<double>(size), total = power.sum();
+  Index low = 0, high = power.size() - 1;
+  for (double below = power[0]; below < kForceTail * total && low < high; below += power[low])
+    ++low;
+  for (double above = power[high]; above < kForceTail * total && high > low; above += power[high])
+    --high;
+  low = std::max<Index>(low, 1);
+  high = std::max(high, low + kFewestBins);
+  return {step_hz * static_cast<double>(low),
+          std::min(kHighest * rate_hz, step_hz * static_cast<double>(high))};
+}
+
 /// The records in the band of the design's natural frequencies.
 std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& plant,
                                        const VectorXd& design, const ComponentTest& component,
@@ -70,7 +91,9 @@ std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& 
     const double seconds = static_cast<double>(record.accel.rows() - record.lead) / record.rate_hz;
     const double most = std::max(low + bins / seconds, kLowestModes * hz.front());
     const double high = plant.unread.cols() > 0 ? highest_read_hz(plant) : kBandHigh * hz.back();
-    const Band band{low, std::min({kHighest * record.rate_hz, high, most})};
+    Band band{low, std::min({kHighest * record.rate_hz, high, most})};
+    if (plant.prescribed && record.accel.rows() > kFewestBins)
+      band = band_of_force(record.accel.col(record.accel.cols() - 1), record.rate_hz);
     out.push_back(make_segment(record.accel, record.rate_hz, noise, band, displaced, record.lead));
   }
   return out;

@@ -68,6 +68,20 @@ std::vector<Model> linear_starts(const Plant& plant, const Model& model) {
   return {model, damped, design};
 }
 
+JudgedFit free_run_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps,
+                       bool to_the_end) {
+  Start best;
+  for (const Model& model : starts) {
+    Start one{model, rms_gap(fitter, model)};
+    if (to_the_end)
+      fit_to_the_end(fitter, steps, one);
+    else
+      fit_free_run(fitter, steps, one);
+    if (best.model.theta.size() == 0 || one.gap < best.gap) best = std::move(one);
+  }
+  return {std::move(best.model), best.gap, false};
+}
+
 JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps,
                      const Parallel& parallel) {
   const Model& first = starts.front();

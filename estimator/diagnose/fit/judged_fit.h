@@ -29,6 +29,11 @@ struct JudgedFit {
 JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps,
                      const Parallel& parallel = {});
 
+/// The best by its gap of the free runs fitted from each of the starts, with the model's error in
+/// the weights: once, `steps` long, or until the gap falls no more.
+JudgedFit free_run_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps,
+                       bool to_the_end);
+
 /// Starts of the linear class beside a model of it: with the design's damping where it has less,
 /// and the design itself.
 std::vector<Model> linear_starts(const Plant& plant, const Model& model);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/diagnose/fit/prescribed_motion.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/numeric/complex.h"
 
@@ -68,6 +69,10 @@ std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& 
     const VectorXcd v = d.array() * segment.w.array() * kJ;
     LawTrack& track =
         out.emplace_back(LawTrack{signal_of(d, segment, ratio), signal_of(v, segment, ratio), {}});
+    if (auto whole = prescribed_motion(plant, segment, active.port.sense, ratio)) {
+      track.d = std::move(whole->d);
+      track.v = std::move(whole->v);
+    }
     track.force =
         law_force(law_at(model, active, record), track.d, track.v, 1 / (segment.rate_hz * ratio));
   }

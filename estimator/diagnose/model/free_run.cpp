@@ -18,6 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kStepsPerPeriod = 30;
+constexpr int kPrescribedSteps = 6;  ///< a sample: corners of laws lie between samples
 constexpr double kDiverged_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
 constexpr int kGrows = 60, kIllinois = 60;
@@ -164,6 +165,7 @@ class RunForces {
 }  // namespace
 
 int steps_per_sample(const Plant& plant, double rate_hz) {
+  if (plant.prescribed) return kPrescribedSteps;
   return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * plant.highest_hz / rate_hz)), 2,
                     12);
 }

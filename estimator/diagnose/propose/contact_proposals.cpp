@@ -112,7 +112,7 @@ void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,
       k = std::max(k, place.model.theta[port.element]);
     const double force = kFirstShare * k * effect.deformation;
     effect.parameters = {
-        linear_parameter(-force, 0.2 * force), bounded_parameter(2, 0.02, 1.2, 6, false),
+        linear_parameter(-force, 0.2 * force), bounded_parameter(2, 0.02, 1.02, 6, false),
         linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
     out.push_back(proposal_of(place, std::move(effect), EffectKind::amplitude_dependence, 0));
   }

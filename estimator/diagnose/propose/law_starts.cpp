@@ -227,6 +227,9 @@ void free_shape(ModelEffect& effect) {
            {+H::exponent, +H::beta, +H::offset, +H::pinched_strength, +H::pinched_stiffness})
         release(i);
       break;
+    case F::amplitude:
+      release(1);
+      break;
     case F::sliders:
       release(SliderIndex::loss);
       break;

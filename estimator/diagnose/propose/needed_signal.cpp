@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/diagnose/fit/prescribed_motion.h"
 #include "estimator/numeric/complex.h"
 
 namespace framewatch::estimator {
@@ -111,6 +112,11 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
       one.d = -q.array() / s.w.array().square();
       one.d_t = signal_of(one.d, s, fitter.ratio(r));
       one.v_t = signal_of(one.d.array() * s.w.array() * Complex(0, 1), s, fitter.ratio(r));
+      const Eigen::RowVectorXd sense = plant.building.sense.row(candidate.element);
+      if (auto whole = prescribed_motion(plant, s, sense, fitter.ratio(r))) {
+        one.d_t = std::move(whole->d);
+        one.v_t = std::move(whole->v);
+      }
     }
     out.push_back(std::move(one));
   }

@@ -13,6 +13,8 @@
 #include "estimator/diagnose/trials/parameter_errors.h"
 #include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/select_trial.h"
+#include "estimator/diagnose/trials/several_causes.h"
+#include "estimator/diagnose/trials/trial_relations.h"
 #include "estimator/diagnose/trials/wrong_labels.h"
 #include "estimator/diagnose/verdict/ramps.h"
 #include "estimator/diagnose/verdict/verdict.h"
@@ -30,41 +32,6 @@ constexpr double kSame = 8;        ///< difference of costs that does not decide
 constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong as right
 constexpr double kLeastGain = 50;
 constexpr int kPolishSteps = 6, kBackSteps = 8;
-
-/// A force on the lowest story of a frame is one at its floor.
-bool same_spot(const EffectPlace& a, const EffectPlace& b) {
-  if (a == b) return true;
-  const auto element_or_node = [](const EffectPlace& p) {
-    return p.kind == PlaceKind::frame || p.kind == PlaceKind::node;
-  };
-  const bool alike = a.kind == b.kind || (a.story == 1 && b.story == 1);
-  return element_or_node(a) && element_or_node(b) && alike && a.story == b.story &&
-         a.frame == b.frame;
-}
-
-bool is_same(const Trial& a, const Trial& b) {
-  return a.kind == b.kind && a.place == b.place && a.second == b.second;
-}
-
-/// The first trial of every name and place; the others came from other start values.
-std::vector<Trial> without_duplicates(const std::vector<Trial>& trials) {
-  std::vector<Trial> out;
-  for (const Trial& t : trials)
-    if (std::none_of(out.begin(), out.end(), [&](const Trial& o) { return is_same(o, t); }))
-      out.push_back(t);
-  return out;
-}
-
-/// Whether a trial contradicts the best one: other effects, not the same with one more. An
-/// arbitrary force does as well as any law and is no rival.
-bool is_rival(const Trial& t, const Trial& best) {
-  const bool arbitrary =
-      !t.model.effects.empty() && t.model.effects.back().form == LawForm::broadband;
-  const bool first = t.kind == best.kind && t.place == best.place;
-  const bool second = t.second == std::pair(best.kind, best.place);
-  return t.outcome == TrialOutcome::fitted && !arbitrary &&
-         !(best.second ? is_same(t, best) : first || second);
-}
 
 class Search {
  public:
@@ -92,7 +59,8 @@ class Search {
     bool more = true;
     for (int round = 0; round < options_.rounds && more; ++round) more = one_round(now, round);
     report("what stays", 0.92);
-    if (!out_.effects.empty()) polish(now);
+    const bool several = find_several(now);
+    if (!out_.effects.empty() && !several) polish(now);
     out_.ratio_after = ratio(now);
     set_models(now.model);
     mark_approximate(now.model);
@@ -184,6 +152,7 @@ class Search {
     if (located.places.empty()) return false;
     relocate_beside(context_of(now), out_.effects, located);
     const Localisation& place = located.places.front();
+    alone_ = place.ratio;
     const double expected_now = fitter_.expected(now.model);
     const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;
     if (out_.where.empty()) {
@@ -231,6 +200,31 @@ class Search {
     std::erase_if(trials, [&](const Trial& t) { return worsens(t, now, kImplausibleMasses); });
     if (trials.empty()) return false;
     adopt(trials, now);
+    return true;
+  }
+
+  /// Where nothing is named and no place explains the misfit alone: causes that act at once.
+  bool find_several(FitResult& now) {
+    if (!out_.effects.empty() || alone_ < kOnePlace || fits_separately(fitter_, out_.ratio_before))
+      return false;
+    SeveralCauses several =
+        several_causes(context_of(now, 0.7), out_.rejected, options_.holdout_from);
+    if (several.causes.empty()) return false;
+    const FitResult together = fit(several.model, {}, 0);
+    if (!together.good) return false;
+    auto next = static_cast<int>(now.model.effects.size());
+    for (Cause& cause : several.causes) {
+      FoundEffect found;
+      found.chosen = std::move(cause.trial);
+      found.chosen.model = several.model;
+      found.like = std::move(cause.like);
+      found.confidence = kDoubtful;
+      found.index = is_axis_error(found.chosen.kind) ? -1 : next++;
+      found.alternatives = out_.rejected;
+      out_.effects.push_back(std::move(found));
+    }
+    out_.trained = std::move(several.model);
+    now = together;
     return true;
   }
 
@@ -322,6 +316,7 @@ class Search {
   const DiagnosisOptions& options_;
   Fitter fitter_;
   Diagnosis out_;
+  double alone_ = 0;  ///< Localisation::ratio of the likeliest place, in the last round
 };
 
 }  // namespace

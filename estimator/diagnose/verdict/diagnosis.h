@@ -42,6 +42,8 @@ struct Diagnosis {
   Model linear, model;  ///< fitted to all segments
   /// declared_model(): what a configuration file can hold.
   Model declared;
+  /// Of the training segments alone, where causes that act at once were chosen by it.
+  std::optional<Model> trained;
   std::vector<Gap> before, after;  ///< of each segment, models fitted to the training ones alone
   /// The training segments alone do not determine the effects: `after` is of `model`.
   bool after_of_all = false;

@@ -19,7 +19,8 @@ constexpr double kWorse = 1.1;     ///< held-out gap with what was found over th
 /// Of the misfit beyond noise that is left at most when each record is fitted separately.
 constexpr double kApart = 0.25;
 
-/// Whether every segment fits a linear building of its own.
+}  // namespace
+
 bool fits_separately(const Fitter& fitter, double ratio_before) {
   double misfit = 0, noise = 0;
   for (const RecordSegment& s : fitter.segments()) {
@@ -32,8 +33,6 @@ bool fits_separately(const Fitter& fitter, double ratio_before) {
   }
   return misfit / noise - 1 < kApart * (ratio_before - 1);
 }
-
-}  // namespace
 
 const char* verdict_word(Verdict verdict) {
   switch (verdict) {
@@ -99,7 +98,9 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
     out.after = out.before;
     return;
   }
-  out.after = of_train({out.model});
+  std::vector<Model> found{out.model};
+  if (out.trained) found.push_back(*out.trained);
+  out.after = of_train(found);
   const std::vector<Gap> all = gaps_of(fitter, out.model);
   if (mean_gap(out.after, holdout_from) > kUndetermined * mean_gap(all, holdout_from)) {
     out.after = all;
@@ -109,11 +110,14 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
   for (std::size_t i = 0; i < out.effects.size(); ++i) {
     FoundEffect& effect = out.effects[i];
     effect.before = gap;
-    if (i + 1 == out.effects.size())
+    if (i + 1 == out.effects.size()) {
       gap = mean_gap(out.after, holdout_from);
-    else if (effect.ramp_mps3.empty())
-      gap = mean_gap(of_train({with_first(out.model, out.effects, i + 1, fitter.plant())}),
-                     holdout_from);
+    } else if (effect.ramp_mps3.empty()) {
+      std::vector<Model> starts;
+      for (const Model& model : found)
+        starts.push_back(with_first(model, out.effects, i + 1, fitter.plant()));
+      gap = mean_gap(of_train(starts), holdout_from);
+    }
     effect.after = gap;
   }
 }

@@ -1,0 +1,294 @@
+#include "estimator/diagnose/trials/several_causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "estimator/diagnose/fit/judged_fit.h"
+#include "estimator/diagnose/propose/name_of_fit.h"
+#include "estimator/diagnose/trials/trial_names.h"
+#include "estimator/diagnose/trials/trials.h"
+
+namespace framewatch::estimator {
+namespace {
+
+/// Indices of laws, in the order in which a model has their effects.
+using Members = std::vector<std::size_t>;
+
+constexpr std::size_t kMostTried = 9, kFewestTried = 3, kMostCauses = 3;
+constexpr std::size_t kMostWork = 60;  ///< laws times equations
+constexpr std::size_t kKept = 3;       ///< sets of one size that lead to larger ones
+constexpr std::size_t kFinished = 6;   ///< that are fitted to their end
+constexpr double kTakes = 0.9;         ///< gap with one more cause over the one without it
+constexpr double kNearly = 1.1;        ///< gap over the best's, of a set that does nearly as well
+constexpr double kLeastShare = 0.1;    ///< of the design, of a start's stiffness or damping
+constexpr int kScreenSteps = 4, kJointSteps = 5, kNoneSteps = 8;
+
+struct CauseSet {
+  Members members;
+  Model model;  ///< of the training records
+  std::vector<Gap> gaps;
+  double held_out = std::numeric_limits<double>::infinity();
+  bool named = false;  ///< its effects may have their names
+};
+
+/// Laws that may be causes, best first, one of every name and place.
+std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
+  const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
+  const std::size_t most = std::clamp(kMostWork / equations, kFewestTried, kMostTried);
+  std::vector<const Trial*> out;
+  for (const Trial& t : tried) {
+    if (t.outcome != TrialOutcome::fitted || t.second) continue;
+    const bool anything = t.kind == EffectKind::unmeasured_force || t.kind == EffectKind::clipping;
+    const bool again = std::any_of(out.begin(), out.end(), [&](const Trial* o) {
+      return o->kind == t.kind && o->place == t.place;
+    });
+    if (anything || again || is_excluded(c, t.kind)) continue;
+    // What acts on the whole building is rarely the best alone, and often beside others.
+    if (out.size() < most || t.place.kind == PlaceKind::building) out.push_back(&t);
+  }
+  return out;
+}
+
+/// A model with the effect of a trial: with stiffnesses and dampings that change as they did with
+/// the trial, or with those of the trial.
+Model extended(const TrialContext& c, const Model& model, const Trial& t, bool as_the_trial) {
+  Model out = model;
+  const auto known = static_cast<std::ptrdiff_t>(c.now.model.effects.size());
+  out.effects.insert(out.effects.end(), t.model.effects.begin() + known, t.model.effects.end());
+  free_shapes(out);
+  const auto add = [&](std::vector<int> Model::*freed, Eigen::VectorXd Model::*errors) {
+    for (const int axis : t.model.*freed) {
+      if (std::find((out.*freed).begin(), (out.*freed).end(), axis) != (out.*freed).end()) continue;
+      (out.*freed).push_back(axis);
+      (out.*errors)[axis] = (t.model.*errors)[axis];
+    }
+  };
+  add(&Model::free_gain, &Model::gain);
+  add(&Model::free_clock, &Model::clock_s);
+  if (as_the_trial) {
+    out.theta = t.model.theta;
+    out.mass_change = t.model.mass_change;
+  } else {
+    out.theta = (out.theta + t.model.theta - c.now.model.theta)
+                    .cwiseMax(kLeastShare * c.fitter.plant().design);
+  }
+  return out;
+}
+
+class Selection {
+ public:
+  Selection(const TrialContext& context, const std::vector<Trial>& tried, std::size_t holdout_from)
+      : context_(context),
+        tried_(possible(context, tried)),
+        holdout_from_(std::min(holdout_from, context.fitter.segments().size())),
+        seen_(context.fitter.segments().begin(),
+              context.fitter.segments().begin() + static_cast<std::ptrdiff_t>(holdout_from_)),
+        train_(context.fitter.plant(), seen_, context.fitter.tolerances()) {}
+
+  SeveralCauses run() {
+    if (tried_.empty() || holdout_from_ == context_.fitter.segments().size()) return {};
+    const std::vector<Model> starts = linear_starts(context_.fitter.plant(), context_.now.model);
+    none_ = judged({}, judged_fit(train_, starts, kNoneSteps, context_.parallel).model);
+    CauseSet best = none_;
+    std::vector<CauseSet> kept{none_};
+    for (std::size_t size = 1; size <= kMostCauses && !kept.empty(); ++size) {
+      context_.progress("several causes together",
+                        static_cast<double>(size - 1) / static_cast<double>(kMostCauses));
+      kept = larger(kept);
+      const auto leads =
+          std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });
+      const auto more = static_cast<int>(size - best.members.size());
+      if (leads != kept.end() && leads->held_out < std::pow(kTakes, more) * best.held_out)
+        best = *leads;
+      if (kept.size() > kKept) kept.resize(kKept);
+    }
+    return result(without_needless(std::move(best)));
+  }
+
+ private:
+  CauseSet judged(Members members, Model model) const {
+    CauseSet out;
+    out.members = std::move(members);
+    out.gaps = gaps_of(context_.fitter, model);
+    if (out.gaps.size() == context_.fitter.segments().size()) {
+      double sum = 0;
+      for (std::size_t r = holdout_from_; r < out.gaps.size(); ++r) sum += out.gaps[r].overall;
+      out.held_out = sum / static_cast<double>(out.gaps.size() - holdout_from_);
+    }
+    Trial trial;
+    if (!out.members.empty()) trial.kind = tried_[out.members.back()]->kind;
+    trial.model = out.model = std::move(model);
+    out.named = may_be_named(context_, trial);
+    return out;
+  }
+
+  CauseSet finished(const CauseSet& s) const {
+    return judged(s.members, free_run_fit(train_, {s.model}, kJointSteps, true).model);
+  }
+
+  /// Names that stay, and no record whose gap grows.
+  bool may_lead(const CauseSet& s) const {
+    if (!s.named || s.gaps.size() != none_.gaps.size()) return false;
+    for (std::size_t r = 0; r < s.gaps.size(); ++r)
+      if (s.gaps[r].overall > std::min(none_.gaps[r].overall, 1.0)) return false;
+    return true;
+  }
+
+  bool has_law(const Trial& t) const {
+    return t.model.effects.size() > context_.now.model.effects.size() &&
+           t.model.effects.back().element_law();
+  }
+
+  /// Whether one more cause can be told from those of a set: two laws of one place are one law.
+  bool joins(const Members& members, std::size_t cause) const {
+    const Trial& t = *tried_[cause];
+    return std::none_of(members.begin(), members.end(), [&](std::size_t i) {
+      return i == cause || (t.place == tried_[i]->place && has_law(t) && has_law(*tried_[i]));
+    });
+  }
+
+  struct Extension {
+    Members members;
+    const CauseSet* from = nullptr;
+    std::size_t cause = 0;
+  };
+
+  std::vector<Extension> extensions(const std::vector<CauseSet>& sets) const {
+    std::vector<Extension> out;
+    for (const CauseSet& s : sets)
+      for (std::size_t i = 0; i < tried_.size(); ++i) {
+        Members members = s.members;
+        members.push_back(i);
+        const bool again = std::any_of(out.begin(), out.end(), [&](const Extension& e) {
+          return std::is_permutation(e.members.begin(), e.members.end(), members.begin(),
+                                     members.end());
+        });
+        if (joins(s.members, i) && !again) out.push_back({std::move(members), &s, i});
+      }
+    return out;
+  }
+
+  /// Sets with one more cause than the given ones, best first: all of them a few steps far, those
+  /// that are best then to their end.
+  std::vector<CauseSet> larger(const std::vector<CauseSet>& sets) {
+    const std::vector<Extension> all = extensions(sets);
+    std::vector<CauseSet> out(all.size());
+    run_all(context_.parallel, static_cast<int>(all.size()), [&](int i) {
+      const Extension& e = all[static_cast<std::size_t>(i)];
+      const Trial& t = *tried_[e.cause];
+      std::vector<Model> starts;
+      for (const bool as_the_trial : {false, true})
+        starts.push_back(extended(context_, e.from->model, t, as_the_trial));
+      out[static_cast<std::size_t>(i)] =
+          judged(e.members, free_run_fit(train_, starts, kScreenSteps, false).model);
+    });
+    // What its values do not let have its name is another law.
+    const auto sort = [&] {
+      std::erase_if(out, [](const CauseSet& s) { return !s.named || !std::isfinite(s.held_out); });
+      std::stable_sort(out.begin(), out.end(), [](const CauseSet& a, const CauseSet& b) {
+        return a.held_out < b.held_out;
+      });
+    };
+    sort();
+    if (out.size() > kFinished) out.resize(kFinished);
+    run_all(context_.parallel, static_cast<int>(out.size()), [&](int i) {
+      CauseSet& s = out[static_cast<std::size_t>(i)];
+      s = finished(s);
+    });
+    sort();
+    all_.insert(all_.end(), out.begin(), out.end());
+    return out;
+  }
+
+  /// The same set without one of its members, fitted.
+  CauseSet without(const CauseSet& s, std::size_t member) const {
+    CauseSet out = s;
+    out.members.erase(out.members.begin() + static_cast<std::ptrdiff_t>(member));
+    const Trial& t = *tried_[s.members[member]];
+    if (is_axis_error(t.kind)) {
+      const Model none = initial_model(context_.fitter.plant());
+      const int axis = t.place.channel;
+      std::erase(out.model.free_gain, axis);
+      std::erase(out.model.free_clock, axis);
+      out.model.gain[axis] = none.gain[axis];
+      out.model.clock_s[axis] = none.clock_s[axis];
+    } else {
+      out.model.effects.erase(out.model.effects.begin() +
+                              static_cast<std::ptrdiff_t>(effect_of(s, member)));
+    }
+    return finished(out);
+  }
+
+  /// Index of a member among the effects of its set's model.
+  std::size_t effect_of(const CauseSet& s, std::size_t member) const {
+    std::size_t out = context_.now.model.effects.size();
+    for (std::size_t i = 0; i < member; ++i) out += !is_axis_error(tried_[s.members[i]]->kind);
+    return out;
+  }
+
+  /// Without the members beside which the others do as well.
+  CauseSet without_needless(CauseSet best) const {
+    for (std::size_t i = 0; i < best.members.size() && best.members.size() > 1;) {
+      CauseSet less = without(best, i);
+      const bool needless = may_lead(less) && best.held_out > kTakes * less.held_out;
+      if (needless) best = std::move(less);
+      i = needless ? 0 : i + 1;
+    }
+    return best;
+  }
+
+  /// Causes that do nearly as well in the stead of a set's member.
+  std::vector<EffectKind> like(const CauseSet& best, std::size_t member) const {
+    std::vector<EffectKind> out;
+    const std::size_t own = best.members[member];
+    const auto has = [](const CauseSet& s, std::size_t cause) {
+      return std::find(s.members.begin(), s.members.end(), cause) != s.members.end();
+    };
+    for (const CauseSet& s : all_) {
+      if (s.members.size() != best.members.size() || s.held_out > kNearly * best.held_out ||
+          has(s, own) || !may_lead(s))
+        continue;
+      Members others;
+      for (const std::size_t i : s.members)
+        if (!has(best, i)) others.push_back(i);
+      const EffectKind kind = tried_[others.front()]->kind;
+      if (others.size() == 1 && kind != tried_[own]->kind &&
+          std::find(out.begin(), out.end(), kind) == out.end())
+        out.push_back(kind);
+    }
+    return out;
+  }
+
+  SeveralCauses result(const CauseSet& best) const {
+    SeveralCauses out;
+    out.model = best.model;
+    for (std::size_t i = 0; i < best.members.size(); ++i) {
+      Cause cause{*tried_[best.members[i]], like(best, i)};
+      if (!is_axis_error(cause.trial.kind))
+        cause.trial.kind =
+            name_of_fit(best.model.effects[effect_of(best, i)], context_.fitter.segments().front());
+      out.causes.push_back(std::move(cause));
+    }
+    return out;
+  }
+
+  const TrialContext& context_;
+  std::vector<const Trial*> tried_;
+  std::size_t holdout_from_;
+  std::vector<RecordSegment> seen_;
+  Fitter train_;
+  CauseSet none_;
+  std::vector<CauseSet> all_;
+};
+
+}  // namespace
+
+SeveralCauses several_causes(const TrialContext& context, const std::vector<Trial>& tried,
+                             std::size_t holdout_from) {
+  if (context.fitter.plant().is_large()) return {};
+  return Selection(context, tried, holdout_from).run();
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,42 @@
+#include "estimator/diagnose/trials/trial_relations.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace framewatch::estimator {
+namespace {
+
+bool is_same(const Trial& a, const Trial& b) {
+  return a.kind == b.kind && a.place == b.place && a.second == b.second;
+}
+
+}  // namespace
+
+bool same_spot(const EffectPlace& a, const EffectPlace& b) {
+  if (a == b) return true;
+  const auto element_or_node = [](const EffectPlace& p) {
+    return p.kind == PlaceKind::frame || p.kind == PlaceKind::node;
+  };
+  const bool alike = a.kind == b.kind || (a.story == 1 && b.story == 1);
+  return element_or_node(a) && element_or_node(b) && alike && a.story == b.story &&
+         a.frame == b.frame;
+}
+
+std::vector<Trial> without_duplicates(const std::vector<Trial>& trials) {
+  std::vector<Trial> out;
+  for (const Trial& t : trials)
+    if (std::none_of(out.begin(), out.end(), [&](const Trial& o) { return is_same(o, t); }))
+      out.push_back(t);
+  return out;
+}
+
+bool is_rival(const Trial& t, const Trial& best) {
+  const bool arbitrary =
+      !t.model.effects.empty() && t.model.effects.back().form == LawForm::broadband;
+  const bool first = t.kind == best.kind && t.place == best.place;
+  const bool second = t.second == std::pair(best.kind, best.place);
+  return t.outcome == TrialOutcome::fitted && !arbitrary &&
+         !(best.second ? is_same(t, best) : first || second);
+}
+
+}  // namespace framewatch::estimator

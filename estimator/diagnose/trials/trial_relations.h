@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/trials/trial.h"
+
+namespace framewatch::estimator {
+
+/// Whether two places are one to the equations: a force on the lowest story of a frame is one at
+/// its floor.
+bool same_spot(const EffectPlace& a, const EffectPlace& b);
+
+/// The first trial of every name and place; the others came from other start values.
+std::vector<Trial> without_duplicates(const std::vector<Trial>& trials);
+
+/// Whether a trial contradicts the best one: other effects, not the same with one more. An
+/// arbitrary force does as well as any law and is no rival.
+bool is_rival(const Trial& trial, const Trial& best);
+
+}  // namespace framewatch::estimator
