@@ -7,7 +7,7 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kFarOff = 10;        ///< misfit over the expected, below which labels are not doubted
+constexpr double kFarOff = 10;     ///< misfit over the expected, below which labels are not doubted
 constexpr double kMostLeft = 0.3;  ///< of the cost, with the right labels
 constexpr std::size_t kLabelsFitted = 6;
 constexpr int kLabelSteps = 8;

@@ -1,8 +1,5 @@
 #include "fleet/uplink/uplink.h"
 
-#include <algorithm>
-
-#include <framewatch/acknowledged_t.hpp>
 #include <framewatch/summary_t.hpp>
 
 #include "drivers/base/encoded.h"
@@ -73,33 +70,6 @@ TEST_F(UplinkRules, AnEventIsSentWhenItIsHeardAndOnceThough) {
   add_event(1, test::kStart_us);  // a second later it stands in the history
   run(10);
   EXPECT_EQ(kept_twice(), 0U);
-}
-
-TEST_F(UplinkRules, WhatIsAcknowledgedInTheBuildingIsSaidWhenItChanges) {
-  const auto said = [&] {
-    return std::count_if(hub_.published.begin(), hub_.published.end(),
-                         [](const Message& m) { return m.subject == "fw.up.a.acknowledged"; });
-  };
-  acknowledged_t none{};
-  acknowledged_t one{};
-  one.events = 1;
-  one.id = {7};
-  one.kind = {"gap"};
-  one.place = {""};
-  one.since_us = {1};
-  one.who = {"alice"};
-  one.comment = {""};
-  begin();
-  const auto hear = [&](const acknowledged_t& message) {
-    uplink_->heard("ACKNOWLEDGED", drivers::encoded(message));
-    run(1);
-  };
-  hear(none);
-  hear(none);
-  EXPECT_EQ(said(), 1);
-  hear(one);
-  hear(one);
-  EXPECT_EQ(said(), 2);
 }
 
 TEST_F(UplinkRules, APeriodThatRunsIsNotSentAndOneThatIsOverIs) {
