@@ -182,7 +182,8 @@ TEST(Law, FrictionWithASlipZoneSlidesAtItsForce) {
   constexpr Index kSteps = 20000;
   const LawValues law{LawForm::slip_lock, {kStiffness, kTiny_m, 1, 0.5, 0.9, 0.1}, 1, 1};
   VectorXd d(kSteps);
-  for (Index i = 0; i < kSteps; ++i) d[i] = 1e-3 * (i % 20 < 10 ? i % 10 : 10 - i % 10);
+  for (Index i = 0; i < kSteps; ++i)
+    d[i] = 1e-3 * static_cast<double>(i % 20 < 10 ? i % 10 : 10 - i % 10);
   const VectorXd force = force_over(law, d) / (kStiffness * kTiny_m);
   for (Index i = 2; i < kSteps; ++i) EXPECT_NEAR(force[i], d[i] > d[i - 1] ? 1 : -1, 1e-9) << i;
 }

@@ -88,8 +88,9 @@ TEST(PartialPlant, PlacesAreThoseThatAreRead) {
   for (const CandidatePlace& place : candidate_places_of(plant, initial_model(plant))) {
     EXPECT_NE(place.kind, CandidatePlace::Kind::element);
     EXPECT_NE(place.kind, CandidatePlace::Kind::link);
-    if (place.kind == CandidatePlace::Kind::node || place.kind == CandidatePlace::Kind::crossing)
+    if (place.kind == CandidatePlace::Kind::node || place.kind == CandidatePlace::Kind::crossing) {
       EXPECT_EQ(place.place.story % 5, 0) << place.place.story;
+    }
   }
 }
 

@@ -64,7 +64,9 @@ TEST(Plant, WhatNoAxisReadsFollowsButTheBasesMotion) {
     small.axes.erase(small.axes.begin() + static_cast<long>(missing));
     const auto plant = make_plant(small.structure, small.axes, small.design, test::kRate_hz);
     ASSERT_EQ(plant.has_value(), missing < 4) << missing;
-    if (plant) EXPECT_EQ(plant->read_equations(), 3) << missing;
+    if (plant) {
+      EXPECT_EQ(plant->read_equations(), 3) << missing;
+    }
   }
 }
 
