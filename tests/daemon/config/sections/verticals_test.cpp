@@ -57,9 +57,10 @@ TEST(Verticals, ThatShowNothingAreSaidToBeUnused) {
     EXPECT_EQ(config.pipeline.axes.size(), 2U) << text;
     EXPECT_EQ(config.sources.size(), 2U);
     EXPECT_EQ(config.unused.size(), text.find("up2") == std::string::npos ? 1U : 2U);
-    for (const UnusedChannel& unused : config.unused)
-      if (text.find("use = false") == std::string::npos)
-        EXPECT_NE(unused.reason.find("vertical"), std::string::npos) << unused.reason;
+    const bool named = text.find("use = false") == std::string::npos;
+    for (const UnusedChannel& unused : config.unused) {
+      EXPECT_TRUE(!named || unused.reason.find("vertical") != std::string::npos) << unused.reason;
+    }
   }
 }
 
