@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/model/run_system.h"
 #include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/identify/elements/guessed_design.h"

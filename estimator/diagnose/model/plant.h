@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -73,12 +72,5 @@ struct Plant {
 /// The plant with one more axis, which measures an external force (N) on one degree of freedom,
 /// that of the frame and story of `axis`.
 Plant with_force_axis(const Plant& plant, const SensorAxis& axis);
-
-/// design: theta order of `structure`. Where axes stand at places in plan or floors have none, the
-/// plant of partial_plant(). Empty when the base is not measured in a direction that is measured
-/// above it.
-std::optional<Plant> make_plant(const Structure& structure, const std::vector<SensorAxis>& axes,
-                                const Eigen::VectorXd& design, double rate_hz,
-                                const BendingStiffness& bending = {});
 
 }  // namespace framewatch::estimator

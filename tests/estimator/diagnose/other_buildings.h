@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "estimator/diagnose/model/make_plant.h"
 #include "tests/estimator/diagnose/small_building.h"
 
 namespace framewatch::test {

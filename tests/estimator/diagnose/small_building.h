@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/model/plant.h"
 #include "estimator/diagnose/spectra/record_segment.h"
 #include "estimator/simulate/linear_response.h"

@@ -29,7 +29,7 @@ TEST(Operations, MultiplyAllBinsAtOnce) {
   };
   const MatrixXd mass = some(kEquations, kAxes), stiffness = 50 * some(kEquations, kAxes),
                  damping = some(kEquations, kAxes);
-  const EffectPlace node = test::node_place(0, 2);
+  const EffectPlace node = test::node_place(2);
   const LinearOperation resonator(plant, model,
                                   effect_of(LawForm::resonator, node, {2, 1.5, 0.05}));
   const LinearOperation damper(plant, model, effect_of(LawForm::damper, node, {30}));

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/model/make_plant.h"
 #include "tests/estimator/diagnose/effect_of.h"
 #include "tests/estimator/diagnose/other_buildings.h"
 

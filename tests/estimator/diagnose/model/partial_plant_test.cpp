@@ -3,6 +3,7 @@
 #include "daemon/lab/few_sensors.h"
 #include "estimator/diagnose/fit/unknowns.h"
 #include "estimator/diagnose/locate/candidate_places.h"
+#include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/model/model.h"
 #include "estimator/diagnose/model/partial_plant.h"
 #include "estimator/structure/story_groups.h"

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/model/make_plant.h"
 #include "estimator/simulate/exact_motion.h"
 #include "tests/estimator/diagnose/other_buildings.h"
 

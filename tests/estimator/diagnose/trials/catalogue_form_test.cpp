@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/trials/known_effects.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 #include "tests/support/example_effects.h"
