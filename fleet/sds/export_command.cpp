@@ -7,8 +7,8 @@
 #include "fleet/sds/sds_archive.h"
 #include "fleet/store/database.h"
 #include "fleet/store/fleet_schema.h"
+#include "fleet/view/fetched_samples.h"
 #include "fleet/view/rows.h"
-#include "fleet/view/stretch.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -28,7 +28,7 @@ bool put(Database& database, const Database::Row& row, const std::string& root) 
     fmt::print("{} {}: {}\n", building, request, daemon::printable(text));
   };
   std::string why;
-  const auto stretch = read_stretch(database, building, request, why);
+  const auto stretch = read_fetched(database, building, request, why);
   if (!stretch) {
     say(why);
     return false;

@@ -14,9 +14,9 @@
 #include "fleet/serve/journal.h"
 #include "fleet/view/building_view.h"
 #include "fleet/view/earthquake_view.h"
+#include "fleet/view/fetched_samples.h"
 #include "fleet/view/overview.h"
 #include "fleet/view/series.h"
-#include "fleet/view/stretch.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -142,7 +142,7 @@ PageAnswer FleetPages::raw(const PageRequest& r) {
   if (!is_building_name(r.argument("name"))) return refuse(400, "name is none of a building");
   const auto lent = pool_.lend();
   std::string why;
-  const auto stretch = read_stretch(*lent, r.argument("name"), r.argument("request"), why);
+  const auto stretch = read_fetched(*lent, r.argument("name"), r.argument("request"), why);
   if (!stretch) return refuse(why == lent->error() ? 503 : 404, why);
   return {200, {stretch->miniseed.begin(), stretch->miniseed.end()}, "application/octet-stream"};
 }

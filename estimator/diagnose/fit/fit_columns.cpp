@@ -167,8 +167,9 @@ Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& 
         parameter && model.effects[static_cast<std::size_t>(unknown.index)].element_law();
     VectorXd column = VectorXd::Zero(system.residual.size());
     if (!parameter)
-      column = unknown.tied.empty() ? along(plant, system, one)
-                                    : along_tied(plant, model, segment, system, motions, unknown, one);
+      column = unknown.tied.empty()
+                   ? along(plant, system, one)
+                   : along_tied(plant, model, segment, system, motions, unknown, one);
     else if (!elsewhere && !(of_law && run))
       column = parameter_column(plant, model, segment, record, system, unknown, ratio);
     if (run) column += *run;

@@ -15,9 +15,9 @@
 #include "fleet/store/fleet_store.h"
 #include "fleet/view/building_view.h"
 #include "fleet/view/earthquake_view.h"
+#include "fleet/view/fetched_samples.h"
 #include "fleet/view/overview.h"
 #include "fleet/view/series.h"
-#include "fleet/view/stretch.h"
 #include "tests/fleet/support/own_postgres.h"
 
 namespace framewatch::fleet {
@@ -173,15 +173,15 @@ TEST_F(Views, RawSamplesAreWholeOrItIsSaidWhyNot) {
                   {"tower", "none", "none.mseed", 0, 0, {'n', 'o'}}};
   store(batch);
   std::string why;
-  const auto whole = read_stretch(look_, "tower", "whole", why);
+  const auto whole = read_fetched(look_, "tower", "whole", why);
   ASSERT_TRUE(whole) << why;
   EXPECT_EQ(whole->miniseed, (Bytes{1, 2, 0xff, 4}));
   EXPECT_EQ(whole->file, "whole.mseed");
-  EXPECT_FALSE(read_stretch(look_, "tower", "part", why));
+  EXPECT_FALSE(read_fetched(look_, "tower", "part", why));
   EXPECT_EQ(why, "1 of 2 pieces have come");
-  EXPECT_FALSE(read_stretch(look_, "tower", "none", why));
+  EXPECT_FALSE(read_fetched(look_, "tower", "none", why));
   EXPECT_EQ(why, "there is nothing: no");
-  EXPECT_FALSE(read_stretch(look_, "tower", "other", why));
+  EXPECT_FALSE(read_fetched(look_, "tower", "other", why));
   EXPECT_EQ(why, "nothing of it has come");
   const json all = json::parse(building_json(look_, "tower"))["stretches"];
   ASSERT_EQ(all.size(), 3u);

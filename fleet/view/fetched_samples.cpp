@@ -1,4 +1,4 @@
-#include "fleet/view/stretch.h"
+#include "fleet/view/fetched_samples.h"
 
 #include <fmt/core.h>
 
@@ -12,8 +12,8 @@ constexpr const char* kPiecesOf =
 
 }  // namespace
 
-std::optional<Stretch> read_stretch(Database& database, const std::string& building,
-                                    const std::string& request, std::string& why) {
+std::optional<FetchedSamples> read_fetched(Database& database, const std::string& building,
+                                           const std::string& request, std::string& why) {
   const auto state = database.query(
       fmt::format("SELECT count(*), max(pieces), min(file){}", kPiecesOf), {building, request});
   const auto pieces =
@@ -25,7 +25,7 @@ std::optional<Stretch> read_stretch(Database& database, const std::string& build
     return std::nullopt;
   }
   const std::int64_t come = integer_at(state->front(), 0), all = integer_at(state->front(), 1);
-  Stretch out{text_at(state->front(), 2), {}};
+  FetchedSamples out{text_at(state->front(), 2), {}};
   for (const Database::Row& piece : *pieces)
     out.miniseed.insert(out.miniseed.end(), piece[0]->begin(), piece[0]->end());
   if (come == all && come > 0) return out;

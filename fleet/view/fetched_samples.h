@@ -9,14 +9,14 @@
 namespace framewatch::fleet {
 
 /// Raw samples that a building sent on request.
-struct Stretch {
+struct FetchedSamples {
   std::string file;  ///< name that says the format
   Bytes miniseed;
 };
 
 /// Of a request to a building, when all pieces have come; else empty, with the reason: none has,
 /// some have not, or why the building has nothing to send.
-std::optional<Stretch> read_stretch(Database& database, const std::string& building,
-                                    const std::string& request, std::string& why);
+std::optional<FetchedSamples> read_fetched(Database& database, const std::string& building,
+                                           const std::string& request, std::string& why);
 
 }  // namespace framewatch::fleet
