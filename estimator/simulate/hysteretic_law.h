@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "estimator/simulate/element_law.h"
+#include "estimator/structure/effect.h"
 
 namespace framewatch::estimator {
 

@@ -8,6 +8,7 @@
 
 #include "daemon/base/log.h"
 #include "fleet/serve/command_order.h"
+#include "fleet/serve/commander.h"
 #include "fleet/serve/database_pool.h"
 #include "fleet/serve/people.h"
 
