@@ -53,10 +53,7 @@ std::string channel_text(const estimator::Structure& s, const estimator::SensorA
                                : fmt::format("LCM {}, node {}, axis {}", source.lcm_channel,
                                              source.sensor_node, "xyz"[source.axis]);
   return fmt::format("  {:<16} {}{}, along {}; {}\n", axis.name, place, frame,
-                     axis.vertical                               ? "z"
-                     : axis.direction == estimator::Direction::x ? "x"
-                                                                 : "y",
-                     from);
+                     direction_letter(axis), from);
 }
 
 std::string identifiable_text(const CheckReport& r) {
