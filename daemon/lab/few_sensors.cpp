@@ -19,7 +19,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kEvery_s = 5, kNormal95 = 1.96;
-constexpr double kOblique_rad = 0.7;  // of the ground's motion, from x
+constexpr std::uint64_t kAcross = 5000;  // of the seeds: ground motion along y
 
 double between(estimator::Random& random, double most) {
   return most * (2 * random.uniform() - 1);
@@ -123,9 +123,13 @@ TallRecord tall_record(const TallTrial& t) {
   }
   estimator::ResponseOptions options;
   options.rate_hz = kTrialRate_hz;
-  estimator::ResponseStream response(truly, stories, theta,
-                                     directed(kanai_tajimi(ground), t.in_space ? kOblique_rad : 0),
-                                     options, {}, response_channels(truly, sensors), effects);
+  estimator::PlanMotion shaking = directed(kanai_tajimi(ground), 0);
+  if (t.in_space) {
+    ground.seed += kAcross;
+    shaking.y = kanai_tajimi(ground);
+  }
+  estimator::ResponseStream response(truly, stories, theta, shaking, options, {},
+                                     response_channels(truly, sensors), effects);
   const auto instants = static_cast<Eigen::Index>(t.duration_s * kTrialRate_hz) + 1;
   out.accel.resize(instants, static_cast<Eigen::Index>(out.config.axes.size()));
   for (Eigen::Index i = 0; i < instants; ++i) out.accel.row(i) = response.next().transpose();

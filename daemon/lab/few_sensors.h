@@ -41,7 +41,8 @@ struct TallRecord {
   Eigen::MatrixXd accel;  ///< instants x axes, m/s^2
 };
 
-/// Truth integrated exactly at 1 ms; Kanai-Tajimi ground of 2.5 Hz, strong all the time.
+/// Truth integrated exactly at 1 ms; Kanai-Tajimi ground of 2.5 Hz, strong all the time,
+/// independent along x and y.
 TallRecord tall_record(const TallTrial& trial);
 
 /// Errors of the 5-s windows from `from_s` on, 5 s apart.

@@ -68,12 +68,12 @@ std::vector<estimator::SensorAxis> floor_axes_in_space(const std::vector<int>& f
   levels.insert(levels.end(), floors.begin(), floors.end());
   std::vector<estimator::SensorAxis> axes;
   for (const int level : levels)
-    for (const int frame : {0, 1, 2}) {
+    for (const int frame : {0, 2, 3}) {
       estimator::SensorAxis axis;
       axis.name = fmt::format("F{}-{}", level, frame);
       axis.story = level;
       axis.frame = frame;
-      axis.direction = frame < 2 ? estimator::Direction::x : estimator::Direction::y;
+      axis.direction = frame == 0 ? estimator::Direction::x : estimator::Direction::y;
       axes.push_back(axis);
     }
   return axes;

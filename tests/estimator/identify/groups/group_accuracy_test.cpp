@@ -47,6 +47,16 @@ TEST(GroupAccuracy, OfFourFloorsOfTwentyIsAsDerived) {
   EXPECT_GT(errors.stiffness.coverage_ratio(), 0.85);
 }
 
+TEST(GroupAccuracy, OfFramesOfRigidFloorsWithThreeChannelsIsAsDerived) {
+  TallTrial trial;
+  trial.in_space = true;
+  trial.duration_s = 45;
+  const FewSensorsErrors errors = errors_of(trial, 1);
+  EXPECT_LT(errors.stiffness.quantile(0.5), 0.001);
+  EXPECT_LT(errors.damping.quantile(0.5), 0.010);
+  EXPECT_GT(errors.stiffness.coverage_ratio(), 0.85);
+}
+
 TEST(GroupAccuracy, WithFiveTimesTheNoiseIsFiveTimesWorse) {
   TallTrial trial;
   trial.noise_ratio = 0.05;
