@@ -144,7 +144,8 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
                 {"denominator", denominator_json(o)},
                 {"after_is_of_a_model_fitted_to", d.after_of_all ? "all records" : "train"},
                 {"misfit_ratio_before", json_value(d.ratio_before)},
-                {"misfit_ratio_after", json_value(d.ratio_after)}};
+                {"misfit_ratio_after", json_value(d.ratio_after)},
+                {"noise_corner_hz", json_value(d.noise_corner_hz)}};
   out["effects"] = Json::array();
   for (const estimator::FoundEffect& f : d.effects) {
     Json one = effect_json(o, f);

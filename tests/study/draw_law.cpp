@@ -27,19 +27,25 @@ class PlainLaw : public estimator::ElementLaw {
 };
 
 /// Sliders in parallel, each giving way at its own, perhaps lopsided, deformation.
+/// With `loss` the limits fall by the factor exp(-loss work).
 class Sliders : public estimator::ElementLaw {
  public:
   struct Part {
     double k, down, up, slider = 0;
   };
-  explicit Sliders(std::vector<Part> parts) : parts_(std::move(parts)) {}
+  explicit Sliders(std::vector<Part> parts, double loss = 0)
+      : parts_(std::move(parts)), loss_(loss) {}
   double force(double, double d, double, std::span<const double>) const override {
     double sum = 0;
-    for (const Part& p : parts_) sum += p.k * std::clamp(d - p.slider, -p.down, p.up);
+    for (const Part& p : parts_) sum += p.k * elastic(p, d);
     return sum;
   }
   void begin_step(double, double d) override {
-    for (Part& p : parts_) p.slider = d - std::clamp(d - p.slider, -p.down, p.up);
+    for (Part& p : parts_) {
+      const double e = elastic(p, d);
+      work_ += std::abs(p.k * e * (d - e - p.slider));
+      p.slider = d - e;
+    }
   }
   double stiffness_bound() const override {
     double sum = 0;
@@ -48,7 +54,30 @@ class Sliders : public estimator::ElementLaw {
   }
 
  private:
+  double elastic(const Part& p, double d) const {
+    const double left = std::exp(-loss_ * work_);
+    return std::clamp(d - p.slider, -left * p.down, left * p.up);
+  }
+
   std::vector<Part> parts_;
+  double loss_, work_ = 0;
+};
+
+/// A brace that yields to either side and is slack by what it has yielded.
+class SlackBrace : public estimator::ElementLaw {
+ public:
+  SlackBrace(double stiffness, double yield) : k_(stiffness), yield_(yield) {}
+  double force(double, double d, double, std::span<const double>) const override {
+    return k_ * (std::clamp(d - up_, 0.0, yield_) - std::clamp(-d - down_, 0.0, yield_));
+  }
+  void begin_step(double, double d) override {
+    up_ = std::max(up_, d - yield_);
+    down_ = std::max(down_, -d - yield_);
+  }
+  double stiffness_bound() const override { return k_; }
+
+ private:
+  double k_, yield_, up_ = 0, down_ = 0;
 };
 
 double softplus(double x) {
@@ -63,8 +92,36 @@ std::unique_ptr<estimator::ElementLaw> plain(PlainLaw::Function f, double stiffn
   return std::make_unique<PlainLaw>(std::move(f), stiffness);
 }
 
+/// Laws with sliders; null when the name is that of another one.
+std::unique_ptr<estimator::ElementLaw> make_sliding(const std::string& name, const LawScale& e,
+                                                    double s, double u) {
+  if (name == "stick and slip")
+    return std::make_unique<Sliders>(
+        std::vector<Sliders::Part>{{10 * e.k, 0.1 * s * e.d, 0.1 * s * e.d}});
+  if (name == "three sliders") {
+    std::vector<Sliders::Part> parts;
+    for (const double dy : {0.15, 0.3, 0.6}) parts.push_back({s * e.k / 3, dy * e.d, dy * e.d});
+    return std::make_unique<Sliders>(parts);
+  }
+  if (name == "twelve sliders") {
+    std::vector<Sliders::Part> parts;
+    for (int i = 1; i <= 12; ++i) parts.push_back({s * e.k / 12, 0.09 * i * e.d, 0.09 * i * e.d});
+    return std::make_unique<Sliders>(parts);
+  }
+  if (name == "yielding that tires") {
+    const double dy = (0.25 + 0.2 * u) * e.d;
+    return std::make_unique<Sliders>(std::vector<Sliders::Part>{{s * e.k, dy, dy}},
+                                     0.02 / (s * e.k * dy * dy));
+  }
+  if (name == "slack brace") return std::make_unique<SlackBrace>(s * e.k, (0.2 + 0.2 * u) * e.d);
+  if (name == "lopsided yield")
+    return std::make_unique<Sliders>(std::vector<Sliders::Part>{{s * e.k, 0.12 * e.d, 0.5 * e.d}});
+  return nullptr;
+}
+
 std::unique_ptr<estimator::ElementLaw> make_other(const std::string& name, const LawScale& e,
                                                   double s, double u, int record) {
+  if (auto sliding = make_sliding(name, e, s, u)) return sliding;
   if (name == "smooth gap") {
     const double g = (0.3 + 0.3 * u) * e.d, w = 0.1 * e.d;
     return plain(
@@ -83,14 +140,13 @@ std::unique_ptr<estimator::ElementLaw> make_other(const std::string& name, const
           return s * e.k * e.d * sign(v) * std::pow(std::abs(v) / e.v, 1.6);
         },
         0);
-  if (name == "stick and slip")
-    return std::make_unique<Sliders>(
-        std::vector<Sliders::Part>{{10 * e.k, 0.1 * s * e.d, 0.1 * s * e.d}});
-  if (name == "three sliders") {
-    std::vector<Sliders::Part> parts;
-    for (const double dy : {0.15, 0.3, 0.6}) parts.push_back({s * e.k / 3, dy * e.d, dy * e.d});
-    return std::make_unique<Sliders>(parts);
-  }
+  if (name == "whole frame softens")
+    return plain(
+        [=](double, double d, double) {
+          const double z = s * std::abs(d) / e.d;
+          return -e.k * d * z / (1 + z);
+        },
+        e.k);
   if (name == "smooth drop") {
     const double at = (record == 0 ? 0.3 + 0.2 * u : 0.6 - 0.2 * u) * e.seconds;
     return plain([=](double t, double d,
@@ -122,12 +178,15 @@ std::unique_ptr<estimator::ElementLaw> make_other(const std::string& name, const
         },
         3 * s * e.k);
   }
-  if (name == "lopsided yield")
-    return std::make_unique<Sliders>(std::vector<Sliders::Part>{{s * e.k, 0.12 * e.d, 0.5 * e.d}});
   if (name == "wavy spring")
     return plain([=](double, double d,
                      double) { return s * e.k * e.d * 0.2 * std::sin(2 * M_PI * d / (0.5 * e.d)); },
                  2.6 * s * e.k);
+  if (name == "pulsing stiffness") {
+    const double w = 0.6 * e.v / e.d;
+    return plain([=](double t, double d, double) { return s * e.k * d * std::sin(w * t); },
+                 s * e.k);
+  }
   // "damping that grows": d^2 v
   return plain(
       [=](double, double d, double v) { return s * e.k * e.d * d * d * v / (e.d * e.d * e.v); }, 0);
@@ -138,7 +197,10 @@ std::vector<std::string> accepted(const std::string& name) {
   if (name == "power 2.5") return {"cubic_stiffness", "quadratic_stiffness"};
   if (name == "damping power 1.6") return {"quadratic_damping"};
   if (name == "stick and slip") return {"coulomb_friction", "bilinear_hysteresis", "bouc_wen"};
-  if (name == "three sliders") return {"bilinear_hysteresis", "bouc_wen"};
+  if (name == "three sliders" || name == "twelve sliders" || name == "yielding that tires")
+    return {"bilinear_hysteresis", "bouc_wen"};
+  if (name == "slack brace") return {"pinching"};
+  if (name == "whole frame softens") return {"amplitude_dependence"};
   if (name == "smooth drop") return {"stiffness_drop", "stiffness_drift"};
   if (name == "tanh softening" || name == "two-slope softening")
     return {"quadratic_stiffness", "cubic_stiffness"};
@@ -148,22 +210,24 @@ std::vector<std::string> accepted(const std::string& name) {
 }
 
 bool takes_over(const std::string& name) {
-  return name == "three sliders" || name == "lopsided yield" || name == "tanh softening";
+  return name == "three sliders" || name == "twelve sliders" || name == "yielding that tires" ||
+         name == "slack brace" || name == "lopsided yield" || name == "tanh softening";
 }
 
 }  // namespace
 
 const std::vector<std::string>& other_forms() {
   static const std::vector<std::string> kNames{
-      "smooth gap",        "power 2.5",          "damping power 1.6", "stick and slip",
-      "three sliders",     "smooth drop",        "tanh softening",    "two-slope softening",
-      "Stribeck friction", "stop with a dashpot"};
+      "smooth gap",        "power 2.5",           "damping power 1.6", "stick and slip",
+      "three sliders",     "smooth drop",         "tanh softening",    "two-slope softening",
+      "Stribeck friction", "stop with a dashpot", "twelve sliders",    "yielding that tires",
+      "slack brace",       "whole frame softens"};
   return kNames;
 }
 
 const std::vector<std::string>& outsiders() {
   static const std::vector<std::string> kNames{"lopsided yield", "wavy spring",
-                                               "damping that grows"};
+                                               "damping that grows", "pulsing stiffness"};
   return kNames;
 }
 
@@ -173,15 +237,20 @@ Draw draw_law(const std::string& name, const StudyBuilding& b, const Peaks& peak
   place.kind = estimator::PlaceKind::frame;
   place.story = 1 + static_cast<int>(random.uniform() * b.truth.stories);
   place.frame = static_cast<int>(random.uniform() * b.truth.frames());
+  if (name == "whole frame softens") {
+    place.kind = estimator::PlaceKind::whole_frame;
+    place.story = 0;
+  }
   const double u = random.uniform();
   Draw draw;
   draw.name = name;
   draw.largest = takes_over(name)                ? 0.9
                  : name == "smooth drop"         ? 0.7
                  : name == "two-slope softening" ? 0.6
+                 : name == "pulsing stiffness"   ? 0.5
                                                  : 2;
   draw.make = [=](double s, Hidden& hidden) {
-    const int i = b.table().frame_stiffness(place.story, place.frame);
+    const int i = b.table().frame_stiffness(std::max(place.story, 1), place.frame);
     const LawScale e{b.theta[i], peaks.deformation[i], peaks.rate[i], peaks.seconds};
     if (takes_over(name)) hidden.theta[i] -= s * e.k;
     hidden.laws.push_back({name, accepted(name), place,

@@ -21,14 +21,18 @@ namespace {
 
 constexpr const char* kUsage =
     R"(usage: diagnose_study generate DIR [--each N] [--seed N] [--seconds S] [--building KIND]
-                               [--group GROUP] [--effect NAME]
+                               [--group GROUP] [--effect NAME] [--flicker PERCENT]
+                               [--mass-damping PERCENT]
        diagnose_study practice DIR [--data FOLDER]
        diagnose_study run DIR --program FRAMEWATCH [--taken-out N]
        diagnose_study table DIR
 
 generate  writes cases: config.toml, train.csv.gz, holdout.csv.gz, truth.json. Each effect N times (1)
           per building, noise 1, 2, 5 % in turn. Groups: catalogue, nothing (10 N per building),
-          other_form, outside, two_effects (6 N per building).
+          other_form, outside, two_effects (6 N per building), three_effects (3 N). Damping that no
+          dashpot makes (--mass-damping: ratio of the first mode, over 1 %; 20), noise that grows
+          toward low frequencies (--flicker: share of its power; 30), masses, gains and clocks a
+          little off.
 practice  imports the practice cases of FOLDER (that of the data folder), made with another program
 run       runs `framewatch diagnose` on every case without a diagnosis, and the first N (0) of every
           effect and building once more with the effect taken from the catalogue
@@ -48,6 +52,10 @@ struct Arguments {
     return std::strtol(text(key, std::to_string(usual)).c_str(), nullptr, 10);
   }
 };
+
+double percent(const Arguments& a, const std::string& key, double usual) {
+  return a.options.contains(key) ? 0.01 * static_cast<double>(a.number(key, 0)) : usual;
+}
 
 struct Wanted {
   std::string group, name;
@@ -70,6 +78,10 @@ std::vector<Wanted> wanted_cases(long each) {
                              "coulomb_friction+stiffness_drop", "tuned_mass_damper+two_sided_gap",
                              "quadratic_damping+extra_mass", "unmeasured_force+cubic_stiffness"})
       out.push_back({"two_effects", pair});
+    for (const char* three :
+         {"cubic_stiffness+gain_error+extra_mass", "bouc_wen+time_shift+tuned_mass_damper",
+          "coulomb_friction+two_sided_gap+gain_error"})
+      out.push_back({"three_effects", three});
   }
   return out;
 }
@@ -103,6 +115,8 @@ int generate(const Arguments& a) {
       CaseOptions options;
       options.building = building;
       options.seconds = static_cast<double>(a.number("--seconds", 60));
+      options.flicker_share = percent(a, "--flicker", options.flicker_share);
+      options.mass_damping = percent(a, "--mass-damping", options.mass_damping);
       options.seed = static_cast<std::uint64_t>(a.number("--seed", 1)) * 100000 + number;
       std::string why;
       const auto made = make_showing(wanted, options, number % 3, why);
@@ -213,9 +227,9 @@ int main_of(int argc, char** argv) {
   bool good = argc >= 3 && argc % 2 == 1;
   for (int i = 3; i + 1 < argc; i += 2) {
     const std::string key = argv[i];
-    const std::vector<std::string> known{"--each",     "--seed",  "--seconds",
-                                         "--building", "--group", "--effect",
-                                         "--program",  "--data",  "--taken-out"};
+    const std::vector<std::string> known{"--each",      "--seed",    "--seconds",     "--building",
+                                         "--group",     "--effect",  "--program",     "--data",
+                                         "--taken-out", "--flicker", "--mass-damping"};
     good = good && std::find(known.begin(), known.end(), key) != known.end();
     a.options[key] = argv[i + 1];
   }

@@ -62,19 +62,24 @@ std::vector<Bound> bounds_of(const std::vector<Outcome>& outcomes) {
   const auto placed = [](const Outcome& o) { return o.places_right == o.truths; };
   const auto wrong = [](const Outcome& o) { return o.confidently_wrong; };
   for (const auto& [building, limit] :
-       {std::pair("2story_1x1", 0.97), {"2story_3x3", 0.92}, {"5story_1x1", 0.92}})
+       {std::pair("2story_1x1", 0.97), {"2story_3x3", 0.95}, {"5story_1x1", 0.95}})
     out.share(
         fmt::format("one effect, {}: name and place", building),
         [&](const Outcome& o) { return o.group == "catalogue" && o.building == building; }, right,
         limit);
+  out.share("a law of another form: name and place", of_group("other_form"), right, 0.9);
   out.share("a law of another form: place", of_group("other_form"), placed, 0.92);
-  out.share("a law of another form: confidently wrong", of_group("other_form"), wrong, 0, false);
+  for (const char* group : {"catalogue", "other_form", "two_effects", "practice"})
+    out.share(fmt::format("{}: confidently wrong", group), of_group(group), wrong, 0.01, false);
+  out.share("practice: name and place", of_group("practice"), right, 0.9);
+  out.share("not in the catalogue: confidently wrong", of_group("outside"), wrong, 0.1, false);
   out.share(
       "nothing hidden: `adequate`", of_group("nothing"),
-      [](const Outcome& o) { return o.verdict == "adequate"; }, 0.99);
+      [](const Outcome& o) { return o.verdict == "adequate"; }, 0.98);
   out.share("effect taken from the catalogue: confidently wrong", of_group(kTakenOut), wrong, 0.1,
             false);
-  out.share("two effects: both", of_group("two_effects"), right, 0.8);
+  out.share("two effects: both", of_group("two_effects"), right, 0.85);
+  out.share("three effects: all", of_group("three_effects"), right, 0.6);
   std::vector<double> removed, errors;
   for (const Outcome& o : outcomes) {
     if (o.group != "catalogue") continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "estimator/simulate/building_model.h"
 #include "estimator/structure/matrices.h"
@@ -99,10 +100,27 @@ double settled(const Draw& draw, double size, double least, const StudyCase& c,
 }
 
 std::vector<std::string> parts_of(const std::string& name) {
-  const std::size_t plus = name.find('+');
-  if (name.empty() || name == "none") return {};
-  if (plus == std::string::npos) return {name};
-  return {name.substr(0, plus), name.substr(plus + 1)};
+  std::vector<std::string> out;
+  if (name.empty() || name == "none") return out;
+  std::istringstream all(name);
+  for (std::string part; std::getline(all, part, '+');) out.push_back(part);
+  return out;
+}
+
+/// Dashpots from every floor to the ground, as the masses.
+std::vector<estimator::Effect> ground_dampers(const estimator::Structure& s, double per_kg) {
+  std::vector<estimator::Effect> out;
+  for (int story = 1; per_kg > 0 && story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f) {
+      estimator::EffectPlace place;
+      place.kind = estimator::PlaceKind::node_pair;
+      place.story = story;
+      place.frame = f;
+      place.to_story = 0;
+      out.push_back(make_effect(estimator::EffectKind::added_damper, place));
+      out.back().values.front() = per_kg * s.frame_mass(story, f);
+    }
+  return out;
 }
 
 /// Whether softening lets the building stand through the record that sizes are not chosen by.
@@ -127,6 +145,7 @@ std::optional<StudyCase> make_case(const std::string& group, const std::string& 
   c.hidden.theta = c.building.theta;
   const double f1 =
       natural_frequencies_hz(c.building.truth, c.building.table(), c.building.theta).front();
+  c.ground_dampers = ground_dampers(c.building.truth, 0.01 * options.mass_damping * 4 * M_PI * f1);
   for (std::uint64_t record = 0; record < 2; ++record)
     c.motions.push_back(shaking(options, f1, 2 * options.seed + record, random));
   const std::vector<std::string> parts = parts_of(name);

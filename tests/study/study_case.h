@@ -12,8 +12,12 @@ namespace framewatch::study {
 
 struct CaseOptions {
   std::string building = "2story_1x1";
-  double noise_ratio = 0.02;  ///< of every channel's rms
-  double seconds = 60;        ///< of each record
+  double noise_ratio = 0.02;   ///< of every channel's rms
+  double flicker_share = 0.3;  ///< of the noise's power: FlickerNoise
+  /// Damping ratio of the first mode that goes with the masses, over 1 %: no dashpot between floors
+  /// makes it.
+  double mass_damping = 0.2;
+  double seconds = 60;  ///< of each record
   double rate_hz = 100;
   double least_gap = 3;  ///< in noise floors
   std::uint64_t seed = 1;
@@ -22,11 +26,12 @@ struct CaseOptions {
 /// A building, what it hides and how it is shaken, twice.
 struct StudyCase {
   CaseOptions options;
-  std::string group;  ///< catalogue, nothing, other_form, outside, two_effects
+  std::string group;  ///< catalogue, nothing, other_form, outside, two_effects, three_effects
   std::string name;   ///< of what is hidden
   StudyBuilding building;
   Hidden hidden;
-  std::vector<estimator::PlanMotion> motions;  ///< train, holdout
+  std::vector<estimator::PlanMotion> motions;     ///< train, holdout
+  std::vector<estimator::Effect> ground_dampers;  ///< the damping that goes with the masses
   double gap_over_floor = 0;  ///< what no linear model explains, of the train record
 };
 

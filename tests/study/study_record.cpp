@@ -16,6 +16,7 @@
 #include "estimator/simulate/channel_effects.h"
 #include "estimator/simulate/nonlinear_building.h"
 #include "estimator/simulate/sensor_model.h"
+#include "tests/study/flicker_noise.h"
 
 namespace framewatch::study {
 namespace {
@@ -31,6 +32,7 @@ Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<estimator:
   const StudyBuilding& b = c.building;
   std::vector<estimator::Effect> effects = in_record(c.hidden.effects, record, c.options.seconds);
   effects.insert(effects.end(), more.begin(), more.end());
+  effects.insert(effects.end(), c.ground_dampers.begin(), c.ground_dampers.end());
   std::vector<estimator::ResponseChannel> channels = response_channels(b.truth, b.axes);
   estimator::ChannelEffects channel_effects(effects);
   channel_effects.delay(channels);
@@ -39,9 +41,12 @@ Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<estimator:
   options.anti_alias = anti_alias;
   options.longest_step_s = anti_alias ? kFine_s : 1 / options.rate_hz;
   std::vector<estimator::PlacedLaw> laws;
-  for (const OtherLaw& law : c.hidden.laws)
-    laws.push_back(
-        {b.table().frame_stiffness(law.place.story, law.place.frame), law.make(record), {}});
+  for (const OtherLaw& law : c.hidden.laws) {
+    const bool whole = law.place.kind == estimator::PlaceKind::whole_frame;
+    for (int story = 1; story <= b.truth.stories; ++story)
+      if (whole || story == law.place.story)
+        laws.push_back({b.table().frame_stiffness(story, law.place.frame), law.make(record), {}});
+  }
   estimator::ResponseStream stream(
       std::make_unique<estimator::NonlinearBuilding>(b.truth, b.table(), c.hidden.theta, effects,
                                                      std::move(laws), fine_step_s(options)),
@@ -145,8 +150,11 @@ Eigen::MatrixXd measured(const StudyCase& c, int record) {
                              std::sqrt(out.col(a).squaredNorm() / static_cast<double>(out.rows()));
     const double bias = kBias_mps2 * (2 * noise.uniform() - 1);
     const double level = models[static_cast<std::size_t>(a)].clip_level;
+    FlickerNoise flicker(noise);
+    const double white = std::sqrt(1 - c.options.flicker_share),
+                 pink = std::sqrt(c.options.flicker_share);
     for (Eigen::Index i = 0; i < out.rows(); ++i) {
-      double seen = out(i, a) + deviation * noise.normal() + bias;
+      double seen = out(i, a) + deviation * (white * noise.normal() + pink * flicker.next()) + bias;
       if (level > 0) seen = std::clamp(seen, -level, level);
       out(i, a) = quantised(seen);
     }

@@ -41,6 +41,7 @@ bool same_place(const Json& truth, const Json& found) {
   }
   if (text_of(found, "kind") != kind) return false;
   const auto keys = kind == "building"       ? std::vector<const char*>{"direction"}
+                    : kind == "whole_frame"  ? std::vector<const char*>{"frame"}
                     : kind == "panel"        ? std::vector<const char*>{"story", "panel"}
                     : kind == "floor"        ? std::vector<const char*>{"story"}
                     : truth.contains("node") ? std::vector<const char*>{"story", "node"}

@@ -75,9 +75,43 @@ TEST(StudyCase, NoiseIsAsLargeAsItIsSaidToBe) {
   }
 }
 
+TEST(StudyCase, NoiseGrowsTowardLowFrequencies) {
+  const auto power_of_mean = [](double flicker_share) {
+    CaseOptions options = quick();
+    options.flicker_share = flicker_share;
+    const StudyCase loud = made("nothing", "none", options);
+    StudyCase still = loud;
+    still.options.noise_ratio = 0;
+    const Eigen::MatrixXd noise = measured(loud, 0) - measured(still, 0);
+    double slow = 0;
+    constexpr Eigen::Index kBlock = 50;
+    for (Eigen::Index at = 0; at + kBlock <= noise.rows(); at += kBlock)
+      slow += (noise.middleRows(at, kBlock).colwise().mean()).squaredNorm();
+    return slow / noise.squaredNorm();
+  };
+  EXPECT_GT(power_of_mean(0.3), 4 * power_of_mean(0));
+}
+
+TEST(StudyCase, DampingIsNoneThatDashpotsBetweenFloorsMake) {
+  CaseOptions none = quick(), some = quick();
+  none.mass_damping = 0;
+  some.mass_damping = 0.5;
+  const StudyCase a = made("nothing", "none", none), b = made("nothing", "none", some);
+  EXPECT_TRUE(a.ground_dampers.empty());
+  ASSERT_EQ(std::ssize(b.ground_dampers), b.building.truth.degrees_of_freedom());
+  EXPECT_EQ(a.building.theta, b.building.theta);
+  EXPECT_LT(clean_record(b, 0).norm(), 0.98 * clean_record(a, 0).norm());
+}
+
+TEST(StudyCase, MayHideThreeEffects) {
+  const StudyCase c = made("three_effects", "cubic_stiffness+gain_error+extra_mass", quick());
+  EXPECT_EQ(c.hidden.effects.size(), 3U);
+}
+
 TEST(StudyCase, WhatIsHiddenShows) {
   constexpr double kShows = 2;  // times the noise of all channels; one sensor's fault is in one
-  for (const char* name : {"bouc_wen", "gain_error", "smooth gap", "cubic_stiffness+gain_error"}) {
+  for (const char* name : {"bouc_wen", "gain_error", "smooth gap", "cubic_stiffness+gain_error",
+                           "slack brace", "yielding that tires", "whole frame softens"}) {
     const StudyCase c = made("any", name, quick());
     EXPECT_GE(c.gap_over_floor, 3) << name;
     StudyCase nothing = c;

@@ -28,8 +28,10 @@ std::vector<RecordSegment> with_model_error(const Plant& plant,
     const auto numbers = static_cast<double>(std::max<Index>(1, outputs * s.bins()));
     const double variance =
         share * share * power / (numbers * static_cast<double>(std::max<Index>(1, s.intervals())));
+    const double noise = s.variance.sum();
     for (Index a = 0; a < plant.axis_count(); ++a)
       if (is_output(plant, a)) s.variance[a] += variance;
+    s.corner_hz *= noise / std::max(s.variance.sum(), 1e-300);  // the model's error is white
   }
   return out;
 }

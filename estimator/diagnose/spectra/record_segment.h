@@ -17,7 +17,10 @@ struct RecordSegment {
   /// Axes that measure displacement relative to the ground, m; their spectra are of acceleration.
   std::vector<char> displaced;
   Eigen::VectorXd variance;  ///< of one sample's white noise, per axis
-  Eigen::VectorXd w;         ///< rad/s of the bins in the band
+  /// Toward low frequencies the noise of all axes grows: its density is white times 1 + corner_hz
+  /// over the frequency.
+  double corner_hz = 0;
+  Eigen::VectorXd w;  ///< rad/s of the bins in the band
   Eigen::Index first_bin = 0;
   Eigen::MatrixXcd spectrum;  ///< axes x bins, sum of samples
 

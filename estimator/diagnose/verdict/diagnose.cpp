@@ -7,6 +7,7 @@
 
 #include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/noise_colour.h"
 #include "estimator/diagnose/trials/declared.h"
 #include "estimator/diagnose/trials/implausible_masses.h"
 #include "estimator/diagnose/trials/known_effects.h"
@@ -35,8 +36,7 @@ constexpr int kPolishSteps = 6, kBackSteps = 8;
 
 class Search {
  public:
-  Search(const Plant& plant, const std::vector<RecordSegment>& segments,
-         const DiagnosisOptions& options)
+  Search(const Plant& plant, std::vector<RecordSegment>& segments, const DiagnosisOptions& options)
       : plant_(plant),
         segments_(segments),
         options_(options),
@@ -51,17 +51,22 @@ class Search {
       out_.reason = "the model cannot be fitted to these records";
       return out_;
     }
+    colour_noise(fitter_, segments_, now);
     out_.linear = now.model;
     out_.ratio_before = ratio(now);
     report("labels", 0.05);
     const std::vector<Trial> labels = wrong_labels(context_of(now));
     if (!labels.empty()) adopt(labels, now);
     bool more = true;
-    for (int round = 0; round < options_.rounds && more; ++round) more = one_round(now, round);
+    for (int round = 0; round < options_.rounds && more; ++round) {
+      more = one_round(now, round);
+      colour_noise(fitter_, segments_, now);
+    }
     report("what stays", 0.92);
     const bool several = find_several(now);
     if (!out_.effects.empty() && !several) polish(now);
     out_.ratio_after = ratio(now);
+    out_.noise_corner_hz = segments_.front().corner_hz;
     set_models(now.model);
     mark_approximate(now.model);
     set_errors(fitter_, out_.model, now.motion, out_.effects);
@@ -312,7 +317,7 @@ class Search {
   }
 
   const Plant& plant_;
-  const std::vector<RecordSegment>& segments_;
+  std::vector<RecordSegment>& segments_;  ///< their noise is coloured
   const DiagnosisOptions& options_;
   Fitter fitter_;
   Diagnosis out_;

@@ -54,6 +54,7 @@ struct Diagnosis {
   std::vector<Trial> rejected;               ///< trials of the last round, if none was adopted
   std::vector<LeadingLaw> leading;           ///< where nothing was named, best first
   double ratio_before = 0, ratio_after = 0;  ///< misfit over its expectation
+  double noise_corner_hz = 0;                ///< RecordSegment::corner_hz; 0: the noise is white
 };
 
 struct DiagnosisOptions {

@@ -1,0 +1,123 @@
+#include "estimator/diagnose/fit/noise_colour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kMisfit = 1.05;        ///< above it there is something to explain
+constexpr double kLargestMisfit = 60;   ///< 1/f noise does not reach so far above that of the quiet
+constexpr double kLowestCorner = 0.05;  ///< of the band's lowest frequency
+constexpr double kRatio = 1.12;         ///< of neighbouring corners that are tried
+constexpr int kCorners = 80;
+constexpr Index kBinsOfCell = 24;
+constexpr int kTimes = 3, kSteps = 6;
+constexpr double kSame = 0.15;        ///< relative difference of corners
+constexpr double kPerhapsNoise = 10;  ///< spread_of() with which a fit is tried
+constexpr double kLikeNoise = 2;      ///< the same with which it is noise
+
+/// Mean square of the rest of one equation in neighbouring bins.
+struct Cell {
+  double hz, now_hz;  ///< frequency, corner of the weights
+  double level;       ///< 1: noise as it was taken to be
+  double numbers;
+
+  /// Noise with the corner over noise as it was taken to be.
+  double expected(double corner_hz) const { return (1 + corner_hz / hz) / (1 + now_hz / hz); }
+};
+
+std::vector<Cell> cells_of(const Whitened& system, const RecordSegment& segment) {
+  const Index n = system.operation.equations();
+  std::vector<Cell> out;
+  for (Index from = 0; from + kBinsOfCell <= system.bins(); from += kBinsOfCell)
+    for (Index i = 0; i < n; ++i) {
+      double power = 0;
+      for (Index b = from; b < from + kBinsOfCell; ++b)
+        power += system.rest.segment(2 * n * b, 2 * n)(Eigen::seq(i, 2 * n - 1, n)).squaredNorm();
+      const double hz = segment.w[from + kBinsOfCell / 2] / (2 * M_PI);
+      out.push_back({hz, segment.corner_hz, power / kBinsOfCell, kBinsOfCell});
+    }
+  return out;
+}
+
+std::vector<Cell> cells_of(const Fitter& fitter, const FitResult& now) {
+  const std::vector<Whitened> systems =
+      fitter.systems(now.model, now.motion, forcing_of(now.model));
+  std::vector<Cell> out;
+  for (std::size_t r = 0; r < systems.size(); ++r) {
+    const std::vector<Cell> more = cells_of(systems[r], fitter.segments()[r]);
+    out.insert(out.end(), more.begin(), more.end());
+  }
+  return out;
+}
+
+/// Half the likelihood's logarithm of noise with the corner, negative.
+double cost_of(const std::vector<Cell>& cells, double corner_hz) {
+  double out = 0;
+  for (const Cell& c : cells) {
+    const double expected = c.expected(corner_hz);
+    out += c.numbers * (c.level / expected + std::log(expected));
+  }
+  return out;
+}
+
+double likeliest_corner_hz(const std::vector<Cell>& cells) {
+  double lowest = cells.front().hz;
+  for (const Cell& c : cells) lowest = std::min(lowest, c.hz);
+  double best = 0, corner = kLowestCorner * lowest;
+  for (int i = 0; i < kCorners; ++i, corner *= kRatio)
+    if (cost_of(cells, corner) < cost_of(cells, best)) best = corner;
+  return best;
+}
+
+/// Mean square of the cells' differences from noise with the corner, over that of such noise.
+double spread_of(const std::vector<Cell>& cells, double corner_hz) {
+  double out = 0;
+  for (const Cell& c : cells) out += c.numbers * std::pow(c.level / c.expected(corner_hz) - 1, 2);
+  return out / static_cast<double>(cells.size());
+}
+
+}  // namespace
+
+bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now) {
+  const Plant& plant = fitter.plant();
+  const double misfit = now.total_misfit() / fitter.expected(now.model);
+  // The whitened rows of motions that no axis reads, and of a single equation, tell less.
+  if (plant.unread.cols() > 0 || plant.equations() < 2) return false;
+  if (misfit < kMisfit || misfit > kLargestMisfit) return false;
+  const double earlier_hz = segments.front().corner_hz;
+  const auto set = [&](double corner_hz) {
+    for (RecordSegment& s : segments) s.corner_hz = corner_hz;
+  };
+  FitResult coloured = now;
+  double spread = kPerhapsNoise;
+  for (int i = 0; i <= kTimes; ++i) {
+    const std::vector<Cell> cells = cells_of(fitter, coloured);
+    if (cells.empty()) break;
+    const double corner_hz = likeliest_corner_hz(cells);
+    spread = spread_of(cells, corner_hz);
+    if (corner_hz == 0 || spread > kPerhapsNoise || i == kTimes) break;
+    if (std::abs(corner_hz - segments.front().corner_hz) < kSame * corner_hz) break;
+    set(corner_hz);
+    FitResult again = fitter.fit(coloured.model, coloured.motion, thorough(now.model, kSteps));
+    if (!again.good) {
+      spread = kPerhapsNoise;
+      break;
+    }
+    coloured = std::move(again);
+  }
+  if (segments.front().corner_hz == earlier_hz) return false;
+  if (spread > kLikeNoise) {
+    set(earlier_hz);
+    return false;
+  }
+  now = std::move(coloured);
+  return true;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,102 @@
+#include "estimator/diagnose/fit/noise_colour.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "estimator/diagnose/fit/axis_readings.h"
+#include "estimator/diagnose/fit/model_error.h"
+#include "tests/estimator/diagnose/hidden_effect.h"
+
+namespace framewatch::estimator {
+namespace noise_colour_test {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// 1/f noise of so many times the white noise that is believed, at corner_hz as strong: a sum of
+/// noises that forget in steps of four.
+VectorXd flicker(Index samples, double corner_hz, std::uint64_t seed) {
+  constexpr int kParts = 7;
+  constexpr double kStep = 4;
+  Random random(seed);
+  VectorXd out = VectorXd::Zero(samples);
+  // A part of unit power at f0 has the density 2 f0 / (pi (f^2 + f0^2)); of all in steps of four
+  // the sum is about 1 / (f ln 4).
+  const double power = 2 * corner_hz * std::log(kStep) / test::kRate_hz;
+  double f0 = 0.25 * test::kRate_hz;
+  for (int part = 0; part < kParts; ++part, f0 /= kStep) {
+    const double keep = std::exp(-2 * M_PI * f0 / test::kRate_hz);
+    double now = random.normal();
+    for (double& value : out) {
+      value += test::kNoise_mps2 * std::sqrt(power) * now;
+      now = keep * now + std::sqrt(1 - keep * keep) * random.normal();
+    }
+  }
+  return out;
+}
+
+std::vector<MatrixXd> with_flicker(std::vector<MatrixXd> records, double corner_hz) {
+  std::uint64_t seed = 50;
+  for (MatrixXd& record : records)
+    for (Index a = 0; a < record.cols(); ++a)
+      record.col(a) += flicker(record.rows(), corner_hz, ++seed);
+  return records;
+}
+
+/// What colour_noise() makes of the linear model's fit to records.
+struct Coloured {
+  test::Recorded recorded;
+  FitResult now;
+  double misfit_before;
+  bool is;
+
+  explicit Coloured(const std::vector<MatrixXd>& records)
+      : recorded(records), now(recorded.linear()), misfit_before(misfit()) {
+    is = colour_noise(recorded.fitter, recorded.segments, now);
+  }
+  double misfit() const { return now.total_misfit() / recorded.fitter.expected(now.model); }
+};
+
+TEST(NoiseColour, IsFoundWhereNothingElseIsMissing) {
+  constexpr double kCorner_hz = 20;
+  const Coloured c(with_flicker(test::records_with({}, {1, 2}), kCorner_hz));
+  EXPECT_GT(c.misfit_before, 1.5);
+  ASSERT_TRUE(c.is);
+  EXPECT_NEAR(c.recorded.segments.front().corner_hz / kCorner_hz, 1, 0.35);
+  EXPECT_NEAR(c.misfit(), 1, 0.1);
+}
+
+TEST(NoiseColour, IsNoneOfWhiteNoise) {
+  const Coloured c(test::records_with({}, {1, 2}));
+  EXPECT_FALSE(c.is);
+  EXPECT_EQ(c.recorded.segments.front().corner_hz, 0);
+}
+
+TEST(NoiseColour, DoesNotStandInForAMissingEffect) {
+  for (const double gain : {1.05, 1.2}) {
+    std::vector<MatrixXd> records = test::records_with({}, {1, 2});
+    for (MatrixXd& record : records) record.col(1) *= gain;
+    const Coloured c(records);
+    ASSERT_GT(c.misfit_before, 1.1);
+    EXPECT_FALSE(c.is) << gain;
+    EXPECT_EQ(c.misfit(), c.misfit_before);
+    EXPECT_EQ(c.recorded.segments.front().corner_hz, 0);
+  }
+}
+
+TEST(NoiseColour, WeighsBinsOfLowFrequencyLess) {
+  const test::Recorded recorded(test::records_with({}, {1}));
+  RecordSegment segment = recorded.segments.front();
+  const Model model = initial_model(recorded.plant);
+  const VectorXd white = bin_noise(model, segment, 3);
+  segment.corner_hz = segment.w[3] / (2 * M_PI);
+  EXPECT_NEAR((bin_noise(model, segment, 3) - 2 * white).norm(), 0, 1e-12 * white.norm());
+  EXPECT_LT(with_model_error(recorded.plant, {segment}, 1).front().corner_hz,
+            0.1 * segment.corner_hz)
+      << "the model's own error is white";
+}
+
+}  // namespace noise_colour_test
+}  // namespace framewatch::estimator
