@@ -38,6 +38,13 @@ class Slope {
     return slip(z, d, direction) * without_slip(z, direction);
   }
 
+  /// Share of the slope that the slip zone leaves.
+  double slip(double z, double d, double direction) const {
+    if (slip_ == 0) return 1;
+    const double at = (form_ == LawForm::pinched ? z * direction - offset_ : d) / p_[H::width];
+    return at * at < kOutside ? 1 - slip_ * std::exp(-at * at) : 1.0;
+  }
+
   double without_slip(double z, double direction) const {
     const double level = weaker_ * power_of(std::abs(z), p_[H::exponent]);
     const double turn = p_[H::beta] * (z * direction > 0 ? 1.0 : -1.0) + loading_ - p_[H::beta];
@@ -49,13 +56,6 @@ class Slope {
   }
 
  private:
-  /// Share of the slope that the slip zone leaves.
-  double slip(double z, double d, double direction) const {
-    if (slip_ == 0) return 1;
-    const double at = (form_ == LawForm::pinched ? z * direction - offset_ : d) / p_[H::width];
-    return at * at < kOutside ? 1 - slip_ * std::exp(-at * at) : 1.0;
-  }
-
   const std::vector<double>& p_;
   LawForm form_;
   double loading_ = 1, weaker_ = 1, softer_ = 1, slip_ = 0, offset_ = 0;
@@ -95,7 +95,7 @@ double advanced_z(const LawValues& values, double from, double d, double d_now, 
   for (double left = std::abs(travel); left > 0; left -= longest) {
     const double rising = slope.without_slip(z, direction);
     if (z * direction > 0 && rising * left < kYielded && rising > -kYielded) break;
-    const double at_start = slope(z, at, direction);
+    const double at_start = slope.slip(z, at, direction) * rising;
     const double h = direction * std::min(left, longest);
     z = std::clamp(z + h * slope(z + 0.5 * h * at_start, at + 0.5 * h, direction), -most, most);
     at += h;

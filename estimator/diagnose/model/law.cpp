@@ -44,11 +44,18 @@ LawMotion::LawMotion(const LawValues& values) : values_(values) {
   if (values.form == LawForm::asymptotic) memory_ = no_reversal(values);
 }
 
-double LawMotion::force(double d, double v, double t) const {
+double LawMotion::force(double d, double v, double t) {
   return values_.scale * plain_force(d, v, t);
 }
 
-double LawMotion::plain_force(double d, double v, double t) const {
+double LawMotion::next_z(double d) {
+  if (has_next_ && d == next_d_) return next_z_;
+  has_next_ = true;
+  next_d_ = d;
+  return next_z_ = advanced_z(values_, z_, d_, d, work_);
+}
+
+double LawMotion::plain_force(double d, double v, double t) {
   const std::vector<double>& p = values_.p;
   switch (values_.form) {
     case LawForm::power:
@@ -58,7 +65,7 @@ double LawMotion::plain_force(double d, double v, double t) const {
     case LawForm::hysteresis:
     case LawForm::pinched:
     case LawForm::slip_lock:
-      return p[0] * p[1] * advanced_z(values_, z_, d_, d, work_);
+      return p[0] * p[1] * next_z(d);
     case LawForm::sliders:
       return p[0] * slider_force(values_, memory_, d, work_);
     case LawForm::asymptotic:
@@ -96,12 +103,13 @@ void LawMotion::accept(double d, double, double) {
       turn(memory_, z_, d_, d);
       z_ = z;
     } else {
-      const double z = advanced_z(values_, z_, d_, d, work_);
+      const double z = next_z(d);
       work_ += 0.5 * (z_ + z) * (d - d_) / dy;
       z_ = z;
     }
     work_ = std::max(work_, 0.0);
   }
+  has_next_ = false;
   d_ = d;
 }
 

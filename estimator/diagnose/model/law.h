@@ -15,15 +15,19 @@ class LawMotion {
 
   /// Restoring force, N, at deformation d (m), its rate v (m/s) and time t (s), after a step from
   /// the state of the last accept().
-  double force(double d, double v, double t) const;
+  double force(double d, double v, double t);
   /// Ends the step at this motion.
   void accept(double d, double v, double t);
 
  private:
-  double plain_force(double d, double v, double t) const;
+  double plain_force(double d, double v, double t);
+  /// z of hysteresis at d; that of the last d is kept, a step ends where its force was found.
+  double next_z(double d);
 
   LawValues values_;
   double z_ = 0, d_ = 0, work_ = 0;
+  bool has_next_ = false;
+  double next_d_ = 0, next_z_ = 0;
   std::vector<double> memory_;  ///< of sliders, or of the last reversal
 };
 

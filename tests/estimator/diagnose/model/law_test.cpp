@@ -189,10 +189,10 @@ TEST(Law, FrictionWithASlipZoneSlidesAtItsForce) {
 }
 
 TEST(Law, FrictionMayFallWithTheRateAndAContactOnlyPushes) {
-  const LawMotion stribeck({LawForm::friction, {10, 1e-4, 0.5, 0.1}, 1, 1});
+  LawMotion stribeck({LawForm::friction, {10, 1e-4, 0.5, 0.1}, 1, 1});
   EXPECT_NEAR(stribeck.force(0, 0.002, 0), 15, 0.1);
   EXPECT_NEAR(stribeck.force(0, -1, 0), -10, 0.1);
-  const LawMotion contact({LawForm::gap_positive, {100, 0.02, 50}, 1, 1});
+  LawMotion contact({LawForm::gap_positive, {100, 0.02, 50}, 1, 1});
   EXPECT_NEAR(contact.force(0.05, 0.1, 0), 8, 1e-9);
   EXPECT_EQ(contact.force(0.05, -1, 0), 0);
   EXPECT_EQ(contact.force(0.01, 1, 0), 0);
@@ -219,8 +219,10 @@ TEST(Law, AskingForAForceChangesNothing) {
     asked.force(10 * d, 1, 0);
     asked.force(-d, 1, 0);
     EXPECT_EQ(asked.force(d, 1, 0), silent.force(d, 1, 0));
+    asked.force(-d, 1, 0);  // elsewhere than where the step ends
     asked.accept(d, 1, 0);
     silent.accept(d, 1, 0);
+    EXPECT_EQ(asked.force(-d, 1, 0), silent.force(-d, 1, 0));
   }
   EXPECT_NEAR(asked.force(-0.003, 0, 0), silent.force(-0.003, 7, 7), kRounding);
 }
