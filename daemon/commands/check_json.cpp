@@ -20,7 +20,7 @@ Json channels(const Config& config) {
   for (std::size_t i = 0; i < config.sources.size(); ++i) {
     const estimator::SensorAxis& axis = config.pipeline.axes[i];
     const AxisSource& source = config.sources[i];
-    Json channel{{"name", axis.name}, {"story", axis.story}, {"direction", direction_letter(axis)}};
+    Json channel{{"name", axis.name}, {"story", axis.story}, {"direction", letter(axis)}};
     if (axis.frame >= 0) channel["frame"] = config.pipeline.structure.frame_name(axis.frame);
     if (axis.plan)
       channel["plan"] = {

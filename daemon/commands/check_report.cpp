@@ -144,11 +144,6 @@ void warn_about_bending(CheckReport& report) {
 
 }  // namespace
 
-const char* direction_letter(const estimator::SensorAxis& axis) {
-  if (axis.vertical) return "z";
-  return axis.direction == estimator::Direction::x ? "x" : "y";
-}
-
 CheckReport make_check_report(const Config& config, int advise) {
   CheckReport report;
   report.config = config;

@@ -32,8 +32,6 @@ struct CheckReport {
 /// advise: places for further sensors to name at most.
 CheckReport make_check_report(const Config& config, int advise = 0);
 
-/// x, y or z.
-const char* direction_letter(const estimator::SensorAxis& axis);
 /// For people, several lines, without the warnings.
 std::string to_text(const CheckReport& report);
 /// For programs, schema framewatch.check/1. `report` empty: the problems are why.

@@ -52,8 +52,7 @@ std::string channel_text(const estimator::Structure& s, const estimator::SensorA
       : source.sensor_node < 0 ? std::string("files only")
                                : fmt::format("LCM {}, node {}, axis {}", source.lcm_channel,
                                              source.sensor_node, "xyz"[source.axis]);
-  return fmt::format("  {:<16} {}{}, along {}; {}\n", axis.name, place, frame,
-                     direction_letter(axis), from);
+  return fmt::format("  {:<16} {}{}, along {}; {}\n", axis.name, place, frame, letter(axis), from);
 }
 
 std::string identifiable_text(const CheckReport& r) {

@@ -17,10 +17,6 @@ constexpr double kOblique_deg = 15;
 constexpr double kNearRoof = 0.8;
 constexpr double kSameSpot_m = 0.01, kParallel_rad = 0.02;
 
-const char* letter(estimator::Direction d) {
-  return d == estimator::Direction::x ? "x" : "y";
-}
-
 void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
                       std::vector<std::string>& out) {
   const estimator::PipelineConfig& c = config.pipeline;

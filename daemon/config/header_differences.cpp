@@ -72,10 +72,6 @@ std::optional<double> azimuth_of_y(const Config& config, const std::vector<Both>
       candidates, [](double a, double b) { return std::abs(apart_deg(a, b)) <= kSameAzimuth_deg; });
 }
 
-const char* letter(const SensorAxis& axis) {
-  return axis.direction == Direction::x ? "x" : "y";
-}
-
 std::string about_direction(const Both& both, double azimuth_y_deg) {
   const SensorAxis& axis = *both.axis;
   if (is_vertical(*both.header) && axis.vertical) return {};

@@ -169,7 +169,7 @@ std::string channel_section(const estimator::Structure& s, const PlannedChannel&
   if (channel.station) return station_channel_section(channel);
   std::string out = fmt::format("\n[[channel]]\nname = {}\nstory = {}\n",
                                 quoted(channel.column.name), channel.place.story);
-  const char* direction = channel.place.direction == estimator::Direction::x ? "x" : "y";
+  const char* direction = letter(channel.place.direction);
   out += channel.place.story == 0
              ? fmt::format("direction = \"{}\"\n", direction)
              : fmt::format("frame = {}  # along {}\n", quoted(s.frame_name(channel.place.frame)),

@@ -27,7 +27,7 @@ std::string lcm_source(const Structure& s, const Place& place, std::size_t index
   const bool one_a_floor = s.n() == 1 && s.m() == 1;
   return fmt::format("{{ lcm = \"ACCEL\", node = {}, axis = \"{}\" }}",
                      one_a_floor ? static_cast<std::size_t>(place.story) : index,
-                     place.direction == estimator::Direction::x ? "x" : "y");
+                     letter(place.direction));
 }
 
 class ChannelPlacing {

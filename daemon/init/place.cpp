@@ -9,10 +9,6 @@ namespace {
 
 using estimator::Direction;
 
-const char* letter(Direction along) {
-  return along == Direction::x ? "x" : "y";
-}
-
 std::optional<int> parse_story(const estimator::Structure& s, std::string_view text) {
   if (text == "base") return 0;
   if (text == "roof") return s.stories;

@@ -188,7 +188,7 @@ std::string floors_json(const SessionFloors& floors, const Config& config,
   }
   for (const estimator::LeftOutFloor& one : floors.left_out)
     out["left_out"].push_back({{"floor", one.floor},
-                               {"direction", one.direction == estimator::Direction::x ? "x" : "y"},
+                               {"direction", letter(one.direction)},
                                {"error_ratio", json_value(one.error)},
                                {"error_below_5_hz_ratio", json_value(one.low_error)},
                                {"spline_error_ratio", json_value(one.spline)},

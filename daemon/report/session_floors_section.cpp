@@ -42,8 +42,7 @@ std::string over_height(const SessionFloors& floors, const estimator::Structure&
 std::string left_out_table(const SessionFloors& floors) {
   std::vector<std::vector<std::string>> rows;
   for (const estimator::LeftOutFloor& one : floors.left_out)
-    rows.push_back({fmt::format("floor {}, {}", one.floor,
-                                one.direction == estimator::Direction::x ? "x" : "y"),
+    rows.push_back({fmt::format("floor {}, {}", one.floor, letter(one.direction)),
                     in_percent(one.low_error), in_percent(one.error), in_percent(one.low_spline),
                     in_percent(one.spline)});
   return html_table({"left out", "error below 5 Hz, %", "error, %", "of a spline below 5 Hz, %",

@@ -76,7 +76,7 @@ std::string history(const SessionReport& r, std::size_t p, const std::vector<dou
 }
 
 std::string quotient_plots(const TransferFunction& t) {
-  const std::string direction = t.direction == estimator::Direction::x ? "x" : "y";
+  const std::string direction = letter(t.direction);
   SvgAxis f{"frequency, Hz"};
   f.low = 0;
   if (std::isfinite(t.model_mode_hz)) f.high = std::min(6 * t.model_mode_hz, t.frequency_hz.back());
@@ -138,9 +138,9 @@ std::string transfer_section(const SessionReport& r) {
       const auto number = [](double f, int digits) {
         return std::isfinite(f) ? fmt::format("{:.{}f}", f, digits) : "-";
       };
-      rows.push_back({std::string(t.direction == estimator::Direction::x ? "x" : "y") + when,
-                      number(t.measured_mode_hz, 3), number(t.model_mode_hz, 3), number(t.mac, 2),
-                      number(t.stiffness_ratio(), 3), fmt::format("{}", t.segments)});
+      rows.push_back({std::string(letter(t.direction)) + when, number(t.measured_mode_hz, 3),
+                      number(t.model_mode_hz, 3), number(t.mac, 2), number(t.stiffness_ratio(), 3),
+                      fmt::format("{}", t.segments)});
     }
   };
   add(r.transfer, changed ? ", before the change" : "");

@@ -287,7 +287,7 @@ std::vector<TransferFunction> transfer_functions(const estimator::Structure& str
   if (static_cast<double>(size) < kShortest_s * motion.rate_hz - 1) return out;
   const auto base = [&](estimator::Direction d) {
     return mean_of(motion, from, to, [&](const estimator::SensorAxis& a) {
-      return a.story == 0 && a.direction == d;
+      return a.horizontal() && a.story == 0 && a.direction == d;
     });
   };
   const Eigen::VectorXd base_x = base(estimator::Direction::x),
@@ -295,7 +295,7 @@ std::vector<TransferFunction> transfer_functions(const estimator::Structure& str
   for (const estimator::Direction d : {estimator::Direction::x, estimator::Direction::y}) {
     Signals s{mean_of(motion, from, to,
                       [&](const estimator::SensorAxis& a) {
-                        return a.story == structure.stories && a.direction == d;
+                        return a.horizontal() && a.story == structure.stories && a.direction == d;
                       }),
               base_x, base_y, floors_of(structure, motion, from, to, base_x, base_y), d};
     if (s.top.size() == 0 || s.base().size() == 0) continue;

@@ -7,10 +7,6 @@
 namespace framewatch::daemon {
 namespace {
 
-const char* text(estimator::Direction direction) {
-  return direction == estimator::Direction::x ? "x" : "y";
-}
-
 const char* kind_text(const estimator::EffectPlace& p,
                       const std::vector<estimator::SensorAxis>& axes) {
   switch (p.kind) {
@@ -43,9 +39,9 @@ nlohmann::ordered_json location_json(const estimator::EffectPlace& p, const esti
   const auto add_channel = [&](const char* key, int channel) {
     out[key] = axes[static_cast<std::size_t>(channel)].name;
   };
-  if (p.kind == estimator::PlaceKind::building) out["direction"] = text(p.direction);
-  if (p.frame >= 0) out["direction"] = text(s.direction(p.frame));
-  if (p.channel >= 0) out["direction"] = text(axes[static_cast<std::size_t>(p.channel)].direction);
+  if (p.kind == estimator::PlaceKind::building) out["direction"] = letter(p.direction);
+  if (p.frame >= 0) out["direction"] = letter(s.direction(p.frame));
+  if (p.channel >= 0) out["direction"] = letter(axes[static_cast<std::size_t>(p.channel)]);
   if (p.story > 0) out["story"] = p.story;
   if (p.frame >= 0) out["frame"] = s.frame_name(p.frame);
   if (p.panel >= 0) out["panel"] = panel_name(s, p.panel);

@@ -76,7 +76,8 @@ GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxi
       noise_variance_(axes.size()) {
   for (const SensorAxis& axis : axes) {
     seen_.emplace_back();
-    if (axis.story == 0) continue;
+    drives_.push_back(axis.story == 0 && axis.horizontal());
+    if (axis.story == 0 || !axis.horizontal()) continue;
     const std::vector<double> weights = frame_weights(structure_, axis);
     for (int f = 0; f < structure_.frames(); ++f)
       if (const double w = weights[static_cast<std::size_t>(f)]; w != 0)
@@ -158,7 +159,7 @@ void GapMonitor::name_place(GapNews& news) const {
 Eigen::Vector2d GapMonitor::base_mean(const std::vector<double>& of_axes) const {
   Eigen::Vector2d sum(0, 0), count(0, 0);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (!seen_[a].empty()) continue;
+    if (!drives_[a]) continue;
     const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
     const bool turned = axes_[a].plan && (d == 0 ? std::cos(axes_[a].plan->angle_rad)
                                                  : std::sin(axes_[a].plan->angle_rad)) < 0;
@@ -194,7 +195,7 @@ void GapMonitor::noise_variances(const Current& c, const std::vector<double>& no
                : kNaN;
   };
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (!seen_[a].empty()) continue;
+    if (!drives_[a]) continue;
     const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
     base[d] += variance(a);
     count[d] += 1;

@@ -20,7 +20,7 @@ namespace framewatch::estimator {
 
 /// Simulates the current model under the measured base motion continuously and gives the gap to
 /// what the axes above measure. docs/gap.md, docs/equations.md (42), (43). Base axes of one
-/// direction are averaged: a turning base is a gap.
+/// direction are averaged: a turning base is a gap. Verticals and forces are not used.
 class GapMonitor {
  public:
   /// axes: with the remaining fractions of their delays (Pipeline::axes). model: none: it is
@@ -98,7 +98,8 @@ class GapMonitor {
   ParameterTable table_;    ///< of what is identified
   GroupDesign design_;
   std::vector<SensorAxis> axes_;
-  /// What each axis measures: degrees of freedom with weights; none: base.
+  std::vector<char> drives_;  ///< of each axis: one of the base along x or y
+  /// What each axis above the base measures along x or y: degrees of freedom with weights.
   std::vector<std::vector<std::pair<int, double>>> seen_;
   double rate_hz_, high_pass_hz_;
   GapOptions options_;

@@ -80,8 +80,7 @@ std::vector<Problem> find_problems(const Structure& s, const std::vector<SensorA
     if (a.vertical) continue;
     if (a.plan) {
       if ((along == Direction::x ? s.n() : s.m()) == 0)
-        add("direction", std::string("the building has no frame parallel to ") +
-                             (along == Direction::x ? "x" : "y"));
+        add("direction", std::string("the building has no frame parallel to ") + letter(along));
       continue;
     }
     const int place = a.frame >= 0 ? a.frame : (a.direction == Direction::x ? -1 : -2);

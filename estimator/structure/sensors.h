@@ -45,6 +45,11 @@ struct SensorAxis {
   bool horizontal() const { return !is_force && !vertical; }
 };
 
+/// "x", "y", or "z" of a vertical one.
+inline const char* letter(const SensorAxis& axis) {
+  return axis.vertical ? "z" : letter(axis.direction);
+}
+
 /// Assumed until a sensor's noise is configured or measured, m/s^2/sqrt(Hz). Only ratios between
 /// axes matter to the estimate: the level is taken from the residuals.
 inline constexpr double kDefaultNoiseDensity = 1e-4;

@@ -10,6 +10,11 @@ namespace framewatch::estimator {
 /// Axis a frame is parallel to, and along which its floors and sensors move.
 enum class Direction { x, y };
 
+/// "x" or "y".
+inline const char* letter(Direction direction) {
+  return direction == Direction::x ? "x" : "y";
+}
+
 /// flexible: every floor panel shears in its plane; rigid: a floor moves as one body (diaphragm).
 enum class FloorModel { flexible, rigid };
 

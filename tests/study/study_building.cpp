@@ -156,10 +156,8 @@ std::string config_toml(const StudyBuilding& b, double rate_hz) {
                      rate_hz);
   for (const estimator::SensorAxis& axis : b.axes)
     out += fmt::format("\n[[channel]]\nname = \"{}\"\nstory = {}\n{}", axis.name, axis.story,
-                       axis.story > 0
-                           ? fmt::format("frame = \"{}\"\n", s.frame_name(axis.frame))
-                           : fmt::format("direction = \"{}\"\n",
-                                         axis.direction == estimator::Direction::x ? "x" : "y"));
+                       axis.story > 0 ? fmt::format("frame = \"{}\"\n", s.frame_name(axis.frame))
+                                      : fmt::format("direction = \"{}\"\n", letter(axis)));
   return out;
 }
 

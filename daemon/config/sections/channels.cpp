@@ -100,8 +100,8 @@ void read_place(ConfigSection& section, const StructureReading& reading,
   if (axis.frame == kNoFrame) return;
   const estimator::Direction along = reading.structure.direction(axis.frame);
   if (section.given("direction") && axis.direction != along)
-    section.problem("direction", fmt::format("frame {} moves along {}", section.text("frame"),
-                                             along == estimator::Direction::x ? "x" : "y"));
+    section.problem("direction",
+                    fmt::format("frame {} moves along {}", section.text("frame"), letter(along)));
   axis.direction = along;
 }
 

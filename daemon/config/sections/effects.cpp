@@ -201,7 +201,7 @@ std::string place_toml(const estimator::EffectPlace& p, const estimator::Structu
     if (key == "direction") {
       const estimator::Direction along =
           p.kind == estimator::PlaceKind::building ? p.direction : s.direction(p.frame);
-      out += fmt::format("direction = \"{}\"\n", along == estimator::Direction::x ? "x" : "y");
+      out += fmt::format("direction = \"{}\"\n", letter(along));
     }
     if (key == "channel")
       out += fmt::format("channel = \"{}\"\n", axes[static_cast<std::size_t>(p.channel)].name);

@@ -23,16 +23,14 @@ std::string building_json(const Config& config, double rate_hz) {
                           {"story", table[p].story},
                           {"last_story", table[p].last_story},
                           {"frames", table[p].frames},
-                          {"direction", table[p].direction == estimator::Direction::x ? "x" : "y"},
+                          {"direction", letter(table[p].direction)},
                           {"frame", table[p].frame},
                           {"panel", table[p].panel},
                           {"design", design.size() > p ? Json(design[p]) : Json(nullptr)}});
   Json axes = Json::array();
   for (const estimator::SensorAxis& a : config.pipeline.axes) {
-    axes.push_back({{"name", a.name},
-                    {"story", a.story},
-                    {"direction", a.direction == estimator::Direction::x ? "x" : "y"},
-                    {"frame", a.frame}});
+    axes.push_back(
+        {{"name", a.name}, {"story", a.story}, {"direction", letter(a)}, {"frame", a.frame}});
     if (a.plan) axes.back().update({{"x_m", a.plan->x_m}, {"y_m", a.plan->y_m}});
   }
   const estimator::EstimatorOptions& o = config.pipeline.options;

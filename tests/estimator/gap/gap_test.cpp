@@ -82,7 +82,7 @@ class Gap : public testing::Test {
   };
   static void run(GapMonitor& monitor, const std::vector<SampleSet>& sets, double noise, Seen& seen,
                   std::size_t from = 0, std::size_t to = SIZE_MAX) {
-    const std::vector<double> density(3, noise);
+    const std::vector<double> density(sets.front().accel.size(), noise);
     for (std::size_t i = from; i < std::min(to, sets.size()); ++i) {
       if (const GapWindow* w = monitor.push(sets[i], density)) seen.windows.push_back(*w);
       if (monitor.news() != nullptr) seen.news.push_back(*monitor.news());
@@ -117,6 +117,23 @@ TEST_F(Gap, OfTheRightModelWithoutNoiseIsTheSchemesError) {
   Seen seen;
   run(m, measured(0), 0, seen);
   for (const GapWindow& w : seen.windows) EXPECT_LT(w.nrmse, kSchemeError);
+}
+
+TEST_F(Gap, DoesNotTakeAVerticalOrAForceForMotionOfTheFloors) {
+  axes_.resize(5);
+  axes_[3].name = "up";
+  axes_[3].vertical = true;
+  axes_[4].name = "shaker";
+  axes_[4].story = 2;
+  axes_[4].is_force = true;
+  GapMonitor m = monitor({theta_, {}});
+  std::vector<SampleSet> sets = measured(0);
+  for (SampleSet& set : sets) set.accel.insert(set.accel.end(), {3 * set.accel[1], 1e3});
+  Seen seen;
+  run(m, sets, 0, seen);
+  ASSERT_FALSE(seen.windows.empty());
+  EXPECT_LT(seen.windows.back().nrmse, kSchemeError);
+  EXPECT_TRUE(std::isnan(seen.windows.back().axis_nrmse[4]));
 }
 
 TEST_F(Gap, KnowsLawsAndWhatIsWrongWithChannels) {
