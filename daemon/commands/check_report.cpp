@@ -121,8 +121,6 @@ void warn_about_force(CheckReport& report) {
 
 /// Tall or slender frames lengthen and shorten their columns, which makes them bend as a whole.
 void warn_about_bending(CheckReport& report) {
-  constexpr int kTall = 10;       // stories
-  constexpr double kSlender = 3;  // height over width
   const estimator::PipelineConfig& c = report.config.pipeline;
   const estimator::Structure& s = c.structure;
   const double height = std::accumulate(s.story_height.begin(), s.story_height.end(), 0.0);
@@ -130,8 +128,7 @@ void warn_about_bending(CheckReport& report) {
     if ((x ? s.n() : s.m()) == 0 || c.bending_nmprad[x ? 0 : 1] > 0) continue;
     const std::vector<double>& spans = x ? s.span_x : s.span_y;
     const double width = std::accumulate(spans.begin(), spans.end(), 0.0);
-    const bool slender = width > 0 && height > kSlender * width;
-    if (s.stories < kTall && !slender) continue;
+    if (!bends_as_a_whole(s, x ? estimator::Direction::x : estimator::Direction::y)) continue;
     report.warnings.push_back(fmt::format(
         "frames parallel to {0} of {1} stories, {2:.3g} m high{3}: such frames bend as a whole, "
         "and "

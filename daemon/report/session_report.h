@@ -68,6 +68,10 @@ std::string session_report_html(const SessionReport& report);
 /// What a building's owner wants to know, in one sentence, as text.
 std::string verdict_sentence(const SessionReport& report);
 
+/// Whether what was recorded asks for bending of the frames, which the configuration leaves out, in
+/// buildings so tall that they bend; empty where there is nothing to say.
+std::string bending_sentence(const SessionReport& report);
+
 // The sections below are HTML, empty when there is nothing to show.
 std::string verdict_section(const SessionReport& report);
 std::string events_section(const SessionReport& report);

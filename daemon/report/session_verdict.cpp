@@ -222,9 +222,41 @@ std::string verdict_sentence(const SessionReport& r) {
   return capital(out) + ".";
 }
 
+std::string bending_sentence(const SessionReport& r) {
+  constexpr int kFits = 1;  // model_fit_t::word
+  const ModelFitTold* fit = r.config && !r.compared.empty()
+                                ? model_fit_at_end(r.estimates, r.compared.back().whole)
+                                : nullptr;
+  if (fit == nullptr) return "";
+  const estimator::PipelineConfig& c = r.config->pipeline;
+  const estimator::ParameterTable table = c.parameters();
+  std::string out;
+  for (const estimator::Direction d : {estimator::Direction::x, estimator::Direction::y}) {
+    if (c.bending_nmprad[d == estimator::Direction::x ? 0 : 1] > 0) continue;
+    if (!bends_as_a_whole(c.structure, d)) continue;
+    int worst = 0;
+    for (int p = 0; p < table.elements() && p < static_cast<int>(fit->word.size()); ++p)
+      if (table[p].kind == estimator::ParameterKind::frame_stiffness && table[p].direction == d)
+        worst = std::max(worst, fit->word[static_cast<std::size_t>(p)]);
+    if (worst == 0) continue;
+    if (!out.empty()) out += " ";
+    out += worst > kFits
+               ? fmt::format(
+                     "Along {0} the model does not fit. Frames this tall bend as a whole: give "
+                     "kr{0}_nmprad in [structure.design] and look at this record again.",
+                     letter(d))
+               : fmt::format(
+                     "Frames this tall may bend as a whole; along {0} the model fits without it.",
+                     letter(d));
+  }
+  return out;
+}
+
 std::string verdict_section(const SessionReport& r) {
   std::string out = "<p class=\"verdict\">" + html_text(verdict_sentence(r)) + "</p>\n";
   if (!r.recoveries.empty()) out += "<p>" + html_text(recovery_sentence(r)) + "</p>\n";
+  if (const std::string bending = bending_sentence(r); !bending.empty())
+    out += "<p>" + html_text(bending) + "</p>\n";
   const std::string rest = the_others(r) + sensors_sentence(r);
   if (!rest.empty()) out += "<p>" + html_text(rest) + "</p>\n";
   out += change_chart(r);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 namespace framewatch::estimator {
@@ -41,6 +42,15 @@ double Structure::frame_mass(int story, int frame) const {
     for (int y = 0; y < rows; ++y) sum += node(y, frame - n());
   }
   return sum;
+}
+
+bool bends_as_a_whole(const Structure& s, Direction direction) {
+  constexpr int kTall = 10;
+  constexpr double kSlender = 3;
+  const std::vector<double>& spans = direction == Direction::x ? s.span_x : s.span_y;
+  const double width = std::accumulate(spans.begin(), spans.end(), 0.0);
+  const double height = std::accumulate(s.story_height.begin(), s.story_height.end(), 0.0);
+  return s.stories >= kTall || (width > 0 && height > kSlender * width);
 }
 
 std::vector<Problem> find_problems(const Structure& s) {

@@ -52,6 +52,10 @@ struct Structure {
   int nodes() const;
 };
 
+/// Whether frames along `direction` are so tall, ten stories, or so slender, three times as high as
+/// wide, that they bend as a whole: their columns lengthen and shorten.
+bool bends_as_a_whole(const Structure& structure, Direction direction);
+
 /// Every way in which `structure` is not a building; empty when it is one.
 std::vector<Problem> find_problems(const Structure& structure);
 /// Their messages.

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/estimates/parameter_summary.h"
+#include "daemon/lab/tall_buildings.h"
 #include "daemon/replay/replay_command.h"
 #include "daemon/report/report_command.h"
 #include "daemon/report/session_report.h"
@@ -202,6 +203,31 @@ TEST(SessionVerdict, KnowsAChangeThatOnlyAnEventTells) {
       << verdict_sentence(r);
   r.estimates.events.back().state = 0;
   EXPECT_EQ(session_changes(r.estimates).size(), 1u);
+}
+
+/// Twenty plane stories with four channels, whose model was told to fit as `word` says.
+SessionReport tall(std::int32_t word, double bending_nmprad) {
+  SessionReport r;
+  r.config.emplace();
+  r.config->pipeline.structure = tall_building(20);
+  r.config->pipeline.design = tall_design(20);
+  r.config->pipeline.axes = floor_axes({5, 10, 15, 20});
+  r.config->pipeline.bending_nmprad.base_nmprad[0] = bending_nmprad;
+  const auto parameters = static_cast<std::size_t>(r.config->pipeline.parameters().size());
+  r.estimates.start_us = {0};
+  r.estimates.end_us = {5'000'000};
+  r.estimates.model_fit = {{5'000'000, std::vector<double>(parameters, 0.1),
+                            std::vector<std::int32_t>(parameters, word)}};
+  r.compared.push_back({StageKind::forced, "all of it", 0, 5'000'000, false, {0, 1}, {0, 1}});
+  return r;
+}
+
+TEST(SessionVerdict, SaysOfATallBuildingWhetherItsFramesBend) {
+  EXPECT_NE(bending_sentence(tall(3, 0)).find("give krx_nmprad"), std::string::npos);
+  EXPECT_NE(bending_sentence(tall(2, 0)).find("give krx_nmprad"), std::string::npos);
+  EXPECT_NE(bending_sentence(tall(1, 0)).find("fits without"), std::string::npos);
+  EXPECT_EQ(bending_sentence(tall(0, 0)), "") << "nothing was seen";
+  EXPECT_EQ(bending_sentence(tall(3, 1e12)), "") << "it is in the model";
 }
 
 }  // namespace session_verdict_test
