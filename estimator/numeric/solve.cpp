@@ -62,11 +62,6 @@ bool Cholesky::good() const {
 MatrixXd Cholesky::solve(const MatrixXd& right) const {
   return factor_->llt.solve(right);
 }
-MatrixXd Cholesky::whitening() const {
-  MatrixXd out = MatrixXd::Identity(factor_->llt.rows(), factor_->llt.cols());
-  factor_->llt.matrixL().solveInPlace(out);
-  return out;
-}
 
 struct ComplexCholesky::Factor {
   Eigen::LLT<MatrixXcd> llt;

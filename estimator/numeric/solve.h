@@ -46,8 +46,6 @@ class Cholesky {
   /// False when the matrix is not positive definite.
   bool good() const;
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
-  /// L^-1.
-  Eigen::MatrixXd whitening() const;
 
  private:
   struct Factor;

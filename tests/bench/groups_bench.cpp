@@ -21,7 +21,7 @@
 namespace framewatch::bench {
 namespace {
 
-constexpr double kFrom_s = 60, kTo_s = 120;  // warm-up, tuning and first windows are over
+constexpr double kFrom_s = 40, kTo_s = 100;  // warm-up, tuning and first windows are over
 
 /// Mean of a shift, us, without the largest hundredth: the main window and the look at the model,
 /// which goes on a part of the time.

@@ -6,7 +6,6 @@
 #include "estimator/identify/groups/axis_motion.h"
 #include "estimator/motion/oscillator_section.h"
 #include "estimator/numeric/kernels.h"
-#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -39,25 +38,7 @@ std::vector<double> response(const std::vector<double>& taps, const HighPass& hi
   return out;
 }
 
-/// Whitened rows of `stride` values each, from those of the chain.
-void whiten(const RowMatrix& whitening, const std::vector<double>& rows, int stride,
-            std::vector<double>& out) {
-  const auto count = static_cast<int>(whitening.rows());
-  std::fill(out.begin(), out.end(), 0.0);
-  kernels::in_use->multiply_add(whitening.data(), count, count, count, rows.data(), out.data(),
-                                stride);
-}
-
 }  // namespace
-
-Eigen::MatrixXd whitening(const GroupEquations& equations, const Eigen::MatrixXd& covariance) {
-  const Cholesky factor(covariance);
-  if (!equations.chains.empty() && factor.good()) return factor.whitening();
-  Eigen::MatrixXd out = Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols());
-  for (Eigen::Index r = 0; r < out.rows(); ++r)
-    if (covariance(r, r) > 0) out(r, r) = 1 / std::sqrt(covariance(r, r));
-  return out;
-}
 
 FloorRows group_rows(const EstimatorOptions& o, const GroupDesign& design,
                      const GroupEquations& equations, int unknowns) {
@@ -133,17 +114,15 @@ int GroupTuning::parts_per_axis() const {
 
 int GroupTuning::parts() const {
   if (tuned_parts_ == 0) return 2;  // at least: the equations say how many
-  return 2 + 2 * static_cast<int>(config_->axes.size()) * parts_per_axis();
+  return 2 + static_cast<int>(config_->axes.size()) * parts_per_axis();
 }
 
 void GroupTuning::tune(int part) {
   tuned_parts_ = part + 1;
   if (part == 0) return form();
-  const int of_axis = parts_per_axis();
-  const int pass = static_cast<int>(config_->axes.size()) * of_axis;
-  if (part > 2 * pass) return finish_noise();
-  if (part == pass + 1) whitening_ = estimator::whitening(equations_, covariance_);
-  push_impulse((part - 1) % pass / of_axis, (part - 1) % of_axis, part > pass);
+  const int axes = static_cast<int>(config_->axes.size());
+  if (part > axes * parts_per_axis()) return finish_noise();
+  push_impulse((part - 1) / parts_per_axis(), (part - 1) % parts_per_axis());
 }
 
 void GroupTuning::form() {
@@ -152,54 +131,32 @@ void GroupTuning::form() {
   rows_ = group_rows(*options_, design_, equations_, table_.size());
   rows_.same_as = building_.same_as;
   const int stride = padded(table_.size() + 1);
-  whitening_ = RowMatrix::Identity(rows_.rows, rows_.rows);
-  covariance_ = Eigen::MatrixXd::Zero(rows_.rows, rows_.rows);
-  moments_.assign(count_of(stride) * count_of(stride), 0.0);
+  plain_ = rows_;
+  moments_.assign(count_of(rows_.rows) * count_of(stride) * count_of(stride), 0.0);
   motion_.assign(count_of(building_.measured) * AxisMotion::kSignals, 0.0);
   step_.assign(rows_.beta.size(), 0.0);
-  whitened_ = step_;
 }
 
-/// Adds what `part` of the impulse of an axis makes of the rows, before they are whitened or after.
-void GroupTuning::push_impulse(int axis, int part, bool whitened) {
+/// Adds what `part` of the impulse of an axis makes of the rows' products.
+void GroupTuning::push_impulse(int axis, int part) {
   if (rows_.rows == 0 || present_[count_of(axis)] == 0) return;
   if (part == 0) chain_.start(equations_, table_.size());
   const double variance = noise_variance(noise_density_[count_of(axis)], options_->rate_hz);
+  const int stride = padded(table_.size() + 1);
   const int end = std::min((part + 1) * kImpulseRows, impulse_rows());
   for (int t = part * kImpulseRows; t < end; ++t) {
     for (int c = 0; c < building_.measured; ++c)
       for (int signal = 0; signal < AxisMotion::kSignals; ++signal)
         motion_[count_of(c * AxisMotion::kSignals + signal)] =
             building_.from_axes(c, axis) * impulse_[count_of(signal)][count_of(t)];
-    chain_.step(motion_.data(), rows_, step_.data());
-    if (whitened)
-      add_moments(variance);
-    else
-      add_covariance(variance);
-  }
-}
-
-/// Of z - sum h, the residual rows at the tuning.
-void GroupTuning::add_covariance(double variance) {
-  const int stride = padded(table_.size() + 1);
-  Eigen::VectorXd residual(rows_.rows);
-  for (int r = 0; r < rows_.rows; ++r) {
-    const double* h = &step_[count_of(r * stride)];
-    residual[r] = h[table_.size()];
-    for (int p = 0; p < table_.size(); ++p) residual[r] -= h[p];
-  }
-  covariance_ += variance * residual * residual.transpose();
-}
-
-void GroupTuning::add_moments(double variance) {
-  const int stride = padded(table_.size() + 1);
-  whiten(whitening_, step_, stride, whitened_);
-  for (int r = 0; r < rows_.rows; ++r) {
-    const double* h = &whitened_[count_of(r * stride)];
-    double* moments = moments_.data();
-    for (int p = 0; p <= table_.size(); ++p, moments += stride) {
-      const double scaled = variance * h[p];
-      for (int q = 0; q < stride; ++q) moments[q] += scaled * h[q];
+    chain_.step(motion_.data(), plain_, step_.data());
+    for (int r = 0; r < rows_.rows; ++r) {
+      const double* h = &step_[count_of(r * stride)];
+      double* moments = &moments_[count_of(r * stride) * count_of(stride)];
+      for (int p = 0; p <= table_.size(); ++p, moments += stride) {
+        const double scaled = variance * h[p];
+        for (int q = 0; q < stride; ++q) moments[q] += scaled * h[q];
+      }
     }
   }
 }
@@ -208,17 +165,27 @@ void GroupTuning::finish_noise() {
   const int unknowns = table_.size();
   const int stride = padded(unknowns + 1);
   const auto u = count_of(unknowns);
-  const auto at = [&](int p, int q) { return moments_[count_of(p * stride + q)]; };
   rows_.noise_energy.assign(u * u, 0.0);
   rows_.noise_right.assign(u, 0.0);
-  rows_.noise_response = rows_.noise_residual = at(unknowns, unknowns);
-  for (int p = 0; p < unknowns; ++p) {
-    rows_.noise_right[count_of(p)] = at(p, unknowns);
-    rows_.noise_residual -= 2 * at(p, unknowns);
-    for (int q = 0; q < unknowns; ++q) {
-      rows_.noise_energy[count_of(p) * u + count_of(q)] = at(p, q);
-      rows_.noise_residual += at(p, q);
+  rows_.noise_response = rows_.noise_residual = 0;
+  for (int r = 0; r < rows_.rows; ++r) {
+    const double* moments = &moments_[count_of(r * stride) * count_of(stride)];
+    const auto at = [&](int p, int q) { return moments[count_of(p * stride + q)]; };
+    double variance = at(unknowns, unknowns);  // of z - sum h
+    for (int p = 0; p < unknowns; ++p) {
+      variance -= 2 * at(p, unknowns);
+      for (int q = 0; q < unknowns; ++q) variance += at(p, q);
     }
+    const double weight = variance > 0 ? 1 / variance : 1;
+    const double root = std::sqrt(weight);
+    for (int p = 0; p <= unknowns; ++p) rows_.beta[count_of(r * stride + p)] = root;
+    for (int p = 0; p < unknowns; ++p) {
+      rows_.noise_right[count_of(p)] += weight * at(p, unknowns);
+      for (int q = 0; q < unknowns; ++q)
+        rows_.noise_energy[count_of(p) * u + count_of(q)] += weight * at(p, q);
+    }
+    rows_.noise_response += weight * at(unknowns, unknowns);
+    rows_.noise_residual += weight * std::max(variance, 0.0);
   }
   for (int p = 0; p < unknowns; ++p)
     rows_.noise_diagonal.push_back(rows_.noise_energy[count_of(p) * u + count_of(p)]);
@@ -269,7 +236,6 @@ GroupFilter::GroupFilter(GroupTuning& tuning, int settle)
 
 void GroupFilter::start() {
   chain_.start(tuning_->equations(), tuning_->layout().own());
-  coloured_.assign(rows_.size(), 0.0);
   motion_.assign(count_of(tuning_->building().measured) * AxisMotion::kSignals, 0.0);
 }
 
@@ -301,8 +267,7 @@ void GroupFilter::push(const DeformationSet& set) {
         to[signal] += weight * from[signal];
     }
   }
-  chain_.step(motion_.data(), tuning_->rows(0), coloured_.data());
-  whiten(tuning_->whitening(), coloured_, padded(tuning_->layout().own() + 1), rows_);
+  chain_.step(motion_.data(), tuning_->rows(0), rows_.data());
 }
 
 }  // namespace framewatch::estimator

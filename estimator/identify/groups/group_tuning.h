@@ -15,23 +15,17 @@
 #include "estimator/identify/regressors/row_tuning.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/drift_controlled_integrator.h"
-#include "estimator/numeric/row_matrix.h"
 #include "estimator/setup/pipeline_config.h"
 
 namespace framewatch::estimator {
 
-/// The rows' oscillator sections.
+/// The rows' oscillator sections; every weight is 1.
 FloorRows group_rows(const EstimatorOptions& options, const GroupDesign& design,
                      const GroupEquations& equations, int unknowns);
 
-/// Makes rows of this covariance independent, of variance 1: its L^-1. Where every floor is
-/// measured, and where it is not positive definite, rows are only scaled, as those of stories are.
-Eigen::MatrixXd whitening(const GroupEquations& equations, const Eigen::MatrixXd& covariance);
-
 /// Rows of groups of stories between measured floors. Part 0 of tuning makes the equations, the
-/// others push a unit impulse of each axis through them twice: for the covariance that sensor noise
-/// gives the rows at an instant, which whitens them, then for what it adds to the sums of the
-/// whitened ones, (14) to (16) without algebra.
+/// others push a unit impulse of each axis through them: what sensor noise adds to the sums, (14)
+/// to (16) without algebra.
 class GroupTuning : public RowTuning {
  public:
   /// config: of groups; must outlive the object, as options (its own, or with other corners) and
@@ -63,7 +57,6 @@ class GroupTuning : public RowTuning {
   const FloorLayout& layout() const { return *layout_; }
   const ReducedBuilding& building() const { return building_; }
   const GroupEquations& equations() const { return equations_; }
-  const RowMatrix& whitening() const { return whitening_; }
 
  private:
   template <typename Archive>
@@ -78,9 +71,7 @@ class GroupTuning : public RowTuning {
   /// Everything that follows from the parameters, as far as it had been tuned.
   void restore();
   void form();
-  void push_impulse(int axis, int part, bool whitened);
-  void add_covariance(double variance);
-  void add_moments(double variance);
+  void push_impulse(int from, int to);
   void finish_noise();
   int impulse_rows() const;
   int parts_per_axis() const;
@@ -98,14 +89,13 @@ class GroupTuning : public RowTuning {
   ReducedBuilding building_;
   GroupEquations equations_;
   FloorRows rows_;
-  RowMatrix whitening_;
   int tuned_parts_ = 0;
 
   // Of the noise that is being summed.
   GroupChain chain_;
-  Eigen::MatrixXd covariance_;   ///< of the residual rows
-  std::vector<double> moments_;  ///< front x front, of all rows
-  std::vector<double> motion_, step_, whitened_;
+  FloorRows plain_;              ///< rows_ with every weight 1
+  std::vector<double> moments_;  ///< rows x front x front
+  std::vector<double> motion_, step_;
 };
 
 /// The rows that enter, or those that leave.
@@ -138,7 +128,7 @@ class GroupFilter : public RowFilter {
   GroupTuning* tuning_;
   int settle_, settling_ = 0;
   GroupChain chain_;
-  std::vector<double> motion_, coloured_;
+  std::vector<double> motion_;
 };
 
 }  // namespace framewatch::estimator

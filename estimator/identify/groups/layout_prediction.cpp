@@ -67,7 +67,7 @@ class Prediction {
     rows_ = group_rows(config.options, design_, equations, table_.size());
     projection_ = equations.projection;
     collect(stories);
-    sum(equations, noise_density, shaking);
+    sum(noise_density, shaking);
   }
 
   LayoutPrediction result() const {
@@ -121,8 +121,7 @@ class Prediction {
       }
   }
 
-  void sum(const GroupEquations& equations, const std::vector<double>& noise_density,
-           const ExpectedShaking& shaking) {
+  void sum(const std::vector<double>& noise_density, const ExpectedShaking& shaking) {
     const Index p = table_.size();
     information_ = scores_ = MatrixXd::Zero(p, p);
     mismatch_ =
@@ -136,7 +135,7 @@ class Prediction {
     const std::vector<Frequency> all = frequencies(shaking);
     std::vector<AtFrequency> at_all;
     for (const Frequency& f : all) at_all.push_back(at(f.hz));
-    whiten(equations, all, at_all, noise);
+    weigh(all, at_all, noise);
     for (std::size_t i = 0; i < all.size(); ++i) add(all[i], at_all[i], noise);
   }
 
@@ -175,20 +174,22 @@ class Prediction {
 
   MatrixXcd rows(const AtFrequency& f, const MatrixXcd& on_measured) const {
     MatrixXcd out = projection_ * on_measured.bottomRows(building_.rows());
-    for (Index r = 0; r < out.rows(); ++r) out.row(r) *= f.filter[r];
-    return whitening_.size() == 0 ? out : MatrixXcd(whitening_ * out);
+    for (Index r = 0; r < out.rows(); ++r) out.row(r) *= f.filter[r] * weight(r);
+    return out;
   }
+  double weight(Index r) const { return weights_.size() == 0 ? 1 : weights_[r]; }
 
-  /// Rows whitened as the estimator's, from now on and in what there is.
-  void whiten(const GroupEquations& equations, const std::vector<Frequency>& frequencies,
-              std::vector<AtFrequency>& at_all, const MatrixXd& noise) {
-    MatrixXd covariance = MatrixXd::Zero(building_.rows(), building_.rows());
+  /// Rows of equal noise, from now on and in what there is.
+  void weigh(const std::vector<Frequency>& frequencies, std::vector<AtFrequency>& at_all,
+             const MatrixXd& noise) {
+    Eigen::VectorXd variance = Eigen::VectorXd::Zero(building_.rows());
     for (std::size_t i = 0; i < frequencies.size(); ++i) {
       const MatrixXcd& r = at_all[i].residual;
-      covariance += frequencies[i].step_hz * (r * noise * r.adjoint()).real();
+      variance += frequencies[i].step_hz * (r * noise * r.adjoint()).diagonal().real();
     }
-    whitening_ = whitening(equations, covariance);
-    for (AtFrequency& f : at_all) f.residual = whitening_ * f.residual;
+    weights_ = variance.cwiseSqrt().cwiseInverse();
+    for (AtFrequency& f : at_all)
+      for (Index r = 0; r < f.residual.rows(); ++r) f.residual.row(r) *= weights_[r];
   }
 
   void add(const Frequency& frequency, const AtFrequency& f, const MatrixXd& noise) {
@@ -275,7 +276,7 @@ class Prediction {
   MatrixXd springs_, masses_;  ///< coordinates x frame stories, floors' frames
   std::vector<int> of_group_;  ///< stiffness parameter of every frame story; -1: none
   Eigen::VectorXd rate_;       ///< damping over stiffness of every frame story, s
-  MatrixXd whitening_;
+  Eigen::VectorXd weights_;
   MatrixXd information_, scores_, mismatch_;
 };
 
