@@ -7,6 +7,7 @@
 #include "daemon/estimates/settled_windows.h"
 #include "daemon/events/event_words.h"
 #include "daemon/events/place_words.h"
+#include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/watch/watch.h"
 
@@ -108,9 +109,33 @@ double usual_error(const SessionEstimates& s, std::size_t p, std::int64_t from_u
   return boxplot_of(std::move(errors)).median;
 }
 
-bool is_recovery(const SessionEstimates& s, const std::vector<ElementChange>& all,
-                 const ElementChange& c) {
-  constexpr double kDied = 1.5;  // of the errors, after over before
+/// Rms acceleration of the floors between two times, m/s^2.
+double floor_motion_mps2(const SessionMotion& m, std::int64_t from_us, std::int64_t to_us) {
+  double sum = 0, count = 0;
+  for (std::size_t a = 0; a < m.axes.size(); ++a) {
+    if (m.axes[a].story == 0 || !m.axes[a].horizontal()) continue;
+    for (Eigen::Index row = m.row_at(from_us); row < m.row_at(to_us); ++row) {
+      const double value = m.accel(row, static_cast<Eigen::Index>(a));
+      if (!std::isfinite(value)) continue;
+      sum += value * value;
+      ++count;
+    }
+  }
+  return count > 0 ? std::sqrt(sum / count) : estimator::kNaN;
+}
+
+bool motion_died(const SessionEstimates& s, const SessionMotion* motion, const ElementChange& c) {
+  constexpr double kWeaker = 0.5, kLargerErrors = 1.5;  // after over before
+  const std::int64_t begin = s.start_us.front(), end = s.end_us.back();
+  if (motion != nullptr)
+    return floor_motion_mps2(*motion, c.since_us, end) <
+           kWeaker * floor_motion_mps2(*motion, begin, c.since_us);
+  return usual_error(s, c.parameter, c.since_us, end) >
+         kLargerErrors * usual_error(s, c.parameter, begin, c.since_us);
+}
+
+bool is_recovery(const SessionEstimates& s, const SessionMotion* motion,
+                 const std::vector<ElementChange>& all, const ElementChange& c) {
   if (!(c.ratio > 0) || !c.measured()) return false;
   const auto lost_before = [&](const ElementChange& other) {
     return other.parameter == c.parameter && other.ratio < 0 && other.measured() &&
@@ -118,17 +143,16 @@ bool is_recovery(const SessionEstimates& s, const std::vector<ElementChange>& al
            c.after.value < (1 + least_change(s, c.parameter)) * other.before.value;
   };
   if (std::any_of(all.begin(), all.end(), lost_before)) return true;
-  return usual_error(s, c.parameter, c.since_us, s.end_us.back()) >
-         kDied * usual_error(s, c.parameter, s.start_us.front(), c.since_us);
+  return motion_died(s, motion, c);
 }
 
 }  // namespace
 
-std::vector<ElementChange> take_recoveries(const SessionEstimates& s,
+std::vector<ElementChange> take_recoveries(const SessionEstimates& s, const SessionMotion* motion,
                                            std::vector<ElementChange>& changes) {
   std::vector<ElementChange> recoveries, others;
   for (const ElementChange& c : changes)
-    (is_recovery(s, changes, c) ? recoveries : others).push_back(c);
+    (is_recovery(s, motion, changes, c) ? recoveries : others).push_back(c);
   changes = std::move(others);
   return recoveries;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "daemon/estimates/session_estimates.h"
+#include "daemon/report/session_motion.h"
 #include "estimator/watch/change_point.h"
 
 namespace framewatch::daemon {
@@ -26,9 +27,10 @@ struct ElementChange {
 std::vector<ElementChange> session_changes(const SessionEstimates& session);
 
 /// Takes out of `changes` those that are recovery: a stiffness that grows back toward what it was
-/// before an earlier loss, or grows while the motion dies away. The messages have no amplitudes:
-/// where the motion is weaker, a window's error over its value is larger.
+/// before an earlier loss, or grows while the motion dies away. Without `motion` (null) that is
+/// seen from the windows' errors over their values, which are larger where the motion is weaker.
 std::vector<ElementChange> take_recoveries(const SessionEstimates& session,
+                                           const SessionMotion* motion,
                                            std::vector<ElementChange>& changes);
 
 /// Stiffnesses with windows enough that session_changes() would have found a change.

@@ -100,7 +100,7 @@ void evaluate(SessionReport& r) {
     if (!(value > 0)) value = estimator::kNaN;
   r.reference_dynamic.assign(count, estimator::kNaN);
   r.changes = session_changes(r.estimates);
-  r.recoveries = take_recoveries(r.estimates, r.changes);
+  r.recoveries = take_recoveries(r.estimates, r.motion ? &*r.motion : nullptr, r.changes);
   r.judged = judged_elements(r.estimates);
   if (r.motion) r.stages = find_stages(*r.motion);
   compare(r);

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "daemon/base/utc_time.h"
 #include "daemon/documents/html_page.h"
@@ -35,12 +35,15 @@ double error_percent(const ElementChange& c) {
   return std::max(0.1, std::ceil(1000 * c.std_error) / 10);
 }
 
-/// "has lost 15.0 % (+-0.4 %) of its stiffness".
-std::string what(const ElementChange& c) {
-  return c.ratio < 0 ? fmt::format("has lost {:.1f} % (+-{:.1f} %) of its stiffness",
-                                   -100 * c.ratio, error_percent(c))
-                     : fmt::format("has become stiffer by {:.1f} % (+-{:.1f} %)", 100 * c.ratio,
-                                   error_percent(c));
+/// "frame y2 of story 1 has lost 15.0 % (+-0.4 %) of its stiffness".
+std::string what(const SessionReport& r, const ElementChange& c) {
+  const std::string element = element_words(r.estimates.table, c.parameter);
+  const bool several = element.rfind("stories", 0) == 0;
+  const std::string size =
+      fmt::format("{:.1f} % (+-{:.1f} %)", 100 * std::abs(c.ratio), error_percent(c));
+  return element + (several ? " have " : " has ") +
+         (c.ratio < 0 ? fmt::format("lost {} of {} stiffness", size, several ? "their" : "its")
+                      : "become stiffer by " + size);
 }
 
 std::vector<ElementChange> largest_first(std::vector<ElementChange> changes) {
@@ -142,16 +145,17 @@ std::string change_chart(const SessionReport& r) {
 /// Frames soften while they move strongly: what grows back is no change of the building.
 std::string recovery_sentence(const SessionReport& r) {
   const std::vector<ElementChange> recoveries = largest_first(r.recoveries);
-  std::string out;
+  std::string out = "While the motion died away ";
   for (std::size_t i = 0; i < std::min(recoveries.size(), kMostNamed); ++i)
-    out += fmt::format("{}{} by {:.1f} % (+-{:.1f} %)", i == 0 ? "" : ", ",
+    out += fmt::format("{}{}{} by {:.1f} % (+-{:.1f} %)", i == 0 ? "" : ", ",
                        element_words(r.estimates.table, recoveries[i].parameter),
-                       100 * recoveries[i].ratio, error_percent(recoveries[i]));
+                       i == 0 ? " grew stiffer again" : "", 100 * recoveries[i].ratio,
+                       error_percent(recoveries[i]));
   if (recoveries.size() > kMostNamed)
     out += fmt::format(", and {} more", recoveries.size() - kMostNamed);
-  return capital(out) +
-         " grew stiffer again while the motion died away: frames soften while they move strongly "
-         "and recover, which is no change of the building.";
+  return out +
+         ": frames soften while they move strongly and recover, which is no change of the "
+         "building.";
 }
 
 /// The stiffness of a changed element over time, its means as lines.
@@ -177,10 +181,8 @@ std::string change_history(const SessionReport& r, const ElementChange& c) {
                      {factor * c.before.value, factor * c.before.value}});
   plot.add(SvgSeries{
       "after", 1, SvgMark::line, {at, t.back()}, {factor * c.after.value, factor * c.after.value}});
-  return html_figure({plot.svg()},
-                     html_text(capital(element_words(r.estimates.table, c.parameter)) + " (" +
-                               r.estimates.table.name[c.parameter] + ") " + what(c) + " " +
-                               since(r, c.since_us) + "."));
+  return html_figure({plot.svg()}, html_text(capital(what(r, c)) + " " + since(r, c.since_us) +
+                                             " (" + r.estimates.table.name[c.parameter] + ")."));
 }
 
 std::string change_table(const SessionReport& r) {
@@ -215,8 +217,7 @@ std::string verdict_sentence(const SessionReport& r) {
         r.judged.size(), stiffnesses(r));
   std::string out;
   for (std::size_t i = 0; i < std::min(changes.size(), kMostNamed); ++i)
-    out += (i == 0 ? "" : "; ") + element_words(r.estimates.table, changes[i].parameter) + " " +
-           what(changes[i]) + ", " + since(r, changes[i].since_us);
+    out += (i == 0 ? "" : "; ") + what(r, changes[i]) + ", " + since(r, changes[i].since_us);
   if (changes.size() > kMostNamed)
     out += fmt::format("; and {} more changes", changes.size() - kMostNamed);
   return capital(out) + ".";
@@ -230,7 +231,7 @@ std::string bending_sentence(const SessionReport& r) {
   if (fit == nullptr) return "";
   const estimator::PipelineConfig& c = r.config->pipeline;
   const estimator::ParameterTable table = c.parameters();
-  std::string out;
+  std::vector<std::string> fits, does_not;
   for (const estimator::Direction d : {estimator::Direction::x, estimator::Direction::y}) {
     if (c.bending_nmprad[d == estimator::Direction::x ? 0 : 1] > 0) continue;
     if (!bends_as_a_whole(c.structure, d)) continue;
@@ -238,17 +239,18 @@ std::string bending_sentence(const SessionReport& r) {
     for (int p = 0; p < table.elements() && p < static_cast<int>(fit->word.size()); ++p)
       if (table[p].kind == estimator::ParameterKind::frame_stiffness && table[p].direction == d)
         worst = std::max(worst, fit->word[static_cast<std::size_t>(p)]);
-    if (worst == 0) continue;
-    if (!out.empty()) out += " ";
-    out += worst > kFits
-               ? fmt::format(
-                     "Along {0} the model does not fit. Frames this tall bend as a whole: give "
-                     "kr{0}_nmprad in [structure.design] and look at this record again.",
-                     letter(d))
-               : fmt::format(
-                     "Frames this tall may bend as a whole; along {0} the model fits without it.",
-                     letter(d));
+    if (worst > 0) (worst > kFits ? does_not : fits).push_back(letter(d));
   }
+  std::string out;
+  if (!does_not.empty())
+    out = fmt::format(
+        "Along {} the model does not fit. Frames this tall bend as a whole: give kr{}_nmprad in "
+        "[structure.design] and look at this record again.",
+        fmt::join(does_not, " and "), fmt::join(does_not, "_nmprad and kr"));
+  if (!fits.empty())
+    out +=
+        fmt::format("{}Frames this tall may bend as a whole; along {} the model fits without it.",
+                    out.empty() ? "" : " ", fmt::join(fits, " and "));
   return out;
 }
 

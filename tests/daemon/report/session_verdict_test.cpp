@@ -152,7 +152,7 @@ SessionReport grown(double weaker) {
     r.estimates.std_error[p][w] *= weaker;
   }
   r.changes = session_changes(r.estimates);
-  r.recoveries = take_recoveries(r.estimates, r.changes);
+  r.recoveries = take_recoveries(r.estimates, nullptr, r.changes);
   return r;
 }
 
@@ -161,8 +161,19 @@ TEST(SessionVerdict, WhatGrowsWhileTheMotionDiesIsRecoveryAndNoHeadline) {
   ASSERT_FALSE(r.recoveries.empty());
   EXPECT_TRUE(r.changes.empty());
   EXPECT_EQ(verdict_sentence(r).find("stiffer"), std::string::npos) << verdict_sentence(r);
-  EXPECT_NE(verdict_section(r).find("Frame y2 of story 1 by 1"), std::string::npos);
+  EXPECT_NE(verdict_section(r).find("frame y2 of story 1 grew stiffer again by 1"),
+            std::string::npos);
   EXPECT_NE(verdict_section(r).find("no change of the building"), std::string::npos);
+}
+
+TEST(SessionVerdict, WhetherTheMotionDiesIsSeenInTheMotionWhereThereIsSome) {
+  SessionReport r = grown(1);
+  std::vector<ElementChange> steady = r.changes, dying = r.changes;
+  EXPECT_TRUE(take_recoveries(r.estimates, &*r.motion, steady).empty());
+  const Eigen::Index from = r.motion->row_at(r.changes.front().since_us);
+  r.motion->accel.bottomRows(r.motion->accel.rows() - from) *= 0.2;
+  EXPECT_EQ(take_recoveries(r.estimates, &*r.motion, dying).size(), 1u);
+  EXPECT_TRUE(dying.empty());
 }
 
 TEST(SessionVerdict, WhatGrowsUnderMotionAsStrongIsAChange) {

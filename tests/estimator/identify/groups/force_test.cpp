@@ -29,7 +29,7 @@ namespace framewatch::estimator {
 namespace force_test {
 
 // Largest errors of stiffness and damping, exact and with 1 % noise on every channel.
-constexpr double kExactStiffness = 1e-4, kExactDamping = 2.5e-3;
+constexpr double kExactStiffness = 1e-4, kExactDamping = 2e-3;
 constexpr double kNoisyStiffness = 0.02, kNoisyDamping = 0.2;
 constexpr double kNoise = 0.01, kStep_s = 1e-3, kRate_hz = 100, kDuration_s = 40;
 
