@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -64,15 +65,13 @@ std::string the_others(const SessionReport& r) {
   for (const std::size_t p : r.judged)
     same += std::none_of(r.changes.begin(), r.changes.end(),
                          [&](const ElementChange& c) { return c.parameter == p; });
-  const std::size_t changed = [&] {
-    std::vector<std::size_t> names;
-    for (const ElementChange& c : r.changes) names.push_back(c.parameter);
-    std::sort(names.begin(), names.end());
-    return static_cast<std::size_t>(std::unique(names.begin(), names.end()) - names.begin());
-  }();
-  const std::size_t unseen = stiffnesses(r) - same - changed;
+  std::set<std::size_t> changed, seen(r.judged.begin(), r.judged.end());
+  for (const ElementChange& c : r.changes) changed.insert(c.parameter);
+  for (const ElementChange& c : r.recoveries) seen.insert(c.parameter);
+  seen.insert(changed.begin(), changed.end());
+  const std::size_t unseen = stiffnesses(r) - seen.size();
   std::string out;
-  if (same > 0 && changed > 0)
+  if (same > 0 && !changed.empty())
     out += fmt::format("{} other element{} of the building {} not changed. ", same,
                        same == 1 ? "" : "s", same == 1 ? "has" : "have");
   if (unseen > 0)
@@ -207,6 +206,10 @@ std::string change_table(const SessionReport& r) {
 
 std::string verdict_sentence(const SessionReport& r) {
   const std::vector<ElementChange> changes = largest_first(r.changes);
+  if (changes.empty() && r.judged.empty() && !r.recoveries.empty())
+    return "Whether the building has changed cannot be said: after its strong motion there was "
+           "only "
+           "weaker motion, in which frames are stiffer.";
   if (changes.empty() && r.judged.empty())
     return "Whether the building has changed cannot be said: it did not move enough, or not for "
            "long enough.";

@@ -157,13 +157,15 @@ SessionReport grown(double weaker) {
 }
 
 TEST(SessionVerdict, WhatGrowsWhileTheMotionDiesIsRecoveryAndNoHeadline) {
-  const SessionReport r = grown(3);
+  SessionReport r = grown(3);
   ASSERT_FALSE(r.recoveries.empty());
   EXPECT_TRUE(r.changes.empty());
   EXPECT_EQ(verdict_sentence(r).find("stiffer"), std::string::npos) << verdict_sentence(r);
   EXPECT_NE(verdict_section(r).find("frame y2 of story 1 grew stiffer again by 1"),
             std::string::npos);
   EXPECT_NE(verdict_section(r).find("no change of the building"), std::string::npos);
+  r.judged.clear();
+  EXPECT_NE(verdict_sentence(r).find("only weaker motion"), std::string::npos);
 }
 
 TEST(SessionVerdict, WhetherTheMotionDiesIsSeenInTheMotionWhereThereIsSome) {
