@@ -124,17 +124,18 @@ void warn_about_bending(CheckReport& report) {
   const estimator::PipelineConfig& c = report.config.pipeline;
   const estimator::Structure& s = c.structure;
   const double height = std::accumulate(s.story_height.begin(), s.story_height.end(), 0.0);
-  for (const bool x : {true, false}) {
+  for (const estimator::Direction along : {estimator::Direction::x, estimator::Direction::y}) {
+    const bool x = along == estimator::Direction::x;
     if ((x ? s.n() : s.m()) == 0 || c.bending_nmprad[x ? 0 : 1] > 0) continue;
+    if (!bends_as_a_whole(s, along)) continue;
     const std::vector<double>& spans = x ? s.span_x : s.span_y;
     const double width = std::accumulate(spans.begin(), spans.end(), 0.0);
-    if (!bends_as_a_whole(s, x ? estimator::Direction::x : estimator::Direction::y)) continue;
     report.warnings.push_back(fmt::format(
         "frames parallel to {0} of {1} stories, {2:.3g} m high{3}: such frames bend as a whole, "
         "and "
         "a model without it finds upper stories too soft; give kr{0}_nmprad in [structure.design], "
         "or compare what framewatch refine leaves of the first strong record without and with it",
-        x ? "x" : "y", s.stories, height,
+        letter(along), s.stories, height,
         width > 0 ? fmt::format(" and {:.3g} m wide", width) : std::string()));
   }
 }

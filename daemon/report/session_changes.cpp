@@ -111,10 +111,11 @@ double usual_error(const SessionEstimates& s, std::size_t p, std::int64_t from_u
 
 /// Rms acceleration of the floors between two times, m/s^2.
 double floor_motion_mps2(const SessionMotion& m, std::int64_t from_us, std::int64_t to_us) {
+  const Eigen::Index from = m.row_at(from_us), to = m.row_at(to_us);
   double sum = 0, count = 0;
   for (std::size_t a = 0; a < m.axes.size(); ++a) {
     if (m.axes[a].story == 0 || !m.axes[a].horizontal()) continue;
-    for (Eigen::Index row = m.row_at(from_us); row < m.row_at(to_us); ++row) {
+    for (Eigen::Index row = from; row < to; ++row) {
       const double value = m.accel(row, static_cast<Eigen::Index>(a));
       if (!std::isfinite(value)) continue;
       sum += value * value;

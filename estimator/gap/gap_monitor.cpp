@@ -17,6 +17,10 @@ Direction direction_of(const Structure& s, const SensorAxis& axis) {
   return axis.frame >= 0 ? s.direction(axis.frame) : axis.direction;
 }
 
+bool drives(const SensorAxis& axis) {
+  return axis.story == 0 && axis.horizontal();
+}
+
 std::vector<DerivativeTriple> triples(const AxisCorrection& correction, double rate_hz) {
   std::vector<DerivativeTriple> out;
   for (const double rest : correction.rest()) out.push_back(matched_triple(rate_hz, rest));
@@ -76,7 +80,6 @@ GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxi
       noise_variance_(axes.size()) {
   for (const SensorAxis& axis : axes) {
     seen_.emplace_back();
-    drives_.push_back(axis.story == 0 && axis.horizontal());
     if (axis.story == 0 || !axis.horizontal()) continue;
     const std::vector<double> weights = frame_weights(structure_, axis);
     for (int f = 0; f < structure_.frames(); ++f)
@@ -159,7 +162,7 @@ void GapMonitor::name_place(GapNews& news) const {
 Eigen::Vector2d GapMonitor::base_mean(const std::vector<double>& of_axes) const {
   Eigen::Vector2d sum(0, 0), count(0, 0);
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (!drives_[a]) continue;
+    if (!drives(axes_[a])) continue;
     const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
     const bool turned = axes_[a].plan && (d == 0 ? std::cos(axes_[a].plan->angle_rad)
                                                  : std::sin(axes_[a].plan->angle_rad)) < 0;
@@ -195,7 +198,7 @@ void GapMonitor::noise_variances(const Current& c, const std::vector<double>& no
                : kNaN;
   };
   for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (!drives_[a]) continue;
+    if (!drives(axes_[a])) continue;
     const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
     base[d] += variance(a);
     count[d] += 1;

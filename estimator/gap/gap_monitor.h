@@ -98,7 +98,6 @@ class GapMonitor {
   ParameterTable table_;    ///< of what is identified
   GroupDesign design_;
   std::vector<SensorAxis> axes_;
-  std::vector<char> drives_;  ///< of each axis: one of the base along x or y
   /// What each axis above the base measures along x or y: degrees of freedom with weights.
   std::vector<std::vector<std::pair<int, double>>> seen_;
   double rate_hz_, high_pass_hz_;

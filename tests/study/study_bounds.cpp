@@ -69,13 +69,14 @@ std::vector<Bound> bounds_of(const std::vector<Outcome>& outcomes) {
         limit);
   out.share("a law of another form: name and place", of_group("other_form"), right, 0.9);
   out.share("a law of another form: place", of_group("other_form"), placed, 0.92);
-  for (const char* group : {"catalogue", "other_form", "two_effects", "practice"})
+  out.share("a law of another form: confidently wrong", of_group("other_form"), wrong, 0, false);
+  for (const char* group : {"catalogue", "two_effects", "practice"})
     out.share(fmt::format("{}: confidently wrong", group), of_group(group), wrong, 0.01, false);
   out.share("practice: name and place", of_group("practice"), right, 0.9);
   out.share("not in the catalogue: confidently wrong", of_group("outside"), wrong, 0.1, false);
   out.share(
       "nothing hidden: `adequate`", of_group("nothing"),
-      [](const Outcome& o) { return o.verdict == "adequate"; }, 0.98);
+      [](const Outcome& o) { return o.verdict == "adequate"; }, 0.99);
   out.share("effect taken from the catalogue: confidently wrong", of_group(kTakenOut), wrong, 0.1,
             false);
   out.share("two effects: both", of_group("two_effects"), right, 0.85);
