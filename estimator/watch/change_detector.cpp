@@ -12,7 +12,9 @@ constexpr double kMemory_s = 15;        // of the usual standard error
 constexpr double kMostOfUsual = 1.5;    // that a single one counts with
 constexpr double kBaselineErrors = 3;   // that a value may be off by permanently
 constexpr double kMostOfThreshold = 2;  // a sum is limited to that
-constexpr double kOneWindow = 0.6;      // of the threshold: most that one window adds
+constexpr double kConvincing_s = 4;     // a shorter window alone convinces nobody:
+constexpr double kShortWindow = 0.6;    // most that it adds, of the threshold
+constexpr std::array<double, ChangeDetector::kSizes> kSizesOfLeast = {1, 2, 4, 16};
 
 double log_likelihood(double z, double freedom) {
   return -(freedom + 1) / 2 * std::log1p(z * z / freedom);
@@ -66,23 +68,28 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   const double freedom = kFreedom * (1 + kMemory_s / window_s);
   const auto likelihood = [&](double distance) { return log_likelihood(distance, freedom); };
 
+  const double most_gain =
+      (window_s < kConvincing_s ? kShortWindow : kMostOfThreshold) * threshold_;
   for (const int sign : {-1, 1}) {
-    Track& track = parameter.away[sign < 0 ? 0 : 1][static_cast<std::size_t>(phase)];
     const double toward = sign * z;
-    const double gain = std::min(likelihood(toward - std::max(toward, least)) -
-                                     likelihood(toward - std::clamp(toward, 0.0, tolerance)),
-                                 kOneWindow * threshold_);
-    if (track.sum + gain <= 0) {
-      track = {};
-      continue;
-    }
-    if (track.sum == 0) track.since = e.start;
-    track.sum = std::min(track.sum + gain, kMostOfThreshold * threshold_);
-    track.weight += 1 / (scale * scale);
-    track.off += off / (scale * scale);
-    if (parameter.sign == 0 && track.sum > threshold_) {
+    const double unchanged = likelihood(toward - std::clamp(toward, 0.0, tolerance));
+    for (int size = 0; size < kSizes; ++size) {
+      const auto i = static_cast<std::size_t>(size);
+      Track& track = parameter.away[sign < 0 ? 0 : 1][static_cast<std::size_t>(phase)][i];
+      const double gain =
+          std::min(likelihood(toward - kSizesOfLeast[i] * least) - unchanged, most_gain);
+      if (track.sum + gain <= 0) {
+        track = {};
+        continue;
+      }
+      if (track.sum == 0) track.since = e.start;
+      track.sum = std::min(track.sum + gain, kMostOfThreshold * threshold_);
+      track.weight += 1 / (scale * scale);
+      track.off += off / (scale * scale);
+      if (parameter.sign != 0 || track.sum <= threshold_) continue;
       parameter.sign = sign;
       parameter.phase = phase;
+      parameter.size = size;
       parameter.back.fill(0);
     }
   }
@@ -99,7 +106,8 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
 Change ChangeDetector::change(int parameter) const {
   const Parameter& p = of(parameter);
   const auto u = static_cast<std::size_t>(parameter);
-  const Track& track = p.away[p.sign < 0 ? 0 : 1][static_cast<std::size_t>(p.phase)];
+  const Track& track = p.away[p.sign < 0 ? 0 : 1][static_cast<std::size_t>(p.phase)]
+                             [static_cast<std::size_t>(p.size)];
   if (track.weight <= 0) return {};
   return {track.off / track.weight,
           std::hypot(1 / std::sqrt(track.weight), baseline_.std_error[u] / baseline_.value[u]),

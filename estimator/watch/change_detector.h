@@ -23,18 +23,23 @@ struct Change {
 };
 
 /// Looks for lasting changes of parameters in the windows of one length: cumulative sums of
-/// log-likelihood ratios between "changed by at least the least relevant change" and "equal to the
-/// baseline within the tolerance" (docs/equations.md 39, 40). Windows of one sum do not overlap, so
-/// their errors are nearly independent; kPhases staggered sums find a change before a
-/// whole further window has passed. The likelihood is Student's, because standard errors come from
-/// 20 blocks; a standard error below the usual one is replaced by that. A value that prior and
+/// log-likelihood ratios between "changed by 1, 2, 4 or 16 times the least relevant change" and
+/// "equal to the baseline within the tolerance" (docs/equations.md 39, 40). Windows of one sum do
+/// not overlap, so their errors are nearly independent; kPhases staggered sums find a change before
+/// a whole further window has passed. The likelihood is Student's, because standard errors come
+/// from 20 blocks; a standard error below the usual one is replaced by that. A value that prior and
 /// noise bias far does not count: that error is the same in every window.
 class ChangeDetector {
  public:
   static constexpr int kPhases = 5;
+  static constexpr int kSizes = 4;
+  /// A sum that crosses the threshold has crossed it by so much that false ones are at least
+  /// exp(kOvershoot) times rarer than Wald's bound (docs/equations.md 41).
+  static constexpr double kOvershoot = 1.5;
 
   /// watched: theta order; parameters without a baseline are not watched. threshold: sum at which a
-  /// change is accepted; a false one has probability exp(-threshold) per window and direction.
+  /// change is accepted; a false one has a probability below exp(-threshold - kOvershoot) per
+  /// window, direction and size.
   ChangeDetector(const Baseline& baseline, const std::vector<Watched>& watched, double threshold);
 
   /// The baseline from now on; the sums stay.
@@ -69,19 +74,21 @@ class ChangeDetector {
       a(since);
     }
   };
+  using Tracks = std::array<Track, kSizes>;
   struct Parameter {
     Watched watched;
-    double usual_error = 0;                          ///< running mean
-    int sign = 0;                                    ///< of the change; 0: none
-    int phase = 0;                                   ///< whose track found it
-    std::array<std::array<Track, kPhases>, 2> away;  ///< downward, upward
-    std::array<double, kPhases> back{};              ///< evidence that a change has gone
+    double usual_error = 0;                           ///< running mean
+    int sign = 0;                                     ///< of the change; 0: none
+    int phase = 0, size = 0;                          ///< whose track found it
+    std::array<std::array<Tracks, kPhases>, 2> away;  ///< downward, upward
+    std::array<double, kPhases> back{};               ///< evidence that a change has gone
 
     template <typename Archive>
     void archive(Archive& a) {
       a.finite(usual_error, back);
       a.within(sign, -1, 1);
       a.within(phase, 0, kPhases - 1);
+      a.within(size, 0, kSizes - 1);
       a(away);
     }
   };

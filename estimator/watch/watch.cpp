@@ -36,12 +36,13 @@ double threshold_for(const WatchOptions& o, const std::vector<double>& windows_s
                      const std::vector<Watched>& watched) {
   const auto count = static_cast<double>(std::count_if(
       watched.begin(), watched.end(), [](const Watched& w) { return w.least_change > 0; }));
-  const double tests_per_window = 2 * count * ChangeDetector::kPhases;
+  const double tests_per_window = 2 * count * ChangeDetector::kPhases * ChangeDetector::kSizes;
   double tests = 0;
   for (const double s : windows_s)
     tests += tests_per_window * kSeconds * o.shaking_hours_per_year / s;
   if (o.quiet_window_s > 0) tests += tests_per_window * kSeconds * kHoursPerYear / o.quiet_window_s;
-  return std::log(std::max(tests / o.alarms_per_year, 2.0));
+  const double wald = std::log(std::max(tests / o.alarms_per_year, 2.0));
+  return std::max(wald - ChangeDetector::kOvershoot, std::log(2.0));
 }
 
 }  // namespace

@@ -127,10 +127,12 @@ Tally lose_each(double ratio, int motions) {
   return out;
 }
 
-/// Issue 21 asks for 20 of 20 within 7 s; reached is 16, and 20 within kReached_s
+/// Issue 21 asks for 20 of 20 within 7 s; reached is 19, and 20 within kReached_s
 /// (docs/equations.md).
 TEST(GroupWatch, FindsAFifthLostByOneStoryOfFive) {
+  constexpr double kSoon = 0.95;
   const Tally tally = lose_each(0.2, wanted_runs());
+  EXPECT_GE(tally.soon, kSoon * tally.cases);
   EXPECT_EQ(tally.reached, tally.cases);
   EXPECT_EQ(tally.wrong, 0);
 }
