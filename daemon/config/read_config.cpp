@@ -67,10 +67,6 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.watch = read_watch(document, problems);
   if (config.watch) config.pipeline.options.long_window_s = config.watch->options.quiet_window_s;
   config.gap = read_gap(document, problems);
-  if (config.gap && has_force(config.pipeline.axes))
-    problems.push_back({{},
-                        "gap: is of buildings that the ground drives; this one has a channel of a "
-                        "force"});
   config.history = read_history(document, problems);
   config.event_report = read_event_report(document, problems);
   config.actions = read_actions(document, problems);

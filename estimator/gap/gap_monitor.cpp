@@ -13,14 +13,6 @@ namespace {
 
 constexpr int kHeld = RunningModel::kDelay + 1;
 
-Direction direction_of(const Structure& s, const SensorAxis& axis) {
-  return axis.frame >= 0 ? s.direction(axis.frame) : axis.direction;
-}
-
-bool drives(const SensorAxis& axis) {
-  return axis.story == 0 && axis.horizontal();
-}
-
 std::vector<DerivativeTriple> triples(const AxisCorrection& correction, double rate_hz) {
   std::vector<DerivativeTriple> out;
   for (const double rest : correction.rest()) out.push_back(matched_triple(rate_hz, rest));
@@ -52,9 +44,9 @@ BendingStiffness bending_of(const std::vector<Effect>& effects) {
 GapMonitor::Current::Current(const GapMonitor& m, const GapModel& model)
     : correction(m.axes_, model.effects, m.rate_hz_),
       filter(triples(correction, m.rate_hz_), HighPass(m.high_pass_hz_, m.rate_hz_)),
-      running(m.structure_, m.stories_, model, m.rate_hz_, m.high_pass_hz_,
-              m.base_mean(correction.rest())),
-      noise(m.structure_, m.stories_, model, m.rate_hz_, m.high_pass_hz_),
+      running(m.structure_, m.stories_, model, m.inputs_.inputs, m.rate_hz_, m.high_pass_hz_,
+              m.late(correction.rest())),
+      noise(m.structure_, m.stories_, model, m.inputs_, m.rate_hz_, m.high_pass_hz_),
       meter(compared(m.seen_), m.rate_hz_, static_cast<int>(m.options_.window_s)),
       delay(std::llround(
           1e6 / m.rate_hz_ *
@@ -69,6 +61,8 @@ GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxi
       design_{config.design.size() > 0 ? config.design : guessed_design(structure_, stories_),
               config.bending_nmprad},
       axes_(axes),
+      driving_(axes_, config.options.rate_hz),
+      inputs_(measured_inputs(structure_, axes_, driving_.present())),
       rate_hz_(config.options.rate_hz),
       high_pass_hz_(config.options.high_pass_hz),
       options_(options),
@@ -77,6 +71,7 @@ GapMonitor::GapMonitor(const PipelineConfig& config, const std::vector<SensorAxi
       has_law_(static_cast<std::size_t>(table_.size())),
       since_gap_(any_window(table_)),
       alarm_(options),
+      driven_(inputs_.from_axes.rows()),
       noise_variance_(axes.size()) {
   for (const SensorAxis& axis : axes) {
     seen_.emplace_back();
@@ -116,7 +111,14 @@ void GapMonitor::adopt(const GapModel& model) {
     if (e.place.kind == PlaceKind::panel && !table_.grouped())
       has_law_[static_cast<std::size_t>(table_.panel_stiffness(e.place.story, e.place.panel))] = 1;
   }
-  current_.emplace(*this, model);
+  model_ = model;
+  current_.emplace(*this, model_);
+}
+
+void GapMonitor::take_inputs() {
+  inputs_ = measured_inputs(structure_, axes_, driving_.present());
+  driven_.resize(inputs_.from_axes.rows());
+  if (current_) current_.emplace(*this, model_);
 }
 
 void GapMonitor::learn(const WindowEstimate& estimate, const Eigen::VectorXd& believed) {
@@ -159,17 +161,10 @@ void GapMonitor::name_place(GapNews& news) const {
   }
 }
 
-Eigen::Vector2d GapMonitor::base_mean(const std::vector<double>& of_axes) const {
-  Eigen::Vector2d sum(0, 0), count(0, 0);
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (!drives(axes_[a])) continue;
-    const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
-    const bool turned = axes_[a].plan && (d == 0 ? std::cos(axes_[a].plan->angle_rad)
-                                                 : std::sin(axes_[a].plan->angle_rad)) < 0;
-    sum[d] += turned ? -of_axes[a] : of_axes[a];
-    count[d] += 1;
-  }
-  return sum.array() / count.array().max(1);
+Eigen::VectorXd GapMonitor::late(const std::vector<double>& rest) const {
+  const Eigen::MatrixXd share = inputs_.from_axes.cwiseAbs();
+  const Eigen::Map<const Eigen::VectorXd> of_axes(rest.data(), share.cols());
+  return (share * of_axes).cwiseQuotient(share.rowwise().sum());
 }
 
 void GapMonitor::hold(Current& c) {
@@ -191,29 +186,24 @@ void GapMonitor::compare(Current& c) const {
 }
 
 void GapMonitor::noise_variances(const Current& c, const std::vector<double>& noise_density) {
-  Eigen::Vector2d base(0, 0), count(0, 0);
   const auto variance = [&](std::size_t a) {
     return c.noise.known() && a < noise_density.size()
                ? noise_density[a] * noise_density[a] * rate_hz_ / 2
                : kNaN;
   };
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
-    if (!drives(axes_[a])) continue;
-    const int d = direction_of(structure_, axes_[a]) == Direction::x ? 0 : 1;
-    base[d] += variance(a);
-    count[d] += 1;
-  }
-  base = base.array() / count.array().max(1).square();
+  Eigen::VectorXd driving = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(axes_.size()));
+  for (const Eigen::Index a : inputs_.used) driving[a] = variance(static_cast<std::size_t>(a));
   for (std::size_t a = 0; a < axes_.size(); ++a) {
     if (seen_[a].empty()) continue;
     noise_variance_[a] = variance(a) * c.noise.own();
     for (const auto& [dof, weight] : seen_[a])
-      noise_variance_[a] += std::abs(weight) * c.noise.base().row(dof).dot(base);
+      noise_variance_[a] += std::abs(weight) * c.noise.inputs().row(dof).dot(driving);
   }
 }
 
 const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double>& noise_density) {
   news_ = nullptr;
+  if (driving_.push(set.accel)) take_inputs();
   if (!current_) return nullptr;
   Current& c = *current_;
   const bool gap = set.index != c.expected_index;
@@ -226,8 +216,10 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   c.filter.push(accel);
   hold(c);
   c.noise.advance();
-  const Eigen::Vector2d base = base_mean(accel);
-  if (!base.allFinite()) {
+  driven_.setZero();
+  for (const Eigen::Index a : inputs_.used)
+    driven_ += inputs_.from_axes.col(a) * accel[static_cast<std::size_t>(a)];
+  if (!driven_.allFinite()) {
     c.settled_s = 0;
     return nullptr;
   }
@@ -235,7 +227,7 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
     c.running.restart();
     c.meter.restart();
   }
-  c.running.push(base);
+  c.running.push(driven_);
   c.settled_s += 1 / rate_hz_;
   if (c.settled_s < c.running.settle_s()) return nullptr;
   compare(c);

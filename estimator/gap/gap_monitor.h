@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "estimator/gap/axis_correction.h"
+#include "estimator/gap/driving_axes.h"
 #include "estimator/gap/gap_alarm.h"
 #include "estimator/gap/gap_meter.h"
+#include "estimator/gap/measured_inputs.h"
 #include "estimator/gap/model_learner.h"
 #include "estimator/gap/noise_path.h"
 #include "estimator/gap/running_model.h"
@@ -18,9 +20,9 @@
 
 namespace framewatch::estimator {
 
-/// Simulates the current model under the measured base motion continuously and gives the gap to
-/// what the axes above measure. docs/gap.md, docs/equations.md (42), (43). Base axes of one
-/// direction are averaged: a turning base is a gap. Verticals and forces are not used.
+/// Simulates the current model under the measured inputs continuously and gives the gap to
+/// what the axes above measure. docs/gap.md, docs/equations.md (42), (43). What drives the
+/// model is measured_inputs(): a motion of the base that no axis shows is a gap.
 class GapMonitor {
  public:
   /// axes: with the remaining fractions of their delays (Pipeline::axes). model: none: it is
@@ -46,9 +48,10 @@ class GapMonitor {
     bool modelled = has_model();
     std::vector<double> theta;
     if (modelled) theta.assign(theta_.begin(), theta_.end());
-    a(learner_, alarm_, since_gap_, named_, modelled);
+    a(learner_, alarm_, since_gap_, named_, driving_, modelled);
     a.any_size(theta);
     if constexpr (Archive::kReading) {
+      take_inputs();
       for (const double value : theta)
         if (!(value > 0 && value < a.kMost)) return a.refuse();
       if (modelled && !has_model() && theta.size() == static_cast<std::size_t>(table_.size()))
@@ -82,8 +85,10 @@ class GapMonitor {
       a.within(expected_index, -1, a.kMostCount);
     }
   };
-  /// Mean over the base axes, x and y.
-  Eigen::Vector2d base_mean(const std::vector<double>& of_axes) const;
+  /// Delay of every input's samples beside the axes' own, of all that show it; instants.
+  Eigen::VectorXd late(const std::vector<double>& rest) const;
+  /// The inputs from the axes that drive now; the model that runs begins anew with them.
+  void take_inputs();
   void hold(Current& c);
   void compare(Current& c) const;
   void noise_variances(const Current& c, const std::vector<double>& noise_density);
@@ -98,11 +103,14 @@ class GapMonitor {
   ParameterTable table_;    ///< of what is identified
   GroupDesign design_;
   std::vector<SensorAxis> axes_;
+  DrivingAxes driving_;
+  MeasuredInputs inputs_;  ///< of the axes that drive now
   /// What each axis above the base measures along x or y: degrees of freedom with weights.
   std::vector<std::vector<std::pair<int, double>>> seen_;
   double rate_hz_, high_pass_hz_;
   GapOptions options_;
   ModelLearner learner_;
+  GapModel model_;                   ///< while there is one
   Eigen::VectorXd theta_;            ///< of what is identified
   std::vector<double> theta_error_;  ///< standard errors of what was learned; 0: as given
   std::vector<char> has_law_;        ///< of each parameter: an effect of the model acts there
@@ -110,6 +118,7 @@ class GapMonitor {
   GapNews named_;                    ///< the last one
   std::optional<Current> current_;
   GapAlarm alarm_;
+  Eigen::VectorXd driven_;  ///< the inputs now
   std::vector<double> noise_variance_;
   const GapNews* news_ = nullptr;
 };

@@ -32,26 +32,27 @@ double filtered_variance(double rate_hz, double high_pass_hz) {
 }  // namespace
 
 NoisePath::NoisePath(const Structure& structure, const ParameterTable& table, const GapModel& model,
-                     double rate_hz, double high_pass_hz)
-    : model_(structure, table, without_laws(model, structure), rate_hz, high_pass_hz),
+                     const MeasuredInputs& inputs, double rate_hz, double high_pass_hz)
+    : inputs_(inputs),
+      model_(structure, table, without_laws(model, structure), inputs.inputs, rate_hz, high_pass_hz,
+             Eigen::VectorXd::Zero(inputs.from_axes.rows())),
       instants_(kFilled + RunningModel::kDelay +
                 static_cast<int>(std::ceil(model_.settle_s() * rate_hz))),
       own_(filtered_variance(rate_hz, high_pass_hz)),
-      base_(Eigen::MatrixX2d::Zero(structure.degrees_of_freedom(), 2)) {}
+      gain_(Eigen::MatrixXd::Zero(structure.degrees_of_freedom(), inputs.from_axes.cols())) {}
 
 void NoisePath::advance() {
   for (int i = 0; i < kInstantsPerCall && !known(); ++i) {
     if (instant_ == 0) model_.restart();
-    Eigen::Vector2d base(0, 0);
-    base[direction_] = instant_ == kFilled ? 1 : 0;
-    model_.push(base);
-    for (Eigen::Index d = 0; d < base_.rows(); ++d) {
+    const Eigen::Index axis = inputs_.used[static_cast<std::size_t>(next_)];
+    model_.push(inputs_.from_axes.col(axis) * (instant_ == kFilled ? 1.0 : 0.0));
+    for (Eigen::Index d = 0; d < gain_.rows(); ++d) {
       const double accel = model_.accel_abs(static_cast<int>(d));
-      base_(d, direction_) += accel * accel;
+      gain_(d, axis) += accel * accel;
     }
     if (++instant_ < instants_) continue;
     instant_ = 0;
-    ++direction_;
+    ++next_;
   }
 }
 

@@ -17,15 +17,16 @@ constexpr double kBias_s = 150;  ///< far slower than any motion
 constexpr double kLeft = 0.01;   ///< of a free vibration, after the time to settle
 constexpr double kLeastSettle_s = 2, kMostSettle_s = 120;
 
-std::unique_ptr<SimulatedBuilding> building_of(const Structure& structure,
-                                               const ParameterTable& table, const GapModel& model,
-                                               double step_s) {
+std::unique_ptr<DrivenBuilding> building_of(const Structure& structure, const ParameterTable& table,
+                                            const GapModel& model, const Inputs& inputs,
+                                            double step_s) {
   std::vector<Effect> effects;
   for (const Effect& e : model.effects)
     if (!is_channel_effect(e.kind) && e.kind != EffectKind::unmeasured_force) effects.push_back(e);
   if (!concerns_building(effects))
-    return std::make_unique<LinearBuilding>(structure, table, model.theta, step_s);
-  return std::make_unique<NonlinearBuilding>(structure, table, model.theta, effects, step_s);
+    return std::make_unique<LinearBuilding>(structure, table, model.theta, inputs, step_s);
+  return std::make_unique<NonlinearBuilding>(structure, table, model.theta, effects, inputs,
+                                             step_s);
 }
 
 /// By the frames' share of damping in the first mode.
@@ -45,21 +46,21 @@ double settle_time(const Structure& structure, const ParameterTable& table,
 }  // namespace
 
 RunningModel::RunningModel(const Structure& structure, const ParameterTable& table,
-                           const GapModel& model, double rate_hz, double high_pass_hz,
-                           const Eigen::Vector2d& late)
+                           const GapModel& model, const Inputs& inputs, double rate_hz,
+                           double high_pass_hz, const Eigen::VectorXd& late)
     : steps_(static_cast<int>(std::ceil(1 / (rate_hz * kLongestStep_s) - 1e-9))),
-      building_(building_of(structure, table, model, 1 / (rate_hz * steps_))),
+      building_(building_of(structure, table, model, inputs, 1 / (rate_hz * steps_))),
       rest_(building_->motion()),
       settle_s_(settle_time(structure, table, model.theta)),
-      taps_x_(taps(steps_, late.x())),
-      taps_y_(taps(steps_, late.y())),
-      base_(2 * kTaps),
+      recent_(late.size(), kTaps),
       bias_share_(1 / (kBias_s * rate_hz)),
       filter_(
           std::vector<DerivativeTriple>(static_cast<std::size_t>(structure.degrees_of_freedom()),
                                         matched_triple(rate_hz)),
           HighPass(high_pass_hz, rate_hz)),
       unfiltered_(static_cast<std::size_t>(structure.degrees_of_freedom())) {
+  bias_ = before_ = after_ = Eigen::VectorXd::Zero(late.size());
+  for (const double of_input : late) taps_.push_back(taps(steps_, of_input));
   restart();
 }
 
@@ -82,27 +83,26 @@ RunningModel::Taps RunningModel::taps(int steps, double late) {
 void RunningModel::restart() {
   (void)building_->resume(rest_);
   building_->set_time(kAfterEverything_s);
-  std::fill(base_.begin(), base_.end(), 0.0);
+  recent_.setZero();
   before_.setZero();
   bias_.setZero();
   filter_.reset();
 }
 
-void RunningModel::push(const Eigen::Vector2d& base) {
-  bias_ += bias_share_ * (base - bias_);
+void RunningModel::push(const Eigen::VectorXd& inputs) {
+  bias_ += bias_share_ * (inputs - bias_);
   newest_ = newest_ == 0 ? kTaps - 1 : newest_ - 1;
-  base_[static_cast<std::size_t>(2 * newest_)] = base.x() - bias_.x();
-  base_[static_cast<std::size_t>(2 * newest_ + 1)] = base.y() - bias_.y();
+  recent_.col(newest_) = inputs - bias_;
   building_->set_time(kAfterEverything_s);
   for (int step = 0; step < steps_; ++step) {
-    Eigen::Vector2d after(0, 0);
-    for (int age = 0; age < kTaps; ++age) {
-      const auto at = static_cast<std::size_t>(2 * ((newest_ + age) % kTaps));
-      after.x() += taps_x_(step, age) * base_[at];
-      after.y() += taps_y_(step, age) * base_[at + 1];
+    for (Eigen::Index i = 0; i < after_.size(); ++i) {
+      double sum = 0;
+      for (int age = 0; age < kTaps; ++age)
+        sum += taps_[static_cast<std::size_t>(i)](step, age) * recent_(i, (newest_ + age) % kTaps);
+      after_[i] = sum;
     }
-    building_->advance(before_, after);
-    before_ = after;
+    building_->drive(before_, after_);
+    before_ = after_;
   }
   const Eigen::VectorXd& accel = building_->accel_abs();
   std::copy(accel.begin(), accel.end(), unfiltered_.begin());

@@ -7,26 +7,27 @@
 
 #include "estimator/gap/gap.h"
 #include "estimator/motion/drift_controlled_integrator.h"
-#include "estimator/simulate/simulated_building.h"
+#include "estimator/simulate/driven_building.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 
-/// A model that is simulated in step with the building, under its measured base motion. Between the
-/// samples the base motion is interpolated by a windowed sinc, at steps of 1 ms at most. The
-/// floors' accelerations pass drift control and filter as the measured ones do; the base motion
-/// does not, because nonlinear laws do not commute with a filter.
+/// A model that is simulated in step with the building, under its measured inputs. Between the
+/// samples these are interpolated by a windowed sinc, at steps of 1 ms at most. The floors'
+/// accelerations pass drift control and filter as the measured ones do; the inputs do not, because
+/// nonlinear laws do not commute with a filter.
 class RunningModel {
  public:
-  /// late: delay of the base's samples (x, y), less than an instant, in instants.
+  /// late: delay of every input's samples, less than an instant, in instants.
   RunningModel(const Structure& structure, const ParameterTable& table, const GapModel& model,
-               double rate_hz, double high_pass_hz, const Eigen::Vector2d& late = {0, 0});
+               const Inputs& inputs, double rate_hz, double high_pass_hz,
+               const Eigen::VectorXd& late);
 
-  /// Model and base at rest, also in the past.
+  /// Model and inputs at rest, also in the past.
   void restart();
-  /// Absolute acceleration of the base (x, y) at the next instant, m/s^2.
-  void push(const Eigen::Vector2d& base);
+  /// The inputs at the next instant.
+  void push(const Eigen::VectorXd& inputs);
   /// Filtered absolute acceleration of a degree of freedom (Structure::dof), m/s^2: what a sensor
   /// there and a DriftControlledIntegrator give kDelay instants before the newest.
   double accel_abs(int dof) const { return filter_.value(dof); }
@@ -38,7 +39,7 @@ class RunningModel {
   template <typename Archive>
   void archive(Archive& a) {
     std::vector<double> motion = building_->motion();
-    a.finite(base_, bias_, before_, motion);
+    a.finite(recent_, bias_, before_, motion);
     a.within(newest_, 0, kTaps - 1);
     a(filter_);
     if constexpr (Archive::kReading) {
@@ -51,17 +52,16 @@ class RunningModel {
   static constexpr double kAfterEverything_s = 1e6;
 
   int steps_;  ///< per instant
-  std::unique_ptr<SimulatedBuilding> building_;
+  std::unique_ptr<DrivenBuilding> building_;
   std::vector<double> rest_;  ///< its motion
   double settle_s_;
   using Taps = Eigen::Matrix<double, Eigen::Dynamic, kTaps>;
   static Taps taps(int steps, double late);
-  Taps taps_x_, taps_y_;      ///< steps x instants, newest first
-  std::vector<double> base_;  ///< ring of kTaps instants, x and y
+  std::vector<Taps> taps_;  ///< of each input: steps x instants, newest first
+  Eigen::MatrixXd recent_;  ///< inputs x ring of kTaps instants
   int newest_ = 0;
   double bias_share_;  ///< of a sample in the slow mean that is no motion
-  Eigen::Vector2d bias_{0, 0};
-  Eigen::Vector2d before_{0, 0};
+  Eigen::VectorXd bias_, before_, after_;
   DriftControlledIntegrator filter_;
   std::vector<double> unfiltered_;
 };

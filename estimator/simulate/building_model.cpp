@@ -117,16 +117,20 @@ double rotational_stiffness(const std::vector<Effect>& effects, EffectKind kind,
 
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects) {
+  return linear_model(structure, table, theta, effects, ground_influence(structure));
+}
+
+LinearModel linear_model(const Structure& structure, const ParameterTable& table,
+                         const Eigen::VectorXd& theta, const std::vector<Effect>& effects,
+                         const Eigen::MatrixXd& influence) {
   const Structure s = with_extra_mass(structure, effects);
   const int nd = s.degrees_of_freedom();
   const auto size = nd + static_cast<Eigen::Index>(of_kind(effects, tuned_mass_damper).size());
-  LinearModel model{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, 2), {}, {}};
-  for (int story = 1; story <= s.stories; ++story) {
-    for (int f = 0; f < s.frames(); ++f) {
-      model.mass[s.dof(story, f)] = s.frame_mass(story, f);
-      model.influence(s.dof(story, f), s.direction(f) == Direction::x ? 0 : 1) = 1;
-    }
-  }
+  LinearModel model{
+      Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, influence.cols()), {}, {}};
+  model.influence.topRows(nd) = influence;
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f) model.mass[s.dof(story, f)] = s.frame_mass(story, f);
   for (const Element& e : elements(s, table))
     model.linear.push_back(
         {dense(e, size), theta[e.stiffness], theta[e.stiffness + table.elements()]});

@@ -18,6 +18,10 @@ namespace framewatch::estimator {
 /// floor_flexibility act here, the other kinds do not.
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects);
+/// The same under other inputs. influence: Inputs::influence.
+LinearModel linear_model(const Structure& structure, const ParameterTable& table,
+                         const Eigen::VectorXd& theta, const std::vector<Effect>& effects,
+                         const Eigen::MatrixXd& influence);
 
 /// A law on an element of LinearModel::linear, or between floors.
 struct PlacedLaw {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/solve.h"
@@ -25,16 +26,17 @@ void multiply(const double* a, const double* x, double* out, Eigen::Index rows,
 
 LinearBuilding::LinearBuilding(const Structure& structure, const ParameterTable& table,
                                const Eigen::VectorXd& theta, double step_s)
+    : LinearBuilding(structure, table, theta, ground_inputs(structure), step_s) {}
+
+LinearBuilding::LinearBuilding(const Structure& structure, const ParameterTable& table,
+                               const Eigen::VectorXd& theta, Inputs inputs, double step_s)
     : structure_(structure),
       table_(table),
       step_s_(step_s),
       constraint_(floor_constraint(structure)),
-      influence_(Eigen::MatrixXd::Zero(structure.degrees_of_freedom(), 2)) {
+      inputs_(std::move(inputs)) {
   assert(step_s > 0);
-  for (int story = 1; story <= structure.stories; ++story)
-    for (int f = 0; f < structure.frames(); ++f)
-      influence_(structure.dof(story, f), structure.direction(f) == Direction::x ? 0 : 1) = 1;
-  state_ = Eigen::VectorXd::Zero(2 * constraint_.cols() + 4);
+  state_ = Eigen::VectorXd::Zero(2 * constraint_.cols() + 2 * inputs_.influence.cols());
   next_ = state_;
   accel_abs_ = Eigen::VectorXd::Zero(structure.degrees_of_freedom());
   set_theta(theta);
@@ -56,22 +58,27 @@ void LinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   if (!(velocity_scale_ > 0)) velocity_scale_ = 1;
   state_.head(q) *= velocity_scale_ / scale_before;
 
-  // d/dt (state, ground, slope of ground) = generator * (...): its exponential over one step holds
+  // d/dt (state, inputs, their slope) = generator * (...): its exponential over one step holds
   // the transition and both first-order-hold input matrices.
-  Eigen::MatrixXd generator = Eigen::MatrixXd::Zero(2 * q + 4, 2 * q + 4);
+  const Eigen::Index n = inputs_.influence.cols();
+  Eigen::MatrixXd generator = Eigen::MatrixXd::Zero(2 * q + 2 * n, 2 * q + 2 * n);
   generator.block(0, q, q, q).diagonal().setConstant(velocity_scale_);
   generator.block(q, 0, q, q) = -stiffness / velocity_scale_;
   generator.block(q, q, q, q) = -damping;
-  generator.block(q, 2 * q, q, 2) = -mass.solve(Eigen::MatrixXd(constraint_mass * influence_));
-  generator.block(2 * q, 2 * q + 2, 2, 2).setIdentity();
+  const Eigen::MatrixXd pushed =
+      mass.solve(Eigen::MatrixXd(constraint_.transpose() * inputs_.force));
+  generator.block(q, 2 * q, q, n) =
+      pushed - mass.solve(Eigen::MatrixXd(constraint_mass * inputs_.influence));
+  generator.block(2 * q, 2 * q + n, n, n).setIdentity();
   const Eigen::MatrixXd scaled = generator * step_s_;
   const Eigen::MatrixXd exponential = matrix_exponential(scaled);
   transition_ = exponential.topRows(2 * q);
-  transition_.rightCols(2) /= step_s_;
+  transition_.rightCols(n) /= step_s_;
 
   output_.resize(accel_abs_.size(), 2 * q);
   output_.leftCols(q) = -constraint_ * stiffness / velocity_scale_;
   output_.rightCols(q) = -constraint_ * damping;
+  direct_ = inputs_.force.isZero(0) ? RowMajor(0, n) : RowMajor(constraint_ * pushed);
   update_accel();
 }
 
@@ -83,11 +90,13 @@ void LinearBuilding::set_state(const Eigen::VectorXd& disp_rel, const Eigen::Vec
   update_accel();
 }
 
-void LinearBuilding::advance(const Eigen::Vector2d& ground_before,
-                             const Eigen::Vector2d& ground_after) {
-  state_.segment<2>(state_.size() - 4) = ground_before;
-  state_.tail<2>() = ground_after - ground_before;
+void LinearBuilding::drive(const Eigen::Ref<const Eigen::VectorXd>& before,
+                           const Eigen::Ref<const Eigen::VectorXd>& after) {
+  const Eigen::Index n = inputs_.influence.cols();
+  state_.segment(state_.size() - 2 * n, n) = before;
+  state_.tail(n) = after - before;
   multiply(transition_.data(), state_.data(), next_.data(), transition_.rows(), state_.size());
+  next_.tail(2 * n) = state_.tail(2 * n);
   state_.swap(next_);
   update_accel();
 }
@@ -101,6 +110,9 @@ bool LinearBuilding::resume(const std::vector<double>& motion) {
 
 void LinearBuilding::update_accel() {
   multiply(output_.data(), state_.data(), accel_abs_.data(), output_.rows(), output_.cols());
+  if (direct_.rows() == 0) return;
+  const Eigen::Index n = direct_.cols();
+  accel_abs_ += direct_ * (state_.segment(state_.size() - 2 * n, n) + state_.tail(n));
 }
 
 Eigen::VectorXd LinearBuilding::disp_rel() const {

@@ -2,29 +2,30 @@
 
 #include <Eigen/Core>
 
-#include "estimator/simulate/simulated_building.h"
+#include "estimator/simulate/driven_building.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 
-/// M y'' + C y' + K y = -M r a_g advanced in time exactly (first-order-hold state space by the
-/// matrix exponential): no error while the ground acceleration is linear within a step. Floors are
+/// M y'' + C y' + K y = -M r a_g + f advanced in time exactly (first-order-hold state space by the
+/// matrix exponential): no error while the inputs are linear within a step. Floors are
 /// rigid or flexible as the structure says. Starts at rest.
-class LinearBuilding : public SimulatedBuilding {
+class LinearBuilding : public DrivenBuilding {
  public:
   /// theta in table order; step_s > 0.
   LinearBuilding(const Structure& structure, const ParameterTable& table,
                  const Eigen::VectorXd& theta, double step_s);
+  LinearBuilding(const Structure& structure, const ParameterTable& table,
+                 const Eigen::VectorXd& theta, Inputs inputs, double step_s);
 
   /// New stiffness and damping from now on; displacements and velocities go on from where they are.
   void set_theta(const Eigen::VectorXd& theta) override;
   /// Relative to the ground, one entry per degree of freedom, m and m/s.
   void set_state(const Eigen::VectorXd& disp_rel, const Eigen::VectorXd& vel_rel);
 
-  /// One step; ground acceleration (x, y) at its start and end, m/s^2.
-  void advance(const Eigen::Vector2d& ground_before, const Eigen::Vector2d& ground_after) override;
-
+  void drive(const Eigen::Ref<const Eigen::VectorXd>& before,
+             const Eigen::Ref<const Eigen::VectorXd>& after) override;
   double step_s() const override { return step_s_; }
   void set_time(double) override {}
   Eigen::VectorXd disp_rel() const override;
@@ -42,11 +43,12 @@ class LinearBuilding : public SimulatedBuilding {
   ParameterTable table_;
   double step_s_;
   Eigen::MatrixXd constraint_;  ///< degrees of freedom x independent coordinates
-  Eigen::MatrixXd influence_;   ///< degrees of freedom x (x, y): 1 where the ground moves it
-  double velocity_scale_ = 1;   ///< 1/s; displacements are held times this, which evens out A
-  RowMajor transition_;         ///< state x (state, ground before, change of ground)
-  RowMajor output_;             ///< degrees of freedom x state
-  Eigen::VectorXd state_;       ///< scaled coordinates, then their velocities
+  Inputs inputs_;
+  double velocity_scale_ = 1;  ///< 1/s; displacements are held times this, which evens out A
+  RowMajor transition_;        ///< state x (state, inputs before, their change)
+  RowMajor output_;            ///< degrees of freedom x state
+  RowMajor direct_;            ///< degrees of freedom x inputs: what forces do at once
+  Eigen::VectorXd state_;      ///< scaled coordinates, their velocities, inputs, their change
   Eigen::VectorXd next_;
   Eigen::VectorXd accel_abs_;
 };

@@ -17,7 +17,7 @@ struct LinearElement {
 /// one for each hidden mass, all relative to the ground.
 struct LinearModel {
   Eigen::VectorXd mass;               ///< kg
-  Eigen::MatrixXd influence;          ///< x (x, y): 1 where the ground moves it
+  Eigen::MatrixXd influence;          ///< x inputs: acceleration with the base, per unit of input
   Eigen::MatrixXd constraint;         ///< x independent coordinates
   std::vector<LinearElement> linear;  ///< first those of theta, in its order, then the effects'
 

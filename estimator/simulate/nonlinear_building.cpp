@@ -49,18 +49,27 @@ NonlinearBuilding::NonlinearBuilding(const Structure& structure, const Parameter
                                      const Eigen::VectorXd& theta,
                                      const std::vector<Effect>& effects, double step_s,
                                      int refinement)
-    : NonlinearBuilding(structure, table, theta, effects, {}, step_s, refinement) {}
+    : NonlinearBuilding(structure, table, theta, effects, ground_inputs(structure), step_s,
+                        refinement) {}
+
+NonlinearBuilding::NonlinearBuilding(const Structure& structure, const ParameterTable& table,
+                                     const Eigen::VectorXd& theta,
+                                     const std::vector<Effect>& effects, Inputs inputs,
+                                     double step_s, int refinement)
+    : NonlinearBuilding(structure, table, theta, effects, {}, std::move(inputs), step_s,
+                        refinement) {}
 
 NonlinearBuilding::NonlinearBuilding(const Structure& structure, const ParameterTable& table,
                                      const Eigen::VectorXd& theta,
                                      const std::vector<Effect>& effects,
-                                     std::vector<PlacedLaw> more_laws, double step_s,
+                                     std::vector<PlacedLaw> more_laws, Inputs inputs, double step_s,
                                      int refinement)
     : structure_(structure),
       table_(table),
       effects_(effects),
       laws_(placed_laws(structure, table, theta, effects)),
       forces_(placed_forces(structure, effects)),
+      inputs_(std::move(inputs)),
       step_s_(step_s),
       refinement_(refinement) {
   assert(step_s > 0 && refinement >= 1);
@@ -74,7 +83,7 @@ NonlinearBuilding::NonlinearBuilding(const Structure& structure, const Parameter
 
 void NonlinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   assert(theta.size() == table_.size());
-  const LinearModel model = linear_model(structure_, table_, theta, effects_);
+  const LinearModel model = linear_model(structure_, table_, theta, effects_, inputs_.influence);
   constraint_ = model.constraint;
   const Eigen::Index q = constraint_.cols();
   const Eigen::MatrixXd constraint_mass = constraint_.transpose() * model.mass.asDiagonal();
@@ -85,7 +94,8 @@ void NonlinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   const Eigen::MatrixXd damping =
       mass.solve(Eigen::MatrixXd(constraint_.transpose() * model.damping() * constraint_));
 
-  if (state_.size() == 0) state_ = Eigen::VectorXd::Zero(2 * q + 4);
+  const Eigen::Index n = inputs_.influence.cols();
+  if (state_.size() == 0) state_ = Eigen::VectorXd::Zero(2 * q + 2 * n);
   const double scale_before = velocity_scale_;
   velocity_scale_ = std::sqrt(stiffness.diagonal().maxCoeff());
   if (!(velocity_scale_ > 0)) velocity_scale_ = 1;
@@ -103,12 +113,15 @@ void NonlinearBuilding::set_theta(const Eigen::VectorXd& theta) {
     force_push_.push_back(mass_inverse * constraint_.row(p.dof).transpose());
   choose_parts(model, mass_inverse);
 
-  Eigen::MatrixXd generator = Eigen::MatrixXd::Zero(2 * q + 4, 2 * q + 4);
+  Eigen::MatrixXd generator = Eigen::MatrixXd::Zero(2 * q + 2 * n, 2 * q + 2 * n);
   generator.block(0, q, q, q).diagonal().setConstant(velocity_scale_);
   generator.block(q, 0, q, q) = -stiffness / velocity_scale_;
   generator.block(q, q, q, q) = -damping;
-  generator.block(q, 2 * q, q, 2) = -mass.solve(Eigen::MatrixXd(constraint_mass * model.influence));
-  generator.block(2 * q, 2 * q + 2, 2, 2).setIdentity();
+  const Eigen::MatrixXd pushed = mass.solve(
+      Eigen::MatrixXd(constraint_.topRows(inputs_.force.rows()).transpose() * inputs_.force));
+  generator.block(q, 2 * q, q, n) =
+      pushed - mass.solve(Eigen::MatrixXd(constraint_mass * model.influence));
+  generator.block(2 * q, 2 * q + n, n, n).setIdentity();
   const Eigen::MatrixXd scaled = generator * (step_s_ / parts_ / 2);
   const Eigen::MatrixXd exponential = matrix_exponential(scaled);
   half_ = exponential.topRows(2 * q);
@@ -118,11 +131,12 @@ void NonlinearBuilding::set_theta(const Eigen::VectorXd& theta) {
   output_.leftCols(q) = -constraint_.topRows(nd) * stiffness / velocity_scale_;
   output_.rightCols(q) = -constraint_.topRows(nd) * damping;
   output_push_ = constraint_.topRows(nd);
+  direct_ = inputs_.force.isZero(0) ? RowMajor(0, n) : RowMajor(constraint_.topRows(nd) * pushed);
   force_now_ = force_middle_ = force_end_ =
       Eigen::VectorXd::Zero(static_cast<Eigen::Index>(forces_.size()));
   for (Slope* k : {&k1_, &k2_, &k3_, &k4_})
     *k = {Eigen::VectorXd::Zero(q), Eigen::VectorXd::Zero(z_.size())};
-  middle_ = stage_ = end_ = Eigen::VectorXd::Zero(2 * q + 4);
+  middle_ = stage_ = end_ = Eigen::VectorXd::Zero(2 * q + 2 * n);
   carried_ = Eigen::VectorXd::Zero(2 * q);
   stage_z_ = z_;
   update_accel();
@@ -178,17 +192,20 @@ bool NonlinearBuilding::resume(const std::vector<double>& motion) {
   return true;
 }
 
-void NonlinearBuilding::advance(const Eigen::Vector2d& ground_before,
-                                const Eigen::Vector2d& ground_after) {
+void NonlinearBuilding::drive(const Eigen::Ref<const Eigen::VectorXd>& before,
+                              const Eigen::Ref<const Eigen::VectorXd>& after) {
   const double part_s = step_s_ / parts_;
-  const Eigen::Vector2d slope = (ground_after - ground_before) / step_s_;
+  const Eigen::Index n = inputs_.influence.cols();
+  auto now = state_.segment(state_.size() - 2 * n, n);
+  auto slope = state_.tail(n);
   const double start_s = time_s_;
   for (int part = 0; part < parts_; ++part) {
     part_start_s_ = start_s + part * part_s;
-    state_.segment<2>(state_.size() - 4) = ground_before + slope * (part * part_s);
-    state_.tail<2>() = slope;
+    slope = (after - before) / step_s_;
+    now = before + slope * (part * part_s);
     advance_part(part_s);
   }
+  now = after;
   time_s_ = start_s + step_s_;
   part_start_s_ = time_s_;
   update_accel();
@@ -238,10 +255,10 @@ void NonlinearBuilding::advance_part(double h) {
 void NonlinearBuilding::flow(const Eigen::VectorXd& state, Eigen::VectorXd& out) const {
   multiply(half_.data(), state.data(), out.data(), half_.rows(), half_.cols(), 0, half_.cols());
   const double half_s = step_s_ / parts_ / 2;
-  const Eigen::Index ground = state.size() - 4;
-  for (Eigen::Index i = ground; i < ground + 2; ++i) {
-    out[i] = state[i] + half_s * state[i + 2];
-    out[i + 2] = state[i + 2];
+  const Eigen::Index n = inputs_.influence.cols();
+  for (Eigen::Index i = state.size() - 2 * n; i < state.size() - n; ++i) {
+    out[i] = state[i] + half_s * state[i + n];
+    out[i + n] = state[i + n];
   }
 }
 
@@ -289,6 +306,7 @@ void NonlinearBuilding::update_accel() {
            2 * q);
   for (Eigen::Index r = 0; r < accel_abs_.size(); ++r)
     accel_abs_[r] += dot(output_push_.data() + r * q, k1_.accel.data(), q);
+  if (direct_.rows() > 0) accel_abs_ += direct_ * state_.segment(2 * q, direct_.cols());
 }
 
 Eigen::VectorXd NonlinearBuilding::disp_rel() const {

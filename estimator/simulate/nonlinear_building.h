@@ -5,30 +5,35 @@
 #include <Eigen/Core>
 
 #include "estimator/simulate/building_model.h"
-#include "estimator/simulate/simulated_building.h"
+#include "estimator/simulate/driven_building.h"
 
 namespace framewatch::estimator {
 
 /// A building with effects. Its linear part is advanced by the matrix exponential, exactly while
-/// the ground acceleration is linear within a step; laws and forces by the fourth-order Runge-Kutta
+/// the inputs are linear within a step; laws and forces by the fourth-order Runge-Kutta
 /// scheme in the coordinates that move with it (Lawson, SIAM J. Numer. Anal. 4, 1967). Without laws
 /// it is LinearBuilding up to rounding. Diagnosis fits with another scheme, on purpose.
-class NonlinearBuilding : public SimulatedBuilding {
+class NonlinearBuilding : public DrivenBuilding {
  public:
   /// Effects without problems, those of channels are ignored; step_s > 0. A step is divided into as
   /// many parts as the stiffest law and the fastest mode need, times `refinement`.
   NonlinearBuilding(const Structure& structure, const ParameterTable& table,
                     const Eigen::VectorXd& theta, const std::vector<Effect>& effects, double step_s,
                     int refinement = 1);
+  NonlinearBuilding(const Structure& structure, const ParameterTable& table,
+                    const Eigen::VectorXd& theta, const std::vector<Effect>& effects, Inputs inputs,
+                    double step_s, int refinement = 1);
   /// The same with laws beyond the catalogue.
   NonlinearBuilding(const Structure& structure, const ParameterTable& table,
                     const Eigen::VectorXd& theta, const std::vector<Effect>& effects,
-                    std::vector<PlacedLaw> more_laws, double step_s, int refinement = 1);
+                    std::vector<PlacedLaw> more_laws, Inputs inputs, double step_s,
+                    int refinement = 1);
 
   void set_theta(const Eigen::VectorXd& theta) override;
   /// Relative to the ground; hidden masses move with it, at rest.
   void set_state(const Eigen::VectorXd& disp_rel, const Eigen::VectorXd& vel_rel);
-  void advance(const Eigen::Vector2d& ground_before, const Eigen::Vector2d& ground_after) override;
+  void drive(const Eigen::Ref<const Eigen::VectorXd>& before,
+             const Eigen::Ref<const Eigen::VectorXd>& after) override;
   double step_s() const override { return step_s_; }
   void set_time(double time_s) override { time_s_ = part_start_s_ = time_s; }
   int parts() const { return parts_; }
@@ -70,6 +75,7 @@ class NonlinearBuilding : public SimulatedBuilding {
   std::vector<Effect> effects_;
   std::vector<PlacedLaw> laws_;
   std::vector<PlacedForce> forces_;
+  Inputs inputs_;
   double step_s_;
   int refinement_;
   int parts_ = 1;
@@ -77,12 +83,13 @@ class NonlinearBuilding : public SimulatedBuilding {
   double part_start_s_ = 0;
   double velocity_scale_ = 1;  ///< 1/s; displacements are held times this, which evens out L
   Eigen::MatrixXd constraint_;
-  RowMajor half_;         ///< 2 coordinates x (state, ground, its slope): over half a part
+  RowMajor half_;         ///< 2 coordinates x (state, inputs, their slope): over half a part
   RowMajor output_;       ///< degrees of freedom x state
   RowMajor output_push_;  ///< degrees of freedom x coordinates: accelerations from those
+  RowMajor direct_;       ///< degrees of freedom x inputs: what their forces do at once
   std::vector<Law> placed_;
   std::vector<Eigen::VectorXd> force_push_;
-  Eigen::VectorXd state_;  ///< scaled coordinates, their velocities, ground, its slope
+  Eigen::VectorXd state_;  ///< scaled coordinates, their velocities, inputs, their slope
   Eigen::VectorXd z_;      ///< of all laws
   Eigen::VectorXd accel_abs_;
   Eigen::VectorXd applied_n_;

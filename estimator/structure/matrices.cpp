@@ -59,6 +59,14 @@ Matrices assemble(const Structure& s, const ParameterTable& table, const Eigen::
   return out;
 }
 
+Eigen::MatrixXd ground_influence(const Structure& s) {
+  Eigen::MatrixXd r = Eigen::MatrixXd::Zero(s.degrees_of_freedom(), 2);
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f)
+      r(s.dof(story, f), s.direction(f) == Direction::x ? 0 : 1) = 1;
+  return r;
+}
+
 Eigen::MatrixXd floor_constraint(const Structure& s) {
   const int nd = s.degrees_of_freedom();
   if (s.floor == FloorModel::flexible) return Eigen::MatrixXd::Identity(nd, nd);

@@ -34,6 +34,9 @@ struct Matrices {
 Matrices assemble(const Structure& structure, const ParameterTable& table,
                   const Eigen::VectorXd& theta);
 
+/// Degrees of freedom x (x, y): 1 where motion of the ground in that direction moves it.
+Eigen::MatrixXd ground_influence(const Structure& structure);
+
 /// degrees of freedom x independent coordinates. Identity when floors are flexible; for rigid
 /// floors three columns per floor at most: translations and rotation about the plan's centre,
 /// orthonormal under the floor's mass.

@@ -13,22 +13,13 @@ namespace {
 
 constexpr std::size_t kModes = 12;
 
-/// Degrees of freedom x 2: unit ground acceleration along x and along y.
-Eigen::MatrixXd influence(const Structure& s) {
-  Eigen::MatrixXd r = Eigen::MatrixXd::Zero(s.degrees_of_freedom(), 2);
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f)
-      r(s.dof(story, f), s.direction(f) == Direction::x ? 0 : 1) = 1;
-  return r;
-}
-
 }  // namespace
 
 std::vector<double> panel_excitation(const Structure& s, const ParameterTable& table,
                                      const Eigen::VectorXd& theta) {
   const Matrices matrices = assemble(s, table, theta);
   const std::vector<Element> all = elements(s, table);
-  const Eigen::MatrixXd force = matrices.mass.asDiagonal() * influence(s);
+  const Eigen::MatrixXd force = matrices.mass.asDiagonal() * ground_influence(s);
   std::vector<double> share(static_cast<std::size_t>(s.stories * s.panels()), 0.0);
   const int first_panel = table.elements() - static_cast<int>(share.size());
 

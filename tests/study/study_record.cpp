@@ -47,10 +47,11 @@ Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<estimator:
       if (whole || story == law.place.story)
         laws.push_back({b.table().frame_stiffness(story, law.place.frame), law.make(record), {}});
   }
-  estimator::ResponseStream stream(
-      std::make_unique<estimator::NonlinearBuilding>(b.truth, b.table(), c.hidden.theta, effects,
-                                                     std::move(laws), fine_step_s(options)),
-      c.motions[static_cast<std::size_t>(record)], options, {}, channels);
+  estimator::ResponseStream stream(std::make_unique<estimator::NonlinearBuilding>(
+                                       b.truth, b.table(), c.hidden.theta, effects, std::move(laws),
+                                       estimator::ground_inputs(b.truth), fine_step_s(options)),
+                                   c.motions[static_cast<std::size_t>(record)], options, {},
+                                   channels);
   const auto rows = static_cast<Eigen::Index>(c.options.seconds * c.options.rate_hz);
   Eigen::MatrixXd out(rows, static_cast<Eigen::Index>(b.axes.size()));
   for (Eigen::Index i = 0; i < rows; ++i) {
