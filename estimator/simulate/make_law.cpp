@@ -94,6 +94,33 @@ class Friction : public ElementLaw {
   double force_, v0_, static_, stribeck_;
 };
 
+/// Friction that gives way before it slides.
+class PreslidingFriction : public ElementLaw {
+ public:
+  explicit PreslidingFriction(const Effect& e)
+      : steady_(e),
+        force_(e.value("fc_n")),
+        v0_(e.value("v0_mps")),
+        give_(e.value("presliding_m")) {}
+  int states() const override { return 1; }
+  double force(double, double, double, std::span<const double> z) const override {
+    return force_ * z[0];
+  }
+  void rates(double, double v, std::span<const double> z, std::span<double> z_rate) const override {
+    // What is faster than the shortest step is over within it.
+    constexpr double kFastest_per_s = 4000;
+    if (std::abs(v) < kAtRest * v0_) v = kAtRest * v0_;
+    const double steady = steady_.force(0, 0, v, {}) / force_;
+    z_rate[0] = std::min(std::abs(v / steady) / give_, kFastest_per_s) * (steady - z[0]);
+  }
+  double stiffness_bound() const override { return force_ / give_; }
+
+ private:
+  static constexpr double kAtRest = 1e-6;
+  Friction steady_;
+  double force_, v0_, give_;
+};
+
 /// dk d from t0 on; it begins with a step of the integration.
 class StiffnessDrop : public ElementLaw {
  public:
@@ -163,6 +190,8 @@ std::unique_ptr<ElementLaw> make_law(const Effect& e, const Structure& s) {
     case EffectKind::coulomb_friction:
       if (const double ks = e.value("stick_npm"); ks > 0)
         return make_slider(ks, e.value("fc_n") / ks);
+      if (e.value("presliding_m") > 0 && e.value("fc_n") > 0)
+        return std::make_unique<PreslidingFriction>(e);
       return std::make_unique<Friction>(e);
     case EffectKind::quadratic_damping:
       return std::make_unique<QuadraticDamping>(e);

@@ -136,13 +136,15 @@ std::vector<EffectDescription> friction_contact_and_weight() {
         within("stick_npm", "N/m", 0.0, 0, kAny,
                "ks: slope while it sticks, in place of v0 and s; 0: rigid"),
         within("static_ratio", "", 0.0, -0.9, 10, "s: fc (1 + s) at the onset of sliding"),
-        {"stribeck_mps", "m/s", 1.0, 0, kAny, true, "vs: velocity above which s is gone"}},
-       "f = fc (1 + s exp(-(v/vs)^2)) tanh(v/v0); with ks: f = ks z; z' = v while abs(z) < fc/ks "
-       "or "
-       "z v < 0, else 0",
+        {"stribeck_mps", "m/s", 1.0, 0, kAny, true, "vs: velocity above which s is gone"},
+        within("presliding_m", "m", 0.0, 0, kAny,
+               "dp: deformation that it takes before it slides; 0: none")},
+       "f = fc g(v), g(v) = (1 + s exp(-(v/vs)^2)) tanh(v/v0); with dp: f = fc z; z' = (v - v z / "
+       "g(v)) / dp; with ks: f = ks z; z' = v while abs(z) < fc/ks or z v < 0, else 0",
        "fc > 0 resists the velocity. Dissipates.",
        "Den Hartog, Trans. ASME 53 (1931), regularised; Armstrong-Helouvry, Dupont and Canudas de "
-       "Wit, Automatica 30 (1994)"},
+       "Wit, Automatica 30 (1994); Canudas de Wit and others, IEEE Trans. Autom. Control 40 "
+       "(1995)"},
       {quadratic_damping,
        "quadratic_damping",
        kFrame,

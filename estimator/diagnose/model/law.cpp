@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/model/sliding.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -19,10 +20,8 @@ double contact(const std::vector<double>& p, double d, double v) {
   return p[0] >= 0 ? std::max(force, 0.0) : force;
 }
 
-double friction(const std::vector<double>& p, double v) {
-  double more = value_or(p, 2, 0);
-  if (more != 0) more *= std::exp(-(v / p[3]) * (v / p[3]));
-  return p[0] * (1 + more) * std::tanh(v / p[1]);
+bool preslides(const LawValues& values) {
+  return values.form == LawForm::friction && value_or(values.p, FrictionIndex::presliding, 0) > 0;
 }
 
 }  // namespace
@@ -71,7 +70,7 @@ double LawMotion::plain_force(double d, double v, double t) {
     case LawForm::asymptotic:
       return p[0] * p[1] * asymptotic_z(values_, memory_, z_, d_, d);
     case LawForm::friction:
-      return friction(p, v);
+      return p[0] * (preslides(values_) ? sliding_z(p, z_, v_, v, t - t_) : steady_friction(p, v));
     case LawForm::power_damping:
       return p[0] * signed_power(v / values_.rate, p[1]);
     case LawForm::amplitude:
@@ -90,7 +89,8 @@ double LawMotion::plain_force(double d, double v, double t) {
   }
 }
 
-void LawMotion::accept(double d, double, double) {
+void LawMotion::accept(double d, double v, double t) {
+  if (preslides(values_)) z_ = sliding_z(values_.p, z_, v_, v, t - t_);
   if (is_hysteretic(values_.form)) {
     const double dy = values_.p[HysteresisIndex::dy];
     if (values_.form == LawForm::sliders) {
@@ -111,6 +111,8 @@ void LawMotion::accept(double d, double, double) {
   }
   has_next_ = false;
   d_ = d;
+  v_ = v;
+  t_ = t;
 }
 
 Eigen::VectorXd law_force(const LawValues& values, const Eigen::VectorXd& d,

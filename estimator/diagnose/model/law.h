@@ -25,7 +25,7 @@ class LawMotion {
   double next_z(double d);
 
   LawValues values_;
-  double z_ = 0, d_ = 0, work_ = 0;
+  double z_ = 0, d_ = 0, v_ = 0, t_ = 0, work_ = 0;
   bool has_next_ = false;
   double next_d_ = 0, next_z_ = 0;
   std::vector<double> memory_;  ///< of sliders, or of the last reversal

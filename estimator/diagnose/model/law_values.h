@@ -16,7 +16,7 @@ enum class LawForm {
   asymptotic,     ///< kh z, a curve from every reversal toward yielding: hysteretic_force.h
   pinched,        ///< hysteresis with a slip zone about zero force
   slip_lock,      ///< hysteresis with a slip zone about zero deformation
-  friction,       ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0)
+  friction,       ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: sliding.h
   power_damping,  ///< a sgn(v) |v/V|^p
   amplitude,      ///< a sgn(d) |d/D|^p + b sgn(v) |v/V|^q
   gap_positive,   ///< contact at clearance g: max(kg (d - g) + cg v, 0) while d > g

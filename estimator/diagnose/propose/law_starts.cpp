@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/model/sliding.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -151,7 +152,8 @@ LawStarts friction(const LawScale& s, bool stribeck) {
       out.shapes.push_back({linear_parameter(1, 0.01 * s.force()),
                             logarithmic_parameter(v0 * s.rate, 1e-4 * s.rate, 0.3 * s.rate),
                             bounded_parameter(stribeck ? 0.6 : 0, 0.02, -0.8, 8, stribeck),
-                            logarithmic_parameter(vs * s.rate, 0.01 * s.rate, s.rate)});
+                            logarithmic_parameter(vs * s.rate, 0.01 * s.rate, s.rate),
+                            held(0, 0.005 * s.deformation, 0, 0.3 * s.deformation)});
   if (!stribeck)
     for (Shape& shape : out.shapes) shape[3].free = false;
   return out;
@@ -226,6 +228,9 @@ void free_shape(ModelEffect& effect) {
       for (const std::size_t i :
            {+H::exponent, +H::beta, +H::offset, +H::pinched_strength, +H::pinched_stiffness})
         release(i);
+      break;
+    case F::friction:
+      release(FrictionIndex::presliding);
       break;
     case F::amplitude:
       release(1);

@@ -115,6 +115,7 @@ void set_friction(const ModelEffect& e, Effect& out) {
   if (e.parameters.size() < 4) return;
   out.set("static_ratio", p(2));
   out.set("stribeck_mps", p(3));
+  if (e.parameters.size() > 4) out.set("presliding_m", p(4));
 }
 
 /// At a deformation of a whole frame: shares of the mean stiffness.

@@ -227,7 +227,9 @@ void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>
       e.parameters = {
           sized(value("fc_n")), logarithmic_parameter(value("v0_mps"), 1e-4 * v, 10 * v),
           bounded_parameter(value("static_ratio"), 0.02, -0.9, 10, value("static_ratio") != 0),
-          fixed(value("stribeck_mps"))};
+          fixed(value("stribeck_mps")),
+          bounded_parameter(value("presliding_m"), 0.005 * d, 0, 0.3 * d,
+                            value("presliding_m") > 0)};
       break;
     case LawForm::amplitude:
       set_amplitude(plant, effect, e);

@@ -1,5 +1,6 @@
 #include "estimator/diagnose/model/law.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -196,6 +197,43 @@ TEST(Law, FrictionMayFallWithTheRateAndAContactOnlyPushes) {
   EXPECT_NEAR(contact.force(0.05, 0.1, 0), 8, 1e-9);
   EXPECT_EQ(contact.force(0.05, -1, 0), 0);
   EXPECT_EQ(contact.force(0.01, 1, 0), 0);
+}
+
+TEST(Law, FrictionThatGivesWayFirstIsThatOfTheSimulator) {
+  constexpr double kForce_n = 400, kGives_m = 2e-4, kPeak_m = 6e-3, kPeriod_s = 0.5;
+  constexpr int kCycles = 3, kSteps = 400, kFiner = 50;
+  const LawValues law{LawForm::friction, {kForce_n, 0.007, 0.3, 0.02, kGives_m}, 1, 1};
+  Effect effect = make_effect(EffectKind::coulomb_friction, test::frame_place(0));
+  effect.values = {law.p[0], law.p[1], 0, law.p[2], law.p[3], law.p[4]};
+  const auto simulated = make_law(effect, test::Small().structure);
+  ASSERT_EQ(simulated->states(), 1);
+
+  const double h = kPeriod_s / kSteps, w = 2 * M_PI / kPeriod_s;
+  VectorXd d(kCycles * kSteps), v(d.size());
+  for (Index i = 0; i < d.size(); ++i) {
+    const double t = h * static_cast<double>(i);
+    d[i] = kPeak_m * std::sin(w * t);
+    v[i] = i == 0 ? 0 : kPeak_m * w * std::cos(w * t);
+  }
+  const VectorXd force = law_force(law, d, v, h);
+  std::vector<double> z(1), rate(1);
+  double worst = 0;
+  for (Index i = 1; i < d.size(); ++i) {
+    for (int part = 0; part < kFiner; ++part) {
+      const double t = h * (static_cast<double>(i - 1) + (part + 0.5) / kFiner);
+      simulated->rates(0, kPeak_m * w * std::cos(w * t), z, rate);
+      z[0] += h / kFiner * rate[0];
+    }
+    if (i > kSteps / 8) worst = std::max(worst, std::abs(force[i] - simulated->force(0, 0, 0, z)));
+  }
+  EXPECT_LT(worst, 0.02 * kForce_n);
+  // At a reversal the force is still that of the sliding before.
+  const Index reversal = kSteps + kSteps / 4 + 2;
+  EXPECT_LT(v[reversal], 0);
+  EXPECT_GT(force[reversal], 0.5 * kForce_n);
+  LawValues rigid = law;
+  rigid.p[4] = 0;
+  EXPECT_LT(law_force(rigid, d, v, h)[reversal], 0);
 }
 
 TEST(Law, ASteadyBilinearLoopDissipatesItsArea) {
