@@ -37,6 +37,7 @@ of the element. In a panel, numbers per metre of d are so of this d.
 | floor | `story` |
 | building | `direction` |
 | whole frame | `frame`: all its stories |
+| mode | `mode`: 1 is that of the lowest natural frequency |
 | channel | `channel` |
 | two channels | `channel`, `with_channel` |
 
@@ -66,6 +67,8 @@ const char* place_name(estimator::PlaceKind kind) {
       return "building";
     case estimator::PlaceKind::whole_frame:
       return "whole frame";
+    case estimator::PlaceKind::mode:
+      return "mode";
     case estimator::PlaceKind::channel:
       return "channel";
     case estimator::PlaceKind::channel_pair:

@@ -6,6 +6,7 @@
 #include "daemon/documents/json_values.h"
 #include "daemon/simulation/effect_json.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
+#include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 #include "estimator/structure/group_design.h"
 
@@ -146,6 +147,10 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
                 {"misfit_ratio_before", json_value(d.ratio_before)},
                 {"misfit_ratio_after", json_value(d.ratio_after)},
                 {"noise_corner_hz", json_value(d.noise_corner_hz)}};
+  out["modal_damping"] = Json::array();
+  for (const estimator::Effect& e : modal_damping_effects(d.model))
+    out["modal_damping"].push_back(
+        {{"mode", e.place.mode}, {"damping_ratio", json_value(e.value("damping_ratio"))}});
   out["effects"] = Json::array();
   for (const estimator::FoundEffect& f : d.effects) {
     Json one = effect_json(o, f);

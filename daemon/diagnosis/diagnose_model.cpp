@@ -7,6 +7,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/config/sections/effects.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
+#include "estimator/diagnose/trials/damping_form.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -107,10 +108,11 @@ std::string diagnosis_model_toml(const DiagnoseOutput& o) {
       out += fmt::format("{} = {}\n", damping ? "gc" : "gk", panels(s, table, theta, damping));
   }
   out += bending(o.plant, o.diagnosis.declared);
-  std::vector<estimator::Effect> effects;
+  std::vector<estimator::Effect> effects = estimator::modal_damping_effects(o.diagnosis.declared);
   for (const auto* list : {&o.diagnosis.known, &o.diagnosis.effects})
     for (const estimator::FoundEffect& f : *list)
-      effects.push_back(catalogue_effect(o.plant, o.segments, f, o.diagnosis.declared));
+      if (f.chosen.kind != estimator::EffectKind::modal_damping)
+        effects.push_back(catalogue_effect(o.plant, o.segments, f, o.diagnosis.declared));
   if (!effects.empty()) out += "\n" + effects_toml(effects, s, o.plant.axes);
   return out;
 }

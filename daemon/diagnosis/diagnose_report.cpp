@@ -293,6 +293,8 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
   const std::vector<LawMotion> motions = law_motions(o);
   std::string body = "<p class=\"verdict\">" + html_text(verdict_sentence(o)) + "</p>\n<p>" +
                      html_text(gap_sentence(o)) + "</p>\n";
+  if (const std::string text = damping_sentence(o); !text.empty())
+    body += "<p>" + html_text(text) + "</p>\n";
   std::string items;
   for (const estimator::FoundEffect& f : d.effects)
     items += "<li>" +

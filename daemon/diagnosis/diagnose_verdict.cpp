@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/diagnosis/kind_section.h"
+#include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::daemon {
@@ -32,6 +33,7 @@ constexpr std::array kPlainNames = {
     "bending of the whole frame",
     "another spring",
     "another damper",
+    "a damping of the mode itself",
     "a sudden loss of stiffness",
     "a slow change of stiffness",
     "a floor that gives way in its plane",
@@ -171,9 +173,21 @@ std::string gap_sentence(const DiagnoseOutput& o) {
             "not looked for.");
 }
 
+std::string damping_sentence(const DiagnoseOutput& o) {
+  std::string ratios;
+  for (const estimator::Effect& e : modal_damping_effects(o.diagnosis.model))
+    ratios += fmt::format("{}{:.2g} % in mode {}", ratios.empty() ? "" : ", ",
+                          100 * e.value("damping_ratio"), e.place.mode);
+  return ratios.empty() ? ""
+                        : "The damping is not that of dashpots between floors alone: beside them "
+                          "modes have damping ratios of their own (" +
+                              ratios + ").";
+}
+
 std::string diagnosis_text(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   std::string out = verdict_sentence(o) + "\n  " + gap_sentence(o) + "\n";
+  if (const std::string text = damping_sentence(o); !text.empty()) out += "  " + text + "\n";
   for (const estimator::FoundEffect& f : d.effects)
     out += fmt::format("  {}, {}: {}; it takes {:.0f} % of the gap\n", grade_word(grade_of(f)),
                        effect_words(o, f), confidence_words(f),

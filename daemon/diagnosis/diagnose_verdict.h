@@ -28,6 +28,9 @@ std::string effect_words(const DiagnoseOutput& output, const estimator::FoundEff
 /// Part of the held-out gap before, 0..1, that a fall of the gap is.
 double share_of_gap(const DiagnoseOutput& output, double fall);
 
+/// The modes' damping ratios beside the dashpots; empty where there are none.
+std::string damping_sentence(const DiagnoseOutput& output);
+
 /// What the best law does that was not named; empty where there is none.
 std::string leading_sentence(const DiagnoseOutput& output);
 

@@ -35,6 +35,9 @@ class EffectOptions {
     all_.back().max = 1000;
     add_place("direction", choice, "Of what concerns the whole building.");
     all_.back().choices = "x|y";
+    add_place("mode", integer, "Of the building, in the order of the natural frequencies.");
+    all_.back().min = 1;
+    all_.back().max = 100000;
     add_place("channel", text, "Name of the channel.");
     add_place("with_channel", text, "Name of the other channel.");
     for (const estimator::EffectDescription& d : estimator::effect_catalogue())

@@ -24,6 +24,8 @@ const char* kind_text(const estimator::EffectPlace& p,
       return "building";
     case estimator::PlaceKind::whole_frame:
       return "whole_frame";
+    case estimator::PlaceKind::mode:
+      return "mode";
     case estimator::PlaceKind::channel:
     case estimator::PlaceKind::channel_pair:
       return axes[static_cast<std::size_t>(p.channel)].story > 0 ? "channel" : "base";
@@ -47,6 +49,7 @@ nlohmann::ordered_json location_json(const estimator::EffectPlace& p, const esti
   if (p.panel >= 0) out["panel"] = panel_name(s, p.panel);
   if (p.crossing >= 0) out["node"] = crossing_name(s, p.crossing);
   if (p.kind == estimator::PlaceKind::node_pair) out["to_story"] = p.to_story;
+  if (p.mode > 0) out["mode"] = p.mode;
   if (p.channel >= 0) add_channel("channel", p.channel);
   if (p.with_channel >= 0) add_channel("with_channel", p.with_channel);
   return out;

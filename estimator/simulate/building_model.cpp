@@ -104,6 +104,27 @@ void add_node_pairs(const Structure& s, const std::vector<Effect>& effects, Line
   }
 }
 
+/// Before other effects than rotations are added.
+void add_modal_damping(const Structure& s, const std::vector<Effect>& effects, LinearModel& model) {
+  const std::vector<const Effect*> ratios = of_kind(effects, modal_damping);
+  if (ratios.empty()) return;
+  const int nd = s.degrees_of_freedom();
+  Eigen::VectorXd mass(nd);
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f) mass[s.dof(story, f)] = s.frame_mass(story, f);
+  const Eigen::MatrixXd floors = floor_constraint(s);
+  const RealEigen modes =
+      generalized_eigen(floors.transpose() * model.stiffness().topLeftCorner(nd, nd) * floors,
+                        floors.transpose() * mass.asDiagonal() * floors);
+  for (const Effect* e : ratios) {
+    const Eigen::Index at = e->place.mode - 1;
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(model.mass.size());
+    b.head(nd) = mass.cwiseProduct(floors * modes.vectors.col(at));
+    model.linear.push_back(
+        {b, 0, 2 * e->value("damping_ratio") * std::sqrt(std::max(modes.values[at], 0.0))});
+  }
+}
+
 /// Rotational springs of one kind in series are one softer spring.
 double rotational_stiffness(const std::vector<Effect>& effects, EffectKind kind,
                             Direction direction) {
@@ -139,6 +160,7 @@ LinearModel linear_model(const Structure& structure, const ParameterTable& table
     const double floors = rotational_stiffness(effects, frame_bending, direction);
     if (base > 0 || floors > 0) add_rotations(s, table, direction, base, floors, model);
   }
+  add_modal_damping(structure, effects, model);
   add_hidden_masses(s, effects, model);
   add_node_pairs(s, effects, model);
   add_flexible_floors(s, effects, model);

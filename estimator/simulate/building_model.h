@@ -14,8 +14,8 @@
 
 namespace framewatch::estimator {
 
-/// extra_mass, tuned_mass_damper, base_rocking, frame_bending, added_spring, added_damper and
-/// floor_flexibility act here, the other kinds do not.
+/// extra_mass, tuned_mass_damper, base_rocking, frame_bending, added_spring, added_damper,
+/// modal_damping and floor_flexibility act here, the other kinds do not.
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects);
 /// The same under other inputs. influence: Inputs::influence.

@@ -31,6 +31,7 @@ enum class EffectKind {
   frame_bending,
   added_spring,
   added_damper,
+  modal_damping,
   stiffness_drop,
   stiffness_drift,
   floor_flexibility,
@@ -48,7 +49,7 @@ enum class EffectKind {
 /// frame: story, frame (a frame story); panel: story, panel; node: story, frame (one degree of
 /// freedom); node_pair: the same and to_story, on the same frame; crossing: story, crossing (both
 /// degrees of freedom there); floor: story; building: direction; whole_frame: frame, in all
-/// stories; channel: channel; channel_pair: channel, with_channel.
+/// stories; mode: mode; channel: channel; channel_pair: channel, with_channel.
 enum class PlaceKind {
   frame,
   panel,
@@ -58,6 +59,7 @@ enum class PlaceKind {
   floor,
   building,
   whole_frame,
+  mode,
   channel,
   channel_pair
 };
@@ -71,6 +73,7 @@ struct EffectPlace {
   int crossing = -1;  ///< y line * x lines + x line, as node_mass is flattened
   int to_story = 0;   ///< 0..story-2: the lower end of a node pair, 0 the ground
   Direction direction = Direction::x;
+  int mode = 0;      ///< 1..: in the order of the natural frequencies
   int channel = -1;  ///< index of the sensor axis
   int with_channel = -1;
 

@@ -60,6 +60,7 @@ constexpr std::initializer_list<PlaceKind> kNodePair = {PlaceKind::node_pair};
 constexpr std::initializer_list<PlaceKind> kBuilding = {PlaceKind::building};
 constexpr std::initializer_list<PlaceKind> kContact = {PlaceKind::frame, PlaceKind::node_pair};
 constexpr std::initializer_list<PlaceKind> kFrames = {PlaceKind::building, PlaceKind::whole_frame};
+constexpr std::initializer_list<PlaceKind> kMode = {PlaceKind::mode};
 constexpr std::initializer_list<PlaceKind> kChannel = {PlaceKind::channel};
 constexpr std::initializer_list<PlaceKind> kChannelPair = {PlaceKind::channel_pair};
 
@@ -252,6 +253,14 @@ std::vector<EffectDescription> springs_dampers_and_changes() {
        "f = c (y'_story - y'_to_story), on one frame; to_story = 0: the base",
        "c > 0 resists. Dissipates.",
        "Newton's law of viscosity"},
+      {modal_damping,
+       "modal_damping",
+       kMode,
+       {within("damping_ratio", "", std::nullopt, 0, 2, "h: beside what dashpots give the mode")},
+       "f = 2 h w M phi phi' M y', phi the mode's shape, phi' M phi = 1, w its natural circular "
+       "frequency; both without damping and other effects than base_rocking and frame_bending",
+       "h > 0 resists. Dissipates. h = a/(2 w) in every mode is a damping a M.",
+       "Wilson and Penzien, Earthquake Eng. Struct. Dyn. 1 (1972)"},
       {stiffness_drop,
        "stiffness_drop",
        kElement,

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "estimator/structure/effect.h"
+#include "estimator/structure/matrices.h"
 #include "estimator/structure/place_names.h"
 
 namespace framewatch::estimator {
@@ -59,6 +60,11 @@ void add_places(PlaceKind kind, const Structure& s, const std::vector<SensorAxis
     case PlaceKind::whole_frame:
       if (s.stories > 1) add_each(place.frame, s.frames());
       return;
+    case PlaceKind::mode: {
+      const auto modes = static_cast<int>(floor_constraint(s).cols());
+      for (place.mode = 1; place.mode <= modes; ++place.mode) out.push_back(place);
+      return;
+    }
     case PlaceKind::channel:
       add_each(place.channel, static_cast<int>(axes.size()));
       return;
@@ -114,6 +120,8 @@ std::string place_text(const EffectPlace& p, const Structure& s,
       return p.direction == Direction::x ? "building along x" : "building along y";
     case PlaceKind::whole_frame:
       return "frame " + s.frame_name(p.frame) + ", all stories";
+    case PlaceKind::mode:
+      return "mode " + std::to_string(p.mode);
     case PlaceKind::channel:
       return "channel " + channel_name(axes, p.channel);
     case PlaceKind::channel_pair:

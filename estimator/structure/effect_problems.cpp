@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "estimator/structure/effect.h"
+#include "estimator/structure/matrices.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -61,6 +62,11 @@ class Checker {
     }
     if (kind == PlaceKind::whole_frame) {
       if (!inside(place_.frame, s_.frames())) add("frame", "no such frame");
+      return;
+    }
+    if (kind == PlaceKind::mode) {
+      const auto modes = static_cast<int>(floor_constraint(s_).cols());
+      if (!inside(place_.mode - 1, modes)) add("mode", "must be 1 to " + std::to_string(modes));
       return;
     }
     if (place_.story < 1 || place_.story > s_.stories)

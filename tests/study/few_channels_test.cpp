@@ -90,7 +90,8 @@ TEST(FewChannels, BendingOfTheDesignIsFittedAndElseNamed) {
   trial.believed_bending_nmprad = 2 * kTruth_nmprad;
   const Diagnosis bends = diagnosed(input_of(trial));
   EXPECT_EQ(bends.verdict, Verdict::adequate);
-  ASSERT_EQ(bends.model.effects.size(), 1U);
+  ASSERT_FALSE(bends.model.effects.empty());
+  ASSERT_EQ(bends.model.effects[0].form, LawForm::bending);
   EXPECT_NEAR(bends.model.effects[0].parameters[0].plain() * kTruth_nmprad, 1, 0.02);
   trial.believed_bending_nmprad = 0;
   const Diagnosis shears = diagnosed(input_of(trial));

@@ -61,9 +61,9 @@ struct Wanted {
   std::string group, name;
 };
 
-/// Effects that two records cannot show, or that need a second state of the building.
+/// Not what is the same as a lower stiffness, and not what belongs to the linear model.
 bool can_be_found(estimator::EffectKind kind) {
-  return kind != estimator::EffectKind::p_delta;  // the same as a lower stiffness
+  return kind != estimator::EffectKind::p_delta && kind != estimator::EffectKind::modal_damping;
 }
 
 std::vector<Wanted> wanted_cases(long each) {

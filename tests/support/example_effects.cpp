@@ -82,6 +82,8 @@ std::vector<double> example_values(estimator::EffectKind kind, double size) {
       return {size * 3e3};
     case added_damper:
       return {size * 100};
+    case modal_damping:
+      return {size * 0.05};
     case stiffness_drop:
       return {-size * 5e3, 2};
     case stiffness_drift:

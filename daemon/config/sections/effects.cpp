@@ -31,6 +31,8 @@ std::vector<std::string_view> place_keys(estimator::PlaceKind kind) {
       return {"direction"};
     case estimator::PlaceKind::whole_frame:
       return {"frame", "direction"};
+    case estimator::PlaceKind::mode:
+      return {"mode"};
     case estimator::PlaceKind::channel:
       return {"channel"};
     case estimator::PlaceKind::channel_pair:
@@ -136,6 +138,10 @@ class EffectReader {
     if (wanted("node"))
       place.crossing = named("node", structure_.nodes() / structure_.stories,
                              [&](int c) { return crossing_name(structure_, c); });
+    if (wanted("mode")) {
+      if (section_.given("mode")) place.mode = section_.integer("mode");
+      require("mode");
+    }
     if (wanted("channel")) place.channel = channel("channel");
     if (wanted("with_channel")) place.with_channel = channel("with_channel");
     if (wanted("direction")) read_direction(place);
@@ -203,6 +209,7 @@ std::string place_toml(const estimator::EffectPlace& p, const estimator::Structu
           p.kind == estimator::PlaceKind::building ? p.direction : s.direction(p.frame);
       out += fmt::format("direction = \"{}\"\n", letter(along));
     }
+    if (key == "mode") out += fmt::format("mode = {}\n", p.mode);
     if (key == "channel")
       out += fmt::format("channel = \"{}\"\n", axes[static_cast<std::size_t>(p.channel)].name);
     if (key == "with_channel")

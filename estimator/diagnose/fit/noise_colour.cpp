@@ -75,10 +75,12 @@ double likeliest_corner_hz(const std::vector<Cell>& cells) {
   return best;
 }
 
-/// Mean square of the cells' differences from noise with the corner, over that of such noise.
+/// Mean square by which cells exceed noise with the corner, over that of such noise. What a model
+/// lacks leaves more than noise; less is noise of unlike channels.
 double spread_of(const std::vector<Cell>& cells, double corner_hz) {
   double out = 0;
-  for (const Cell& c : cells) out += c.numbers * std::pow(c.level / c.expected(corner_hz) - 1, 2);
+  for (const Cell& c : cells)
+    out += 2 * c.numbers * std::pow(std::max(c.level / c.expected(corner_hz) - 1, 0.0), 2);
   return out / static_cast<double>(cells.size());
 }
 

@@ -7,6 +7,7 @@
 #include "estimator/diagnose/fit/axis_readings.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/linear_operation.h"
+#include "estimator/diagnose/model/modal_damping.h"
 #include "estimator/diagnose/spectra/whiteners.h"
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/solve.h"
@@ -130,7 +131,7 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
         beyond(linear, out.force.back(), band_of(track.d, segment, ratio), segment.w).transpose();
   }
   for (const ModelEffect& e : model.effects) {
-    if (e.element_law()) continue;
+    if (e.element_law() || e.form == LawForm::modal_damping) continue;
     if (e.form == LawForm::harmonic) {
       // A force from outside is on the other side of the equation.
       forces -= node_direction(plant, e.place.story, e.place.frame) *
@@ -151,6 +152,7 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
       (1 + model.mass_change.array()).matrix().asDiagonal() * plant.building.mass + plant.push;
   stiffness += act * model.theta.head(elements).asDiagonal() * sense;
   damping += act * model.theta.tail(elements).asDiagonal() * sense;
+  if (has_modal_damping(model)) damping += modal_damping(plant, model) * relative_motion(plant);
   out.operation = Operations(mass, stiffness, damping, std::move(additions), segment.w);
   const MatrixXd noise = noise_of(model, segment);
   if (!weights) {

@@ -192,8 +192,16 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
   std::vector<Localisation> out;
   std::map<CandidatePlace::Kind, int> of_kind;
   if (places.empty()) return out;
-  const double limit = margin_of(places.front()), wide = wide_margin_of(places.front());
+  // Both directions of a mass take more of what nothing explains than one of them, in which the
+  // cause may be.
+  const auto single = std::find_if(places.begin(), places.end(), [](const Localisation& place) {
+    return place.candidate_places.front().size() == 1;
+  });
+  const bool apart = places.front().ratio > kNearNoise && single != places.end();
+  const double wide = wide_margin_of(places.front());
   for (const Localisation& place : places) {
+    const bool alone = apart && place.candidate_places.front().size() == 1;
+    const double limit = margin_of(alone ? *single : places.front());
     // Bending frames are located by a moment at the base, which explains only a part of them.
     const bool moment = place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
     if (place.ratio > (moment ? wide : limit)) continue;

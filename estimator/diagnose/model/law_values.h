@@ -24,13 +24,14 @@ enum class LawForm {
   gap_both,       ///< both; kg < 0 softens
   changing,       ///< dk clip((t - t0)/T, 0, 1) d, t0 and T of each record
   // at a node, linear
-  mass,       ///< dm at a crossing of frames
-  resonator,  ///< hidden mass on spring and dashpot
-  spring,     ///< between floors
-  damper,     ///< between floors
-  rocking,    ///< of the base
-  bending,    ///< of the frames
-  panels,     ///< of a floor that is declared rigid: G and damping
+  mass,           ///< dm at a crossing of frames
+  resonator,      ///< hidden mass on spring and dashpot
+  spring,         ///< between floors
+  damper,         ///< between floors
+  rocking,        ///< of the base
+  bending,        ///< of the frames
+  modal_damping,  ///< ratio of one mode, beside the dashpots'
+  panels,         ///< of a floor that is declared rigid: G and damping
   // external force at a node
   harmonic,   ///< one frequency, amplitude and phase of each record
   broadband,  ///< arbitrary force

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/numeric/solve.h"
+#include "estimator/diagnose/model/hinges.h"
+#include "estimator/diagnose/model/modal_damping.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -18,36 +19,6 @@ Eigen::RowVectorXd ground_row(const Plant& plant, int frame) {
 }
 
 }  // namespace
-
-MatrixXd hinges(const Plant& plant, const ModelEffect& effect) {
-  const Structure& s = plant.structure;
-  const bool bending = effect.form == LawForm::bending;
-  std::vector<VectorXd> rows;
-  const auto along = static_cast<std::size_t>(effect.place.direction == Direction::x ? 0 : 1);
-  const auto add = [&](int frame, int above) {
-    VectorXd row = VectorXd::Zero(plant.element_count());
-    for (const Element& e : plant.elements)
-      if (e.frame >= 0 && s.direction(e.frame) == effect.place.direction &&
-          (frame < 0 || e.frame == frame) && e.story > above)
-        row[e.stiffness] = s.story_height[static_cast<std::size_t>(e.story - 1)];
-    rows.push_back(row);
-  };
-  if (!bending) {
-    add(-1, 0);
-  } else {
-    for (int f = 0; f < s.frames(); ++f)
-      if (s.direction(f) == effect.place.direction)
-        for (int j = 0; j < s.stories; ++j) {
-          add(f, j);
-          if (plant.bending[along] > 0)
-            rows.back() *= std::sqrt(plant.bending[along] /
-                                     plant.bending.of_floor(along, static_cast<std::size_t>(j)));
-        }
-  }
-  MatrixXd out(static_cast<Index>(rows.size()), plant.element_count());
-  for (std::size_t r = 0; r < rows.size(); ++r) out.row(static_cast<Index>(r)) = rows[r];
-  return out;
-}
 
 Complex transmissibility(const ModelEffect& resonator, double w) {
   const double wr = 2 * M_PI * resonator.parameters[1].plain();
@@ -91,6 +62,9 @@ LinearOperation::LinearOperation(const Plant& plant, const Model& model, const M
                   size * at * sense}};
       break;
     }
+    case LawForm::modal_damping:
+      shapes_ = {{Factor::damping, modal_damping(plant, model, effect) * relative_motion(plant)}};
+      break;
     case LawForm::panels: {
       MatrixXd stiff = MatrixXd::Zero(rows_, cols_), damped = stiff;
       for (const Element& e : plant.elements) {
@@ -105,21 +79,10 @@ LinearOperation::LinearOperation(const Plant& plant, const Model& model, const M
     }
     case LawForm::rocking:
     case LawForm::bending: {
-      // d = q - H' phi, (1/size) phi = H k d: size is the flexibility 1/K.
-      const Index n = plant.element_count();
-      const MatrixXd h = hinges(plant, effect);
-      const VectorXd k = model.theta.head(n), c = model.theta.tail(n);
-      const MatrixXd hk = h * k.asDiagonal();
-      MatrixXd inner = size * hk * h.transpose();
-      inner.diagonal().array() += 1;
-      const MatrixXd turn = size * solve_lu(inner, hk);  // phi = turn q
-      const MatrixXd kept = MatrixXd::Identity(n, n) - h.transpose() * turn;
-      MatrixXd stiff = k.asDiagonal() * kept;
-      stiff.diagonal() -= k;
-      MatrixXd damped = kept.transpose() * c.asDiagonal() * kept;
-      damped.diagonal() -= c;
+      const HingedElements change = hinged_elements(plant, model, effect);
       const MatrixXd &act = plant.building.act, &sense = plant.building.sense;
-      shapes_ = {{Factor::stiffness, act * stiff * sense}, {Factor::damping, act * damped * sense}};
+      shapes_ = {{Factor::stiffness, act * change.stiffness * sense},
+                 {Factor::damping, act * change.damping * sense}};
       break;
     }
     default:

@@ -12,11 +12,6 @@ namespace framewatch::estimator {
 /// Motion of a mass on a spring (LawForm::resonator) over that of its support. w: rad/s.
 Complex transmissibility(const ModelEffect& resonator, double w);
 
-/// Moments of the rotation of the base (LawForm::rocking) or of every floor of every frame
-/// (bending) per force of the elements: rotations x elements, m, times the root of a rotation's
-/// flexibility over that at the base where the design says it.
-Eigen::MatrixXd hinges(const Plant& plant, const ModelEffect& effect);
-
 /// What a linear effect adds to the operation D(w) on the axes' motion (docs/equations.md 31): real
 /// matrices, the same at every frequency, times complex factors.
 class LinearOperation {

@@ -5,6 +5,7 @@
 
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/linear_operation.h"
+#include "estimator/diagnose/model/modal_damping.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/structure/matrices.h"
 
@@ -142,6 +143,7 @@ RunSystem run_system(const Plant& plant, const Model& model, const std::vector<I
   out.stiffness.topLeftCorner(n, n) =
       act * model.theta.head(elements).asDiagonal() * act.transpose();
   out.damping.topLeftCorner(n, n) = act * model.theta.tail(elements).asDiagonal() * act.transpose();
+  out.damping.topLeftCorner(n, n) += modal_damping(plant, model);
   Index next = n;
   for (const ModelEffect& e : model.effects) {
     if (e.element_law() || e.form == LawForm::harmonic || e.parameters.empty()) continue;

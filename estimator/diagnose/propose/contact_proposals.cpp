@@ -87,10 +87,25 @@ void add_contact_proposals(const Fitter& fitter, const Localisation& place,
   }
 }
 
+Proposal amplitude_proposal(const Fitter& fitter, const Localisation& place,
+                            const EffectPlace& frames) {
+  ModelEffect effect;
+  effect.form = LawForm::amplitude;
+  effect.place = frames;
+  set_scales(fitter, place, effect);
+  double k = 0;
+  for (const LawPort& port : law_ports(fitter.plant(), place.model, effect))
+    k = std::max(k, place.model.theta[port.element]);
+  const double force = kFirstShare * k * effect.deformation;
+  effect.parameters = {
+      linear_parameter(-force, 0.2 * force), bounded_parameter(2, 0.02, 1.02, 6, false),
+      linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
+  return proposal_of(place, std::move(effect), EffectKind::amplitude_dependence, 0);
+}
+
 void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,
                              std::vector<Proposal>& out) {
-  const Plant& plant = fitter.plant();
-  const Structure& s = plant.structure;
+  const Structure& s = fitter.plant().structure;
   if (s.stories < 2) return;
   const EffectPlace& building = place.candidate_places.front().place;
   std::vector<EffectPlace> places{building};
@@ -102,20 +117,7 @@ void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,
     frame.frame = f;
     places.push_back(frame);
   }
-  for (const EffectPlace& one : places) {
-    ModelEffect effect;
-    effect.form = LawForm::amplitude;
-    effect.place = one;
-    set_scales(fitter, place, effect);
-    double k = 0;
-    for (const LawPort& port : law_ports(plant, place.model, effect))
-      k = std::max(k, place.model.theta[port.element]);
-    const double force = kFirstShare * k * effect.deformation;
-    effect.parameters = {
-        linear_parameter(-force, 0.2 * force), bounded_parameter(2, 0.02, 1.02, 6, false),
-        linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
-    out.push_back(proposal_of(place, std::move(effect), EffectKind::amplitude_dependence, 0));
-  }
+  for (const EffectPlace& one : places) out.push_back(amplitude_proposal(fitter, place, one));
 }
 
 }  // namespace framewatch::estimator

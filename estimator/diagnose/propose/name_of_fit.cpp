@@ -87,6 +87,8 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) 
       return EffectKind::added_spring;
     case LawForm::damper:
       return EffectKind::added_damper;
+    case LawForm::modal_damping:
+      return EffectKind::modal_damping;
     case LawForm::rocking:
       return EffectKind::base_rocking;
     case LawForm::bending:

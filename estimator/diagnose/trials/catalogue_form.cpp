@@ -215,6 +215,9 @@ void set_linear_values(const ModelEffect& e, Effect& out) {
     case EffectKind::added_damper:
       out.set("c_nspm", p(0));
       break;
+    case EffectKind::modal_damping:
+      out.set("damping_ratio", p(0));
+      break;
     case EffectKind::floor_flexibility:
       out.set("gk_nprad", p(0));
       out.set("gc_nsprad", p(1));

@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "estimator/diagnose/model/law_port.h"
+#include "estimator/diagnose/model/modal_damping.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -95,6 +96,8 @@ LawForm form_of(const Effect& effect) {
       return LawForm::spring;
     case added_damper:
       return LawForm::damper;
+    case modal_damping:
+      return LawForm::modal_damping;
     case floor_flexibility:
       return LawForm::panels;
     case unmeasured_force:
@@ -277,6 +280,9 @@ void set_other_parameters(const std::vector<RecordSegment>& segments, const Effe
       break;
     case LawForm::damper:
       e.parameters = {bounded_parameter(value("c_nspm"), 0.02 * value("c_nspm"), 0, 1e15)};
+      break;
+    case LawForm::modal_damping:
+      e.parameters = {modal_ratio(value("damping_ratio"))};
       break;
     case LawForm::panels:
       e.parameters = {logarithmic_parameter(value("gk_nprad"), 1e-3 * value("gk_nprad"),

@@ -4,6 +4,9 @@
 #include <iterator>
 #include <utility>
 
+#include "estimator/diagnose/propose/contact_proposals.h"
+#include "estimator/diagnose/trials/trial_names.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -54,6 +57,17 @@ std::vector<Trial> trials_of_places(const TrialContext& context, const Located& 
   places.insert(places.end(), more.begin(), more.end());
   if (context.fitter.plant().unread.cols() > 0) add_moments(located.places, places);
   return try_places(context, places);
+}
+
+std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Localisation& place) {
+  const int frame = place.candidate_places.front().place.frame;
+  if (frame < 0 || context.fitter.plant().structure.stories < 2 ||
+      is_excluded(context, EffectKind::amplitude_dependence))
+    return {};
+  EffectPlace whole;
+  whole.kind = PlaceKind::whole_frame;
+  whole.frame = frame;
+  return try_effects(context, {amplitude_proposal(context.fitter, place, whole)});
 }
 
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,

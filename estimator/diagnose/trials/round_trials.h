@@ -26,6 +26,9 @@ void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>
 std::vector<Trial> trials_of_places(const TrialContext& context, const Located& located,
                                     bool small);
 
+/// Fits one law of all stories of the frame that a place's element belongs to.
+std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Localisation& place);
+
 /// Fits two laws at two places, if two places explain what one does not; sets bound to theirs then.
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,
                                    double& bound);

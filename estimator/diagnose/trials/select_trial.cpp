@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kExplains = 0.97;  ///< share of the misfit beyond noise, else a law is not named
 constexpr double kExplainsMost = 0.9;  ///< the same where the rest is within chance
+constexpr double kNearest = 0.8;       ///< the same of the nearest law
 constexpr double kSharp = 0.995;       ///< share above which a fit need not be sharpened
 constexpr double kBlunt = 0.4;         ///< share below which it is not worth it
 constexpr std::size_t kSharpened = 3;
@@ -70,6 +71,17 @@ bool worsens(const Trial& trial, const FitResult& now, double chance) {
   for (std::size_t r = 0; r < now.misfit.size(); ++r)
     if (trial.misfit[r] > kWorse * now.misfit[r] + chance) return true;
   return false;
+}
+
+bool is_nearest_law(const TrialContext& context, const Trial& trial) {
+  const FitResult& now = context.now;
+  const std::vector<ModelEffect>& effects = trial.model.effects;
+  if (trial.outcome != TrialOutcome::fitted || trial.second ||
+      effects.size() <= now.model.effects.size() || !effects.back().element_law())
+    return false;
+  const double noise = context.fitter.expected(now.model);
+  return now.cost - trial.cost > kNearest * (now.total_misfit() - noise) &&
+         !worsens(trial, now, noise * chance_of(context.fitter, now.model));
 }
 
 bool select_trial(const TrialContext& context, double bound, double needed,

@@ -13,6 +13,10 @@ namespace framewatch::estimator {
 bool select_trial(const TrialContext& context, double bound, double needed,
                   std::vector<Trial>& trials);
 
+/// Whether a trial is a law of an element that takes most of the misfit beyond noise, and worsens
+/// no record, though it does not hold.
+bool is_nearest_law(const TrialContext& context, const Trial& trial);
+
 /// Whether a trial fits any record worse than the present model does, by more than chance.
 bool worsens(const Trial& trial, const FitResult& now, double chance);
 

@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/fit/model_error.h"
 #include "estimator/diagnose/fit/noise_colour.h"
+#include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/trials/declared.h"
 #include "estimator/diagnose/trials/implausible_masses.h"
 #include "estimator/diagnose/trials/known_effects.h"
+#include "estimator/diagnose/trials/needless.h"
 #include "estimator/diagnose/trials/parameter_errors.h"
 #include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/select_trial.h"
@@ -30,8 +33,8 @@ using Eigen::MatrixXcd;
 /// Fraction above which a second law at the place of the first does not call the first in question.
 constexpr double kOneLaw = 0.99;
 constexpr double kSame = 8;        ///< difference of costs that does not decide between names
+constexpr double kClearer = 0.7;   ///< excess of a place's misfit over that of another search
 constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong as right
-constexpr double kLeastGain = 50;
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 
 class Search {
@@ -46,24 +49,23 @@ class Search {
     report("linear model", 0.02);
     Model start = initial_model(plant_);
     out_.known = add_known(plant_, segments_, options_.known, start);
+    add_modal_damping(plant_, start);
     FitResult now = fit(start, {}, 12);
     if (!now.good) {
       out_.reason = "the model cannot be fitted to these records";
       return out_;
     }
-    colour_noise(fitter_, segments_, now);
+    complete(now);
     out_.linear = now.model;
     out_.ratio_before = ratio(now);
     report("labels", 0.05);
     const std::vector<Trial> labels = wrong_labels(context_of(now));
     if (!labels.empty()) adopt(labels, now);
-    bool more = true;
-    for (int round = 0; round < options_.rounds && more; ++round) {
-      more = one_round(now, round);
-      colour_noise(fitter_, segments_, now);
-    }
+    search(now);
+    if (out_.effects.empty()) search_with_free_damping(now);
     report("what stays", 0.92);
     const bool several = find_several(now);
+    if (!several) name_nearest(now);
     if (!out_.effects.empty() && !several) polish(now);
     out_.ratio_after = ratio(now);
     out_.noise_corner_hz = segments_.front().corner_hz;
@@ -88,14 +90,38 @@ class Search {
     return fitter_.fit(model, motion, thorough(model, steps));
   }
 
-  /// Until neither kind of derivative improves the fit: an unfinished fit would show up as one more
-  /// effect.
-  FitResult fit_to_the_end(const Model& model, const std::vector<MatrixXcd>& motion) const {
-    FitResult out = fit(model, motion, kPolishSteps);
-    FitOptions along = thorough(out.model, kPolishSteps);
-    along.through_run = false;
-    FitResult more = fitter_.fit(out.model, out.motion, along);
-    return more.good && more.cost < out.cost ? more : out;
+  void search(FitResult& now) {
+    bool more = true;
+    for (int round = 0; round < options_.rounds && more; ++round) {
+      more = one_round(now, round);
+      if (!out_.effects.empty()) complete(now);
+    }
+  }
+
+  /// What is missing may hide the form of the damping, and that what is missing: once more with
+  /// ratios that need not be worth their price until something is found.
+  void search_with_free_damping(FitResult& now) {
+    FitResult free = with_free_damping(fitter_, now);
+    if (!free.good) return;
+    Diagnosis before = out_;
+    const double alone = alone_;
+    out_.where.clear();
+    to_beat_ = alone;
+    search(free);
+    if (!out_.effects.empty()) {
+      now = std::move(free);
+      return;
+    }
+    out_ = std::move(before);
+    alone_ = alone;
+  }
+
+  /// What no effect stands for: the form of the damping, and the colour of the noise.
+  void complete(FitResult& now) {
+    FitResult with = with_free_damping(fitter_, now);
+    if (with.good && colour_noise(fitter_, segments_, with)) now = with;
+    settle_damping(fitter_, std::move(with), now);
+    colour_noise(fitter_, segments_, now);
   }
 
   double ratio(const FitResult& now) const {
@@ -115,7 +141,7 @@ class Search {
   void polish(FitResult& now) {
     Model start = now.model;
     free_shapes(start);
-    const FitResult better = fit_to_the_end(start, now.motion);
+    const FitResult better = fit_to_the_end(fitter_, start, now.motion);
     if (better.good && better.cost < now.cost) now = better;
   }
 
@@ -157,6 +183,7 @@ class Search {
     if (located.places.empty()) return false;
     relocate_beside(context_of(now), out_.effects, located);
     const Localisation& place = located.places.front();
+    if (place.ratio - 1 > kClearer * (to_beat_ - 1)) return false;
     alone_ = place.ratio;
     const double expected_now = fitter_.expected(now.model);
     const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;
@@ -181,6 +208,10 @@ class Search {
     // Several forces at one place may be those of two effects.
     if (!holds && !pairs && place.candidate_places.front().size() > 1) {
       append(trials, trials_of_pairs(context, located, bound));
+      holds = select_trial(context, bound, needed, trials);
+    }
+    if (!holds && is_element(place)) {
+      append(trials, trials_of_whole_frame(context, place));
       holds = select_trial(context, bound, needed, trials);
     }
     if (trials.empty() || trials.front().outcome != TrialOutcome::fitted) return false;
@@ -210,7 +241,8 @@ class Search {
 
   /// Where nothing is named and no place explains the misfit alone: causes that act at once.
   bool find_several(FitResult& now) {
-    if (!out_.effects.empty() || alone_ < kOnePlace || fits_separately(fitter_, out_.ratio_before))
+    if (!out_.effects.empty() || alone_ < kOnePlace ||
+        fits_separately(fitter_, out_.linear, out_.ratio_before))
       return false;
     SeveralCauses several =
         several_causes(context_of(now, 0.7), out_.rejected, options_.holdout_from);
@@ -231,6 +263,19 @@ class Search {
     out_.trained = std::move(several.model);
     now = together;
     return true;
+  }
+
+  /// Where no law explains enough to hold: the best one of an element, in doubt, if it takes most
+  /// of the misfit.
+  void name_nearest(FitResult& now) {
+    if (!out_.effects.empty() || out_.rejected.empty()) return;
+    if (!is_nearest_law(context_of(now), out_.rejected.front()) ||
+        fits_separately(fitter_, out_.linear, out_.ratio_before))
+      return;
+    adopt(std::vector<Trial>(std::move(out_.rejected)), now);
+    out_.effects.front().confidence = std::min(out_.effects.front().confidence, kDoubtful);
+    out_.rejected.clear();
+    complete(now);
   }
 
   /// Goes back to the model before the effect `first` was added.
@@ -274,46 +319,12 @@ class Search {
       out_.effects.push_back(std::move(other));
     }
     const Model before = now.model;
-    now = fit_to_the_end(best.model, now.motion);
-    if (known > 0 && removes_needless(before, now)) {
+    now = fit_to_the_end(fitter_, best.model, now.motion);
+    if (known > 0 && removes_needless(fitter_, before, now)) {
       out_.effects.resize(known);
       return;
     }
-    remove_needless_earlier(now);
-  }
-
-  /// Replaces `now` by the fit of a smaller model, started from it, unless that is worse; whether
-  /// it did so.
-  bool replaced_by(const Model& smaller, FitResult& now) const {
-    FitResult less = fit_to_the_end(smaller, now.motion);
-    if (!less.good || less.cost > now.cost + kLeastGain) return false;
-    now = std::move(less);
-    return true;
-  }
-
-  /// Removes what was added to the model `before` if that, fitted on from here, does as well: after
-  /// an unfinished fit a needless effect looks useful. Whether it did so.
-  bool removes_needless(const Model& before, FitResult& now) const {
-    Model start = now.model;
-    start.effects.resize(before.effects.size());
-    start.free_gain = before.free_gain;
-    start.free_clock = before.free_clock;
-    return replaced_by(start, now);
-  }
-
-  /// Removes earlier masses, springs and dampers that the effects found later replace.
-  void remove_needless_earlier(FitResult& now) {
-    for (std::size_t i = 0; i + 1 < out_.effects.size(); ++i) {
-      const int index = out_.effects[i].index;
-      if (index < 0 || now.model.effects[static_cast<std::size_t>(index)].element_law()) continue;
-      Model start = now.model;
-      start.effects.erase(start.effects.begin() + index);
-      if (!replaced_by(start, now)) continue;
-      out_.effects.erase(out_.effects.begin() + static_cast<std::ptrdiff_t>(i));
-      for (FoundEffect& e : out_.effects) e.index -= e.index > index;
-      out_.effects.back().chosen.model = now.model;
-      --i;
-    }
+    remove_needless_earlier(fitter_, out_.effects, now);
   }
 
   const Plant& plant_;
@@ -321,6 +332,7 @@ class Search {
   const DiagnosisOptions& options_;
   Fitter fitter_;
   Diagnosis out_;
+  double to_beat_ = std::numeric_limits<double>::infinity();  ///< `alone_` of another search
   double alone_ = 0;  ///< Localisation::ratio of the likeliest place, in the last round
 };
 

@@ -21,12 +21,12 @@ constexpr double kApart = 0.25;
 
 }  // namespace
 
-bool fits_separately(const Fitter& fitter, double ratio_before) {
+bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_before) {
   double misfit = 0, noise = 0;
   for (const RecordSegment& s : fitter.segments()) {
     const std::vector<RecordSegment> one{s};
     const Fitter alone(fitter.plant(), one, fitter.tolerances());
-    const FitResult fitted = alone.fit(initial_model(fitter.plant()), {}, {});
+    const FitResult fitted = alone.fit(linear, {}, {});
     if (!fitted.good) return false;
     misfit += fitted.total_misfit();
     noise += alone.expected(0, fitted.model);
@@ -198,7 +198,7 @@ void judge(const Fitter& fitter, Diagnosis& out) {
   if (out.effects.empty()) {
     const bool adequate = fits && (before < kAdequateGap || out.rejected.empty());
     out.verdict = adequate ? Verdict::adequate : Verdict::unexplained;
-    if (!adequate && out.reason.empty() && fits_separately(fitter, out.ratio_before))
+    if (!adequate && out.reason.empty() && fits_separately(fitter, out.linear, out.ratio_before))
       out.reason =
           "each record alone fits a linear building, all of them together do not: they are of "
           "different buildings, or the building changed between them";

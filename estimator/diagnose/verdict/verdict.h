@@ -15,8 +15,9 @@ constexpr double kAdequate = 1.25;
 /// Mean NRMSE over the segments from `from` on; 0 when there is none.
 double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
 
-/// Whether every segment fits a linear building of its own, and not one together.
-bool fits_separately(const Fitter& fitter, double ratio_before);
+/// Whether every segment fits a linear building of its own, and not one together. linear: the model
+/// of all.
+bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_before);
 
 /// Sets Diagnosis::before and after, and before and after of its effects in their order: gaps of
 /// models fitted to the segments before `options.holdout_from` alone, as they are judged

@@ -9,6 +9,7 @@
 
 #include "estimator/simulate/ground_motion.h"
 #include "estimator/simulate/linear_building.h"
+#include "estimator/structure/natural_frequencies.h"
 #include "tests/support/example_effects.h"
 
 namespace framewatch::estimator {
@@ -272,6 +273,29 @@ TEST(NonlinearBuilding, StiffnessDropsAtItsTime) {
               {motion.x.at(t + kStep_s), motion.y.at(t + kStep_s)});
     ASSERT_LT((b.accel_abs() - dropped.col(i)).cwiseAbs().maxCoeff(), 1e-6) << "step " << i;
   }
+}
+
+TEST(NonlinearBuilding, RatiosThatFallWithFrequencyDampTheMasses) {
+  constexpr double kAlpha_ps = 0.7;
+  const test::TableModel m = test::table_model();
+  const Structure& s = m.structure;
+  std::vector<Effect> ratios, dampers;
+  for (const EffectPlace& place : effect_places(EffectKind::modal_damping, s, m.axes)) {
+    const double hz =
+        natural_frequencies_hz(s, m.table(), m.theta)[static_cast<std::size_t>(place.mode - 1)];
+    ratios.push_back(make_effect(EffectKind::modal_damping, place));
+    ratios.back().set("damping_ratio", kAlpha_ps / (4 * M_PI * hz));
+  }
+  for (const EffectPlace& place : effect_places(EffectKind::added_damper, s, m.axes)) {
+    dampers.push_back(make_effect(EffectKind::added_damper, place));
+    dampers.back().set("c_nspm", kAlpha_ps * s.frame_mass(place.story, place.frame));
+  }
+  test::TableModel damped = m;  // floor 1 has its dashpots to the ground in its frames
+  for (int f = 0; f < s.frames(); ++f)
+    damped.theta[m.table().frame_damping(1, f)] += kAlpha_ps * s.frame_mass(1, f);
+  const Eigen::MatrixXd by_ratios = shake_with(m, ratios);
+  EXPECT_LT(difference(by_ratios, shake_with(damped, dampers)), kExact);
+  EXPECT_GT(difference(by_ratios, shake_with(m, {})), 0.05);
 }
 
 TEST(NonlinearBuilding, AHarmonicForceShakesAsItShould) {

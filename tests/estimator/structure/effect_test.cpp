@@ -50,6 +50,7 @@ TEST(EffectPlaces, AreAllThereAre) {
   EXPECT_EQ(count(one_sided_gap), 8u + 4u) << "frame stories, stops at the second floor";
   EXPECT_EQ(count(amplitude_dependence), 2u + 4u) << "directions and whole frames";
   EXPECT_EQ(count(base_rocking), 2u);
+  EXPECT_EQ(count(modal_damping), 8u);
   EXPECT_EQ(count(floor_flexibility), 0u) << "the floors flex already";
   EXPECT_EQ(count(gain_error), 10u);
   EXPECT_EQ(count(swapped), 45u);
@@ -91,6 +92,9 @@ TEST(EffectProblems, NameTheKeyAndTheRule) {
   Effect side = test::example_effect(one_sided_gap, m);
   side.set("side", 0.5);
   EXPECT_EQ(first_problem(side), "side|one_sided_gap.side: must be 1 or -1");
+  Effect mode = test::example_effect(modal_damping, m);
+  mode.place.mode = 9;
+  EXPECT_EQ(first_problem(mode), "mode|modal_damping.mode: must be 1 to 8");
   Effect light = test::example_effect(extra_mass, m);
   light.set("mass_kg", -20);
   EXPECT_EQ(first_problem(light), "mass_kg|extra_mass.mass_kg: leaves the node without mass");

@@ -82,6 +82,9 @@ std::vector<EffectTwins> all_twins() {
   const auto ground = test::pair_place(kWatched);
   const auto building = test::building_place(Direction::y);
   const auto node = test::node_place(kWatched);
+  EffectPlace mode;
+  mode.kind = PlaceKind::mode;
+  mode.mode = 2;
   const auto twin = [](EffectKind kind, LawForm form, const EffectPlace& place,
                        const std::vector<double>& simulated, const std::vector<double>& modelled,
                        const std::vector<double>& of_record = {}) {
@@ -98,6 +101,7 @@ std::vector<EffectTwins> all_twins() {
       twin(stiffness_drift, LawForm::changing, frame, {-6e5, 4, 10}, {-6e5}, {4, 10}),
       twin(added_spring, LawForm::spring, ground, {9e5}, {9e5}),
       twin(added_damper, LawForm::damper, ground, {8e4}, {8e4}),
+      twin(modal_damping, LawForm::modal_damping, mode, {0.02}, {0.02}),
       twin(base_rocking, LawForm::rocking, building, {2e9}, {1 / 2e9}),
       twin(frame_bending, LawForm::bending, building, {1e9}, {1 / 1e9}),
       twin(tuned_mass_damper, LawForm::resonator, node, {2500, 2.4, 0.08}, {2500, 2.4, 0.08}),

@@ -98,6 +98,7 @@ TEST(NameOfFit, OtherFormsHaveOneName) {
       {LawForm::resonator, "tuned_mass_damper"},
       {LawForm::spring, "added_spring"},
       {LawForm::damper, "added_damper"},
+      {LawForm::modal_damping, "modal_damping"},
       {LawForm::rocking, "base_rocking"},
       {LawForm::bending, "frame_bending"},
       {LawForm::panels, "floor_flexibility"},

@@ -25,6 +25,7 @@ Gap gap_with(double overall, double floor = 1) {
 
 Verdict judged(Diagnosis d) {
   static const Recorded recorded(test::records_with({}));
+  d.linear = initial_model(recorded.plant);
   judge(recorded.fitter, d);
   return d.verdict;
 }
@@ -98,6 +99,7 @@ TEST(Judge, RecordsThatFitApartAreOfDifferentBuildings) {
   const Recorded recorded({test::Small().record({}, 1), other.record({}, 2)});
   const FitResult fit = recorded.linear();
   Diagnosis d;
+  d.linear = fit.model;
   d.ratio_before = d.ratio_after = fit.total_misfit() / recorded.fitter.expected(fit.model);
   ASSERT_GT(d.ratio_before, kAdequate);
   d.before = d.after = {gap_with(9)};

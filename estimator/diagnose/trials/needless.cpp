@@ -1,0 +1,54 @@
+#include "estimator/diagnose/trials/needless.h"
+
+#include <cstddef>
+#include <utility>
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr int kEndSteps = 6;
+
+/// Replaces `now` by the fit of a smaller model, started from it, unless that is worse; whether
+/// it did so.
+bool replaced_by(const Fitter& fitter, const Model& smaller, FitResult& now) {
+  FitResult less = fit_to_the_end(fitter, smaller, now.motion);
+  if (!less.good || less.cost > now.cost + kLeastGain) return false;
+  now = std::move(less);
+  return true;
+}
+
+}  // namespace
+
+FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
+                         const std::vector<Eigen::MatrixXcd>& motion) {
+  FitResult out = fitter.fit(model, motion, thorough(model, kEndSteps));
+  FitOptions along = thorough(out.model, kEndSteps);
+  along.through_run = false;
+  FitResult more = fitter.fit(out.model, out.motion, along);
+  return more.good && more.cost < out.cost ? more : out;
+}
+
+bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now) {
+  Model start = now.model;
+  start.effects.resize(before.effects.size());
+  start.free_gain = before.free_gain;
+  start.free_clock = before.free_clock;
+  return replaced_by(fitter, start, now);
+}
+
+void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,
+                             FitResult& now) {
+  for (std::size_t i = 0; i + 1 < effects.size(); ++i) {
+    const int index = effects[i].index;
+    if (index < 0 || now.model.effects[static_cast<std::size_t>(index)].element_law()) continue;
+    Model start = now.model;
+    start.effects.erase(start.effects.begin() + index);
+    if (!replaced_by(fitter, start, now)) continue;
+    effects.erase(effects.begin() + static_cast<std::ptrdiff_t>(i));
+    for (FoundEffect& e : effects) e.index -= e.index > index;
+    effects.back().chosen.model = now.model;
+    --i;
+  }
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "estimator/diagnose/fit/fit.h"
+#include "estimator/diagnose/trials/found_effect.h"
+
+namespace framewatch::estimator {
+
+/// Fall of the cost that is worth an effect.
+inline constexpr double kLeastGain = 50;
+
+/// Until neither kind of derivative improves the fit: an unfinished fit would show up as one more
+/// effect.
+FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
+                         const std::vector<Eigen::MatrixXcd>& motion);
+
+/// Removes what was added to the model `before` if that, fitted on from here, does as well: after
+/// an unfinished fit a needless effect looks useful. Whether it did so.
+bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now);
+
+/// Removes masses, springs and dampers that the last of the effects replaces.
+void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,
+                             FitResult& now);
+
+}  // namespace framewatch::estimator
