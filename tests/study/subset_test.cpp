@@ -23,8 +23,6 @@ Outcome diagnosed(const std::string& group, const std::string& name, std::uint64
   options.seconds = kSeconds;
   options.noise_ratio = noise;
   options.seed = seed;
-  // With the default the cubic spring of seed 4000 is not named as it is hidden: open.
-  options.flicker_share = options.mass_damping = 0;
   std::string why;
   const auto c = make_case(group, name, options, why);
   const std::string directory = folder.path("case");

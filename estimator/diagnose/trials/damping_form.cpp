@@ -4,20 +4,30 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/model/modal_damping.h"
+#include "estimator/diagnose/trials/linear_gains.h"
 #include "estimator/diagnose/trials/needless.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
 constexpr double kMisfit = 1.05;      ///< above it there is something to explain
 constexpr double kNoRatio = 1e-4;     ///< below it there is none
+constexpr double kDamperStep = 0.05;  ///< of the largest dashpot of the design
+constexpr std::size_t kDampersTried = 4;
 constexpr double kStillFalls = 0.99;  ///< cost after a fit over that before: it goes on
 constexpr int kTimes = 4;             ///< at most
-constexpr int kStepsWith = 10, kStepsWithout = 5;
+constexpr int kStepsWith = 10, kStepsWithout = 8;
 
 /// By how much the cost must fall for one value: half the logarithm of the number of data, times
 /// what the misfit exceeds noise by.
@@ -51,31 +61,55 @@ void hold_at_zero(Model& model, std::size_t effect) {
   model.effects[effect].parameters[0].free = false;
 }
 
-/// The fit without some of the ratios where that is no worse by more than their price.
-bool does_without(const Fitter& fitter, const std::vector<std::size_t>& ratios, FitResult& now) {
-  if (ratios.empty()) return true;
-  Model less = now.model;
-  for (const std::size_t e : ratios) hold_at_zero(less, e);
-  FitResult without = fitter.fit(less, now.motion, thorough(less, kStepsWithout));
-  const double price = static_cast<double>(ratios.size()) * price_of(fitter, now);
-  if (!without.good || without.cost > now.cost + price) return false;
-  now = std::move(without);
-  return true;
+/// The ratios that a quadratic model of the cost says are not worth their price, the one that costs
+/// least first, all else refitted.
+std::vector<std::size_t> needless(const Fitter& fitter, const std::vector<std::size_t>& ratios,
+                                  const FitResult& now) {
+  std::vector<Whitened> systems = fitter.systems(now.model, now.motion, forcing_of(now.model));
+  if (systems.empty()) return {};
+  const Linearised at = fitter.linearise(now.model, std::move(systems), true);
+  MatrixXd normal = normal_equations(at).normal;
+  normal.diagonal() += at.prior;
+  const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();
+  scaled.diagonal().array() += 1e-10;
+  MatrixXd spread = inverse(scaled);  // of the values, by their scale
+  const double price = price_of(fitter, now);
+  std::vector<std::size_t> out;
+  VectorXd value = VectorXd::Zero(spread.rows());
+  std::vector<Index> left;
+  for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
+    value[static_cast<Index>(u)] =
+        value_of(now.model, at.unknowns[u]) / scale[static_cast<Index>(u)];
+    const bool own = at.unknowns[u].kind == Unknown::Kind::parameter &&
+                     std::find(ratios.begin(), ratios.end(),
+                               static_cast<std::size_t>(at.unknowns[u].index)) != ratios.end();
+    if (own) left.push_back(static_cast<Index>(u));
+  }
+  while (!left.empty()) {
+    const auto loss = [&](Index u) { return value[u] * value[u] / spread(u, u); };
+    const auto least = std::min_element(left.begin(), left.end(),
+                                        [&](Index a, Index b) { return loss(a) < loss(b); });
+    const Index u = *least;
+    if (loss(u) > price) break;
+    out.push_back(static_cast<std::size_t>(at.unknowns[static_cast<std::size_t>(u)].index));
+    left.erase(least);
+    const VectorXd column = spread.col(u);
+    value -= column * (value[u] / spread(u, u));
+    spread -= column * column.transpose() / spread(u, u);
+  }
+  return out;
 }
 
-/// Goes on without the ratios that are not worth their price, the smallest first.
-void remove_needless(const Fitter& fitter, std::vector<std::size_t> ratios, FitResult& now) {
-  std::vector<std::size_t> none;
-  for (const std::size_t e : ratios)
-    if (ratio_of(now.model, e) < kNoRatio) none.push_back(e);
-  if (does_without(fitter, none, now))
-    std::erase_if(ratios, [&](std::size_t e) {
-      return std::find(none.begin(), none.end(), e) != none.end();
-    });
-  std::stable_sort(ratios.begin(), ratios.end(), [&](std::size_t a, std::size_t b) {
-    return ratio_of(now.model, a) < ratio_of(now.model, b);
-  });
-  for (const std::size_t e : ratios) does_without(fitter, {e}, now);
+/// Goes on without the ratios that are not worth their price.
+void remove_needless(const Fitter& fitter, const std::vector<std::size_t>& ratios, FitResult& now) {
+  const std::vector<std::size_t> gone = needless(fitter, ratios, now);
+  if (gone.empty()) return;
+  Model less = now.model;
+  for (const std::size_t e : gone) hold_at_zero(less, e);
+  FitResult without = fitter.fit(less, now.motion, thorough(less, kStepsWithout));
+  const double price = static_cast<double>(gone.size()) * price_of(fitter, now);
+  if (without.good && without.cost < now.cost + price) now = std::move(without);
 }
 
 }  // namespace
@@ -113,6 +147,39 @@ FitResult with_free_damping(const Fitter& fitter, const FitResult& now) {
     before = out.cost;
   }
   return out;
+}
+
+bool one_damper_does(const TrialContext& context, const FitResult& with) {
+  const Plant& plant = context.fitter.plant();
+  const FitResult& now = context.now;
+  std::vector<ModelEffect> dampers;
+  for (const EffectPlace& place :
+       effect_places(EffectKind::added_damper, plant.structure, plant.axes)) {
+    ModelEffect damper;
+    damper.form = LawForm::damper;
+    damper.place = place;
+    const double size = plant.design.tail(plant.element_count()).maxCoeff();
+    damper.parameters = {bounded_parameter(0, kDamperStep * size, 0, 1e15)};
+    dampers.push_back(std::move(damper));
+  }
+  const std::vector<LinearGain> gains = linear_gains(context, dampers);
+  std::vector<std::size_t> order(dampers.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return gains[a].cost > gains[b].cost; });
+  order.resize(std::min(order.size(), kDampersTried));
+  double ratios = 0;
+  for (const ModelEffect& e : with.model.effects)
+    ratios += e.form == LawForm::modal_damping && e.parameters[0].plain() > kNoRatio;
+  const double enough = with.cost + (ratios - 1) * price_of(context.fitter, with);
+  return std::any_of(order.begin(), order.end(), [&](std::size_t i) {
+    if (!(gains[i].value > 0)) return false;
+    Model one = now.model;
+    one.effects.push_back(dampers[i]);
+    one.effects.back().parameters[0].value = gains[i].value;
+    const FitResult fit = context.fitter.fit(one, now.motion, thorough(one, kStepsWith));
+    return fit.good && fit.cost < enough;
+  });
 }
 
 void settle_damping(const Fitter& fitter, FitResult with, FitResult& now) {

@@ -104,21 +104,21 @@ class Search {
     FitResult free = with_free_damping(fitter_, now);
     if (!free.good) return;
     Diagnosis before = out_;
-    const double alone = alone_;
     out_.where.clear();
-    to_beat_ = alone;
+    to_beat_ = alone_;
     search(free);
     if (!out_.effects.empty()) {
       now = std::move(free);
       return;
     }
     out_ = std::move(before);
-    alone_ = alone;
+    alone_ = to_beat_;
   }
 
   /// What no effect stands for: the form of the damping, and the colour of the noise.
   void complete(FitResult& now) {
     FitResult with = with_free_damping(fitter_, now);
+    if (with.good && out_.effects.empty() && one_damper_does(context_of(now), with)) with = now;
     if (with.good && colour_noise(fitter_, segments_, with)) now = with;
     settle_damping(fitter_, std::move(with), now);
     colour_noise(fitter_, segments_, now);

@@ -107,6 +107,20 @@ TEST(DampingForm, DashpotsBetweenFloorsHaveNone) {
   EXPECT_TRUE(modal_damping_effects(d.model).empty());
 }
 
+TEST(DampingForm, OneDashpotToTheGroundIsAFinding) {
+  EffectPlace place;
+  place.kind = PlaceKind::node_pair;
+  place.story = 2;
+  place.frame = 1;
+  Effect damper = make_effect(EffectKind::added_damper, place);
+  damper.set("c_nspm", 2e4);
+  const Diagnosis d = diagnosed(test::tower(2), {damper});
+  ASSERT_EQ(d.effects.size(), 1U);
+  EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::added_damper);
+  EXPECT_EQ(d.effects[0].chosen.place, place);
+  EXPECT_TRUE(modal_damping_effects(d.model).empty());
+}
+
 TEST(DampingForm, LeavesALawBesideItItsName) {
   const test::Small small = two_stories();
   std::vector<Effect> effects = ratios();
