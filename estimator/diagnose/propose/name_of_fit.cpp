@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/model/hysteretic_force.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -11,10 +12,21 @@ namespace {
 
 constexpr double kQuadratic = 2.45;  ///< exponent below which a spring counts as quadratic
 constexpr double kNoPower = 0.25;    ///< exponent of the rate below which it is friction
+constexpr double kSlips = 1.3;       ///< stiffness at yielding over that at zero force
 constexpr double kRigid = 0.02;  ///< yield deformation below which it is friction, of the largest
 
 EffectKind elastic_name(double exponent) {
   return exponent < kQuadratic ? EffectKind::quadratic_stiffness : EffectKind::cubic_stiffness;
+}
+
+/// Whether a pinched law is clearly softer at zero force than where it yields.
+bool slips(const ModelEffect& effect) {
+  using H = HysteresisIndex;
+  const auto p = [&](std::size_t i) { return effect.parameters[i].plain(); };
+  const auto stiffness = [&](double z) {
+    return 1 - p(H::slip) * std::exp(-std::pow((z - p(H::offset)) / p(H::width), 2));
+  };
+  return p(H::slip_work) > 0 || stiffness(1) > kSlips * stiffness(0);
 }
 
 }  // namespace
@@ -39,6 +51,18 @@ double nearest_exponent(const ModelEffect& effect) {
   return out;
 }
 
+ModelEffect without_slip(const ModelEffect& pinched) {
+  using H = HysteresisIndex;
+  ModelEffect out = pinched;
+  out.form = LawForm::hysteresis;
+  const double left = 1 - pinched.parameters[H::slip].plain();
+  LawParameter &kh = out.parameters[H::kh], &dy = out.parameters[H::dy];
+  kh.value *= left;
+  dy.value = dy.logarithmic ? dy.value - std::log(left) : dy.value / left;
+  out.parameters.erase(out.parameters.begin() + H::slip, out.parameters.begin() + H::slip_work + 1);
+  return out;
+}
+
 EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) {
   switch (effect.form) {
     case LawForm::power:
@@ -56,6 +80,7 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) 
                  ? EffectKind::coulomb_friction
                  : EffectKind::bilinear_hysteresis;
     case LawForm::pinched:
+      return slips(effect) ? EffectKind::pinching : name_of_fit(without_slip(effect), segment);
     case LawForm::slip_lock:
       return EffectKind::pinching;
     case LawForm::friction:

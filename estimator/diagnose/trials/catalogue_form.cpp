@@ -6,6 +6,7 @@
 
 #include "estimator/diagnose/model/hysteretic_force.h"
 #include "estimator/diagnose/model/law_port.h"
+#include "estimator/diagnose/propose/name_of_fit.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -256,7 +257,9 @@ Effect catalogue_effect(const Plant& plant, const std::vector<RecordSegment>& se
     set_axis_values(out, plant, model);
     return out;
   }
-  const ModelEffect& e = model.effects[static_cast<std::size_t>(found.index)];
+  const ModelEffect& fitted = model.effects[static_cast<std::size_t>(found.index)];
+  const bool slipless = fitted.form == LawForm::pinched && out.kind != EffectKind::pinching;
+  const ModelEffect e = slipless ? without_slip(fitted) : fitted;
   switch (out.kind) {
     case EffectKind::unmeasured_force:
       if (e.form == LawForm::broadband)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/propose/name_of_fit.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -28,6 +29,11 @@ void fix_exponent(EffectKind kind, ModelEffect& effect) {
     effect.form = LawForm::friction;
     effect.parameters[1] =
         logarithmic_parameter(0.01 * effect.rate, 1e-4 * effect.rate, 0.3 * effect.rate);
+    return;
+  }
+  if (effect.form == LawForm::pinched && kind != EffectKind::pinching) {
+    effect = without_slip(effect);
+    if (kind == EffectKind::bilinear_hysteresis) effect.parameters.resize(HysteresisIndex::kOwn);
     return;
   }
   if (effect.form == LawForm::asymptotic) {

@@ -14,6 +14,9 @@ bool is_same(const Trial& a, const Trial& b) {
 
 bool same_spot(const EffectPlace& a, const EffectPlace& b) {
   if (a == b) return true;
+  for (const auto& [whole, part] : {std::pair(a, b), std::pair(b, a)})
+    if (whole.kind == PlaceKind::whole_frame && part.kind == PlaceKind::frame)
+      return whole.frame == part.frame;
   const auto element_or_node = [](const EffectPlace& p) {
     return p.kind == PlaceKind::frame || p.kind == PlaceKind::node;
   };

@@ -224,7 +224,8 @@ class Search {
       const FoundEffect& earlier = out_.effects[i];
       if (!same_spot(earlier.chosen.place, best.place)) continue;
       // Two laws at one place are a single law that the catalogue does not have.
-      if (earlier.chosen.fraction < kOneLaw && plant_.equations() > 1) withdraw(now, i);
+      const bool whole = earlier.chosen.place.kind == PlaceKind::whole_frame;
+      if (earlier.chosen.fraction < kOneLaw && plant_.equations() > 1 && !whole) withdraw(now, i);
       return false;
     }
     adopt(trials, now);
@@ -268,13 +269,12 @@ class Search {
   /// Where no law explains enough to hold: the best one of an element, in doubt, if it takes most
   /// of the misfit.
   void name_nearest(FitResult& now) {
-    if (!out_.effects.empty() || out_.rejected.empty()) return;
-    if (!is_nearest_law(context_of(now), out_.rejected.front()) ||
+    if (!out_.effects.empty() || out_.rejected.empty() || !out_.reason.empty() ||
+        !is_nearest_law(context_of(now), out_.rejected.front()) ||
         fits_separately(fitter_, out_.linear, out_.ratio_before))
       return;
-    adopt(std::vector<Trial>(std::move(out_.rejected)), now);
+    adopt(std::exchange(out_.rejected, {}), now);
     out_.effects.front().confidence = std::min(out_.effects.front().confidence, kDoubtful);
-    out_.rejected.clear();
     complete(now);
   }
 

@@ -114,6 +114,21 @@ TEST(Contenders, AreNearTheBestAndFewOfAKind) {
   EXPECT_EQ(contending({e(1), e(1.3), left(Kind::rocking, 1.3), left(Kind::rocking, 1.5)}), 2U);
 }
 
+TEST(Contenders, AreOfOneDirectionBesideBothOfAMass) {
+  const Plant plant = Small().plant();
+  const std::vector<CandidatePlace> all = candidate_places_of(plant, initial_model(plant));
+  const auto left_at = [&](Eigen::Index directions, double ratio) {
+    Localisation out;
+    out.candidate_places = {*std::find_if(all.begin(), all.end(), [&](const CandidatePlace& p) {
+      return p.size() == directions && (directions > 1 || p.kind == Kind::element);
+    })};
+    out.ratio = ratio;
+    return out;
+  };
+  EXPECT_EQ(contending({left_at(2, 3), left_at(1, 40), left_at(1, 500)}), 2U);
+  EXPECT_EQ(contending({left_at(2, 1), left_at(1, 40)}), 1U) << "the mass leaves nothing";
+}
+
 TEST(Chance, FallsWithTheRootOfTheData) {
   const Small small;
   const Plant plant = small.plant();

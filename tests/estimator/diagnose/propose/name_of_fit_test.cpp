@@ -58,6 +58,23 @@ TEST(NameOfFit, YieldAndSharpnessTellHysteresisApart) {
   EXPECT_EQ(hysteresis(kRigidShare * (1 - kNear), 2), "coulomb_friction");
 }
 
+TEST(NameOfFit, ASlipZoneAsWideAsTheLoopIsNone) {
+  const auto pinched = [](double yield_share, double width, double work = 0) {
+    return effect_with(LawForm::pinched,
+                       {1e6, yield_share * kPeak_m, 2, 0.5, 0.5, width, 0, work, 0, 0});
+  };
+  EXPECT_EQ(name(pinched(0.3, 0.3)), "pinching");
+  EXPECT_EQ(name(pinched(0.3, 2)), "bouc_wen");
+  EXPECT_EQ(name(pinched(0.3, 2, 4)), "pinching") << "it opens with work";
+  // Of half the stiffness it yields at twice the deformation.
+  EXPECT_EQ(name(pinched(0.4 * kRigidShare, 2)), "coulomb_friction");
+  EXPECT_EQ(name(pinched(0.6 * kRigidShare, 2)), "bouc_wen");
+  const ModelEffect plain = without_slip(pinched(0.3, 2));
+  EXPECT_DOUBLE_EQ(plain.parameters[0].plain(), 5e5);
+  EXPECT_DOUBLE_EQ(plain.parameters[1].plain(), 0.6 * kPeak_m);
+  EXPECT_EQ(plain.parameters.size(), 6U);
+}
+
 TEST(NameOfFit, AYieldIsReadFromItsLogarithm) {
   ModelEffect effect = effect_with(LawForm::hysteresis, {1e6, 0, 2, 0.5});
   effect.parameters[1] = logarithmic_parameter(0.3 * kPeak_m, 1e-9, 1);
@@ -88,7 +105,7 @@ TEST(NameOfFit, OtherFormsHaveOneName) {
     std::string_view name;
   };
   const Named all[] = {
-      {LawForm::pinched, "pinching"},
+      {LawForm::slip_lock, "pinching"},
       {LawForm::friction, "coulomb_friction"},
       {LawForm::power_damping, "quadratic_damping"},
       {LawForm::gap_positive, "one_sided_gap"},

@@ -50,6 +50,26 @@ TEST(AdoptTrials, NoneIsAdoptedWhenNoneWasFitted) {
   EXPECT_FALSE(excess.adopted(unfitted));
 }
 
+TEST(NearestLaw, IsAnElementsAndTakesMostOfTheMisfit) {
+  constexpr double kNearest = 0.75;
+  HandMade made;
+  made.now.misfit[0] += kExcess;
+  made.now.cost += kExcess;
+  const double beyond = made.now.total_misfit() - made.recorded.fitter.expected(made.now.model);
+  const auto nearest = [&](double share, LawForm form, double of_record = 1) {
+    Trial trial = made.trial(EffectKind::cubic_stiffness, share * beyond);
+    trial.model.effects.emplace_back();
+    trial.model.effects.back().form = form;
+    trial.misfit[0] *= of_record;
+    return is_nearest_law(made.context(), trial);
+  };
+  EXPECT_TRUE(nearest(kNearest + kNear, LawForm::power));
+  EXPECT_FALSE(nearest(kNearest - kNear, LawForm::power));
+  EXPECT_FALSE(nearest(kNearest + kNear, LawForm::damper)) << "has no shape of its own";
+  EXPECT_FALSE(nearest(kNearest + kNear, LawForm::power, 2)) << "a record gets worse";
+  EXPECT_FALSE(is_nearest_law(made.context(), made.trial(EffectKind::gain_error, kExcess)));
+}
+
 TEST(AdoptTrials, BestFirstAndUnfittedLast) {
   const Excess excess;
   std::vector<Trial> trials;

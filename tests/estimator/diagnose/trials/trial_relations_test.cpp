@@ -1,0 +1,28 @@
+#include "estimator/diagnose/trials/trial_relations.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/estimator/diagnose/hidden_effect.h"
+
+namespace framewatch::estimator {
+namespace trial_relations_test {
+
+TEST(SameSpot, AStoryIsPartOfItsFrame) {
+  EffectPlace whole;
+  whole.kind = PlaceKind::whole_frame;
+  whole.frame = 1;
+  EXPECT_TRUE(same_spot(whole, test::in_frame(1)));
+  EXPECT_TRUE(same_spot(test::in_frame(1), whole));
+  EXPECT_FALSE(same_spot(whole, test::in_frame(2)));
+  EXPECT_FALSE(same_spot(whole, test::at_channel(1)));
+}
+
+TEST(SameSpot, AForceAtTheFirstFloorIsOneOnItsFrame) {
+  EXPECT_TRUE(same_spot(test::in_frame(1), test::at_node(1)));
+  EffectPlace upper = test::at_node(1), frame = test::in_frame(1);
+  upper.story = frame.story = 2;
+  EXPECT_FALSE(same_spot(frame, upper));
+}
+
+}  // namespace trial_relations_test
+}  // namespace framewatch::estimator
