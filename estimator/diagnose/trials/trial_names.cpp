@@ -95,4 +95,15 @@ bool may_be_named(const TrialContext& c, const Trial& t) {
   return !is_excluded(c, t.kind) && !(t.second && is_excluded(c, t.second->first));
 }
 
+void name_by_shape(const TrialContext& c, std::vector<FoundEffect>& effects) {
+  for (FoundEffect& found : effects) {
+    if (found.index < 0) continue;
+    const ModelEffect& law = c.now.model.effects[static_cast<std::size_t>(found.index)];
+    if (!law.element_law()) continue;
+    const EffectKind name = name_of_fit(law, c.fitter.segments().front());
+    if (!is_excluded(c, name)) found.chosen.kind = name;
+    std::erase(found.like, found.chosen.kind);
+  }
+}
+
 }  // namespace framewatch::estimator

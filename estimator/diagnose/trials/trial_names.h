@@ -1,5 +1,6 @@
 #pragma once
 
+#include "estimator/diagnose/trials/found_effect.h"
 #include "estimator/diagnose/trials/trial_context.h"
 
 namespace framewatch::estimator {
@@ -15,5 +16,9 @@ void set_fit(const TrialContext& context, const FitResult& fit, Trial& trial);
 /// of another effect or physically impossible: pinching that hardly dissipates, a resonator above
 /// the band or heavier than its floor, a negative spring or damper.
 bool may_be_named(const TrialContext& context, const Trial& trial);
+
+/// Names laws of elements by the shapes that they have in the model of context.now, where those
+/// names are not excluded.
+void name_by_shape(const TrialContext& context, std::vector<FoundEffect>& effects);
 
 }  // namespace framewatch::estimator

@@ -18,6 +18,7 @@
 #include "estimator/diagnose/trials/round_trials.h"
 #include "estimator/diagnose/trials/select_trial.h"
 #include "estimator/diagnose/trials/several_causes.h"
+#include "estimator/diagnose/trials/trial_names.h"
 #include "estimator/diagnose/trials/trial_relations.h"
 #include "estimator/diagnose/trials/wrong_labels.h"
 #include "estimator/diagnose/verdict/ramps.h"
@@ -67,10 +68,11 @@ class Search {
     const bool several = find_several(now);
     if (!several) name_nearest(now);
     if (!out_.effects.empty() && !several) polish(now);
+    name_by_shape(context_of(now), out_.effects);
     out_.ratio_after = ratio(now);
     out_.noise_corner_hz = segments_.front().corner_hz;
     set_models(now.model);
-    mark_approximate(now.model);
+    mark_approximate(fitter_, out_);
     set_errors(fitter_, out_.model, now.motion, out_.effects);
     set_errors(fitter_, out_.model, now.motion, out_.known);
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
@@ -126,15 +128,6 @@ class Search {
 
   double ratio(const FitResult& now) const {
     return now.total_misfit() / fitter_.expected(now.model);
-  }
-
-  /// Marks the effects as approximate if more than noise is left.
-  void mark_approximate(const Model& model) {
-    if (out_.ratio_after < 1 + chance_of(fitter_, model)) return;
-    for (FoundEffect& e : out_.effects) {
-      e.approximate = true;
-      e.confidence = std::min(e.confidence, kDoubtful);
-    }
   }
 
   /// Fits everything once more, with the shape of hysteresis free.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "estimator/diagnose/locate/locate.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -172,6 +174,15 @@ bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
   out.after_of_all = false;
   out.ratio_after = out.ratio_before;
   return true;
+}
+
+void mark_approximate(const Fitter& fitter, Diagnosis& out) {
+  constexpr double kDoubtful = 0.5;  // a name that is as likely wrong as right
+  if (out.ratio_after < 1 + chance_of(fitter, out.model)) return;
+  for (FoundEffect& e : out.effects) {
+    e.approximate = true;
+    e.confidence = std::min(e.confidence, kDoubtful);
+  }
 }
 
 Grade grade_of(const FoundEffect& effect) {

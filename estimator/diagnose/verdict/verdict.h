@@ -19,6 +19,9 @@ double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
 /// of all.
 bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_before);
 
+/// Marks the effects as approximate where more than noise is left, beyond chance.
+void mark_approximate(const Fitter& fitter, Diagnosis& out);
+
 /// Sets Diagnosis::before and after, and before and after of its effects in their order: gaps of
 /// models fitted to the segments before `options.holdout_from` alone, as they are judged
 /// (judged_fit).

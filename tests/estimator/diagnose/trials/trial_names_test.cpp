@@ -155,6 +155,27 @@ TEST(TrialNames, AnAxisErrorKeepsItsNameAndTakesNoEffects) {
   EXPECT_EQ(name_of(t.second->first), "extra_mass");
 }
 
+TEST(TrialNames, AreThoseOfTheLastFitsShapes) {
+  HandMade made;
+  made.now.model.effects.push_back(effect_with(LawForm::power, test::in_frame(1),
+                                               {linear_parameter(1, 1), linear_parameter(2, 1)}));
+  std::vector<FoundEffect> effects(2);
+  effects[0].chosen.kind = EffectKind::cubic_stiffness;
+  effects[0].like = {EffectKind::quadratic_stiffness, EffectKind::two_sided_gap};
+  effects[0].index = 0;
+  effects[1].chosen.kind = EffectKind::gain_error;
+  effects[1].index = -1;
+  const std::vector<FoundEffect> before = effects;
+  name_by_shape(made.context(), effects);
+  EXPECT_EQ(effects[0].chosen.kind, EffectKind::quadratic_stiffness);
+  EXPECT_EQ(effects[0].like, std::vector{EffectKind::two_sided_gap});
+  EXPECT_EQ(effects[1].chosen.kind, EffectKind::gain_error);
+  made.without = {EffectKind::quadratic_stiffness};
+  effects = before;
+  name_by_shape(made.context(), effects);
+  EXPECT_EQ(effects[0].chosen.kind, EffectKind::cubic_stiffness);
+}
+
 TEST(TrialNames, WhatIsNotLookedAtCostsAsMuchAsItsBins) {
   const HandMade made;
   const Trial t = taken(made, EffectKind::unmeasured_force, EffectKind::gain_error,
