@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -95,18 +96,41 @@ void check_segments(const std::vector<DiagnoseRecord>& records,
   }
 }
 
+/// Shows on a terminal how far a diagnosis is: every piece of its parallel work counts.
+class DiagnosisProgress {
+ public:
+  explicit DiagnosisProgress(bool quiet) : line_("diagnose", quiet) {}
+
+  /// Called between the calls of Workers::run().
+  void tell(const std::string& what, double done, double then) {
+    what_ = what;
+    done_ = done;
+    then_ = then;
+    line_(what, done);
+  }
+  void count(int pieces, int of) { line_(what_, done_ + (then_ - done_) * pieces / of); }
+
+ private:
+  ProgressLine line_;
+  std::string what_;
+  double done_ = 0, then_ = 0;
+};
+
 /// Runs the diagnosis with as many threads as asked for, and shows its progress on a terminal.
 estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
                                    const estimator::DiagnosisInput& input,
                                    estimator::DiagnosisOptions options) {
   if (a.component.any()) options.tolerances.mass = kComponentMass;
-  const Workers workers(a.threads > 0 ? a.threads
-                                      : static_cast<int>(std::thread::hardware_concurrency()));
+  DiagnosisProgress progress(a.quiet);
+  const Workers workers(
+      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
+      [&](const std::string&, int pieces, int of) { progress.count(pieces, of); });
   options.parallel = [&](int count, const std::function<void(int)>& work) {
     workers.run("", count, work);
   };
-  ProgressLine progress("diagnose", a.quiet);
-  options.progress = std::ref(progress);
+  options.progress = [&](const std::string& what, double done, double then) {
+    progress.tell(what, done, then);
+  };
   return diagnose(input.plant, input.segments, options);
 }
 

@@ -15,8 +15,9 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLongestStep = 0.5;  ///< of a stiffness, relative to the design
-constexpr int kTries = 7;
+constexpr double kLongestStep = 0.5;          ///< of a stiffness, relative to the design
+constexpr int kTries = 7, kTriesOfLarge = 4;  ///< of a step, with more and more damping
+
 double total_misfit(const std::vector<Whitened>& systems) {
   double out = 0;
   for (const Whitened& s : systems) out += s.misfit;
@@ -79,12 +80,13 @@ double Fitter::prior_cost(const Model& model) const {
 }
 
 std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<MatrixXcd>& motion,
-                                      Forcing forcing, const std::vector<Whitened>* weights) const {
+                                      Forcing forcing, const std::vector<Whitened>* weights,
+                                      RunCache* cache) const {
   std::vector<Whitened> out;
   for (std::size_t r = 0; r < segments_.size(); ++r) {
     std::optional<std::vector<LawTrack>> tracks =
         tracks_of(plant_, model, segments_[r], r, forcing,
-                  r < motion.size() ? motion[r] : MatrixXcd(), ratio_[r]);
+                  r < motion.size() ? motion[r] : MatrixXcd(), ratio_[r], cache);
     if (!tracks) return {};
     out.push_back(whiten(plant_, model, segments_[r], r, std::move(*tracks), ratio_[r],
                          weights ? (*weights)[r].weights : nullptr));
@@ -94,10 +96,11 @@ std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<Matr
 }
 
 Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
-                             bool through_run) const {
+                             const FitOptions& options, RunCache* cache) const {
   Linearised out;
   out.plant = &plant_;
   out.unknowns = unknowns_of(plant_, model, tolerances_);
+  if (options.holds_tolerated) std::erase_if(out.unknowns, is_tolerated);
   out.systems = std::move(systems);
   const auto count = static_cast<Index>(out.unknowns.size());
   out.prior = VectorXd::Zero(count);
@@ -111,7 +114,7 @@ Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
   }
   for (std::size_t r = 0; r < segments_.size(); ++r)
     out.columns.push_back(columns_of(plant_, model, segments_[r], r, out.systems[r], out.unknowns,
-                                     ratio_[r], through_run));
+                                     ratio_[r], options.through_run, cache));
   out.level = std::max(1.0, total_misfit(out.systems) / expected(model));
   out.prior *= out.level;
   out.pull *= out.level;
@@ -125,11 +128,13 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   const auto store = [&](const std::vector<Whitened>& systems) {
     store_misfit(systems, prior_cost(out.model), out);
   };
-  std::vector<Whitened> now = systems(out.model, motion, options.forcing);
+  RunCache cache;
+  std::vector<Whitened> now = systems(out.model, motion, options.forcing, nullptr, &cache);
   if (now.empty()) return out;
   store(now);
   FitResult best = out;
   double damping = 1e-6;
+  const int tries = plant_.is_large() ? kTriesOfLarge : kTries;
   int worse = 0;
   double weighted = total_misfit(now);  // when the weights were those of the model
   bool own_weights = true;
@@ -142,14 +147,14 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
       store(now);
       best = out;
     }
-    const Linearised at = linearise(out.model, std::move(now), options.through_run);
+    const Linearised at = linearise(out.model, std::move(now), options, &cache);
     NormalEquations equations = normal_equations(at);
     // Within a step the weights stay those of `at`: a wrong model must not reduce its misfit by
     // weights that grow soft. Near the noise the change of the weights is part of the gradient.
     const double before = at.level * prior_cost(out.model) + total_misfit(at.systems);
     equations.normal.diagonal() += at.prior;
     bool better = false;
-    for (int i = 0; i < kTries && !better; ++i) {
+    for (int i = 0; i < tries && !better; ++i) {
       MatrixXd damped = equations.normal;
       damped.diagonal().array() += 1e-12 + damping * equations.normal.diagonal().array();
       const VectorXd step =
@@ -159,7 +164,7 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
         continue;
       }
       const Model trial = moved(out.model, at.unknowns, step);
-      std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems);
+      std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems, &cache);
       const bool falls =
           !then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before;
       const bool near = at.level < kNearNoise;
@@ -183,7 +188,7 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
     if (worse >= 2 || (worse == 1 && std::abs(gained) < options.tolerance)) break;
   }
   if (!own_weights) {
-    std::vector<Whitened> last = systems(best.model, best.motion, options.forcing);
+    std::vector<Whitened> last = systems(best.model, best.motion, options.forcing, nullptr, &cache);
     if (!last.empty()) {
       out.model = best.model;
       store(last);

@@ -18,6 +18,8 @@ struct FitOptions {
   double tolerance = 0.3;  ///< converged when the cost falls by less than this
   /// Derivatives include those of the free run's motion: exact where laws act strongly, but slower.
   bool through_run = false;
+  /// Masses, gains and clocks stay where they are but for those that are effects.
+  bool holds_tolerated = false;
 };
 
 /// Options of an exact fit: free runs with their derivatives where the model has element laws.
@@ -44,13 +46,14 @@ class Fitter {
   FitResult fit(const Model& start, const std::vector<Eigen::MatrixXcd>& motion,
                 const FitOptions& options) const;
   /// The whitened equations of every segment; empty when the model cannot be computed.
-  /// weights: systems whose weights are used; null: the model's own.
+  /// weights: systems whose weights are used; null: the model's own. cache: of one thread, here and
+  /// below; null: none.
   std::vector<Whitened> systems(const Model& model, const std::vector<Eigen::MatrixXcd>& motion,
-                                Forcing forcing,
-                                const std::vector<Whitened>* weights = nullptr) const;
-  /// systems: those of systems() for the same model.
+                                Forcing forcing, const std::vector<Whitened>* weights = nullptr,
+                                RunCache* cache = nullptr) const;
+  /// systems: those of systems() for the same model. options: which derivatives.
   Linearised linearise(const Model& model, std::vector<Whitened> systems,
-                       bool through_run = false) const;
+                       const FitOptions& options = {}, RunCache* cache = nullptr) const;
   double prior_cost(const Model& model) const;
   /// The model moved by a step of the unknowns, within their bounds; shortened so that no stiffness
   /// changes by more than half of its design.

@@ -140,7 +140,7 @@ VectorXd along_tied(const Plant& plant, const Model& model, const RecordSegment&
 
 Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& segment,
                    std::size_t record, const Whitened& system, const std::vector<Unknown>& unknowns,
-                   int ratio, bool through_run) {
+                   int ratio, bool through_run, RunCache* cache) {
   Columns out;
   out.size = MatrixXcd::Zero(system.bins(), static_cast<Index>(unknowns.size()));
   std::vector<VectorXd> effects;
@@ -154,7 +154,7 @@ Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& 
                            static_cast<std::size_t>(unknown.record) != record;
     std::optional<VectorXd> run;
     if (runs && !elsewhere && moves_run(plant, model, unknown))
-      run = run_column(plant, model, segment, record, system, unknown, ratio);
+      run = run_column(plant, model, segment, record, system, unknown, ratio, cache);
     Acting one;
     if (!parameter) one = acting(plant, model, segment, motions, unknown);
     const bool own_rows = parameter || run || !unknown.tied.empty();

@@ -25,7 +25,7 @@ struct Columns {
 /// ratio: steps per sample of the laws; through_run: with the derivatives of the free run's motion.
 Columns columns_of(const Plant& plant, const Model& model, const RecordSegment& segment,
                    std::size_t record, const Whitened& system, const std::vector<Unknown>& unknowns,
-                   int ratio, bool through_run);
+                   int ratio, bool through_run, RunCache* cache = nullptr);
 
 /// One column as whitened rows.
 Eigen::VectorXd whole_column(const Plant& plant, const Whitened& system, const Columns& columns,

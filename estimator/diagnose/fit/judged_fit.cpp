@@ -11,11 +11,12 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kDiverged = std::numeric_limits<double>::infinity();
-constexpr int kRounds = 6;      ///< in which the weights follow the gap
-constexpr double kMore = 0.99;  ///< gap over the one of the round before: it goes on
-constexpr double kLargest = 1;  ///< error of a model for its weights
-constexpr int kFirstSteps = 4;  ///< of every start, before the best is fitted on
-constexpr double kClose = 1.1;  ///< gap over the best one's: a start that is fitted on as well
+constexpr int kRounds = 6;         ///< in which the weights follow the gap
+constexpr double kMore = 0.99;     ///< gap over the one of the round before: it goes on
+constexpr double kLargest = 1;     ///< error of a model for its weights
+constexpr int kFirstSteps = 4;     ///< of every start, before the best is fitted on
+constexpr double kClose = 1.1;     ///< gap over the best one's: a start that is fitted on as well
+constexpr double kSameGap = 1e-9;  ///< of gaps, relative: those of one model
 
 struct Start {
   Model model;
@@ -39,6 +40,14 @@ void fit_to_the_end(const Fitter& fitter, int steps, Start& at) {
     fit_free_run(fitter, steps, at);
     if (at.gap > kMore * before) return;
   }
+}
+
+/// Sorted by their gaps, each model once.
+void sort_starts(std::vector<Start>& all) {
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Start& a, const Start& b) { return a.gap < b.gap; });
+  const auto same = [](const Start& a, const Start& b) { return b.gap - a.gap < kSameGap * a.gap; };
+  all.erase(std::unique(all.begin(), all.end(), same), all.end());
 }
 
 }  // namespace
@@ -93,12 +102,13 @@ JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int
 
   std::vector<Start> all{{out.model, out.gap}};
   for (const Model& model : starts) all.push_back({model, rms_gap(fitter, model)});
+  sort_starts(all);
   run_all(parallel, static_cast<int>(all.size()),
           [&](int i) { fit_free_run(fitter, kFirstSteps, all[static_cast<std::size_t>(i)]); });
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Start& a, const Start& b) { return a.gap < b.gap; });
+  sort_starts(all);
   Start best = all.front();
   std::erase_if(all, [close = kClose * best.gap](const Start& s) { return !(s.gap < close); });
+  if (fitter.plant().is_large() && all.size() > 1) all.resize(1);
   run_all(parallel, static_cast<int>(all.size()),
           [&](int i) { fit_to_the_end(fitter, steps, all[static_cast<std::size_t>(i)]); });
   for (Start& s : all)

@@ -51,12 +51,12 @@ VectorXcd harmonic_bins(const ModelEffect& effect, const RecordSegment& segment,
 
 std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& model,
                                                const RecordSegment& segment, std::size_t record,
-                                               Forcing forcing, const MatrixXcd& motion,
-                                               int ratio) {
+                                               Forcing forcing, const MatrixXcd& motion, int ratio,
+                                               RunCache* cache) {
   const bool any = std::any_of(model.effects.begin(), model.effects.end(),
                                [](const ModelEffect& e) { return e.element_law(); });
   if (forcing == Forcing::simulated && any && !plant.prescribed) {
-    FreeRun run = free_run(plant, model, segment, record, ratio);
+    FreeRun run = free_run(plant, model, segment, record, ratio, cache);
     if (!run.good) return std::nullopt;
     return std::move(run.tracks);
   }

@@ -20,10 +20,11 @@ Forcing forcing_of(const Model& model);
 
 /// Motion and force of the model's element laws. motion: axes x bins that drives them when forcing
 /// is `measured`; empty: the calibrated readings. Empty when the free run diverges.
+/// cache: of one thread; null: none.
 std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& model,
                                                const RecordSegment& segment, std::size_t record,
                                                Forcing forcing, const Eigen::MatrixXcd& motion,
-                                               int ratio);
+                                               int ratio, RunCache* cache = nullptr);
 
 /// The linear element nearest to the force of a law.
 struct Equivalent {

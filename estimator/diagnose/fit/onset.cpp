@@ -7,13 +7,15 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kFirstStep = 0.01;  ///< of the record
-constexpr int kFitSteps = 2;
-constexpr double kLeastGain = 1;  ///< of the misfit
+constexpr int kOnsetSteps = 1;       ///< of a fit that tells whether an onset is better
+constexpr int kSettlingSteps = 4;    ///< when the onsets are known
+constexpr double kLeastGain = 1;     ///< of the misfit
 
 /// Replaces the fit by one with another onset if that is better; whether it was.
 bool moved(const Fitter& fitter, std::size_t record, double onset_s, FitResult& fit) {
   FitOptions options;
-  options.max_steps = kFitSteps;
+  options.max_steps = kOnsetSteps;
+  options.holds_tolerated = true;
   Model model = fit.model;
   double& onset = model.effects.back().onset_s[record];
   if (onset == std::max(0.0, onset_s)) return false;
@@ -39,7 +41,10 @@ FitResult with_onsets(const Fitter& fitter, FitResult fit) {
       while (moved(fitter, r, onset() - step, fit) || moved(fitter, r, onset() + step, fit)) {
       }
   }
-  return fit;
+  FitOptions options;
+  options.max_steps = kSettlingSteps;
+  FitResult last = fitter.fit(fit.model, fit.motion, options);
+  return last.good && last.cost < fit.cost ? last : fit;
 }
 
 }  // namespace framewatch::estimator

@@ -14,10 +14,24 @@ using Eigen::VectorXd;
 using Kind = Unknown::Kind;
 
 constexpr double kChange = 1e-3;  ///< of a stiffness, for its derivative
-/// In a large building only frames at the law and next to it move its run enough for what their
-/// runs cost.
+/// In a large building only stiffnesses at the law and next to it move its run enough for what
+/// their runs cost.
 bool is_near(const EffectPlace& law, int story, int frame) {
   return law.frame == frame && std::abs(law.story - story) <= 1;
+}
+
+/// The free run with an unknown changed. The modes of a large building stay as they are.
+FreeRun changed_run(const Plant& plant, const Model& model, const RecordSegment& segment,
+                    std::size_t record, const Unknown& unknown, double change, int ratio,
+                    RunCache* cache) {
+  if (plant.is_large() && unknown.kind == Kind::theta) {
+    std::vector<SmallSpring> springs{{unknown.index, change * unknown.scale}};
+    for (const auto& [index, scale] : unknown.tied) springs.push_back({index, change * scale});
+    return free_run(plant, model, segment, record, ratio, cache, springs);
+  }
+  Model moved = model;
+  set_value(moved, unknown, value_of(model, unknown) + change);
+  return free_run(plant, moved, segment, record, ratio, cache);
 }
 
 }  // namespace
@@ -31,7 +45,7 @@ bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
     frame = plant.table[unknown.index].frame;
     if (frame < 0) return false;
     story = plant.table[unknown.index].story;
-  } else if (unknown.kind == Kind::mass) {
+  } else if (unknown.kind == Kind::mass && !plant.is_large()) {
     if (plant.equations() == s.degrees_of_freedom()) {
       frame = unknown.index % s.frames();
       story = unknown.index / s.frames() + 1;
@@ -50,11 +64,10 @@ bool moves_run(const Plant& plant, const Model& model, const Unknown& unknown) {
 
 std::optional<VectorXd> run_column(const Plant& plant, const Model& model,
                                    const RecordSegment& segment, std::size_t record,
-                                   const Whitened& system, const Unknown& unknown, int ratio) {
-  const double change = unknown.kind == Unknown::Kind::theta ? kChange : 1.0;
-  Model moved = model;
-  set_value(moved, unknown, value_of(model, unknown) + change);
-  const FreeRun run = free_run(plant, moved, segment, record, ratio);
+                                   const Whitened& system, const Unknown& unknown, int ratio,
+                                   RunCache* cache) {
+  const double change = unknown.kind == Kind::theta ? kChange : 1.0;
+  const FreeRun run = changed_run(plant, model, segment, record, unknown, change, ratio, cache);
   if (!run.good) return std::nullopt;
   VectorXd out = VectorXd::Zero(system.residual.size());
   std::size_t law = 0;

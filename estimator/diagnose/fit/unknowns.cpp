@@ -82,6 +82,12 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
   return out;
 }
 
+bool is_tolerated(const Unknown& unknown) {
+  const bool may_be =
+      unknown.kind == Kind::mass || unknown.kind == Kind::gain || unknown.kind == Kind::clock;
+  return may_be && unknown.sigma > 0;
+}
+
 namespace {
 
 double& member(Model& model, const Unknown& u) {

@@ -32,6 +32,8 @@ struct Unknown {
 
 std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
                                  const Tolerances& tolerances);
+/// Whether it is a mass, a gain or a clock within its tolerance, no effect.
+bool is_tolerated(const Unknown& unknown);
 /// In units of the unknown.
 double value_of(const Model& model, const Unknown& unknown);
 /// Sets the member, within the unknown's bounds.

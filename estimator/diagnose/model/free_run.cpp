@@ -8,7 +8,7 @@
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/model/modal_system.h"
 #include "estimator/diagnose/model/run_system.h"
-#include "estimator/diagnose/model/upsampled.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -58,31 +58,27 @@ std::vector<Index> driving_axes(const Plant& plant) {
   return out;
 }
 
-/// Readings of the driving axes at every step, the lead first, without the model's errors of gain
-/// and clock: axes x steps.
-MatrixXd driving_signals(const Model& model, const RecordSegment& segment,
-                         const std::vector<Index>& driving, int ratio) {
-  const Index lead = segment.lead.rows(), samples = lead + segment.intervals();
-  MatrixXd out(static_cast<Index>(driving.size()), samples * ratio);
-  for (std::size_t i = 0; i < driving.size(); ++i) {
-    VectorXd signal(samples);
-    signal.head(lead) = segment.lead.col(driving[i]);
-    signal.tail(segment.intervals()) = segment.accel.col(driving[i]).head(segment.intervals());
-    signal /= 1 + model.gain[driving[i]];
-    const double late = model.clock_s[driving[i]] * segment.rate_hz;
-    out.row(static_cast<Index>(i)) = upsampled(signal, ratio, -late).transpose();
-  }
-  return out;
-}
-
 /// The forces of a model's effects during a run: those of harmonic forces are known beforehand,
-/// those of element laws depend on the motion at the end of the step.
+/// those of element laws and springs depend on the motion at the end of the step.
 class RunForces {
  public:
   /// first_input: index of the first effect's force among the inputs.
-  RunForces(const Plant& plant, const Model& model, std::size_t record, const ModalSystem& system,
-            Index coordinates, Index first_input)
+  RunForces(const Plant& plant, const Model& model, std::size_t record,
+            const std::vector<SmallSpring>& springs, const RunSystem& parts, Index first_input,
+            ModalSystem& system)
       : record_(record) {
+    const Index coordinates = parts.mass.rows();
+    const auto force_of = [&](Index element) {
+      VectorXd out = VectorXd::Zero(coordinates);
+      out.head(plant.equations()) = plant.building.act.col(element);
+      return out;
+    };
+    std::vector<Index> inputs;
+    for (const SmallSpring& spring : springs)
+      inputs.push_back(system.add_input(-(inverse(parts.mass) * force_of(spring.element))));
+    for (std::size_t i = 0; i < springs.size(); ++i)
+      springs_.push_back(
+          {springs[i].stiffness, system.observe(force_of(springs[i].element)), inputs[i]});
     Index input = first_input;
     for (const ActiveLaw& active : active_laws(plant, model)) {
       VectorXd row = VectorXd::Zero(coordinates);
@@ -114,6 +110,11 @@ class RunForces {
         solve(system, l, t);
         inputs[laws_[l].input] = laws_[l].force;
       }
+    for (const RunSpring& spring : springs_) {
+      double d = system.displacement(spring.seen);
+      for (const RunLaw& law : laws_) d += spring.seen.displacement_gain[law.input] * law.force;
+      inputs[spring.input] = spring.stiffness * d;
+    }
   }
 
   /// Ends the step. false: the motion has diverged.
@@ -134,6 +135,11 @@ class RunForces {
     ModalSystem::Observer seen;
     Index input;
     double force = 0;
+  };
+  struct RunSpring {
+    double stiffness;
+    ModalSystem::Observer seen;
+    Index input;
   };
   struct Step {
     double d, v;
@@ -158,6 +164,7 @@ class RunForces {
 
   std::size_t record_;
   std::vector<RunLaw> laws_;
+  std::vector<RunSpring> springs_;
   std::vector<std::pair<const ModelEffect*, Index>> harmonics_;
   std::vector<Step> at_step_;
 };
@@ -171,19 +178,22 @@ int steps_per_sample(const Plant& plant, double rate_hz) {
 }
 
 FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& segment,
-                 std::size_t record, int ratio) {
+                 std::size_t record, int ratio, RunCache* cache,
+                 const std::vector<SmallSpring>& springs) {
   FreeRun out;
+  RunCache own;
+  RunCache& common = cache ? *cache : own;
   const std::vector<Index> driving = driving_axes(plant);
   const RunSystem parts = run_system(plant, model, driving);
   const double step_s = 1 / (segment.rate_hz * ratio);
-  ModalSystem system(parts.mass, parts.damping, parts.stiffness, parts.inputs, step_s);
+  ModalSystem system = common.modes(parts, step_s);
   if (!system.good()) return out;
-  const MatrixXd ground = driving_signals(model, segment, driving, ratio);
+  const MatrixXd& ground = common.driving(model, segment, record, driving, ratio);
   const Index steps = segment.intervals() * ratio, lead = segment.lead.rows() * ratio;
-  RunForces forces(plant, model, record, system, parts.mass.rows(), ground.rows());
+  RunForces forces(plant, model, record, springs, parts, ground.rows(), system);
   out.tracks.assign(forces.laws(), {VectorXd(steps), VectorXd(steps), VectorXd(steps)});
 
-  VectorXd now = VectorXd::Zero(parts.inputs.cols());
+  VectorXd now = VectorXd::Zero(parts.inputs.cols() + static_cast<Index>(springs.size()));
   VectorXd law_forces = now;
   Index first = -lead;
   if (const auto moving = initial_motion(plant, model, segment)) {

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/model/model.h"
+#include "estimator/diagnose/model/run_cache.h"
 #include "estimator/diagnose/spectra/record_segment.h"
 
 namespace framewatch::estimator {
@@ -20,12 +21,20 @@ struct FreeRun {
   std::vector<LawTrack> tracks;  ///< of the model's element laws, in their order
 };
 
+/// A change of an element's stiffness, N/m, so small that its force at the end of a step moves
+/// nothing within it.
+struct SmallSpring {
+  Eigen::Index element;
+  double stiffness;
+};
+
 /// Simulates the model under the measured motion of the base alone, from rest, or as measured
 /// within the segment's lead (initial_motion). The linear part is integrated exactly in its complex
 /// modes; the forces of the laws at the end of each step are solved implicitly. record: index of
-/// the segment's record.
+/// the segment's record. cache: of one thread; null: none.
 FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& segment,
-                 std::size_t record, int ratio);
+                 std::size_t record, int ratio, RunCache* cache = nullptr,
+                 const std::vector<SmallSpring>& springs = {});
 
 /// Steps per sample that resolve the model's highest mode.
 int steps_per_sample(const Plant& plant, double rate_hz);

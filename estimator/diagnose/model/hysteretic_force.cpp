@@ -20,18 +20,12 @@ constexpr double kOutside = 40;
 /// dz/dd of one law, in units of dy.
 class Slope {
  public:
-  Slope(const LawValues& values, double work) : p_(values.p), form_(values.form) {
-    const bool plain = form_ == LawForm::hysteresis;
-    const double strength = value_or(p_, plain ? +H::strength_loss : +H::pinched_strength, 0);
-    const double stiffness = value_or(p_, plain ? +H::stiffness_loss : +H::pinched_stiffness, 0);
-    loading_ = plain ? value_or(p_, H::loading, 1) : 1;
-    weaker_ = 1 + std::max(strength * work, -0.9);
-    softer_ = 1 + std::max(stiffness * work, -0.9);
-    if (plain) return;
-    slip_ = p_[H::slip];
-    const double slip_work = value_or(p_, H::slip_work, 0);
-    if (slip_work > 0) slip_ *= 1 - std::exp(-work / slip_work);
-    offset_ = form_ == LawForm::pinched ? value_or(p_, H::offset, 0) : 0;
+  Slope(const LawValues& values, const WornShape& shape)
+      : p_(values.p), shape_(shape), pinched_(values.form == LawForm::pinched) {
+    if (values.form == LawForm::hysteresis)
+      loading_ = value_or(p_, H::loading, 1);
+    else if (pinched_)
+      offset_ = value_or(p_, H::offset, 0);
   }
 
   double operator()(double z, double d, double direction) const {
@@ -40,25 +34,22 @@ class Slope {
 
   /// Share of the slope that the slip zone leaves.
   double slip(double z, double d, double direction) const {
-    if (slip_ == 0) return 1;
-    const double at = (form_ == LawForm::pinched ? z * direction - offset_ : d) / p_[H::width];
-    return at * at < kOutside ? 1 - slip_ * std::exp(-at * at) : 1.0;
+    if (shape_.slip == 0) return 1;
+    const double at = (pinched_ ? z * direction - offset_ : d) / p_[H::width];
+    return at * at < kOutside ? 1 - shape_.slip * std::exp(-at * at) : 1.0;
   }
 
   double without_slip(double z, double direction) const {
-    const double level = weaker_ * power_of(std::abs(z), p_[H::exponent]);
+    const double level = shape_.weaker * power_of(std::abs(z), p_[H::exponent]);
     const double turn = p_[H::beta] * (z * direction > 0 ? 1.0 : -1.0) + loading_ - p_[H::beta];
-    return (1 - level * turn) / softer_;
-  }
-
-  double most() const {
-    return loading_ > 0 ? std::pow(1 / (weaker_ * loading_), 1 / p_[H::exponent]) : kLargestZ;
+    return (1 - level * turn) / shape_.softer;
   }
 
  private:
   const std::vector<double>& p_;
-  LawForm form_;
-  double loading_ = 1, weaker_ = 1, softer_ = 1, slip_ = 0, offset_ = 0;
+  const WornShape& shape_;
+  bool pinched_;
+  double loading_ = 1, offset_ = 0;
 };
 
 /// Deformation at which a slider gives way.
@@ -81,24 +72,58 @@ double value_or(const std::vector<double>& p, std::size_t index, double without)
   return index < p.size() ? p[index] : without;
 }
 
-double advanced_z(const LawValues& values, double from, double d, double d_now, double work) {
+WornShape worn_shape(const LawValues& values, double work) {
+  const std::vector<double>& p = values.p;
+  const bool plain = values.form == LawForm::hysteresis;
+  const double strength = value_or(p, plain ? +H::strength_loss : +H::pinched_strength, 0);
+  const double stiffness = value_or(p, plain ? +H::stiffness_loss : +H::pinched_stiffness, 0);
+  const double loading = plain ? value_or(p, H::loading, 1) : 1;
+  WornShape out;
+  out.weaker = 1 + std::max(strength * work, -0.9);
+  out.softer = 1 + std::max(stiffness * work, -0.9);
+  const double level = out.weaker * loading;
+  out.most = level == 1 ? 1 : loading > 0 ? std::pow(1 / level, 1 / p[H::exponent]) : kLargestZ;
+  if (plain) return out;
+  out.slip = p[H::slip];
+  const double slip_work = value_or(p, H::slip_work, 0);
+  if (slip_work > 0) out.slip *= 1 - std::exp(-work / slip_work);
+  return out;
+}
+
+void HystereticStep::begin(const WornShape& shape, double z, double d) {
+  shape_ = shape;
+  z_ = z;
+  d_ = d;
+  up_.known = down_.known = false;
+}
+
+double HystereticStep::end(const LawValues& values, double d_now) {
   const double dy = values.p[H::dy];
-  const double travel = (d_now - d) / dy;
-  if (travel == 0) return from;
-  const Slope slope(values, work);
-  const double most = std::max(slope.most(), std::abs(from));
+  const double travel = (d_now - d_) / dy;
+  if (travel == 0) return z_;
+  const double most = std::max(shape_.most, std::abs(z_));
   if (values.form == LawForm::hysteresis && values.p[H::exponent] > kSharp)
-    return std::clamp(from + travel, -most, most);
+    return std::clamp(z_ + travel, -most, most);
+  const Slope slope(values, shape_);
   const double direction = travel > 0 ? 1.0 : -1.0;
   const double longest = std::max(kLongestSlide, std::abs(travel) / kMostSlides);
-  double z = from, at = d / dy;
-  for (double left = std::abs(travel); left > 0; left -= longest) {
-    const double rising = slope.without_slip(z, direction);
+  double z = z_, at = d_ / dy;
+  Begin& first = travel > 0 ? up_ : down_;
+  if (!first.known) {
+    first.rising = slope.without_slip(z, direction);
+    first.slope = slope.slip(z, at, direction) * first.rising;
+    first.known = true;
+  }
+  double rising = first.rising, at_start = first.slope;
+  for (double left = std::abs(travel);;) {
     if (z * direction > 0 && rising * left < kYielded && rising > -kYielded) break;
-    const double at_start = slope.slip(z, at, direction) * rising;
     const double h = direction * std::min(left, longest);
     z = std::clamp(z + h * slope(z + 0.5 * h * at_start, at + 0.5 * h, direction), -most, most);
     at += h;
+    left -= longest;
+    if (!(left > 0)) break;
+    rising = slope.without_slip(z, direction);
+    at_start = slope.slip(z, at, direction) * rising;
   }
   return z;
 }

@@ -55,8 +55,32 @@ double power_of(double x, double p);
 /// Parameter `index`, or `without` where a law has fewer.
 double value_or(const std::vector<double>& p, std::size_t index, double without);
 
-/// z of a hysteretic law after a step from (z, d) to d_now; `work` is e at the step's begin.
-double advanced_z(const LawValues& values, double z, double d, double d_now, double work);
+/// What the work done makes of a law of hysteresis: it changes once a step.
+struct WornShape {
+  double weaker = 1, softer = 1;  ///< factors on strength and flexibility
+  double slip = 0;                ///< depth of the slip zone
+  double most = 0;                ///< largest |z|
+};
+WornShape worn_shape(const LawValues& values, double work);
+
+/// z of a hysteretic law at the end of a step from one state, to one end after another.
+class HystereticStep {
+ public:
+  /// The step begins at (z, d).
+  void begin(const WornShape& shape, double z, double d);
+  double end(const LawValues& values, double d_now);
+
+ private:
+  /// Slope dz/dd at the step's begin, in units of dy.
+  struct Begin {
+    bool known = false;
+    double rising, slope;  ///< without and with the slip zone
+  };
+
+  WornShape shape_;
+  double z_ = 0, d_ = 0;
+  Begin up_, down_;
+};
 
 /// Force of the sliders at d, over kh; `at` are their positions, SliderIndex::kCount of them.
 double slider_force(const LawValues& values, const std::vector<double>& at, double d, double work);

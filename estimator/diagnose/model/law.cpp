@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/model/hysteretic_force.h"
 #include "estimator/diagnose/model/sliding.h"
 
 namespace framewatch::estimator {
@@ -24,6 +23,11 @@ bool preslides(const LawValues& values) {
   return values.form == LawForm::friction && value_or(values.p, FrictionIndex::presliding, 0) > 0;
 }
 
+/// Whether z follows an equation of its rate.
+bool has_z(LawForm form) {
+  return form == LawForm::hysteresis || form == LawForm::pinched || form == LawForm::slip_lock;
+}
+
 }  // namespace
 
 bool is_element_law(LawForm form) {
@@ -41,6 +45,11 @@ bool is_contact(LawForm form) {
 LawMotion::LawMotion(const LawValues& values) : values_(values) {
   if (values.form == LawForm::sliders) memory_.assign(SliderIndex::kCount, 0.0);
   if (values.form == LawForm::asymptotic) memory_ = no_reversal(values);
+  if (!has_z(values.form)) return;
+  shape_ = worn_shape(values, 0);
+  const WornShape later = worn_shape(values, 1);
+  wears_ = later.weaker != 1 || later.softer != 1 || later.slip != shape_.slip;
+  step_.begin(shape_, 0, 0);
 }
 
 double LawMotion::force(double d, double v, double t) {
@@ -51,7 +60,7 @@ double LawMotion::next_z(double d) {
   if (has_next_ && d == next_d_) return next_z_;
   has_next_ = true;
   next_d_ = d;
-  return next_z_ = advanced_z(values_, z_, d_, d, work_);
+  return next_z_ = step_.end(values_, d);
 }
 
 double LawMotion::plain_force(double d, double v, double t) {
@@ -113,6 +122,9 @@ void LawMotion::accept(double d, double v, double t) {
   d_ = d;
   v_ = v;
   t_ = t;
+  if (!has_z(values_.form)) return;
+  if (wears_) shape_ = worn_shape(values_, work_);
+  step_.begin(shape_, z_, d_);
 }
 
 Eigen::VectorXd law_force(const LawValues& values, const Eigen::VectorXd& d,

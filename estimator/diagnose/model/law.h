@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "estimator/diagnose/model/hysteretic_force.h"
 #include "estimator/diagnose/model/law_values.h"
 
 namespace framewatch::estimator {
@@ -26,6 +27,9 @@ class LawMotion {
 
   LawValues values_;
   double z_ = 0, d_ = 0, v_ = 0, t_ = 0, work_ = 0;
+  bool wears_ = false;  ///< its shape changes with the work done
+  WornShape shape_;
+  HystereticStep step_;
   bool has_next_ = false;
   double next_d_ = 0, next_z_ = 0;
   std::vector<double> memory_;  ///< of sliders, or of the last reversal

@@ -63,6 +63,8 @@ ModalSystem::ModalSystem(const MatrixXd& mass, const MatrixXd& damping, const Ma
   first_.resize(modes, inputs.cols());
   last_.resize(modes, inputs.cols());
   entry_.resize(modes, 2 * n);
+  of_first_.resize(modes);
+  of_last_.resize(modes);
   for (Index m = 0; m < modes; ++m) {
     const Complex lambda = modes_of_all.values[kept[static_cast<std::size_t>(m)]];
     const double weight = lambda.imag() > 0 ? 2.0 : 1.0;
@@ -70,13 +72,25 @@ ModalSystem::ModalSystem(const MatrixXd& mass, const MatrixXd& damping, const Ma
     turn_[m] = std::exp(lambda * step_s);
     entry_.row(m) = modal_units.row(kept[static_cast<std::size_t>(m)]);
     const auto [one, two] = hold_weights(lambda * step_s);
-    last_.row(m) = step_s * two * modal_inputs.row(kept[static_cast<std::size_t>(m)]);
-    first_.row(m) = step_s * (one - two) * modal_inputs.row(kept[static_cast<std::size_t>(m)]);
+    of_last_[m] = step_s * two;
+    of_first_[m] = step_s * (one - two);
+    last_.row(m) = of_last_[m] * modal_inputs.row(kept[static_cast<std::size_t>(m)]);
+    first_.row(m) = of_first_[m] * modal_inputs.row(kept[static_cast<std::size_t>(m)]);
   }
   shapes_.bottomRows(n) *= scale;
   good_ = shapes_.allFinite() && turn_.allFinite() && last_.allFinite() &&
           (turn_.cwiseAbs().array() < 1 + 1e-3).all();
   reset();
+}
+
+Index ModalSystem::add_input(const VectorXd& per_mass) {
+  const Eigen::VectorXcd modal = entry_.rightCols(coordinates_) * per_mass.cast<Complex>();
+  const Index at = last_.cols();
+  first_.conservativeResize(Eigen::NoChange, at + 1);
+  last_.conservativeResize(Eigen::NoChange, at + 1);
+  first_.col(at) = of_first_.cwiseProduct(modal);
+  last_.col(at) = of_last_.cwiseProduct(modal);
+  return at;
 }
 
 void ModalSystem::reset() {

@@ -12,6 +12,10 @@ class ModalSystem {
   ModalSystem(const Eigen::MatrixXd& mass, const Eigen::MatrixXd& damping,
               const Eigen::MatrixXd& stiffness, const Eigen::MatrixXd& inputs, double step_s);
 
+  /// Adds an input; out: its index. per_mass: the acceleration of the coordinates that a unit of it
+  /// makes at rest.
+  Eigen::Index add_input(const Eigen::VectorXd& per_mass);
+
   /// Back to rest.
   void reset();
   /// To a state of motion: displacements and velocities of the coordinates, without inputs.
@@ -37,9 +41,10 @@ class ModalSystem {
  private:
   bool good_ = true;
   Eigen::Index coordinates_;
-  Eigen::MatrixXcd entry_;         ///< modes x 2 coordinates: from displacements and velocities
-  Eigen::MatrixXcd shapes_;        ///< 2 coordinates x modes, real part taken after weighting
-  Eigen::VectorXcd turn_;          ///< factor of each mode over a step
+  Eigen::MatrixXcd entry_;   ///< modes x 2 coordinates: from displacements and velocities
+  Eigen::MatrixXcd shapes_;  ///< 2 coordinates x modes, real part taken after weighting
+  Eigen::VectorXcd turn_;    ///< factor of each mode over a step
+  Eigen::VectorXcd of_first_, of_last_;  ///< weights of a mode's force at the step's start and end
   Eigen::MatrixXcd first_, last_;  ///< modes x inputs: weight of u at the step's start and end
   Eigen::VectorXcd state_;
   Eigen::VectorXcd before_;  ///< first_ * u at the start of the step

@@ -9,7 +9,7 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kFitSteps = 5;  ///< of each fit
+constexpr int kFitSteps = 5, kOnTheWay = 2;  ///< of the last fit, and of each before it
 
 /// A spring of another shape as the power law that stands for it.
 void as_power(ModelEffect& effect) {
@@ -77,7 +77,8 @@ Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segme
     shrink(&Model::mass_change, share, {});
     shrink(&Model::gain, share, out.free_gain);
     shrink(&Model::clock_s, share, out.free_clock);
-    const FitResult next = exact.fit(out, {}, thorough(out, kFitSteps));
+    const int steps = share > 0 ? kOnTheWay : kFitSteps;
+    const FitResult next = exact.fit(out, {}, thorough(out, steps));
     if (next.good) out = next.model;
   }
   return out;

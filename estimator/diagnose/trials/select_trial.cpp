@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "estimator/diagnose/fit/onset.h"
 
@@ -15,6 +14,7 @@ constexpr double kNearest = 0.75;      ///< the same of the nearest law
 constexpr double kSharp = 0.995;       ///< share above which a fit need not be sharpened
 constexpr double kBlunt = 0.4;         ///< share below which it is not worth it
 constexpr std::size_t kSharpened = 3;
+constexpr double kHopeless = 4;  ///< times the best cost: trials above it are not sharpened
 constexpr double kBehind = 2;    ///< reductions that are more than chance
 constexpr double kWorse = 1.02;  ///< misfit of a record, relative
 /// By how much an arbitrary force must be better than a law, of the misfit beyond noise.
@@ -40,14 +40,12 @@ bool is_arbitrary_force(const Trial& t) {
 }
 
 /// Fits the leading trials on with everything free. enough: cost above which more than chance is
-/// left; needed: a reduction that is more than chance. Where the best one leaves no more than
-/// chance, those far behind it are no rivals.
+/// left; needed: a reduction that is more than chance. Those far behind the best one are no rivals.
 void sharpen(const TrialContext& context, double enough, double needed,
              std::vector<Trial>& trials) {
   const Trial& best = trials.front();
   const bool done = best.cost <= enough && !is_arbitrary_force(best);
-  const double limit =
-      done ? best.cost + kBehind * needed : std::numeric_limits<double>::infinity();
+  const double limit = done ? best.cost + kBehind * needed : kHopeless * best.cost;
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
     if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit) return;

@@ -94,8 +94,7 @@ class Selection {
     CauseSet best = none_;
     std::vector<CauseSet> kept{none_};
     for (std::size_t size = 1; size <= kMostCauses && !kept.empty(); ++size) {
-      context_.progress("several causes together",
-                        static_cast<double>(size - 1) / static_cast<double>(kMostCauses));
+      context_.progress("several causes together");
       kept = larger(kept);
       const auto leads =
           std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });

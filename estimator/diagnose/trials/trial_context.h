@@ -16,7 +16,7 @@ struct TrialContext {
   const FitResult& now;                    ///< the model that is extended
   const std::vector<EffectKind>& without;  ///< excluded names
   const Parallel& parallel;
-  std::function<void(const std::string&, double)> progress;  ///< step, share of it
+  std::function<void(const std::string&)> progress;  ///< what is done now
 };
 
 /// Whether an effect is an axis' freed gain or clock rather than a member of the model's effects.

@@ -87,6 +87,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     const Candidate& candidate = candidates[static_cast<std::size_t>(i)];
     FitOptions options;
     options.max_steps = candidate.steps;
+    options.holds_tolerated = c.fitter.plant().is_large();
     first[static_cast<std::size_t>(i)] = {c.fitter.fit(candidate.model, candidate.motion, options),
                                           &candidate};
   });
@@ -102,6 +103,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     const FitResult from = free_run_start(c.fitter, std::move(kept[at].fit));
     FitOptions options = full_fit(from.model);
     options.max_steps = kTrialSteps;
+    options.holds_tolerated = c.fitter.plant().is_large();
     runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
   double least = 1e300;
@@ -177,7 +179,7 @@ Trial sharpened(const TrialContext& c, const Trial& trial, const Model& from) {
 
 std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisation>& places) {
   std::vector<std::vector<Proposal>> proposals(places.size());
-  c.progress("laws at " + std::to_string(places.size()) + " places", 0);
+  c.progress("laws at " + std::to_string(places.size()) + " places");
   run_all(c.parallel, static_cast<int>(places.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     proposals[at] = propose(c.fitter, places[at], 0);
@@ -195,7 +197,7 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
       candidates.push_back({p.model, places[i].motion, p.kind, p.place, {}, i, kFirstSteps});
     }
   }
-  c.progress(std::to_string(candidates.size()) + " laws", 0.3);
+  c.progress(std::to_string(candidates.size()) + " laws");
   return fit_all(c, candidates);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -22,6 +23,7 @@
 #include "estimator/diagnose/trials/trial_relations.h"
 #include "estimator/diagnose/trials/wrong_labels.h"
 #include "estimator/diagnose/verdict/ramps.h"
+#include "estimator/diagnose/verdict/search_progress.h"
 #include "estimator/diagnose/verdict/verdict.h"
 #include "estimator/diagnose/verdict/where.h"
 
@@ -38,16 +40,28 @@ constexpr double kClearer = 0.7;   ///< excess of a place's misfit over that of 
 constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong as right
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 
+/// Shares of the search at which a round looks for places, tries laws, and is over.
+struct RoundShares {
+  double where, trials, end;
+
+  /// Where pairs of places are tried before.
+  double laws() const { return trials + 0.3 * (end - trials); }
+};
+constexpr RoundShares kRounds[] = {{0.05, 0.15, 0.5}, {0.5, 0.57, 0.7}, {0.7, 0.72, 0.75}};
+
 class Search {
  public:
   Search(const Plant& plant, std::vector<RecordSegment>& segments, const DiagnosisOptions& options)
       : plant_(plant),
         segments_(segments),
+        progress_(options.progress, options.parallel),
         options_(options),
-        fitter_(plant, segments, options.tolerances) {}
+        fitter_(plant, segments, options.tolerances) {
+    options_.parallel = progress_.counted();
+  }
 
   Diagnosis run(std::vector<FoundEffect> ramps) {
-    report("linear model", 0.02);
+    progress_.begin("linear model", 0, 0.02);
     Model start = initial_model(plant_);
     out_.known = add_known(plant_, segments_, options_.known, start);
     add_modal_damping(plant_, start);
@@ -59,23 +73,25 @@ class Search {
     complete(now);
     out_.linear = now.model;
     out_.ratio_before = ratio(now);
-    report("labels", 0.05);
+    progress_.begin("labels", 0.02, 0.05);
     const std::vector<Trial> labels = wrong_labels(context_of(now));
     if (!labels.empty()) adopt(labels, now);
     search(now);
     if (out_.effects.empty()) search_with_free_damping(now);
-    report("what stays", 0.92);
+    progress_.begin("what stays", 0.75, 0.8);
     const bool several = find_several(now);
     if (!several) name_nearest(now);
     if (!out_.effects.empty() && !several) polish(now);
     name_by_shape(context_of(now), out_.effects);
     out_.ratio_after = ratio(now);
     out_.noise_corner_hz = segments_.front().corner_hz;
+    progress_.begin("models", 0.8, 0.9);
     set_models(now.model);
     mark_approximate(fitter_, out_);
     set_errors(fitter_, out_.model, now.motion, out_.effects);
     set_errors(fitter_, out_.model, now.motion, out_.known);
     out_.effects.insert(out_.effects.begin(), ramps.begin(), ramps.end());
+    progress_.begin("gaps", 0.9, 1);
     set_gaps(fitter_, options_, out_);
     if (ramps.empty() && withdraw_worse(options_.holdout_from, out_)) set_models(out_.linear);
     set_leading(fitter_, options_, out_);
@@ -84,10 +100,6 @@ class Search {
   }
 
  private:
-  void report(const std::string& what, double share) const {
-    if (options_.progress) options_.progress(what, share);
-  }
-
   FitResult fit(const Model& model, const std::vector<MatrixXcd>& motion, int steps) const {
     return fitter_.fit(model, motion, thorough(model, steps));
   }
@@ -95,7 +107,7 @@ class Search {
   void search(FitResult& now) {
     bool more = true;
     for (int round = 0; round < options_.rounds && more; ++round) {
-      more = one_round(now, round);
+      more = one_round(now, static_cast<std::size_t>(round));
       if (!out_.effects.empty()) complete(now);
     }
   }
@@ -139,16 +151,8 @@ class Search {
   }
 
   TrialContext context_of(const FitResult& now) const {
-    return {fitter_, now, options_.without, options_.parallel, [](const std::string&, double) {}};
-  }
-
-  /// With progress reports of a step that begins at the share `from` of the whole.
-  TrialContext context_of(const FitResult& now, double from) const {
-    TrialContext context = context_of(now);
-    context.progress = [this, from](const std::string& what, double share) {
-      report(what, from + 0.2 * share);
-    };
-    return context;
+    return {fitter_, now, options_.without, options_.parallel,
+            [this](const std::string& what) { progress_.say(what); }};
   }
 
   /// The models of the result. Where more than noise is left they are fitted to what they are
@@ -169,9 +173,9 @@ class Search {
     out_.declared = declared_model(plant_, segments, out_.model, {&out_.known, &out_.effects});
   }
 
-  bool one_round(FitResult& now, int round) {
-    const double begin = 0.06 + 0.28 * round;
-    report("where", begin);
+  bool one_round(FitResult& now, std::size_t round) {
+    const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
+    progress_.begin("where", shares.where, shares.trials, {0.4, 0.35});
     Located located = locate(fitter_, now, options_.parallel);
     if (located.places.empty()) return false;
     relocate_beside(context_of(now), out_.effects, located);
@@ -194,8 +198,12 @@ class Search {
     std::vector<Trial> trials;
     double bound = std::min(now.cost, bound_of(plant_, place));
     const bool pairs = place.ratio > kOnePlace;
-    const TrialContext context = context_of(now, begin + 0.05);
-    if (pairs) trials = trials_of_pairs(context, located, bound);
+    const TrialContext context = context_of(now);
+    if (pairs) {
+      progress_.begin("two places", shares.trials, shares.laws());
+      trials = trials_of_pairs(context, located, bound);
+    }
+    progress_.begin("laws", shares.trials, shares.end, {0.05, 0.2, 0.2, 0.2});
     append(trials, trials_of_places(context, located, small));
     bool holds = select_trial(context, bound, needed, trials);
     // Several forces at one place may be those of two effects.
@@ -238,8 +246,7 @@ class Search {
     if (!out_.effects.empty() || alone_ < kOnePlace ||
         fits_separately(fitter_, out_.linear, out_.ratio_before))
       return false;
-    SeveralCauses several =
-        several_causes(context_of(now, 0.7), out_.rejected, options_.holdout_from);
+    SeveralCauses several = several_causes(context_of(now), out_.rejected, options_.holdout_from);
     if (several.causes.empty()) return false;
     const FitResult together = fit(several.model, {}, 0);
     if (!together.good) return false;
@@ -322,7 +329,8 @@ class Search {
 
   const Plant& plant_;
   std::vector<RecordSegment>& segments_;  ///< their noise is coloured
-  const DiagnosisOptions& options_;
+  mutable SearchProgress progress_;
+  DiagnosisOptions options_;  ///< `parallel` tells the progress
   Fitter fitter_;
   Diagnosis out_;
   double to_beat_ = std::numeric_limits<double>::infinity();  ///< `alone_` of another search

@@ -57,6 +57,10 @@ struct Diagnosis {
   double noise_corner_hz = 0;                ///< RecordSegment::corner_hz; 0: the noise is white
 };
 
+/// What is done now, the share of the whole that is done, 0 to 1, and the share when the work that
+/// begins now is done.
+using TellProgress = std::function<void(const std::string& what, double done, double then)>;
+
 struct DiagnosisOptions {
   Tolerances tolerances;
   int rounds = 3;
@@ -64,8 +68,7 @@ struct DiagnosisOptions {
   std::vector<Effect> known;        ///< effects that the building is known to have
   std::vector<EffectKind> without;  ///< excluded names
   Parallel parallel;                ///< the result does not depend on it
-  /// Called with a name of the current step and the share of the whole that is done, 0 to 1.
-  std::function<void(const std::string&, double)> progress;
+  TellProgress progress;            ///< between the calls of `parallel`
 };
 
 }  // namespace framewatch::estimator

@@ -21,7 +21,7 @@ struct HandMade {
       : recorded(records, tolerances), now(recorded.linear()) {}
 
   estimator::TrialContext context() const {
-    return {recorded.fitter, now, without, one_after_another, [](const std::string&, double) {}};
+    return {recorded.fitter, now, without, one_after_another, [](const std::string&) {}};
   }
 
   /// A trial that was fitted to the end, `cheaper` than the model; no effect in it yet.

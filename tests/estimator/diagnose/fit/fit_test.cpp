@@ -33,6 +33,27 @@ Model with_mass(const Plant& plant) {
   return out;
 }
 
+TEST(Fit, MayHoldWhatIsTolerated) {
+  const Small small;
+  const Plant plant = small.plant();
+  const std::vector<RecordSegment> segments = small.segments({small.record({}, 1)});
+  const Fitter fitter(plant, segments, {});
+  Model start = initial_model(plant);
+  start.mass_change[1] = 0.004;
+  start.free_gain = {2};  // an effect
+  FitOptions options;
+  options.holds_tolerated = true;
+  const FitResult held = fitter.fit(start, {}, options);
+  ASSERT_TRUE(held.good);
+  EXPECT_EQ(held.model.mass_change, start.mass_change);
+  EXPECT_EQ(held.model.clock_s, start.clock_s);
+  EXPECT_EQ(held.model.gain[1], start.gain[1]);
+  EXPECT_NE(held.model.gain[2], start.gain[2]);
+  EXPECT_NE(held.model.theta, start.theta);
+  // What is held has its cost all the same.
+  EXPECT_DOUBLE_EQ(held.cost, held.total_misfit() + fitter.prior_cost(held.model));
+}
+
 /// A wrong gradient lets a fit creep, and what it leaves is taken for an effect.
 TEST(Fit, GradientIsThatOfTheMisfit) {
   constexpr double kStep = 0.01;       // of an unknown's deviation

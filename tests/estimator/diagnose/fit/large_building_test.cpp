@@ -6,6 +6,7 @@
 
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/fit/normal_equations.h"
+#include "estimator/diagnose/fit/run_columns.h"
 #include "estimator/diagnose/fit/sampled_bins.h"
 #include "estimator/diagnose/locate/localise.h"
 #include "estimator/structure/natural_frequencies.h"
@@ -104,6 +105,26 @@ TEST(LargeBuilding, AFitComesToTheNoise) {
   const double ratio = fit.total_misfit() / c.fitter.expected(fit.model);
   EXPECT_GT(ratio, kLow);
   EXPECT_LT(ratio, kHigh);
+}
+
+/// The modes of twenty stories take seconds, and a run much less.
+TEST(LargeBuilding, AStepThroughRunsComputesModesOnce) {
+  constexpr int kStory = 6, kFrame = 2;
+  const Case c;
+  EffectPlace place = test::frame_place(kFrame);
+  place.story = kStory;
+  const Model model = test::with_effects(initial_model(c.plant),
+                                         {test::effect_of(LawForm::friction, place, {20e3, 1e-3})});
+  RunCache cache;
+  const FitOptions options = thorough(model, 1);
+  const Linearised at = c.fitter.linearise(
+      model, c.fitter.systems(model, {}, options.forcing, nullptr, &cache), options, &cache);
+  ASSERT_EQ(at.systems.size(), 1U);
+  EXPECT_EQ(cache.computed(), 1);
+  const auto runs = std::count_if(at.unknowns.begin(), at.unknowns.end(),
+                                  [&](const Unknown& u) { return moves_run(c.plant, model, u); });
+  EXPECT_GT(runs, 3);   // the stiffnesses at the law and next to it, and the law's values
+  EXPECT_LT(runs, 10);  // of hundreds of unknowns
 }
 
 TEST(LargeBuilding, ThePlaceOfAHiddenLawIsFoundAmongAll) {

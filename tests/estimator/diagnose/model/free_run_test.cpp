@@ -131,6 +131,52 @@ TEST(FreeRun, AHarmonicForceActsFromItsOnset) {
   EXPECT_GT(miss(small, record, test::with_effects(model, {harmonic})), 2 * kTolerance);
 }
 
+/// A yielding frame of a building that is driven hard.
+struct Yielding {
+  Small small;
+  Plant plant = small.plant();
+  RecordSegment segment = segment_of(small, test::exact_record(small, {}, 2), 0);
+  Model model = test::with_effects(
+      test::true_model(small, plant),
+      {effect_of(LawForm::hysteresis, test::frame_place(kWatched), {2e6, 5e-4, 2, 0.5})});
+
+  FreeRun run(const Model& of, RunCache* cache,
+              const std::vector<SmallSpring>& springs = {}) const {
+    return free_run(plant, of, segment, 0, kRatio, cache, springs);
+  }
+};
+
+TEST(FreeRun, ASmallSpringIsAChangeOfStiffness) {
+  constexpr double kChange = 1e-3, kTolerance = 0.01;
+  const Yielding y;
+  const VectorXd before = y.run(y.model, nullptr).tracks.front().d;
+  for (const int frame : {kWatched, kWatched + 1}) {
+    const Index element = y.small.table.frame_stiffness(1, frame);
+    const double change = kChange * y.model.theta[element];
+    Model stiffer = y.model;
+    stiffer.theta[element] += change;
+    const VectorXd expected = y.run(stiffer, nullptr).tracks.front().d - before;
+    const VectorXd found = y.run(y.model, nullptr, {{element, change}}).tracks.front().d - before;
+    EXPECT_GT(expected.norm(), 0);
+    EXPECT_LT((found - expected).norm(), kTolerance * expected.norm()) << frame;
+  }
+}
+
+TEST(FreeRun, OfACacheIsTheSame) {
+  const Yielding y;
+  RunCache cache;
+  Model other = y.model, softer = y.model, late = y.model;
+  other.effects[0].parameters[1].value *= 0.7;
+  softer.theta[y.small.table.frame_stiffness(1, 0)] *= 0.9;
+  late.clock_s.setConstant(1e-3);
+  for (const Model& model : {y.model, other, softer, late, y.model}) {
+    const FreeRun cached = y.run(model, &cache), own = y.run(model, nullptr);
+    ASSERT_TRUE(cached.good);
+    EXPECT_EQ(cached.tracks.front().d, own.tracks.front().d);
+    EXPECT_EQ(cached.tracks.front().force, own.tracks.front().force);
+  }
+}
+
 TEST(FreeRun, TakesGainAndDelayOffTheBase) {
   constexpr double kTolerance = 2e-3, kGain = 0.1;
   constexpr Index kLate = 2;  // samples

@@ -265,6 +265,26 @@ TEST(Law, AskingForAForceChangesNothing) {
   EXPECT_NEAR(asked.force(-0.003, 0, 0), silent.force(-0.003, 7, 7), kRounding);
 }
 
+/// A step that is asked for one end after another ends as one that knew its end.
+TEST(Law, AStepOfHysteresisDoesNotRememberOtherEnds) {
+  const std::vector<LawValues> laws{
+      {LawForm::hysteresis, {kStiffness, kYields_m, 1.5, 0.4, 0.1, 0.05, -1}, 1, 1},
+      {LawForm::pinched, {kStiffness, kYields_m, 2, 0.5, 0.8, 0.3, 0.1, 2, 0.1, 0.2}, 1, 1},
+      {LawForm::slip_lock, {kStiffness, kYields_m, 1, 0.5, 0.8, 0.3}, 1, 1}};
+  for (const LawValues& law : laws) {
+    for (const double end : {-0.004, -1e-5, 1e-5, 0.004}) {
+      LawMotion fresh(law), asked(law);
+      for (LawMotion* motion : {&fresh, &asked})
+        for (const double d : {0.002, 0.005, 0.001}) {
+          motion->force(d, 0, 0);
+          motion->accept(d, 0, 0);
+        }
+      for (const double other : {0.01, -0.01, 0.0012}) asked.force(other, 0, 0);
+      EXPECT_EQ(asked.force(end, 0, 0), fresh.force(end, 0, 0));
+    }
+  }
+}
+
 TEST(Law, ForceOfAKnownMotionGoesThroughItsTime) {
   const LawValues law{LawForm::changing, {8, 0.25, 0.5}, 1, 1};
   const VectorXd force = law_force(law, VectorXd::Ones(5), VectorXd::Zero(5), 0.25);

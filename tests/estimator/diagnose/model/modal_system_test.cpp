@@ -120,6 +120,23 @@ TEST(ModalSystem, ACorrectedStepIsOnePredictedWhole) {
   }
 }
 
+TEST(ModalSystem, AnAddedInputActsLikeOneFromTheBegin) {
+  const Chain chain(0.8);
+  Chain less = chain;
+  less.inputs = chain.inputs.leftCols(1);
+  ModalSystem whole = chain.system(0.1), added = less.system(0.1);
+  EXPECT_EQ(added.add_input(inverse(chain.mass) * chain.inputs.col(1)), 1);
+  const ModalSystem::Observer seen = added.observe(Eigen::Vector3d(1, -1, 0.3));
+  Random random(7);
+  for (int i = 0; i < 20; ++i) {
+    const VectorXd input = Eigen::Vector2d(random.normal(), random.normal());
+    whole.predict(input);
+    added.predict(input);
+    EXPECT_NEAR(added.displacement(seen), whole.displacement(seen), kRounding);
+    EXPECT_NEAR(added.velocity(seen), whole.velocity(seen), kRounding);
+  }
+}
+
 TEST(ModalSystem, RestsUntilItIsPushedAndAgainAfterReset) {
   const Chain chain(0.8);
   ModalSystem system = chain.system(0.1);

@@ -170,8 +170,8 @@ TEST(AdoptTrials, AForceThatMayBeAnythingYieldsToALaw) {
   EXPECT_EQ(trials[0].kind, EffectKind::unmeasured_force);
 }
 
-TEST(AdoptTrials, ABluntFitIsSharpened) {
-  // A mass that is hidden, in a trial that has half of it.
+TEST(AdoptTrials, ABluntFitIsSharpenedUnlessItIsHopeless) {
+  // A mass that is hidden, in a trial that has half of it; and in one far behind.
   constexpr double kMass_kg = 6000, kOff = 0.1;
   HandMade made(test::records_with(
       {test::effect_of(EffectKind::extra_mass, test::at_crossing(1), {kMass_kg})}));
@@ -188,9 +188,12 @@ TEST(AdoptTrials, ABluntFitIsSharpened) {
   made.now.cost = 10 * begun.cost;  // the trial has most of it
   half.cost = begun.cost;
   half.misfit = begun.misfit;
-  std::vector<Trial> trials{half};
+  Trial hopeless = half;
+  hopeless.cost = 4.2 * begun.cost;
+  std::vector<Trial> trials{half, hopeless};
   select_trial(made.context(), 0.8 * expected, kNeeded, trials);
   EXPECT_LT(trials[0].cost, begun.cost);
+  EXPECT_EQ(trials[1].cost, hopeless.cost);
   EXPECT_NEAR(trials[0].model.effects.back().parameters[0].plain() / kMass_kg, 1, kOff);
 }
 

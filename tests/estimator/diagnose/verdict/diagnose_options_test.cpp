@@ -80,10 +80,11 @@ TEST(DiagnoseOptions, ItTellsHowFarItIsInOrder) {
   DiagnosisOptions options;
   double last = 0;
   int told = 0;
-  options.progress = [&](const std::string& what, double share) {
+  options.progress = [&](const std::string& what, double share, double then) {
     EXPECT_FALSE(what.empty());
     EXPECT_GE(share, last) << what;
-    EXPECT_LE(share, 1) << what;
+    EXPECT_GE(then, share) << what;
+    EXPECT_LE(then, 1) << what;
     last = share;
     ++told;
   };
