@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "estimator/diagnose/fit/judged_fit.h"
@@ -333,8 +332,8 @@ class Search {
   DiagnosisOptions options_;  ///< `parallel` tells the progress
   Fitter fitter_;
   Diagnosis out_;
-  double to_beat_ = std::numeric_limits<double>::infinity();  ///< `alone_` of another search
-  double alone_ = 0;  ///< Localisation::ratio of the likeliest place, in the last round
+  double to_beat_ = 1e300;  ///< `alone_` of another search
+  double alone_ = 0;        ///< Localisation::ratio of the likeliest place, in the last round
 };
 
 }  // namespace
