@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "estimator/diagnose/model/upsampled.h"
+#include "estimator/diagnose/spectra/upsampled.h"
 
 namespace framewatch::estimator {
 namespace {

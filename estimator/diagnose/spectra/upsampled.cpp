@@ -1,4 +1,4 @@
-#include "estimator/diagnose/model/upsampled.h"
+#include "estimator/diagnose/spectra/upsampled.h"
 
 #include <algorithm>
 #include <cmath>
