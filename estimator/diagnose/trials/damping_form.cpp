@@ -61,12 +61,19 @@ void hold_at_zero(Model& model, std::size_t effect) {
   model.effects[effect].parameters[0].free = false;
 }
 
-/// The ratios that a quadratic model of the cost says are not worth their price, the one that costs
-/// least first, all else refitted.
-std::vector<std::size_t> needless(const Fitter& fitter, const std::vector<std::size_t>& ratios,
-                                  const FitResult& now) {
+/// A model without some ratios, and where a quadratic model of the cost says that its fit ends.
+struct Fewer {
+  Model model;
+  std::size_t removed = 0;
+};
+
+/// Without the ratios that are not worth their price, the one that costs least first, all else
+/// fitted again.
+Fewer without_needless(const Fitter& fitter, const std::vector<std::size_t>& ratios,
+                       const FitResult& now) {
+  Fewer out{now.model};
   std::vector<Whitened> systems = fitter.systems(now.model, now.motion, forcing_of(now.model));
-  if (systems.empty()) return {};
+  if (systems.empty()) return out;
   const Linearised at = fitter.linearise(now.model, std::move(systems), true);
   MatrixXd normal = normal_equations(at).normal;
   normal.diagonal() += at.prior;
@@ -75,7 +82,7 @@ std::vector<std::size_t> needless(const Fitter& fitter, const std::vector<std::s
   scaled.diagonal().array() += 1e-10;
   MatrixXd spread = inverse(scaled);  // of the values, by their scale
   const double price = price_of(fitter, now);
-  std::vector<std::size_t> out;
+  std::vector<Index> gone;
   VectorXd value = VectorXd::Zero(spread.rows());
   std::vector<Index> left;
   for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
@@ -86,29 +93,33 @@ std::vector<std::size_t> needless(const Fitter& fitter, const std::vector<std::s
                                static_cast<std::size_t>(at.unknowns[u].index)) != ratios.end();
     if (own) left.push_back(static_cast<Index>(u));
   }
+  const VectorXd before = value;
   while (!left.empty()) {
     const auto loss = [&](Index u) { return value[u] * value[u] / spread(u, u); };
     const auto least = std::min_element(left.begin(), left.end(),
                                         [&](Index a, Index b) { return loss(a) < loss(b); });
     const Index u = *least;
     if (loss(u) > price) break;
-    out.push_back(static_cast<std::size_t>(at.unknowns[static_cast<std::size_t>(u)].index));
+    gone.push_back(u);
     left.erase(least);
     const VectorXd column = spread.col(u);
     value -= column * (value[u] / spread(u, u));
     spread -= column * column.transpose() / spread(u, u);
   }
+  out.model = fitter.moved(now.model, at.unknowns, scale.cwiseProduct(value - before));
+  for (const Index u : gone)
+    hold_at_zero(out.model,
+                 static_cast<std::size_t>(at.unknowns[static_cast<std::size_t>(u)].index));
+  out.removed = gone.size();
   return out;
 }
 
 /// Goes on without the ratios that are not worth their price.
 void remove_needless(const Fitter& fitter, const std::vector<std::size_t>& ratios, FitResult& now) {
-  const std::vector<std::size_t> gone = needless(fitter, ratios, now);
-  if (gone.empty()) return;
-  Model less = now.model;
-  for (const std::size_t e : gone) hold_at_zero(less, e);
-  FitResult without = fitter.fit(less, now.motion, thorough(less, kStepsWithout));
-  const double price = static_cast<double>(gone.size()) * price_of(fitter, now);
+  const Fewer fewer = without_needless(fitter, ratios, now);
+  if (fewer.removed == 0) return;
+  FitResult without = fitter.fit(fewer.model, now.motion, thorough(fewer.model, kStepsWithout));
+  const double price = static_cast<double>(fewer.removed) * price_of(fitter, now);
   if (without.good && without.cost < now.cost + price) now = std::move(without);
 }
 
