@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kExplains = 0.97;  ///< share of the misfit beyond noise, else a law is not named
 constexpr double kExplainsMost = 0.9;  ///< the same where the rest is within chance
-constexpr double kNearest = 0.75;      ///< the same of the nearest law
+constexpr double kNearest = 0.8;       ///< the same of the nearest law
 constexpr double kSharp = 0.995;       ///< share above which a fit need not be sharpened
 constexpr double kBlunt = 0.4;         ///< share below which it is not worth it
 constexpr std::size_t kSharpened = 3;

@@ -51,7 +51,7 @@ TEST(AdoptTrials, NoneIsAdoptedWhenNoneWasFitted) {
 }
 
 TEST(NearestLaw, IsAnElementsAndTakesMostOfTheMisfit) {
-  constexpr double kNearest = 0.75;
+  constexpr double kNearest = 0.8;
   HandMade made;
   made.now.misfit[0] += kExcess;
   made.now.cost += kExcess;
