@@ -191,6 +191,11 @@ std::string peak(const estimator::WhereEntry& w) {
 }
 
 std::string where_section(const DiagnoseOutput& o) {
+  if (o.diagnosis.verdict == estimator::Verdict::adequate)
+    return fmt::format(
+        "<h2>Where</h2>\n<p>Nowhere: the linear model leaves {:.3g} times the sensors' "
+        "noise.</p>\n",
+        o.diagnosis.ratio_before);
   std::vector<std::vector<std::string>> rows;
   for (const estimator::WhereEntry& w : o.diagnosis.where)
     rows.push_back(
