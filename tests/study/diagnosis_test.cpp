@@ -47,7 +47,7 @@ TEST(Diagnose, CubicFrameIsPlacedNamedAndSized) {
   EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::cubic_stiffness);
   EXPECT_EQ(d.effects[0].chosen.place, place);
   EXPECT_LT(d.effects[0].after, d.effects[0].before);
-  const ModelEffect& e = d.model.effects[0];
+  const ModelEffect& e = d.model.effects.back();
   EXPECT_NEAR(e.parameters[0].plain() / std::pow(e.deformation, 3) / 8e10, 1, kTolerance);
 }
 
@@ -77,8 +77,8 @@ TEST(Diagnose, ADropIsTimedByAllRecordsTogether) {
   ASSERT_EQ(d.effects.size(), 1U);
   EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::stiffness_drop);
   EXPECT_EQ(d.effects[0].chosen.place, place);
-  EXPECT_NEAR(d.model.effects[0].parameters[0].plain() / change, 1, 0.1);
-  EXPECT_NEAR(d.model.effects[0].record_parameters[0][0].plain(), 14, 0.5);
+  EXPECT_NEAR(d.model.effects.back().parameters[0].plain() / change, 1, 0.1);
+  EXPECT_NEAR(d.model.effects.back().record_parameters[0][0].plain(), 14, 0.5);
 }
 
 TEST(Diagnose, AHarmonicForceBeginsWhenItDoes) {
@@ -97,7 +97,7 @@ TEST(Diagnose, AHarmonicForceBeginsWhenItDoes) {
   const Diagnosis d = diagnosis_of(small, {small.record({force}, 1), small.record({late}, 2)});
   ASSERT_EQ(d.effects.size(), 1U);
   EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::unmeasured_force);
-  const ModelEffect& e = d.model.effects[0];
+  const ModelEffect& e = d.model.effects.back();
   EXPECT_LT(e.onset_s[0], kNear_s);
   EXPECT_NEAR(e.onset_s[1], kFrom_s, kNear_s);
   for (const std::vector<LawParameter>& waves : e.record_parameters)
