@@ -12,7 +12,7 @@
 namespace framewatch::estimator {
 
 /// What moves a building from outside, as its axes show it: the base's translations and rotation
-/// about the vertical, its rocking as the base's verticals show it (docs/equations.md, rocking),
+/// about the vertical, its rocking as the base's verticals show it (docs/equations.md),
 /// forces. What no axis shows counts as none.
 struct MeasuredInputs {
   Inputs inputs;
