@@ -14,6 +14,7 @@ struct FoundEffect {
   double confidence = 0;            ///< in the name, 0 to 1
   /// More than noise is left: the effect differs from the law of its name, or another one acts too.
   bool approximate = false;
+  bool nearest = false;  ///< explains too little to be it: named in doubt, because nothing else is
   /// Held-out gap of the models with the effects before this one, and with it.
   double before = 0, after = 0;
   int index = -1;                 ///< among the model's effects; -1: gain or clock of an axis

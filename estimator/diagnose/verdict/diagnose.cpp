@@ -265,8 +265,7 @@ class Search {
     return true;
   }
 
-  /// Where no law explains enough to hold: the best one of an element, in doubt, if it takes most
-  /// of the misfit.
+  /// Where no law explains enough to hold: the best one of an element that takes most of it.
   void name_nearest(FitResult& now) {
     if (!out_.effects.empty() || out_.rejected.empty() || !out_.reason.empty() ||
         !is_nearest_law(context_of(now), out_.rejected.front()) ||
@@ -274,6 +273,7 @@ class Search {
       return;
     adopt(std::exchange(out_.rejected, {}), now);
     out_.effects.front().confidence = std::min(out_.effects.front().confidence, kDoubtful);
+    out_.effects.front().nearest = true;
     complete(now);
   }
 

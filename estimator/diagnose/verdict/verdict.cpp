@@ -217,11 +217,12 @@ void judge(const Fitter& fitter, Diagnosis& out) {
   }
   const double fraction =
       (out.ratio_before - out.ratio_after) / std::max(out.ratio_before - 1, 1e-9);
-  // An arbitrary force does as well as any law: it explains nothing.
+  // An arbitrary force does as well as any law: it explains nothing. Nor does a law that is near.
   const bool surrogate =
       std::any_of(out.effects.begin(), out.effects.end(), [&](const FoundEffect& e) {
-        return e.index >= 0 &&
-               out.model.effects[static_cast<std::size_t>(e.index)].form == LawForm::broadband;
+        return e.nearest ||
+               (e.index >= 0 &&
+                out.model.effects[static_cast<std::size_t>(e.index)].form == LawForm::broadband);
       });
   // A linear effect has no shape of its own: what it leaves beyond chance is another one's.
   const bool another =

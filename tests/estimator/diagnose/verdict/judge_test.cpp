@@ -140,6 +140,9 @@ TEST(Judge, AnArbitraryForceExplainsNothing) {
   d.effects[0].index = 0;
   d.model.effects.emplace_back();
   EXPECT_EQ(judged(d), Verdict::explained);
+  d.effects[0].nearest = true;
+  EXPECT_EQ(judged(d), Verdict::partly_explained) << "of no law that is only near";
+  d.effects[0].nearest = false;
   d.model.effects[0].form = LawForm::broadband;
   EXPECT_EQ(judged(d), Verdict::partly_explained);
 }
