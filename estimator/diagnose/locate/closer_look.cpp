@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
-constexpr int kIterations = 6;
+constexpr int kIterations = 4;
 
 /// equations x directions of a list's places in one bin.
 MatrixXcd directions_of(const std::vector<CandidatePlace>& places, const MatrixXcd& operation) {
@@ -106,20 +106,27 @@ MatrixXd curvature_times(const Linearised& at, const std::vector<Index>& kept,
 
 std::vector<CloserLook> closer_looks(const Linearised& at, const std::vector<Index>& kept,
                                      const std::vector<std::vector<CandidatePlace>>& lists,
-                                     const std::vector<LeftByPlaces>& left,
-                                     const PositiveSolver& curvature) {
+                                     const std::vector<NormalEquations>& equations) {
   const auto count = static_cast<Index>(kept.size()), width = static_cast<Index>(lists.size());
   VectorXd prior(count), pull(count);
   for (Index i = 0; i < count; ++i) {
     prior[i] = at.prior[kept[static_cast<std::size_t>(i)]] / at.level;
     pull[i] = at.pull[kept[static_cast<std::size_t>(i)]] / at.level;
   }
+  std::vector<Ldlt> direct;
   MatrixXd right(count, width);
-  for (Index l = 0; l < width; ++l)
-    right.col(l) = pull - left[static_cast<std::size_t>(l)].gradient;
+  for (Index l = 0; l < width; ++l) {
+    const NormalEquations& own = equations[static_cast<std::size_t>(l)];
+    MatrixXd normal = own.normal;
+    normal.diagonal() += prior;
+    normal.diagonal().array() += 1e-12 + 1e-9 * normal.diagonal().array();
+    direct.emplace_back(normal);
+    right.col(l) = pull - own.gradient;
+  }
   const auto directed = [&](const MatrixXd& rest) {
     MatrixXd out(count, width);
-    for (Index l = 0; l < width; ++l) out.col(l) = curvature.solve(VectorXd(rest.col(l)));
+    for (Index l = 0; l < width; ++l)
+      out.col(l) = direct[static_cast<std::size_t>(l)].solve(VectorXd(rest.col(l)));
     return out;
   };
   MatrixXd x = MatrixXd::Zero(count, width), rest = right, z = directed(rest), p = z;
@@ -142,7 +149,7 @@ std::vector<CloserLook> closer_looks(const Linearised& at, const std::vector<Ind
   }
   std::vector<CloserLook> out;
   for (Index l = 0; l < width; ++l) {
-    const LeftByPlaces& own = left[static_cast<std::size_t>(l)];
+    const NormalEquations& own = equations[static_cast<std::size_t>(l)];
     const VectorXd step = x.col(l);
     const VectorXd bent = right.col(l) - rest.col(l) - prior.cwiseProduct(step);  // normal * step
     out.push_back({step, own.misfit + step.dot(bent) + 2 * step.dot(own.gradient)});

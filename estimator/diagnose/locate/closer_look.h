@@ -5,8 +5,8 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/fit/linearised.h"
+#include "estimator/diagnose/fit/normal_equations.h"
 #include "estimator/diagnose/locate/candidate_places.h"
-#include "estimator/numeric/positive_solver.h"
 
 namespace framewatch::estimator {
 
@@ -16,18 +16,11 @@ struct CloserLook {
   double left = 0;       ///< misfit after it, as the linearised equations have it
 };
 
-/// What a list's places leave: the unknowns' products with the residual, and its own
-/// (last_without).
-struct LeftByPlaces {
-  Eigen::VectorXd gradient;
-  double misfit = 0;
-};
-
-/// Of a large building, for each list of places: the step by conjugate gradients, directed by the
-/// curvature without places. left: of each list, of all segments.
+/// Of a large building, for each list of places: the step by conjugate gradients, with the list's
+/// own normal equations from sampled bins (without_sampled) to start and to direct it.
+/// equations: of each list, of all segments, their gradients and misfits those of all bins.
 std::vector<CloserLook> closer_looks(const Linearised& at, const std::vector<Eigen::Index>& kept,
                                      const std::vector<std::vector<CandidatePlace>>& lists,
-                                     const std::vector<LeftByPlaces>& left,
-                                     const PositiveSolver& curvature);
+                                     const std::vector<NormalEquations>& equations);
 
 }  // namespace framewatch::estimator

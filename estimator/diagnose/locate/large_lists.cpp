@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/sampled_bins.h"
-#include "estimator/diagnose/locate/few_products.h"
 #include "estimator/diagnose/locate/place_products.h"
 #include "estimator/diagnose/spectra/row_gram.h"
 #include "estimator/numeric/complex.h"
-#include "estimator/numeric/positive_solver.h"
+#include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
 
@@ -23,6 +21,16 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr std::size_t kListsTogether = 256;
+
+/// Adds real(C^H c) of a list's orthonormal directions; c: their products with the residual, the
+/// last of the columns C.
+void add_last(const PlaceProducts& places, VectorXd& sum) {
+  for (Index i = 0; i < places.columns.rows(); ++i) {
+    const Complex last = places.columns(i, places.columns.cols() - 1);
+    sum += places.columns.row(i).real().transpose() * last.real() +
+           places.columns.row(i).imag().transpose() * last.imag();
+  }
+}
 
 /// The directions of a list's places; those of axes change from bin to bin.
 class Directions {
@@ -40,7 +48,7 @@ class Directions {
     }
   }
 
-  /// As FewProducts::add(), from products that are there.
+  /// Adds what add_last() adds, without orthonormal directions.
   void add(const BinProducts& products, VectorXd& sum) const {
     const auto count = static_cast<Index>(forces_.size());
     MatrixXcd square(count, count), columns(count, sum.size());
@@ -50,11 +58,20 @@ class Directions {
         square(i, j) = products.between(at(products, i), at(products, j));
         square(j, i) = std::conj(square(i, j));
       }
+      square(i, i) *= 1 + kRegular;
     }
-    add_explained(std::move(square), columns, sum);
+    const VectorXcd last = columns.col(columns.cols() - 1);
+    const VectorXcd size =
+        count == 1 ? VectorXcd(last / square(0, 0).real()) : VectorXcd(solve_ldlt(square, last));
+    if (!size.allFinite()) return;
+    for (Index i = 0; i < count; ++i)
+      sum += columns.row(i).real().transpose() * size[i].real() +
+             columns.row(i).imag().transpose() * size[i].imag();
   }
 
  private:
+  static constexpr double kRegular = 1e-9;
+
   const BinProducts::Direction& at(const BinProducts& products, Index i) const {
     const int axis = axes_[static_cast<std::size_t>(i)];
     return axis < 0 ? forces_[static_cast<std::size_t>(i)] : products.of_axis(axis);
@@ -71,12 +88,18 @@ std::vector<MatrixXd> without_sampled(const MatrixXd& square, const Linearised& 
                                       std::span<const std::vector<CandidatePlace>> lists) {
   const std::vector<SampledBin> sampled = sampled_bins(at, record);
   std::vector<RowGram> along(lists.size(), RowGram(square.cols()));
+  std::vector<VectorXd> last(lists.size(), VectorXd::Zero(square.cols()));
   BinProducts products(at, record, kept);
-  for (const SampledBin& one : sampled) {
-    products.compute(one.bin);
-    const double root = std::sqrt(one.weight);
+  auto next = sampled.begin();
+  for (Index b = 0; b < at.systems[record].bins(); ++b) {
+    products.compute(b);
+    const bool taken = next != sampled.end() && next->bin == b;
+    const double root = taken ? std::sqrt(next->weight) : 0;
+    if (taken) ++next;
     for (std::size_t i = 0; i < lists.size(); ++i) {
       const PlaceProducts places = place_products(products, lists[i]);
+      add_last(places, last[i]);
+      if (!taken) continue;
       const Index count = places.columns.rows();
       auto rows = along[i].rows(2 * count);
       rows.topRows(count) = root * places.columns.real();
@@ -84,50 +107,28 @@ std::vector<MatrixXd> without_sampled(const MatrixXd& square, const Linearised& 
       along[i].add();
     }
   }
-  const std::vector<VectorXd> last = last_without(square, at, record, kept, lists);
   std::vector<MatrixXd> out;
   const Index end = square.cols() - 1;
   for (std::size_t i = 0; i < lists.size(); ++i) {
     MatrixXd& one = out.emplace_back(square - along[i].sum());
-    one.col(end) = last[i];
-    one.row(end) = last[i].transpose();
+    one.col(end) = square.col(end) - last[i];
+    one.row(end) = one.col(end).transpose();
   }
   return out;
-}
-
-std::vector<VectorXd> last_without(const MatrixXd& square, const Linearised& at, std::size_t record,
-                                   const std::vector<Index>& kept,
-                                   std::span<const std::vector<CandidatePlace>> lists) {
-  std::vector<VectorXd> taken(lists.size(), VectorXd::Zero(square.cols()));
-  FewProducts few(at, record, kept);
-  for (Index b = 0; b < at.systems[record].bins(); ++b) {
-    few.set_bin(b);
-    for (std::size_t i = 0; i < lists.size(); ++i) few.add(lists[i], taken[i]);
-  }
-  std::vector<VectorXd> out;
-  for (const VectorXd& one : taken) out.push_back(square.col(square.cols() - 1) - one);
-  return out;
-}
-
-PositiveSolver curvature_of(const Linearised& at, const std::vector<Index>& kept,
-                            const std::vector<MatrixXd>& squares) {
-  const auto count = static_cast<Index>(kept.size());
-  MatrixXd normal = MatrixXd::Zero(count, count);
-  for (const MatrixXd& one : squares) normal += one.topLeftCorner(count, count);
-  for (Index i = 0; i < count; ++i)
-    normal(i, i) += at.prior[kept[static_cast<std::size_t>(i)]] / at.level;
-  normal.diagonal() *= 1 + 1e-9;
-  return PositiveSolver(normal);
 }
 
 std::vector<double> rough_misfits(const Linearised& at, const std::vector<Index>& kept,
                                   const std::vector<MatrixXd>& squares,
-                                  const PositiveSolver& curvature,
                                   const std::vector<std::vector<CandidatePlace>>& lists,
                                   const Parallel& parallel) {
   const auto count = static_cast<Index>(kept.size());
-  VectorXd whole = VectorXd::Zero(count + 1);
-  for (const MatrixXd& one : squares) whole += one.col(count);
+  MatrixXd square = MatrixXd::Zero(count + 1, count + 1);
+  for (const MatrixXd& one : squares) square += one;
+  MatrixXd normal = square.topLeftCorner(count, count);
+  for (Index i = 0; i < count; ++i)
+    normal(i, i) += at.prior[kept[static_cast<std::size_t>(i)]] / at.level;
+  normal.diagonal() *= 1 + 1e-9;
+  const Ldlt factor(normal);
   std::vector<double> out(lists.size());
   const std::size_t groups = (lists.size() + kListsTogether - 1) / kListsTogether;
   run_all(parallel, static_cast<int>(groups), [&](int group) {
@@ -145,9 +146,9 @@ std::vector<double> rough_misfits(const Linearised& at, const std::vector<Index>
       }
     }
     for (std::size_t i = first; i < end; ++i) {
-      const VectorXd rest = whole - last[i - first];
+      const VectorXd rest = square.col(count) - last[i - first];
       const VectorXd gradient = rest.head(count);
-      out[i] = rest[count] - gradient.dot(curvature.solve(gradient));
+      out[i] = rest[count] - gradient.dot(factor.solve(gradient));
     }
   });
   return out;

@@ -8,7 +8,6 @@
 #include "estimator/diagnose/fit/linearised.h"
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/numeric/parallel.h"
-#include "estimator/numeric/positive_solver.h"
 
 namespace framewatch::estimator {
 
@@ -20,23 +19,11 @@ std::vector<Eigen::MatrixXd> without_sampled(const Eigen::MatrixXd& square, cons
                                              const std::vector<Eigen::Index>& kept,
                                              std::span<const std::vector<CandidatePlace>> lists);
 
-/// Of each list only the last column of that square: the unknowns' products with the residual, and
-/// its own.
-std::vector<Eigen::VectorXd> last_without(const Eigen::MatrixXd& square, const Linearised& at,
-                                          std::size_t record, const std::vector<Eigen::Index>& kept,
-                                          std::span<const std::vector<CandidatePlace>> lists);
-
-/// Solves with the curvature of a step of the unknowns `kept` without arbitrary signals. squares:
-/// of square_of(), of each segment.
-PositiveSolver curvature_of(const Linearised& at, const std::vector<Eigen::Index>& kept,
-                            const std::vector<Eigen::MatrixXd>& squares);
-
 /// Of each list, the misfit that arbitrary signals at its places and one step of the unknowns
-/// `kept` leave, the curvature of the step being that without such signals, curvature_of(): never
-/// less than what is left. squares: of square_of(), of each segment.
+/// `kept` leave, the curvature of the step being that without such signals: never less than what is
+/// left. squares: of square_of(), of each segment.
 std::vector<double> rough_misfits(const Linearised& at, const std::vector<Eigen::Index>& kept,
                                   const std::vector<Eigen::MatrixXd>& squares,
-                                  const PositiveSolver& curvature,
                                   const std::vector<std::vector<CandidatePlace>>& lists,
                                   const Parallel& parallel);
 

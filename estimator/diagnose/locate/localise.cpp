@@ -28,9 +28,14 @@ constexpr std::size_t kCloser = 64;
 /// Which unknowns a step may change; masses, gains and clocks within tolerance only if
 /// `tolerances`.
 std::vector<Index> moving(const Linearised& at, bool tolerances) {
+  using Kind = Unknown::Kind;
   std::vector<Index> out;
-  for (std::size_t u = 0; u < at.unknowns.size(); ++u)
-    if (tolerances || !is_tolerated(at.unknowns[u])) out.push_back(static_cast<Index>(u));
+  for (std::size_t u = 0; u < at.unknowns.size(); ++u) {
+    const Unknown& unknown = at.unknowns[u];
+    const bool tolerated =
+        unknown.kind == Kind::mass || unknown.kind == Kind::gain || unknown.kind == Kind::clock;
+    if (tolerances || !tolerated || unknown.sigma <= 0) out.push_back(static_cast<Index>(u));
+  }
   return out;
 }
 
@@ -110,28 +115,6 @@ std::vector<Reduced> reduce(const Fitter& fitter, const Linearised& at, const Mo
   return out;
 }
 
-/// The same of a large building without the products of the unknowns with each other.
-std::vector<Reduced> reduce_large(const Fitter& fitter, const Linearised& at, const Model& model,
-                                  const std::vector<Index>& kept,
-                                  const std::vector<MatrixXd>& squares,
-                                  std::span<const std::vector<CandidatePlace>> lists) {
-  const auto count = static_cast<Index>(kept.size());
-  const double n = static_cast<double>(fitter.plant().read_equations());
-  std::vector<Reduced> out(lists.size(), {{MatrixXd(), VectorXd::Zero(count), 0}, 0, {}});
-  for (std::size_t r = 0; r < at.systems.size(); ++r) {
-    const std::vector<VectorXd> last = last_without(squares[r], at, r, kept, lists);
-    for (std::size_t i = 0; i < lists.size(); ++i) {
-      const double expected =
-          fitter.expected(r, model) * (1 - static_cast<double>(size_of(lists[i])) / n);
-      out[i].equations.gradient += last[i].head(count);
-      out[i].equations.misfit += last[i][count];
-      out[i].expected += expected;
-      out[i].record_ratio.push_back(last[i][count] / expected);
-    }
-  }
-  return out;
-}
-
 /// Change of the unknowns `kept`.
 VectorXd step_of(const Reduced& reduced, const Linearised& at, const Model& model, double level,
                  const std::vector<Index>& kept) {
@@ -203,12 +186,10 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     whole(kept) = step;
     one.model = fitter.moved(model, at.unknowns, whole);
   };
-  const bool large = fitter.plant().is_large();
-  const PositiveSolver curvature = large ? curvature_of(at, kept, squares) : PositiveSolver();
   std::vector<std::size_t> chosen(lists.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
-  if (large && lists.size() > kCloser) {
-    const std::vector<double> left = rough_misfits(at, kept, squares, curvature, lists, parallel);
+  if (fitter.plant().is_large() && lists.size() > kCloser) {
+    const std::vector<double> left = rough_misfits(at, kept, squares, lists, parallel);
     for (std::size_t i = 0; i < lists.size(); ++i) {
       out[i].candidate_places = lists[i];
       out[i].misfit = left[i] + prior;
@@ -219,6 +200,7 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     chosen.resize(kCloser);
   }
   const auto numbers = static_cast<std::size_t>(squares.empty() ? 1 : squares.front().size());
+  const bool large = fitter.plant().is_large();
   const std::size_t at_once =
       large ? kCloser / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMostTogether);
   const std::size_t groups = (chosen.size() + at_once - 1) / at_once;
@@ -227,15 +209,12 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
     std::vector<std::vector<CandidatePlace>> together;
     for (std::size_t i = first; i < std::min(first + at_once, chosen.size()); ++i)
       together.push_back(lists[chosen[i]]);
-    const std::vector<Reduced> reduced =
-        large ? reduce_large(fitter, at, model, kept, squares, together)
-              : reduce(fitter, at, model, kept, squares, together);
+    const std::vector<Reduced> reduced = reduce(fitter, at, model, kept, squares, together);
     std::vector<CloserLook> closer;
     if (large) {
-      std::vector<LeftByPlaces> left;
-      for (const Reduced& one : reduced)
-        left.push_back({one.equations.gradient, one.equations.misfit});
-      closer = closer_looks(at, kept, together, left, curvature);
+      std::vector<NormalEquations> equations;
+      for (const Reduced& one : reduced) equations.push_back(one.equations);
+      closer = closer_looks(at, kept, together, equations);
     }
     for (std::size_t i = 0; i < reduced.size(); ++i)
       store(chosen[first + i], reduced[i], large ? &closer[i] : nullptr);
