@@ -128,6 +128,13 @@ VectorXd LeastSquares::solve(const VectorXd& right) const {
   return factor_->qr.solve(right);
 }
 
+VectorXd solve_positive(const MatrixXd& symmetric, const VectorXd& right) {
+  constexpr Eigen::Index kPays = 200;  // unknowns
+  if (symmetric.cols() >= kPays)
+    if (const Cholesky quick(symmetric); quick.good()) return quick.solve(MatrixXd(right));
+  return Ldlt(symmetric).solve(right);
+}
+
 MatrixXd orthogonal_basis(const MatrixXd& tall) {
   return Eigen::HouseholderQR<MatrixXd>(tall).householderQ();
 }

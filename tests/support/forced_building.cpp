@@ -20,13 +20,9 @@ ForcedBuilding::ForcedBuilding(const Structure& s, const Eigen::VectorXd& theta,
   const Eigen::MatrixXd t = floor_constraint(s);
   const Eigen::MatrixXd inverse_mass = inverse(t.transpose() * m.mass.asDiagonal() * t);
   const Eigen::Index q = t.cols();
-  Eigen::MatrixXd ground = Eigen::MatrixXd::Zero(s.degrees_of_freedom(), 2);
-  for (int story = 1; story <= s.stories; ++story)
-    for (int f = 0; f < s.frames(); ++f)
-      ground(s.dof(story, f), s.direction(f) == Direction::x ? 0 : 1) = 1;
   Eigen::MatrixXd input(q, 3);  // force, ground
   input << inverse_mass * t.transpose() * lever_,
-      -inverse_mass * t.transpose() * m.mass.asDiagonal() * ground;
+      -inverse_mass * t.transpose() * m.mass.asDiagonal() * ground_influence(s);
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(2 * q + 6, 2 * q + 6);
   a.block(0, q, q, q).setIdentity();
   a.block(q, 0, q, q) = -inverse_mass * t.transpose() * m.stiffness * t;

@@ -5,7 +5,6 @@
 
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/sampled_bins.h"
-#include "estimator/numeric/positive_solver.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -100,7 +99,7 @@ NormalEquations without_ends(const MatrixXd& square, Index ends) {
 
 VectorXd bounded_step(const MatrixXd& normal, const VectorXd& right, const Model& model,
                       const std::vector<Unknown>& unknowns) {
-  VectorXd step = PositiveSolver(normal).solve(right);
+  VectorXd step = solve_positive(normal, right);
   std::vector<char> held(unknowns.size(), 0);
   VectorXd to_bound = VectorXd::Zero(right.size());
   for (bool more = step.allFinite(); more;) {
@@ -125,7 +124,7 @@ VectorXd bounded_step(const MatrixXd& normal, const VectorXd& right, const Model
       rest(at, at) = 1;
       left[at] = to_bound[at];
     }
-    step = PositiveSolver(rest).solve(left);
+    step = solve_positive(rest, left);
     more = step.allFinite();
   }
   return step;

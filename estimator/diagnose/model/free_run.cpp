@@ -74,8 +74,9 @@ class RunForces {
       return out;
     };
     std::vector<Index> inputs;
+    const MatrixXd per_force = springs.empty() ? MatrixXd() : inverse(parts.mass);
     for (const SmallSpring& spring : springs)
-      inputs.push_back(system.add_input(-(inverse(parts.mass) * force_of(spring.element))));
+      inputs.push_back(system.add_input(-(per_force * force_of(spring.element))));
     for (std::size_t i = 0; i < springs.size(); ++i)
       springs_.push_back(
           {springs[i].stiffness, system.observe(force_of(springs[i].element)), inputs[i]});

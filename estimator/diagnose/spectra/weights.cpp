@@ -207,16 +207,6 @@ MatrixXcd Weights::turned_back(const VectorXd& rows) const {
   return out;
 }
 
-MatrixXcd Weights::whitened_of(Index bin, const MatrixXcd& forces) const {
-  if (read_.size() > 0) return whitener(bin) * forces;
-  return whitener(bin).triangularView<Eigen::Lower>() * forces;
-}
-
-MatrixXcd Weights::turned_back_of(Index bin, const MatrixXcd& rows) const {
-  if (read_.size() > 0) return whitener(bin).adjoint() * rows;
-  return whitener(bin).adjoint().triangularView<Eigen::Upper>() * rows;
-}
-
 VectorXd Weights::without_ends(const VectorXd& rows) const {
   const Index n = equations();
   const MatrixXcd turned = turned_back(rows);

@@ -43,10 +43,6 @@ class Weights {
   /// whitener^H of rows: equations x bins.
   Eigen::MatrixXcd turned_back(const Eigen::VectorXd& rows) const;
 
-  /// Both of one bin: whitener forces, and whitener^H rows; equations x any number.
-  Eigen::MatrixXcd whitened_of(Eigen::Index bin, const Eigen::MatrixXcd& forces) const;
-  Eigen::MatrixXcd turned_back_of(Eigen::Index bin, const Eigen::MatrixXcd& rows) const;
-
   /// Number of end terms. Their columns, each of unit length, are E: rows x ends().
   Eigen::Index ends() const { return scale_.size(); }
   /// E'E.

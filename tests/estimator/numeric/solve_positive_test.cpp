@@ -1,16 +1,16 @@
-#include "estimator/numeric/positive_solver.h"
+#include "estimator/numeric/solve.h"
 
 #include <gtest/gtest.h>
 
 namespace framewatch::estimator {
-namespace positive_solver_test {
+namespace solve_positive_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRounding = 1e-12;
 
-TEST(PositiveSolver, SolvesPositiveMatricesAndOthersOfAnySize) {
+TEST(SolvePositive, SolvesPositiveMatricesAndOthersOfAnySize) {
   for (const Eigen::Index size : {3, 250})
     for (const double sign : {1.0, -1.0}) {
       MatrixXd matrix = MatrixXd::Identity(size, size) * 4;
@@ -18,10 +18,10 @@ TEST(PositiveSolver, SolvesPositiveMatricesAndOthersOfAnySize) {
       matrix.diagonal(-1).setConstant(1);
       matrix(1, 1) *= sign;
       const VectorXd expected = VectorXd::LinSpaced(size, -1, 2);
-      EXPECT_LT((PositiveSolver(matrix).solve(VectorXd(matrix * expected)) - expected).norm(),
+      EXPECT_LT((solve_positive(matrix, matrix * expected) - expected).norm(),
                 kRounding * expected.norm());
     }
 }
 
-}  // namespace positive_solver_test
+}  // namespace solve_positive_test
 }  // namespace framewatch::estimator
