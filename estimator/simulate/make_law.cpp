@@ -1,7 +1,9 @@
 #include "estimator/simulate/make_law.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "estimator/simulate/hysteretic_law.h"
 
@@ -49,7 +51,7 @@ class Contact : public ElementLaw {
   bool up_ = true, down_ = true;
 };
 
-/// One story of amplitude_dependence.
+/// One story of amplitude_dependence, elastic.
 class AmplitudeDependence : public ElementLaw {
  public:
   AmplitudeDependence(const Effect& e, double stiffness)
@@ -64,6 +66,48 @@ class AmplitudeDependence : public ElementLaw {
 
  private:
   double softening_, at_m_, exponent_, damping_;
+};
+
+/// The same with joints that slip: springs in series with sliders that give way one after the other
+/// (Iwan 1966), so many that their force at first loading is the power. States: the deformation of
+/// each spring, m.
+class SlippingJoints : public ElementLaw {
+ public:
+  SlippingJoints(const Effect& e, double stiffness)
+      : elastic_(e, stiffness), slip_(e.value("slip")) {
+    const double at_m = e.value("at_m"), exponent = e.value("exponent");
+    const double ratio = std::pow(kLargest / kSmallest, 1.0 / (kSprings - 1));
+    double below = 0;
+    for (std::size_t i = 0; i < kSprings; ++i) {
+      const double limit = kSmallest * std::pow(ratio, static_cast<double>(i));
+      const double slipping = stiffness * e.value("softening") * exponent *
+                              std::pow(limit * std::sqrt(ratio), exponent - 1);
+      springs_[i] = {slipping - below, limit * at_m};
+      below = slipping;
+    }
+    all_ = below;
+  }
+  int states() const override { return kSprings; }
+  double force(double time_s, double d, double v, std::span<const double> z) const override {
+    double slipped = all_ * d;
+    for (std::size_t i = 0; i < kSprings; ++i) slipped -= springs_[i].stiffness * z[i];
+    const double elastic = elastic_.force(time_s, d, 0, {});
+    return elastic_.force(time_s, 0, v, {}) + (1 - slip_) * elastic - slip_ * slipped;
+  }
+  void rates(double, double v, std::span<const double> z, std::span<double> rate) const override {
+    for (std::size_t i = 0; i < kSprings; ++i)
+      rate[i] = std::abs(z[i]) >= springs_[i].limit_m && z[i] * v > 0 ? 0 : v;
+  }
+
+ private:
+  static constexpr std::size_t kSprings = 40;
+  static constexpr double kSmallest = 1e-3, kLargest = 10;  // limits, of at_m
+  struct Spring {
+    double stiffness, limit_m;
+  };
+  AmplitudeDependence elastic_;
+  double slip_, all_ = 0;
+  std::array<Spring, kSprings> springs_;
 };
 
 class QuadraticDamping : public ElementLaw {
@@ -172,6 +216,7 @@ class PDelta : public ElementLaw {
 }  // namespace
 
 std::unique_ptr<ElementLaw> make_amplitude_law(const Effect& e, double stiffness) {
+  if (e.value("slip") > 0) return std::make_unique<SlippingJoints>(e, stiffness);
   return std::make_unique<AmplitudeDependence>(e, stiffness);
 }
 

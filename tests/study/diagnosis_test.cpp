@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/model/free_run.h"
-#include "estimator/diagnose/model/law_parameter.h"
 #include "estimator/simulate/random.h"
 #include "tests/estimator/diagnose/small_building.h"
 

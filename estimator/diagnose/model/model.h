@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "estimator/diagnose/model/law.h"
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/model/plant.h"
 #include "estimator/structure/effect.h"
 

@@ -87,8 +87,8 @@ void add_contact_proposals(const Fitter& fitter, const Localisation& place,
   }
 }
 
-Proposal amplitude_proposal(const Fitter& fitter, const Localisation& place,
-                            const EffectPlace& frames) {
+std::vector<Proposal> amplitude_proposals(const Fitter& fitter, const Localisation& place,
+                                          const EffectPlace& frames) {
   ModelEffect effect;
   effect.form = LawForm::amplitude;
   effect.place = frames;
@@ -100,7 +100,13 @@ Proposal amplitude_proposal(const Fitter& fitter, const Localisation& place,
   effect.parameters = {
       linear_parameter(-force, 0.2 * force), bounded_parameter(2, 0.02, 1.02, 6, false),
       linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
-  return proposal_of(place, std::move(effect), EffectKind::amplitude_dependence, 0);
+  ModelEffect slipping = effect;
+  slipping.parameters = {bounded_parameter(-force, 0.2 * force, -1e300, 0),
+                         bounded_parameter(1.5, 0.02, 1.02, 6, false), fixed_parameter(0),
+                         fixed_parameter(2), fixed_parameter(1)};
+  const EffectKind kind = EffectKind::amplitude_dependence;
+  return {proposal_of(place, std::move(effect), kind, 0),
+          proposal_of(place, std::move(slipping), kind, 0)};
 }
 
 void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,
@@ -117,7 +123,8 @@ void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,
     frame.frame = f;
     places.push_back(frame);
   }
-  for (const EffectPlace& one : places) out.push_back(amplitude_proposal(fitter, place, one));
+  for (const EffectPlace& one : places)
+    for (Proposal& p : amplitude_proposals(fitter, place, one)) out.push_back(std::move(p));
 }
 
 }  // namespace framewatch::estimator

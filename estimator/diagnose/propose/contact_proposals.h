@@ -13,9 +13,9 @@ void add_contact_proposals(const Fitter& fitter, const Localisation& place,
                            const std::vector<NeededSignal>& needed, const EffectPlace& pair,
                            std::vector<Proposal>& out);
 
-/// One law of all elements of a direction or of a frame.
-Proposal amplitude_proposal(const Fitter& fitter, const Localisation& place,
-                            const EffectPlace& frames);
+/// One law of all elements of a direction or of a frame: elastic, and with joints that slip.
+std::vector<Proposal> amplitude_proposals(const Fitter& fitter, const Localisation& place,
+                                          const EffectPlace& frames);
 
 /// Adds laws of all elements of a direction at once, and of each frame of it.
 void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/diagnose/model/hysteretic_force.h"
-#include "estimator/diagnose/model/sliding.h"
+#include "estimator/diagnose/law/hysteretic_force.h"
+#include "estimator/diagnose/law/sliding.h"
 
 namespace framewatch::estimator {
 namespace {

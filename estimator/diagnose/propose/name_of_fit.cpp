@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/law/hysteretic_force.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {

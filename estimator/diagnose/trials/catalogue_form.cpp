@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/law/hysteretic_force.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 
@@ -133,6 +133,7 @@ void set_amplitude(const Plant& plant, const Model& model, const ModelEffect& e,
   out.set("at_m", nearer * e.deformation);
   out.set("exponent", exponent);
   out.set("damping_s2pm", p(2) / (k * e.rate * e.rate));
+  if (e.parameters.size() > AmplitudeIndex::slip) out.set("slip", p(AmplitudeIndex::slip));
 }
 
 /// Slope of a spring's cubic or quadratic part, whatever its shape: at the largest deformation.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/law/hysteretic_force.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 
 namespace framewatch::estimator {

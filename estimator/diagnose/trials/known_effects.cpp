@@ -15,10 +15,6 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 constexpr double kBilinear = 40;  ///< exponent of hysteresis with a corner
 
-LawParameter fixed(double value) {
-  return bounded_parameter(value, 1, -1e300, 1e300, false);
-}
-
 LawParameter sized(double value) {
   return linear_parameter(value, 0.02 * std::max(std::abs(value), 1e-12));
 }
@@ -116,7 +112,7 @@ void set_power(const Plant& plant, const Effect& effect, ModelEffect& e) {
   const double d = e.deformation;
   if (effect.kind == EffectKind::p_delta) {
     const double height = plant.structure.story_height[static_cast<std::size_t>(e.place.story - 1)];
-    e.parameters = {fixed(-effect.value("weight_n") / height * d), fixed(1)};
+    e.parameters = {fixed_parameter(-effect.value("weight_n") / height * d), fixed_parameter(1)};
     return;
   }
   const bool cubic = effect.kind == EffectKind::cubic_stiffness;
@@ -157,13 +153,14 @@ void set_hysteresis(const Effect& effect, ModelEffect& e) {
   if (effect.kind == EffectKind::pinching) {
     e.parameters.push_back(bounded_parameter(value("slip_ratio"), 0.02, 0.0, 0.99));
     e.parameters.push_back(logarithmic_parameter(value("slip_width"), 0.05, 50));
-    e.parameters.push_back(fixed(value("slip_offset")));
+    e.parameters.push_back(fixed_parameter(value("slip_offset")));
     const double work = value("slip_work");
-    e.parameters.push_back(work > 0 ? logarithmic_parameter(work, 0.05, 1e6) : fixed(0));
+    e.parameters.push_back(work > 0 ? logarithmic_parameter(work, 0.05, 1e6) : fixed_parameter(0));
   }
   e.parameters.push_back(loss("strength_loss"));
   e.parameters.push_back(loss("stiffness_loss"));
-  if (effect.kind == EffectKind::bouc_wen) e.parameters.push_back(fixed(value("loading")));
+  if (effect.kind == EffectKind::bouc_wen)
+    e.parameters.push_back(fixed_parameter(value("loading")));
 }
 
 void set_amplitude(const Plant& plant, const Effect& effect, ModelEffect& e) {
@@ -180,8 +177,9 @@ void set_amplitude(const Plant& plant, const Effect& effect, ModelEffect& e) {
   k /= std::max(count, 1);
   e.deformation = effect.value("at_m");
   e.parameters = {sized(-effect.value("softening") * k * e.deformation),
-                  fixed(effect.value("exponent")),
-                  sized(effect.value("damping_s2pm") * k * e.rate * e.rate), fixed(2)};
+                  fixed_parameter(effect.value("exponent")),
+                  sized(effect.value("damping_s2pm") * k * e.rate * e.rate), fixed_parameter(2)};
+  if (effect.value("slip") > 0) e.parameters.push_back(fixed_parameter(effect.value("slip")));
 }
 
 void set_changing(const std::vector<RecordSegment>& segments, const Effect& effect,
@@ -230,7 +228,7 @@ void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>
       e.parameters = {
           sized(value("fc_n")), logarithmic_parameter(value("v0_mps"), 1e-4 * v, 10 * v),
           bounded_parameter(value("static_ratio"), 0.02, -0.9, 10, value("static_ratio") != 0),
-          fixed(value("stribeck_mps")),
+          fixed_parameter(value("stribeck_mps")),
           bounded_parameter(value("presliding_m"), 0.005 * d, 0, 0.3 * d,
                             value("presliding_m") > 0)};
       break;

@@ -67,7 +67,7 @@ std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Loca
   EffectPlace whole;
   whole.kind = PlaceKind::whole_frame;
   whole.frame = frame;
-  return try_effects(context, {amplitude_proposal(context.fitter, place, whole)});
+  return try_effects(context, amplitude_proposals(context.fitter, place, whole));
 }
 
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/model/model.h"
 
 namespace framewatch::test {

@@ -1,11 +1,11 @@
 #include "estimator/diagnose/model/model.h"
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/model/make_plant.h"
 #include "tests/estimator/diagnose/effect_of.h"
 #include "tests/estimator/diagnose/other_buildings.h"

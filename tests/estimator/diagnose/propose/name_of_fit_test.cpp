@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/propose/propose.h"

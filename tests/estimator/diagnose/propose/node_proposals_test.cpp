@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/propose/node_proposals.h"
 #include "estimator/diagnose/propose/proposal.h"

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/locate/candidate_places.h"
-#include "estimator/diagnose/model/law_parameter.h"
 #include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/propose/proposal.h"
 #include "estimator/diagnose/propose/propose.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/propose/scalar_fit.h"
 #include "estimator/simulate/random.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/propose/timed_change.h"
 #include "tests/estimator/diagnose/hidden_effect.h"

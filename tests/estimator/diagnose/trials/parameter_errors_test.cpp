@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/fit/unknowns.h"
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/trials/known_effects.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "tests/estimator/diagnose/hand_made_trials.h"
 

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/diagnose/law/law_parameter.h"
 #include "estimator/diagnose/locate/candidate_places.h"
-#include "estimator/diagnose/model/law_parameter.h"
 #include "estimator/diagnose/propose/needed_signal.h"
 #include "estimator/diagnose/trials/round_trials.h"
 #include "tests/estimator/diagnose/hand_made_trials.h"

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "estimator/diagnose/model/hysteretic_force.h"
-#include "estimator/diagnose/model/law_values.h"
+#include "estimator/diagnose/law/hysteretic_force.h"
+#include "estimator/diagnose/law/law_values.h"
+#include "estimator/diagnose/law/slip_curve.h"
 
 namespace framewatch::estimator {
 
@@ -22,6 +24,8 @@ class LawMotion {
 
  private:
   double plain_force(double d, double v, double t);
+  /// Of the law of amplitude at d/D.
+  double amplitude_z(double x) const;
   /// z of hysteresis at d; that of the last d is kept, a step ends where its force was found.
   double next_z(double d);
 
@@ -33,6 +37,7 @@ class LawMotion {
   bool has_next_ = false;
   double next_d_ = 0, next_z_ = 0;
   std::vector<double> memory_;  ///< of sliders, or of the last reversal
+  std::optional<SlipCurve> slip_;
 };
 
 /// Force of a law under a known motion: d, v at even steps of step_s.

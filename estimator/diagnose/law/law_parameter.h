@@ -22,5 +22,7 @@ LawParameter linear_parameter(double value, double step);
 LawParameter logarithmic_parameter(double value, double low, double high);
 LawParameter bounded_parameter(double value, double step, double low, double high,
                                bool free = true);
+/// Held at its value.
+LawParameter fixed_parameter(double value);
 
 }  // namespace framewatch::estimator

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/law/hysteretic_force.h"
 
 #include <algorithm>
 #include <cmath>

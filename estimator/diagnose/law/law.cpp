@@ -1,12 +1,14 @@
-#include "estimator/diagnose/model/law.h"
+#include "estimator/diagnose/law/law.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/diagnose/model/sliding.h"
+#include "estimator/diagnose/law/sliding.h"
 
 namespace framewatch::estimator {
 namespace {
+
+using A = AmplitudeIndex;
 
 double signed_power(double x, double p) {
   return std::copysign(power_of(std::abs(x), p), x);
@@ -45,6 +47,8 @@ bool is_contact(LawForm form) {
 LawMotion::LawMotion(const LawValues& values) : values_(values) {
   if (values.form == LawForm::sliders) memory_.assign(SliderIndex::kCount, 0.0);
   if (values.form == LawForm::asymptotic) memory_ = no_reversal(values);
+  if (values.form == LawForm::amplitude && value_or(values.p, A::slip, 0) > 0)
+    slip_.emplace(values.p[A::exponent]);
   if (!has_z(values.form)) return;
   shape_ = worn_shape(values, 0);
   const WornShape later = worn_shape(values, 1);
@@ -61,6 +65,12 @@ double LawMotion::next_z(double d) {
   has_next_ = true;
   next_d_ = d;
   return next_z_ = step_.end(values_, d);
+}
+
+double LawMotion::amplitude_z(double x) const {
+  const double slips = value_or(values_.p, A::slip, 0);
+  const double slip = slips > 0 ? slips * slip_->at(x) : 0;
+  return slips < 1 ? slip + (1 - slips) * signed_power(x, values_.p[A::exponent]) : slip;
 }
 
 double LawMotion::plain_force(double d, double v, double t) {
@@ -83,8 +93,8 @@ double LawMotion::plain_force(double d, double v, double t) {
     case LawForm::power_damping:
       return p[0] * signed_power(v / values_.rate, p[1]);
     case LawForm::amplitude:
-      return p[0] * signed_power(d / values_.deformation, p[1]) +
-             p[2] * signed_power(v / values_.rate, p[3]);
+      return p[A::elastic] * amplitude_z(d / values_.deformation) +
+             p[A::damping] * signed_power(v / values_.rate, p[A::damping_exponent]);
     case LawForm::gap_positive:
       return contact(p, d, v);
     case LawForm::gap_negative:
@@ -100,6 +110,7 @@ double LawMotion::plain_force(double d, double v, double t) {
 
 void LawMotion::accept(double d, double v, double t) {
   if (preslides(values_)) z_ = sliding_z(values_.p, z_, v_, v, t - t_);
+  if (slip_) slip_->move(d / values_.deformation);
   if (is_hysteretic(values_.form)) {
     const double dy = values_.p[HysteresisIndex::dy];
     if (values_.form == LawForm::sliders) {

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/model/law_parameter.h"
+#include "estimator/diagnose/law/law_parameter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,6 +32,10 @@ LawParameter bounded_parameter(double value, double step, double low, double hig
   out.high = high;
   out.free = free;
   return out;
+}
+
+LawParameter fixed_parameter(double value) {
+  return bounded_parameter(value, 1, -1e300, 1e300, false);
 }
 
 }  // namespace framewatch::estimator

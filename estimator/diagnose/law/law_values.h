@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace framewatch::estimator {
@@ -18,7 +19,7 @@ enum class LawForm {
   slip_lock,      ///< hysteresis with a slip zone about zero deformation
   friction,       ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: sliding.h
   power_damping,  ///< a sgn(v) |v/V|^p
-  amplitude,      ///< a sgn(d) |d/D|^p + b sgn(v) |v/V|^q
+  amplitude,      ///< a ((1 - s) sgn(d) |d/D|^p + s slip(d/D)) + b sgn(v) |v/V|^q: slip_curve.h
   gap_positive,   ///< contact at clearance g: max(kg (d - g) + cg v, 0) while d > g
   gap_negative,   ///< the same toward negative deformation
   gap_both,       ///< both; kg < 0 softens
@@ -39,6 +40,11 @@ enum class LawForm {
   misaligned,
   swapped,  ///< two axes exchanged
   clipped,  ///< the readings of the axis are not used
+};
+
+/// Indices of the parameters of LawForm::amplitude. `slip` is s above, 0 where it is missing.
+struct AmplitudeIndex {
+  enum : std::size_t { elastic, exponent, damping, damping_exponent, slip };
 };
 
 /// Whether the law is a force over deformations: of one element, or of every one of a place.

@@ -1,4 +1,4 @@
-#include "estimator/diagnose/model/law.h"
+#include "estimator/diagnose/law/law.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,23 +85,26 @@ VectorXd growing_cycles(Index steps) {
 }
 
 /// Forces of the simulator's own law, integrated in steps of a two-hundredth.
-VectorXd simulated_force(const Effect& effect, const VectorXd& d) {
+VectorXd simulated_force(ElementLaw& law, const VectorXd& d) {
   constexpr int kFine = 200;
-  const std::unique_ptr<ElementLaw> law = make_law(effect, test::Small::one_story());
-  std::vector<double> z(static_cast<std::size_t>(law->states())), rate = z;
+  std::vector<double> z(static_cast<std::size_t>(law.states())), rate = z;
   VectorXd out(d.size());
   double at = 0;
   for (Index i = 0; i < d.size(); ++i) {
     const double step = (d[i] - at) / kFine;
     for (int fine = 0; fine < kFine; ++fine) {
-      law->begin_step(0, at);
-      if (!z.empty()) law->rates(at, step, z, rate);
+      law.begin_step(0, at);
+      if (!z.empty()) law.rates(at, step, z, rate);
       for (std::size_t s = 0; s < z.size(); ++s) z[s] += rate[s];
       at += step;
     }
-    out[i] = law->force(0, d[i], 0, z);
+    out[i] = law.force(0, d[i], 0, z);
   }
   return out;
+}
+
+VectorXd simulated_force(const Effect& effect, const VectorXd& d) {
+  return simulated_force(*make_law(effect, test::Small::one_story()), d);
 }
 
 TEST(Law, HysteresisIsThatOfTheSimulator) {
@@ -165,6 +168,49 @@ TEST(Law, SteelFollowsItsCurveFromEveryReversal) {
   EXPECT_NEAR(force[1], curve(3), 1e-9);
   EXPECT_NEAR(force[1] - force[2], 0.1, 0.01);
   EXPECT_NEAR(force[3], -1, 0.05);
+}
+
+TEST(Law, SlippingJointsAreThoseOfTheSimulator) {
+  constexpr double kAt_m = 4 * kYields_m, kSoftening = 0.2, kExponent = 1.4;
+  Effect effect = make_effect(EffectKind::amplitude_dependence, test::building_place(Direction::x));
+  effect.set("softening", kSoftening);
+  effect.set("at_m", kAt_m);
+  effect.set("exponent", kExponent);
+  effect.set("slip", 1);
+  const LawValues law{
+      LawForm::amplitude, {-kSoftening * kStiffness * kAt_m, kExponent, 0, 2, 1}, kAt_m, 1};
+  const VectorXd d = growing_cycles(800);
+  const VectorXd force = force_over(law, d);
+  const VectorXd simulated = simulated_force(*make_amplitude_law(effect, kStiffness), d);
+  const double most = force.cwiseAbs().maxCoeff();
+  EXPECT_GT(most, 0.8 * kSoftening * kStiffness * d.cwiseAbs().maxCoeff());
+  EXPECT_LT((force - simulated).cwiseAbs().maxCoeff(), 0.01 * most);
+}
+
+/// Area of Masing's loop: 8 times the integral of first loading less 4 times its end.
+TEST(Law, SlippingJointsLoseWhatTheirLoopSays) {
+  constexpr double kExponent = 1.5;
+  constexpr Index kSteps = 4000;
+  const LawValues law{LawForm::amplitude, {-1, kExponent, 0, 2, 1}, 1, 1};
+  VectorXd d(2 * kSteps);
+  for (Index i = 0; i < d.size(); ++i) d[i] = std::sin(2 * M_PI * static_cast<double>(i) / kSteps);
+  const VectorXd force = force_over(law, d);
+  double loss = 0;
+  for (Index i = kSteps / 4 + 1; i <= kSteps + kSteps / 4; ++i)
+    loss += 0.5 * (force[i] + force[i - 1]) * (d[i] - d[i - 1]);
+  EXPECT_NEAR(loss, 4 - 8 / (kExponent + 1), 1e-4);
+}
+
+TEST(Law, ASmallLoopLeavesTheLargeOneAsItWas) {
+  const LawValues law{LawForm::amplitude, {-1, 1.5, 0, 2, 1}, 1, 1};
+  VectorXd d(6), without(4);
+  d << 1, -0.2, 0.3, -0.1, -0.2, -0.6;
+  without << 1, -0.2, -0.4, -0.6;
+  EXPECT_NEAR(force_over(law, d)[5], force_over(law, without)[3], 1e-12);
+  EXPECT_NEAR(force_over(law, d)[4], force_over(law, without)[1], 1e-12);
+  VectorXd back(3);
+  back << 1, -1, -1.5;  // closed at the other end: first loading again
+  EXPECT_NEAR(force_over(law, back)[2], std::pow(1.5, 1.5), 1e-12);
 }
 
 TEST(Law, SlipLocksAwayFromZeroDeformation) {

@@ -1,8 +1,8 @@
-#include "estimator/diagnose/model/sliding.h"
+#include "estimator/diagnose/law/sliding.h"
 
 #include <cmath>
 
-#include "estimator/diagnose/model/hysteretic_force.h"
+#include "estimator/diagnose/law/hysteretic_force.h"
 
 namespace framewatch::estimator {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "estimator/diagnose/model/law_values.h"
+#include "estimator/diagnose/law/law_values.h"
 
 namespace framewatch::estimator {
 
