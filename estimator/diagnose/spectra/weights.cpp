@@ -90,13 +90,13 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
   square_ = scale_.asDiagonal() * sum * scale_.asDiagonal();
   MatrixXd regular = square_;
   // End terms of motions that no axis reads are nearly alike far from their frequencies.
-  regular.diagonal().array() += read_.size() > 0 ? 1e-10 : 1e-12;
+  regular.diagonal().array() += is_triangular() ? 1e-12 : 1e-10;
   factor_ = Ldlt(regular);
 }
 
 VectorXcd Weights::forces_of(Index bin, const VectorXcd& rows) const {
   const MatrixXcd& w = whitener(bin);
-  if (read_.size() == 0) return w.triangularView<Eigen::Lower>().solve(rows);
+  if (is_triangular()) return w.triangularView<Eigen::Lower>().solve(rows);
   const Index count = read_.cols();
   const MatrixXcd own = w.topRows(count) * read_.cast<Complex>();
   return read_.cast<Complex>() *
@@ -123,9 +123,8 @@ void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const 
   const MatrixXcd& w = whitener(bin);
   const Index n = w.rows();
   out.setZero(2 * n, padded(static_cast<int>(2 * n)));
-  const bool triangular = read_.size() == 0;
   for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < (triangular ? i + 1 : n); ++j) {
+    for (Index j = 0; j < (is_triangular() ? i + 1 : n); ++j) {
       const Index row = transposed ? j : i, column = transposed ? i : j;
       out(row, column) = w(i, j).real();
       out(n + row, n + column) = -w(i, j).real();
@@ -182,10 +181,10 @@ VectorXd Weights::whitened(const MatrixXcd& forces) const {
   VectorXd out(2 * forces.size());
   VectorXcd row(n);
   for (Index b = 0; b < forces.cols(); ++b) {
-    if (n < kSmall)
-      row.noalias() = whitener(b) * forces.col(b);
-    else
+    if (n >= kSmall && is_triangular())
       row.noalias() = whitener(b).triangularView<Eigen::Lower>() * forces.col(b);
+    else
+      row.noalias() = whitener(b) * forces.col(b);
     out.segment(2 * n * b, n) = row.real();
     out.segment(2 * n * b + n, n) = row.imag();
   }
@@ -199,10 +198,10 @@ MatrixXcd Weights::turned_back(const VectorXd& rows) const {
   for (Index b = 0; b < bins(); ++b) {
     row.real() = rows.segment(2 * n * b, n);
     row.imag() = rows.segment(2 * n * b + n, n);
-    if (n < kSmall)
-      out.col(b).noalias() = whitener(b).adjoint() * row;
-    else
+    if (n >= kSmall && is_triangular())
       out.col(b).noalias() = whitener(b).adjoint().triangularView<Eigen::Upper>() * row;
+    else
+      out.col(b).noalias() = whitener(b).adjoint() * row;
   }
   return out;
 }

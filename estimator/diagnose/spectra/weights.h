@@ -60,6 +60,8 @@ class Weights {
   void add_shares(Eigen::Index bin, const RowMatrix& along, RowMatrix& sum) const;
 
  private:
+  /// Whether a bin's whitener is: not where motions are not all read.
+  bool is_triangular() const { return read_.size() == 0; }
   /// F' size; size: of the unscaled terms.
   Eigen::VectorXd shared(Eigen::Index bin, const Eigen::VectorXd& size) const;
 

@@ -62,6 +62,33 @@ TEST(Weights, ForcesAreThoseOfTheirWhitenedRows) {
   }
 }
 
+/// Large buildings whose motions are not all read have whiteners that are no triangles.
+TEST(Weights, OfMotionsThatAreNotAllReadAreWhole) {
+  constexpr Index kLarge = 30, kRead = 4;
+  Random random{5};
+  const auto any = [&](Index rows, Index columns) {
+    return MatrixXcd::NullaryExpr(
+               rows, columns,
+               [&](Index, Index) { return Complex(random.normal(), random.normal()); })
+        .eval();
+  };
+  MatrixXcd whitener = MatrixXcd::Zero(kLarge, kLarge);
+  whitener.topRows(kRead) = any(kRead, kLarge);
+  const VectorXd w = VectorXd::LinSpaced(2, 2.0, 9.0);
+  const Weights weights({whitener, 2 * whitener}, w, {}, MatrixXd::Identity(kLarge, kRead));
+  const MatrixXcd forces = any(kLarge, 2);
+  const VectorXd rows = weights.whitened(forces);
+  const MatrixXcd turned = weights.turned_back(rows);
+  for (const Index b : {0, 1}) {
+    const Eigen::VectorXcd one = static_cast<double>(b + 1) * whitener * forces.col(b);
+    const double size = one.norm();
+    EXPECT_LT((rows.segment(2 * kLarge * b, kLarge) - one.real()).norm(), 1e-12 * size);
+    EXPECT_LT((rows.segment(2 * kLarge * b + kLarge, kLarge) - one.imag()).norm(), 1e-12 * size);
+    EXPECT_LT((turned.col(b) - static_cast<double>(b + 1) * whitener.adjoint() * one).norm(),
+              1e-10 * size);
+  }
+}
+
 /// The end terms' columns as docs/equations.md (32) has them, each of length one.
 MatrixXd columns_of_ends(const Some& some) {
   MatrixXd out(2 * kEquations * kBins, 4 * kEquations + 2);
