@@ -168,4 +168,10 @@ std::optional<Gap> free_run_gap(const Plant& plant, const Model& model,
   return gap_of(plant, model, segment, system);
 }
 
+double mean_gap(const std::vector<Gap>& gaps, std::size_t from) {
+  double error = 0;
+  for (std::size_t r = from; r < gaps.size(); ++r) error += gaps[r].overall;
+  return gaps.size() > from ? error / static_cast<double>(gaps.size() - from) : 0;
+}
+
 }  // namespace framewatch::estimator

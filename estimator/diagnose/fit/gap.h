@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -33,5 +35,8 @@ std::optional<Gap> free_run_gap(const Plant& plant, const Model& model,
 /// are estimated from the record; a clipped axis is compared with the clipped simulation.
 Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
            const Whitened& system);
+
+/// Mean NRMSE over the segments from `from` on; 0 when there is none.
+double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
 
 }  // namespace framewatch::estimator

@@ -6,16 +6,19 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/model/modal_damping.h"
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr double kDiverged = std::numeric_limits<double>::infinity();
-constexpr int kRounds = 6;         ///< in which the weights follow the gap
-constexpr double kMore = 0.99;     ///< gap over the one of the round before: it goes on
-constexpr double kLargest = 1;     ///< error of a model for its weights
-constexpr int kFirstSteps = 4;     ///< of every start, before the best is fitted on
-constexpr double kClose = 1.1;     ///< gap over the best one's: a start that is fitted on as well
+constexpr int kRounds = 6;        ///< in which the weights follow the gap
+constexpr double kMore = 0.99;    ///< gap over the one of the round before: it goes on
+constexpr double kLargest = 1;    ///< error of a model for its weights
+constexpr int kFirstSteps = 4;    ///< of every start, before the best is fitted on
+constexpr double kClose = 1.1;    ///< gap over the best one's: a start that is fitted on as well
+constexpr double kHonest = 0.97;  ///< gap with a damping that is no dashpots', over that with them
+constexpr double kFewDashpots = 0.1, kUsualRatio = 0.005;
 constexpr double kSameGap = 1e-9;  ///< of gaps, relative: those of one model
 
 struct Start {
@@ -48,6 +51,39 @@ void sort_starts(std::vector<Start>& all) {
                    [](const Start& a, const Start& b) { return a.gap < b.gap; });
   const auto same = [](const Start& a, const Start& b) { return b.gap - a.gap < kSameGap * a.gap; };
   all.erase(std::unique(all.begin(), all.end(), same), all.end());
+}
+
+/// Starts whose modes in the band have ratios of their own: beside the dashpots, and beside few of
+/// them. None where all have them already.
+std::vector<Model> with_ratios(const Fitter& fitter, const Model& model) {
+  const Plant& plant = fitter.plant();
+  Model beside = model;
+  bool any = false;
+  for (const std::size_t e : modes_in_band(plant, model, fitter.segments())) {
+    LawParameter& ratio = beside.effects[e].parameters[0];
+    any = any || !ratio.free;
+    ratio.free = true;
+  }
+  if (!any) return {};
+  Model instead = beside;
+  const auto elements = plant.element_count();
+  instead.theta.tail(elements) *= kFewDashpots;
+  for (const std::size_t e : modes_in_band(plant, model, fitter.segments())) {
+    double& ratio = instead.effects[e].parameters[0].value;
+    ratio = std::max(ratio, kUsualRatio);
+  }
+  return {std::move(beside), std::move(instead)};
+}
+
+/// Damping may be none that dashpots between floors make: ratios of the modes stay where the gap
+/// falls clearly with them.
+void free_ratios(const Fitter& fitter, int steps, Start& best) {
+  for (const Model& model : with_ratios(fitter, best.model)) {
+    Start one{model, rms_gap(fitter, model)};
+    fit_free_run(fitter, kFirstSteps, one);
+    if (one.gap < kHonest * best.gap) fit_to_the_end(fitter, steps, one);
+    if (one.gap < kHonest * best.gap) best = std::move(one);
+  }
 }
 
 }  // namespace
@@ -113,6 +149,7 @@ JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int
           [&](int i) { fit_to_the_end(fitter, steps, all[static_cast<std::size_t>(i)]); });
   for (Start& s : all)
     if (s.gap < best.gap) best = std::move(s);
+  free_ratios(fitter, steps, best);
   out.model = std::move(best.model);
   out.gap = best.gap;
   return out;

@@ -24,7 +24,8 @@ struct JudgedFit {
 };
 
 /// From several starts, the first of which is fitted under the sensors' noise alone too; the best
-/// by its gap.
+/// by its gap. Where the model's error is in the weights, ratios of the modes
+/// (LawForm::modal_damping) are freed that lower the gap clearly.
 /// steps: of each fit. Where nothing can be fitted, the first start.
 JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int steps,
                      const Parallel& parallel = {});

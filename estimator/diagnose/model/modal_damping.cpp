@@ -60,6 +60,21 @@ bool has_modal_damping(const Model& model) {
   return std::any_of(model.effects.begin(), model.effects.end(), acts);
 }
 
+std::vector<std::size_t> modes_in_band(const Plant& plant, const Model& model,
+                                       const std::vector<RecordSegment>& records) {
+  std::vector<std::size_t> out;
+  std::optional<ModelModes> modes;
+  for (std::size_t e = 0; e < model.effects.size(); ++e) {
+    if (model.effects[e].form != LawForm::modal_damping) continue;
+    if (!modes) modes = modes_of(plant, model);
+    const double w = modes->w[model.effects[e].place.mode - 1];
+    if (std::all_of(records.begin(), records.end(),
+                    [w](const RecordSegment& s) { return w > s.w[0] && w < s.w[s.bins() - 1]; }))
+      out.push_back(e);
+  }
+  return out;
+}
+
 MatrixXd relative_motion(const Plant& plant) {
   const Structure& s = plant.structure;
   VectorXd mass(s.degrees_of_freedom());

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "estimator/diagnose/model/model.h"
+#include "estimator/diagnose/spectra/record_segment.h"
 
 namespace framewatch::estimator {
 
@@ -20,6 +24,11 @@ Eigen::MatrixXd modal_damping(const Plant& plant, const Model& model, const Mode
 Eigen::MatrixXd modal_damping(const Plant& plant, const Model& model);
 /// Whether it has any that is not zero.
 bool has_modal_damping(const Model& model);
+
+/// Indices of the effects LawForm::modal_damping of modes whose frequency lies within the band of
+/// all records.
+std::vector<std::size_t> modes_in_band(const Plant& plant, const Model& model,
+                                       const std::vector<RecordSegment>& records);
 
 /// Motion of the coordinates relative to the ground by that of the axes: coordinates x axes.
 Eigen::MatrixXd relative_motion(const Plant& plant);

@@ -40,22 +40,6 @@ double& ratio_of(Model& model, std::size_t effect) {
   return model.effects[effect].parameters[0].value;
 }
 
-/// Effects of modes whose frequency lies within the band of all records.
-std::vector<std::size_t> modes_in_band(const Fitter& fitter, const Model& model) {
-  std::vector<std::size_t> out;
-  std::optional<ModelModes> modes;
-  for (std::size_t e = 0; e < model.effects.size(); ++e) {
-    if (model.effects[e].form != LawForm::modal_damping) continue;
-    if (!modes) modes = modes_of(fitter.plant(), model);
-    const double w = modes->w[model.effects[e].place.mode - 1];
-    const auto& segments = fitter.segments();
-    if (std::all_of(segments.begin(), segments.end(),
-                    [w](const RecordSegment& s) { return w > s.w[0] && w < s.w[s.bins() - 1]; }))
-      out.push_back(e);
-  }
-  return out;
-}
-
 void hold_at_zero(Model& model, std::size_t effect) {
   ratio_of(model, effect) = 0;
   model.effects[effect].parameters[0].free = false;
@@ -143,7 +127,8 @@ void add_modal_damping(const Plant& plant, Model& model) {
 }
 
 FitResult with_free_damping(const Fitter& fitter, const FitResult& now) {
-  const std::vector<std::size_t> ratios = modes_in_band(fitter, now.model);
+  const std::vector<std::size_t> ratios =
+      modes_in_band(fitter.plant(), now.model, fitter.segments());
   if (ratios.empty() || now.total_misfit() < kMisfit * fitter.expected(now.model)) return {};
   FitResult out = now;
   for (const std::size_t e : ratios) out.model.effects[e].parameters[0].free = true;
@@ -194,7 +179,8 @@ bool one_damper_does(const TrialContext& context, const FitResult& with) {
 }
 
 void settle_damping(const Fitter& fitter, FitResult with, FitResult& now) {
-  const std::vector<std::size_t> ratios = modes_in_band(fitter, now.model);
+  const std::vector<std::size_t> ratios =
+      modes_in_band(fitter.plant(), now.model, fitter.segments());
   if (with.good && with.cost < now.cost - price_of(fitter, with)) {
     remove_needless(fitter, ratios, with);
     if (with.cost < now.cost) now = std::move(with);

@@ -50,12 +50,6 @@ const char* verdict_word(Verdict verdict) {
   return "unexplained";
 }
 
-double mean_gap(const std::vector<Gap>& gaps, std::size_t from) {
-  double error = 0;
-  for (std::size_t r = from; r < gaps.size(); ++r) error += gaps[r].overall;
-  return gaps.size() > from ? error / static_cast<double>(gaps.size() - from) : 0;
-}
-
 namespace {
 
 std::vector<RecordSegment> training(const Fitter& fitter, std::size_t holdout_from) {

@@ -12,9 +12,6 @@ const char* verdict_word(Verdict verdict);
 /// Ratio of misfit to its expectation below which a model is adequate.
 constexpr double kAdequate = 1.25;
 
-/// Mean NRMSE over the segments from `from` on; 0 when there is none.
-double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
-
 /// Whether every segment fits a linear building of its own, and not one together. linear: the model
 /// of all.
 bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_before);

@@ -9,7 +9,10 @@
 #include <Eigen/LU>
 
 #include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/model/modal_damping.h"
+#include "estimator/diagnose/trials/damping_form.h"
 #include "tests/estimator/diagnose/exact_record.h"
+#include "tests/estimator/diagnose/other_buildings.h"
 
 namespace framewatch::estimator {
 namespace judged_fit_test {
@@ -130,6 +133,40 @@ TEST(JudgedFit, IsAsGoodAsTheBestFreeRunOfItsClass) {
     const double best = std::min(other.least_gap(c.small.truth), other.least_gap(c.small.design));
     EXPECT_LT(judged.gap, kWithin * best) << k3;
     EXPECT_GT(judged.gap, best / kWithin / kWithin) << "both fit the same gap";
+  }
+}
+
+/// Ratios of the modes that dashpots between floors do not make; a strong cubic spring has none.
+TEST(JudgedFit, DampingMayBeNoneOfDashpots) {
+  constexpr double kClearly = 0.97;
+  for (const bool of_modes : {true, false}) {
+    Small small = test::tower(2);
+    std::vector<Effect> effects{test::cubic_spring(2, of_modes ? 1e8 : 2e11).simulated};
+    if (of_modes) {
+      small.truth.tail(small.table.elements()) *= 0.1;
+      for (const int mode : {1, 2, 3, 4}) {
+        EffectPlace place;
+        place.kind = PlaceKind::mode;
+        place.mode = mode;
+        effects.push_back(make_effect(EffectKind::modal_damping, place));
+        effects.back().set("damping_ratio", mode % 2 == 0 ? 0.002 : 0.04);
+      }
+    }
+    const Plant plant = small.plant();
+    const std::vector<RecordSegment> segments = small.segments({small.record(effects, 1)});
+    const Fitter fitter(plant, segments, kExact);
+    Model model = initial_model(plant);
+    const auto gap_of = [&](const Model& start) {
+      return judged_fit(fitter, linear_starts(plant, start), FitOptions{}.max_steps);
+    };
+    const JudgedFit dashpots = gap_of(model);
+    add_modal_damping(plant, model);
+    const JudgedFit ratios = gap_of(model);
+    EXPECT_EQ(has_modal_damping(ratios.model), of_modes);
+    if (of_modes)
+      EXPECT_LT(ratios.gap, kClearly * dashpots.gap);
+    else
+      EXPECT_EQ(ratios.gap, dashpots.gap);
   }
 }
 
