@@ -20,17 +20,20 @@ constexpr std::size_t kMostTried = 9, kFewestTried = 3, kMostCauses = 3;
 constexpr std::size_t kMostWork = 60;  ///< laws times equations
 constexpr std::size_t kKept = 3;       ///< sets of one size that lead to larger ones
 constexpr std::size_t kFinished = 6;   ///< that are fitted to their end
-constexpr double kTakes = 0.9;         ///< gap with one more cause over the one without it
+constexpr double kTakes = 0.9;         ///< gap with one cause over that without any
+constexpr double kTakesToo = 0.95;     ///< gap with one more: a tenth of the misfit's power
 constexpr double kNearly = 1.1;        ///< gap over the best's, of a set that does nearly as well
 constexpr double kLeastShare = 0.1;    ///< of the design, of a start's stiffness or damping
+constexpr double kLittle = 0.1;        ///< of the size that an effect has in its trial
 constexpr int kScreenSteps = 4, kJointSteps = 5, kNoneSteps = 8;
 
 struct CauseSet {
   Members members;
   Model model;  ///< of the training records
   std::vector<Gap> gaps;
-  double held_out = std::numeric_limits<double>::infinity();
-  bool named = false;  ///< its effects may have their names
+  double held_out = std::numeric_limits<double>::infinity();  ///< mean gap
+  double all = std::numeric_limits<double>::infinity();       ///< of all records
+  bool named = false;                                         ///< its effects may have their names
 };
 
 /// Laws that may be causes, best first, one of every name and place.
@@ -51,26 +54,40 @@ std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Tria
   return out;
 }
 
-/// A model with the effect of a trial: with stiffnesses and dampings that change as they did with
-/// the trial, or with those of the trial.
-Model extended(const TrialContext& c, const Model& model, const Trial& t, bool as_the_trial) {
+void scale(double part, LawParameter& size) {
+  const double value = size.logarithmic ? size.value + std::log(part) : size.value * part;
+  size.value = std::clamp(value, size.low, size.high);
+}
+
+/// What an effect that is added to a model begins with.
+enum class Start {
+  changed,  ///< stiffnesses and dampings that change as they did with the trial
+  trial,    ///< those of the trial
+  little,   ///< those of the model, and little of the effect
+};
+
+/// A model with the effect of a trial.
+Model extended(const TrialContext& c, const Model& model, const Trial& t, Start start) {
   Model out = model;
   const auto known = static_cast<std::ptrdiff_t>(c.now.model.effects.size());
   out.effects.insert(out.effects.end(), t.model.effects.begin() + known, t.model.effects.end());
   free_shapes(out);
+  const double part = start == Start::little ? kLittle : 1;
+  for (std::size_t e = model.effects.size(); e < out.effects.size(); ++e)
+    if (!out.effects[e].parameters.empty()) scale(part, out.effects[e].parameters[0]);
   const auto add = [&](std::vector<int> Model::*freed, Eigen::VectorXd Model::*errors) {
     for (const int axis : t.model.*freed) {
       if (std::find((out.*freed).begin(), (out.*freed).end(), axis) != (out.*freed).end()) continue;
       (out.*freed).push_back(axis);
-      (out.*errors)[axis] = (t.model.*errors)[axis];
+      (out.*errors)[axis] = part * (t.model.*errors)[axis];
     }
   };
   add(&Model::free_gain, &Model::gain);
   add(&Model::free_clock, &Model::clock_s);
-  if (as_the_trial) {
+  if (start == Start::trial) {
     out.theta = t.model.theta;
     out.mass_change = t.model.mass_change;
-  } else {
+  } else if (start == Start::changed) {
     out.theta = (out.theta + t.model.theta - c.now.model.theta)
                     .cwiseMax(kLeastShare * c.fitter.plant().design);
   }
@@ -98,9 +115,7 @@ class Selection {
       kept = larger(kept);
       const auto leads =
           std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });
-      const auto more = static_cast<int>(size - best.members.size());
-      if (leads != kept.end() && leads->held_out < std::pow(kTakes, more) * best.held_out)
-        best = *leads;
+      if (leads != kept.end() && leads->held_out < takes(best, size) * best.held_out) best = *leads;
       if (kept.size() > kKept) kept.resize(kKept);
     }
     return result(without_needless(std::move(best)));
@@ -112,9 +127,8 @@ class Selection {
     out.members = std::move(members);
     out.gaps = gaps_of(context_.fitter, model);
     if (out.gaps.size() == context_.fitter.segments().size()) {
-      double sum = 0;
-      for (std::size_t r = holdout_from_; r < out.gaps.size(); ++r) sum += out.gaps[r].overall;
-      out.held_out = sum / static_cast<double>(out.gaps.size() - holdout_from_);
+      out.held_out = mean_gap(out.gaps, holdout_from_);
+      out.all = mean_gap(out.gaps, 0);
     }
     Trial trial;
     if (!out.members.empty()) trial.kind = tried_[out.members.back()]->kind;
@@ -133,6 +147,12 @@ class Selection {
     for (std::size_t r = 0; r < s.gaps.size(); ++r)
       if (s.gaps[r].overall > std::min(none_.gaps[r].overall, 1.0)) return false;
     return true;
+  }
+
+  /// Gap, over that of a set, below which a larger one is worth its causes.
+  double takes(const CauseSet& s, std::size_t size) const {
+    const auto more = static_cast<int>(size - s.members.size());
+    return s.members.empty() ? kTakes * std::pow(kTakesToo, more - 1) : std::pow(kTakesToo, more);
   }
 
   bool has_law(const Trial& t) const {
@@ -178,17 +198,17 @@ class Selection {
       const Extension& e = all[static_cast<std::size_t>(i)];
       const Trial& t = *tried_[e.cause];
       std::vector<Model> starts;
-      for (const bool as_the_trial : {false, true})
-        starts.push_back(extended(context_, e.from->model, t, as_the_trial));
+      for (const Start start : {Start::changed, Start::trial, Start::little})
+        starts.push_back(extended(context_, e.from->model, t, start));
       out[static_cast<std::size_t>(i)] =
           judged(e.members, free_run_fit(train_, starts, kScreenSteps, false).model);
     });
-    // What its values do not let have its name is another law.
+    // What its values do not let have its name is another law. The records that were fitted count
+    // too: few held-out ones let several sets do nearly as well.
     const auto sort = [&] {
       std::erase_if(out, [](const CauseSet& s) { return !s.named || !std::isfinite(s.held_out); });
-      std::stable_sort(out.begin(), out.end(), [](const CauseSet& a, const CauseSet& b) {
-        return a.held_out < b.held_out;
-      });
+      std::stable_sort(out.begin(), out.end(),
+                       [](const CauseSet& a, const CauseSet& b) { return a.all < b.all; });
     };
     sort();
     if (out.size() > kFinished) out.resize(kFinished);
@@ -231,7 +251,7 @@ class Selection {
   CauseSet without_needless(CauseSet best) const {
     for (std::size_t i = 0; i < best.members.size() && best.members.size() > 1;) {
       CauseSet less = without(best, i);
-      const bool needless = may_lead(less) && best.held_out > kTakes * less.held_out;
+      const bool needless = may_lead(less) && best.held_out > kTakesToo * less.held_out;
       if (needless) best = std::move(less);
       i = needless ? 0 : i + 1;
     }
