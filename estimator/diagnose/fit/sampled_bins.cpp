@@ -20,7 +20,7 @@ std::vector<SampledBin> sampled_bins(const Linearised& at, std::size_t record) {
   for (Index b = 0; b < bins; ++b) {
     double size = 0;
     for (const Index u : thetas) size += std::norm(at.columns[record].size(b, u));
-    motion[b] = size * system.weights->whitener(b).squaredNorm();
+    motion[b] = size * system.weights->whitener(b).squared_norm();
   }
   const double total = std::max(motion.sum(), 1e-300);
   std::vector<SampledBin> out;

@@ -17,7 +17,6 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr Index kEndTerms = 4;
-constexpr Index kSmall = 24;  ///< equations below which the kernels do not pay
 
 namespace {
 
@@ -56,7 +55,7 @@ class MetricMoments {
 
 }  // namespace
 
-Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
+Weights::Weights(std::vector<Whitener> whitener, const VectorXd& w,
                  std::vector<HiddenOscillator> hidden, MatrixXd read)
     : whitener_(std::move(whitener)),
       relative_(w / std::sqrt(w[0] * w[w.size() - 1])),
@@ -95,7 +94,7 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
 }
 
 VectorXcd Weights::forces_of(Index bin, const VectorXcd& rows) const {
-  const MatrixXcd& w = whitener(bin);
+  const MatrixXcd w = whitener(bin).whole();
   if (is_triangular()) return w.triangularView<Eigen::Lower>().solve(rows);
   const Index count = read_.cols();
   const MatrixXcd own = w.topRows(count) * read_.cast<Complex>();
@@ -103,24 +102,8 @@ VectorXcd Weights::forces_of(Index bin, const VectorXcd& rows) const {
          own.triangularView<Eigen::Lower>().solve(VectorXcd(rows.head(count)));
 }
 
-MatrixXcd Weights::metric(Index bin) const {
-  const MatrixXcd& w = whitener(bin);
-  const Index n = w.rows();
-  if (n < kSmall) return w.adjoint().lazyProduct(w);
-  RowGram gram(2 * n);
-  auto rows = gram.rows(n);
-  rows.leftCols(n) = w.real();
-  rows.rightCols(n) = w.imag();
-  gram.add();
-  const MatrixXd sum = gram.sum(), cross = sum.topRightCorner(n, n);
-  MatrixXcd out(n, n);
-  out.real() = sum.topLeftCorner(n, n) + sum.bottomRightCorner(n, n);
-  out.imag() = cross - cross.transpose();
-  return out;
-}
-
 void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const {
-  const MatrixXcd& w = whitener(bin);
+  const MatrixXcd w = whitener(bin).whole();
   const Index n = w.rows();
   out.setZero(2 * n, padded(static_cast<int>(2 * n)));
   for (Index i = 0; i < n; ++i)
@@ -179,12 +162,8 @@ RowMatrix Weights::times_ends(Index bin, const RowMatrix& left) const {
 VectorXd Weights::whitened(const MatrixXcd& forces) const {
   const Index n = equations();
   VectorXd out(2 * forces.size());
-  VectorXcd row(n);
   for (Index b = 0; b < forces.cols(); ++b) {
-    if (n >= kSmall && is_triangular())
-      row.noalias() = whitener(b).triangularView<Eigen::Lower>() * forces.col(b);
-    else
-      row.noalias() = whitener(b) * forces.col(b);
+    const VectorXcd row = whitener(b).times(forces.col(b));
     out.segment(2 * n * b, n) = row.real();
     out.segment(2 * n * b + n, n) = row.imag();
   }
@@ -198,10 +177,7 @@ MatrixXcd Weights::turned_back(const VectorXd& rows) const {
   for (Index b = 0; b < bins(); ++b) {
     row.real() = rows.segment(2 * n * b, n);
     row.imag() = rows.segment(2 * n * b + n, n);
-    if (n >= kSmall && is_triangular())
-      out.col(b).noalias() = whitener(b).adjoint().triangularView<Eigen::Upper>() * row;
-    else
-      out.col(b).noalias() = whitener(b).adjoint() * row;
+    out.col(b) = whitener(b).adjoint_times(row);
   }
   return out;
 }
