@@ -21,6 +21,8 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr std::size_t kListsTogether = 256;
+/// Lists up to which the products of their own rows are less work than those of all equations.
+constexpr std::size_t kFewLists = 8;
 
 /// Adds real(C^H c) of a list's orthonormal directions; c: their products with the residual, the
 /// last of the columns C.
@@ -29,6 +31,17 @@ void add_last(const PlaceProducts& places, VectorXd& sum) {
     const Complex last = places.columns(i, places.columns.cols() - 1);
     sum += places.columns.row(i).real().transpose() * last.real() +
            places.columns.row(i).imag().transpose() * last.imag();
+  }
+}
+
+/// The same of a bin whose products are not computed.
+void add_last(const Whitened& system, Index bin, const std::vector<CandidatePlace>& places,
+              BinProducts& products, VectorXd& sum) {
+  const MatrixXcd basis = candidate_basis(system, bin, places);
+  for (Index i = 0; i < basis.cols(); ++i) {
+    const Eigen::RowVectorXcd columns = products.with_rows(bin, basis.col(i));
+    const Complex last = columns[columns.size() - 1];
+    sum += columns.real().transpose() * last.real() + columns.imag().transpose() * last.imag();
   }
 }
 
@@ -91,9 +104,15 @@ std::vector<MatrixXd> without_sampled(const MatrixXd& square, const Linearised& 
   std::vector<VectorXd> last(lists.size(), VectorXd::Zero(square.cols()));
   BinProducts products(at, record, kept);
   auto next = sampled.begin();
-  for (Index b = 0; b < at.systems[record].bins(); ++b) {
-    products.compute(b);
+  const Whitened& system = at.systems[record];
+  for (Index b = 0; b < system.bins(); ++b) {
     const bool taken = next != sampled.end() && next->bin == b;
+    if (!taken && lists.size() <= kFewLists) {
+      for (std::size_t i = 0; i < lists.size(); ++i)
+        add_last(system, b, lists[i], products, last[i]);
+      continue;
+    }
+    products.compute(b);
     const double root = taken ? std::sqrt(next->weight) : 0;
     if (taken) ++next;
     for (std::size_t i = 0; i < lists.size(); ++i) {
