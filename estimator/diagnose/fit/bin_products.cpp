@@ -178,6 +178,25 @@ void BinProducts::add_square(RowMatrix& sum, double weight) {
                        .real();
 }
 
+Complex BinProducts::with_last(const Direction& direction) const {
+  const Index first = all_.real.rows() - metric_.rows(), last = size_real_.size() - 1;
+  Complex out = 0;
+  for (const Entry& e : direction)
+    out += Complex(e.real, -e.imaginary) *
+           Complex(all_.real(first + e.equation, last), all_.imaginary(first + e.equation, last));
+  return out;
+}
+
+void BinProducts::add_columns(const Direction& direction, Complex size,
+                              Eigen::VectorXd& sum) const {
+  const Index first = all_.real.rows() - metric_.rows(), own = size_real_.size();
+  for (const Entry& e : direction) {
+    const Complex factor = Complex(e.real, e.imaginary) * size;
+    sum += factor.real() * all_.real.row(first + e.equation).head(own).transpose();
+    sum += factor.imag() * all_.imaginary.row(first + e.equation).head(own).transpose();
+  }
+}
+
 RowVectorXcd BinProducts::with_rows(Index bin, const Eigen::VectorXcd& rows) {
   const Index n = rows.size();
   if (axes_too_) put_axes(bin);

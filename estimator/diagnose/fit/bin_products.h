@@ -45,6 +45,11 @@ class BinProducts {
   std::complex<double> between(const Direction& a, const Direction& b) const;
   /// Its product with every column: direction^H metric column.
   Eigen::RowVectorXcd with_columns(const Direction& direction) const;
+  /// The same with the last column, the residual.
+  std::complex<double> with_last(const Direction& direction) const;
+  /// sum += real(conj(size) direction^H metric column) of every column.
+  void add_columns(const Direction& direction, std::complex<double> size,
+                   Eigen::VectorXd& sum) const;
   /// rows^H column for every column; rows: whitened, of a bin that compute() need not have had.
   Eigen::RowVectorXcd with_rows(Eigen::Index bin, const Eigen::VectorXcd& rows);
 

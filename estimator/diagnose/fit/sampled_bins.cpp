@@ -13,15 +13,11 @@ std::vector<SampledBin> sampled_bins(const Linearised& at, std::size_t record) {
   const Whitened& system = at.systems[record];
   const Index bins = system.bins();
   const double wanted = static_cast<double>(std::max(bins / kOneOf, std::min(bins, kFewest)));
-  std::vector<Index> thetas;
+  VectorXd motion = VectorXd::Zero(bins);
   for (std::size_t u = 0; u < at.unknowns.size(); ++u)
-    if (at.unknowns[u].kind == Unknown::Kind::theta) thetas.push_back(static_cast<Index>(u));
-  VectorXd motion(bins);
-  for (Index b = 0; b < bins; ++b) {
-    double size = 0;
-    for (const Index u : thetas) size += std::norm(at.columns[record].size(b, u));
-    motion[b] = size * system.weights->whitener(b).squared_norm();
-  }
+    if (at.unknowns[u].kind == Unknown::Kind::theta)
+      motion += at.columns[record].size.col(static_cast<Index>(u)).cwiseAbs2();
+  for (Index b = 0; b < bins; ++b) motion[b] *= system.weights->whitener(b).squared_norm();
   const double total = std::max(motion.sum(), 1e-300);
   std::vector<SampledBin> out;
   double passed = 0.5;  // of the sum of chances; a bin is taken where it passes a whole number

@@ -61,25 +61,25 @@ class Directions {
     }
   }
 
+  Index count() const { return static_cast<Index>(forces_.size()); }
+
   /// Adds what add_last() adds, without orthonormal directions.
   void add(const BinProducts& products, VectorXd& sum) const {
-    const auto count = static_cast<Index>(forces_.size());
-    MatrixXcd square(count, count), columns(count, sum.size());
+    const Index count = this->count();
+    MatrixXcd square(count, count);
+    VectorXcd last(count);
     for (Index i = 0; i < count; ++i) {
-      columns.row(i) = products.with_columns(at(products, i));
+      last[i] = products.with_last(at(products, i));
       for (Index j = 0; j <= i; ++j) {
         square(i, j) = products.between(at(products, i), at(products, j));
         square(j, i) = std::conj(square(i, j));
       }
-      square(i, i) *= 1 + kRegular;
+      if (count > 1) square(i, i) *= 1 + kRegular;
     }
-    const VectorXcd last = columns.col(columns.cols() - 1);
     const VectorXcd size =
         count == 1 ? VectorXcd(last / square(0, 0).real()) : VectorXcd(solve_ldlt(square, last));
     if (!size.allFinite()) return;
-    for (Index i = 0; i < count; ++i)
-      sum += columns.row(i).real().transpose() * size[i].real() +
-             columns.row(i).imag().transpose() * size[i].imag();
+    for (Index i = 0; i < count; ++i) products.add_columns(at(products, i), size[i], sum);
   }
 
  private:
@@ -102,6 +102,7 @@ std::vector<MatrixXd> without_sampled(const MatrixXd& square, const Linearised& 
   const std::vector<SampledBin> sampled = sampled_bins(at, record);
   std::vector<RowGram> along(lists.size(), RowGram(square.cols()));
   std::vector<VectorXd> last(lists.size(), VectorXd::Zero(square.cols()));
+  const std::vector<Directions> directions(lists.begin(), lists.end());
   BinProducts products(at, record, kept);
   auto next = sampled.begin();
   const Whitened& system = at.systems[record];
@@ -116,6 +117,10 @@ std::vector<MatrixXd> without_sampled(const MatrixXd& square, const Linearised& 
     const double root = taken ? std::sqrt(next->weight) : 0;
     if (taken) ++next;
     for (std::size_t i = 0; i < lists.size(); ++i) {
+      if (!taken && directions[i].count() == 1) {
+        directions[i].add(products, last[i]);
+        continue;
+      }
       const PlaceProducts places = place_products(products, lists[i]);
       add_last(places, last[i]);
       if (!taken) continue;

@@ -34,11 +34,13 @@ class SideBySide {
   }
   double& real(Index row, Index column, Index k) { return *at(row, column, k); }
 
-  void put(const MatrixXcd& from, Index k) {
-    for (Index i = 0; i < rows_; ++i)
-      for (Index j = 0; j < columns_; ++j) {
-        at(i, j, k)[0] = from(i, j).real();
-        at(i, j, k)[kBins] = from(i, j).imag();
+  /// Columns of a matrix in this order.
+  void put(const MatrixXcd& from, const std::vector<Index>& order, Index k) {
+    for (Index j = 0; j < columns_; ++j)
+      for (Index i = 0; i < rows_; ++i) {
+        const std::complex<double> x = from(i, order[static_cast<std::size_t>(j)]);
+        at(i, j, k)[0] = x.real();
+        at(i, j, k)[kBins] = x.imag();
       }
   }
 
@@ -131,7 +133,7 @@ std::vector<Whitener> whiteners(const std::function<MatrixXcd(Index)>& operation
     const Index here = std::min<Index>(kBins, bins - first);
     for (Index k = 0; k < kBins; ++k) {  // the last bin fills up the block
       const Index b = first + std::min(k, here - 1);
-      d.put(operation(b)(Eigen::all, order), k);
+      d.put(operation(b), order, k);
       variance.row(k) = noise.col(b)(order).transpose();
     }
     const Extent extent(d);
