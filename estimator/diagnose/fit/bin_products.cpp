@@ -188,7 +188,7 @@ Complex BinProducts::with_last(const Direction& direction) const {
 }
 
 void BinProducts::add_columns(const Direction& direction, Complex size,
-                              Eigen::VectorXd& sum) const {
+                              Eigen::Ref<Eigen::VectorXd> sum) const {
   const Index first = all_.real.rows() - metric_.rows(), own = size_real_.size();
   for (const Entry& e : direction) {
     const Complex factor = Complex(e.real, e.imaginary) * size;

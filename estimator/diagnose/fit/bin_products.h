@@ -49,7 +49,7 @@ class BinProducts {
   std::complex<double> with_last(const Direction& direction) const;
   /// sum += real(conj(size) direction^H metric column) of every column.
   void add_columns(const Direction& direction, std::complex<double> size,
-                   Eigen::VectorXd& sum) const;
+                   Eigen::Ref<Eigen::VectorXd> sum) const;
   /// rows^H column for every column; rows: whitened, of a bin that compute() need not have had.
   Eigen::RowVectorXcd with_rows(Eigen::Index bin, const Eigen::VectorXcd& rows);
 

@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr std::size_t kListsTogether = 256;
+constexpr int kParts = 4;  ///< of the bins of a record, at work at once
 /// Lists up to which the products of their own rows are less work than those of all equations.
 constexpr std::size_t kFewLists = 8;
 
@@ -64,7 +64,7 @@ class Directions {
   Index count() const { return static_cast<Index>(forces_.size()); }
 
   /// Adds what add_last() adds, without orthonormal directions.
-  void add(const BinProducts& products, VectorXd& sum) const {
+  void add(const BinProducts& products, Eigen::Ref<VectorXd> sum) const {
     const Index count = this->count();
     MatrixXcd square(count, count);
     VectorXcd last(count);
@@ -153,28 +153,28 @@ std::vector<double> rough_misfits(const Linearised& at, const std::vector<Index>
     normal(i, i) += at.prior[kept[static_cast<std::size_t>(i)]] / at.level;
   normal.diagonal() *= 1 + 1e-9;
   const Ldlt factor(normal);
-  std::vector<double> out(lists.size());
-  const std::size_t groups = (lists.size() + kListsTogether - 1) / kListsTogether;
-  run_all(parallel, static_cast<int>(groups), [&](int group) {
-    const std::size_t first = static_cast<std::size_t>(group) * kListsTogether;
-    const std::size_t end = std::min(first + kListsTogether, lists.size());
-    std::vector<VectorXd> last(end - first, VectorXd::Zero(count + 1));
-    std::vector<Directions> directions;
-    for (std::size_t i = first; i < end; ++i) directions.emplace_back(lists[i]);
-    for (std::size_t r = 0; r < at.systems.size(); ++r) {
-      BinProducts products(at, r, kept);
-      for (Index b = 0; b < at.systems[r].bins(); ++b) {
-        products.compute(b);
-        for (std::size_t i = first; i < end; ++i)
-          directions[i - first].add(products, last[i - first]);
-      }
-    }
-    for (std::size_t i = first; i < end; ++i) {
-      const VectorXd rest = square.col(count) - last[i - first];
-      const VectorXd gradient = rest.head(count);
-      out[i] = rest[count] - gradient.dot(factor.solve(gradient));
+  std::vector<Directions> directions(lists.begin(), lists.end());
+  const auto parts = static_cast<int>(at.systems.size()) * kParts;
+  std::vector<MatrixXd> last(static_cast<std::size_t>(parts));
+  run_all(parallel, parts, [&](int part) {
+    const auto r = static_cast<std::size_t>(part / kParts);
+    MatrixXd& sum = last[static_cast<std::size_t>(part)];
+    sum = MatrixXd::Zero(count + 1, static_cast<Index>(lists.size()));
+    const Index bins = at.systems[r].bins(), end = bins * (part % kParts + 1) / kParts;
+    BinProducts products(at, r, kept);
+    for (Index b = bins * (part % kParts) / kParts; b < end; ++b) {
+      products.compute(b);
+      for (std::size_t i = 0; i < lists.size(); ++i)
+        directions[i].add(products, sum.col(static_cast<Index>(i)));
     }
   });
+  std::vector<double> out;
+  for (Index i = 0; i < static_cast<Index>(lists.size()); ++i) {
+    VectorXd rest = square.col(count);
+    for (const MatrixXd& of_part : last) rest -= of_part.col(i);
+    const VectorXd gradient = rest.head(count);
+    out.push_back(rest[count] - gradient.dot(factor.solve(gradient)));
+  }
   return out;
 }
 
