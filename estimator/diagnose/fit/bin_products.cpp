@@ -50,28 +50,27 @@ void BinProducts::put_axes(Index bin) {
   }
 }
 
-void BinProducts::put_effects(Index bin) {
-  const Index n = metric_.rows();
-  for (std::size_t i = 0; i < effects_.size(); ++i) {
-    const auto c = static_cast<std::size_t>(effects_[i]);
-    auto column = whitened_effects_.col(static_cast<Index>(i));
-    if (c == kept_.size()) {
-      column.real() = last_.segment(2 * n * bin, n);
-      column.imag() = last_.segment(2 * n * bin + n, n);
-    } else {
-      const auto rows = columns_.effects.col(columns_.row[static_cast<std::size_t>(kept_[c])]);
-      column.real() = rows.segment(2 * n * bin, n);
-      column.imag() = rows.segment(2 * n * bin + n, n);
-    }
-  }
-  under_effects_.noalias() = system_.weights->whitener(bin).adjoint() * whitened_effects_;
+void BinProducts::put_effect(Index bin, Index column, Eigen::Ref<Eigen::VectorXcd> out) const {
+  const Index n = out.size();
+  const auto c = static_cast<std::size_t>(column);
+  const double* rows =
+      c == kept_.size()
+          ? last_.data()
+          : columns_.effects.col(columns_.row[static_cast<std::size_t>(kept_[c])]).data();
+  for (Index i = 0; i < n; ++i) out[i] = {rows[2 * n * bin + i], rows[2 * n * bin + n + i]};
 }
 
-void BinProducts::put_products(Index equation) {
-  const Index n = metric_.rows();
-  // The metric is Hermitian: its columns lie together in memory.
-  under_.real.row(0) = metric_.col(equation).real();
-  under_.imaginary.row(0) = -metric_.col(equation).imag();
+void BinProducts::put_effects(Index bin) {
+  for (std::size_t i = 0; i < effects_.size(); ++i)
+    put_effect(bin, effects_[i], whitened_effects_.col(static_cast<Index>(i)));
+  const Whitener& whitener = system_.weights->whitener(bin);
+  under_effects_.resizeLike(whitened_effects_);
+  for (Index i = 0; i < whitened_effects_.cols(); ++i)
+    under_effects_.col(i) = whitener.adjoint_times(whitened_effects_.col(i));
+}
+
+void BinProducts::put_products() {
+  const Index n = under_.real.cols();
   const double *x = under_.real.data(), *y = under_.imaginary.data();
   double *real = products_.real.data(), *imaginary = products_.imaginary.data();
   for (const Direction& element : elements_) {
@@ -96,9 +95,13 @@ void BinProducts::put_products(Index equation) {
   std::copy(y, y + n, imaginary);
 }
 
-void BinProducts::compute(Index bin) {
+void BinProducts::put_metric(Index bin) {
   metric_ = system_.weights->metric(bin);
   put_axes(bin);
+}
+
+void BinProducts::compute(Index bin) {
+  put_metric(bin);
   put_effects(bin);
   for (std::size_t c = 0; c < kept_.size(); ++c) {
     const Complex size = columns_.size(bin, kept_[c]);
@@ -108,7 +111,10 @@ void BinProducts::compute(Index bin) {
   const Index n = metric_.rows(), own = size_real_.size(), first = all_.real.rows() - n;
   const double *sr = size_real_.data(), *si = size_imaginary_.data();
   for (Index i = 0; i < n; ++i) {
-    put_products(i);
+    // The metric is Hermitian: its columns lie together in memory.
+    under_.real.row(0) = metric_.col(i).real();
+    under_.imaginary.row(0) = -metric_.col(i).imag();
+    put_products();
     const double *x = products_.real.data(), *y = products_.imaginary.data();
     double *real = &all_.real(first + i, 0), *imaginary = &all_.imaginary(first + i, 0);
     for (Index c = 0; c < own; ++c) {
@@ -170,6 +176,47 @@ void BinProducts::add_square(RowMatrix& sum, double weight) {
           weight * whitened_effects_.col(static_cast<Index>(i))
                        .dot(whitened_effects_.col(static_cast<Index>(j)))
                        .real();
+}
+
+Complex BinProducts::with_last(const Direction& direction) const {
+  const Index first = all_.real.rows() - metric_.rows(), last = size_real_.size() - 1;
+  Complex out = 0;
+  for (const Entry& e : direction)
+    out += Complex(e.real, -e.imaginary) *
+           Complex(all_.real(first + e.equation, last), all_.imaginary(first + e.equation, last));
+  return out;
+}
+
+void BinProducts::add_columns(const Direction& direction, Complex size,
+                              Eigen::Ref<Eigen::VectorXd> sum) const {
+  const Index first = all_.real.rows() - metric_.rows(), own = size_real_.size();
+  for (const Entry& e : direction) {
+    const Complex factor = Complex(e.real, e.imaginary) * size;
+    sum += factor.real() * all_.real.row(first + e.equation).head(own).transpose();
+    sum += factor.imag() * all_.imaginary.row(first + e.equation).head(own).transpose();
+  }
+}
+
+RowVectorXcd BinProducts::with_rows(Index bin, const Eigen::VectorXcd& rows) {
+  const Index n = rows.size();
+  if (axes_too_) put_axes(bin);
+  const Eigen::VectorXcd forces = system_.weights->whitener(bin).adjoint_times(rows);
+  under_.real.row(0) = forces.real();
+  under_.imaginary.row(0) = -forces.imag();
+  put_products();
+  RowVectorXcd out(size_real_.size());
+  for (Index c = 0; c < out.size(); ++c) {
+    const auto at = static_cast<std::size_t>(c);
+    if (const Index d = direction_of_[at]; d >= 0)
+      out[c] =
+          Complex(products_.real(0, d), products_.imaginary(0, d)) * columns_.size(bin, kept_[at]);
+  }
+  Eigen::VectorXcd column(n);
+  for (const Index c : effects_) {
+    put_effect(bin, c, column);
+    out[c] = rows.dot(column);
+  }
+  return out;
 }
 
 BinProducts::Direction BinProducts::of_force(const Eigen::VectorXd& force) {

@@ -18,6 +18,9 @@ class BinProducts {
   BinProducts(const Linearised& at, std::size_t record, const std::vector<Eigen::Index>& kept);
 
   void compute(Eigen::Index bin);
+  /// Of what compute() does only that which of_axis(), under_metric() and between() need.
+  void put_metric(Eigen::Index bin);
+  const Eigen::MatrixXcd& metric() const { return metric_; }
   /// Adds the products of the columns with each other, `weight` times, to the upper triangle of
   /// `sum`.
   void add_square(RowMatrix& sum, double weight = 1);
@@ -42,6 +45,13 @@ class BinProducts {
   std::complex<double> between(const Direction& a, const Direction& b) const;
   /// Its product with every column: direction^H metric column.
   Eigen::RowVectorXcd with_columns(const Direction& direction) const;
+  /// The same with the last column, the residual.
+  std::complex<double> with_last(const Direction& direction) const;
+  /// sum += real(conj(size) direction^H metric column) of every column.
+  void add_columns(const Direction& direction, std::complex<double> size,
+                   Eigen::Ref<Eigen::VectorXd> sum) const;
+  /// rows^H column for every column; rows: whitened, of a bin that compute() need not have had.
+  Eigen::RowVectorXcd with_rows(Eigen::Index bin, const Eigen::VectorXcd& rows);
 
  private:
   struct Complexes {
@@ -50,8 +60,10 @@ class BinProducts {
 
   void put_axes(Eigen::Index bin);
   void put_effects(Eigen::Index bin);
-  /// The products of a unit force on one equation with every direction.
-  void put_products(Eigen::Index equation);
+  /// One column without a direction, as whitened rows.
+  void put_effect(Eigen::Index bin, Eigen::Index column, Eigen::Ref<Eigen::VectorXcd> out) const;
+  /// The products of forces with every direction, from `under_`.
+  void put_products();
   /// The products of elements and axes with the columns, from those of the equations.
   void put_others();
 
@@ -63,7 +75,7 @@ class BinProducts {
   bool axes_too_ = false;                          ///< a column has the direction of an axis
   std::vector<Direction> elements_, axes_;
   Eigen::MatrixXcd metric_;
-  Complexes under_;     ///< one equation's row of the metric
+  Complexes under_;     ///< forces^H metric, of one equation
   Complexes products_;  ///< 1 x directions
   Complexes all_;       ///< directions (elements, axes, equations) x columns
   Eigen::VectorXd size_real_, size_imaginary_;

@@ -28,7 +28,7 @@ VectorXd parameter_column(const Plant& plant, const Model& model, const RecordSe
   set_value(moved, unknown, value_of(model, unknown) + 1);
   const ModelEffect& to = moved.effects[at];
   if (e.element_law()) {
-    VectorXd out = VectorXd::Zero(system.residual.size());
+    MatrixXcd forces = MatrixXcd::Zero(plant.equations(), system.bins());
     const std::vector<ActiveLaw> laws = active_laws(plant, model);
     for (std::size_t law = 0; law < laws.size(); ++law) {
       if (laws[law].effect != at) continue;
@@ -36,9 +36,9 @@ VectorXd parameter_column(const Plant& plant, const Model& model, const RecordSe
       const VectorXd force = law_force(law_at(moved, laws[law], record), track.d, track.v,
                                        1 / (segment.rate_hz * ratio)) -
                              track.force;
-      out += whiten_rows(system, laws[law].port.act, band_of(force, segment, ratio));
+      forces += laws[law].port.act * band_of(force, segment, ratio).transpose();
     }
-    return out;
+    return whiten_rows(system, forces);
   }
   if (e.form == LawForm::harmonic)
     return whiten_rows(system, node_direction(plant, e.place.story, e.place.frame),

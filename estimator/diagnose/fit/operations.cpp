@@ -61,9 +61,9 @@ MatrixXcd Operations::product(const MatrixXcd& columns, bool adjoint) const {
   RowMatrix parts = RowMatrix::Zero(columns.rows(), padded(static_cast<int>(2 * bins)));
   parts.leftCols(bins) = columns.real();
   parts.middleCols(bins, bins) = columns.imag();
-  const auto times_parts = [&](const RowMatrix& matrix) {
+  const auto times_parts = [&](const MatrixXd& matrix) {
     RowMatrix out;
-    multiply(adjoint ? RowMatrix(matrix.transpose()) : matrix, parts, out);
+    multiply(adjoint ? RowMatrix(matrix.transpose()) : RowMatrix(matrix), parts, out);
     return out;
   };
   const RowMatrix inert = times_parts(mass_), elastic = times_parts(stiffness_),

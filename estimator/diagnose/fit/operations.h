@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/model/linear_operation.h"
-#include "estimator/numeric/row_matrix.h"
 
 namespace framewatch::estimator {
 
@@ -36,7 +35,7 @@ class Operations {
   Eigen::MatrixXcd made(Eigen::Index bin) const;
   Eigen::MatrixXcd product(const Eigen::MatrixXcd& columns, bool adjoint) const;
 
-  RowMatrix mass_, stiffness_, damping_;
+  Eigen::MatrixXd mass_, stiffness_, damping_;
   std::vector<LinearOperation> additions_;
   Eigen::VectorXd w_;
   std::vector<Eigen::MatrixXcd> kept_;

@@ -69,16 +69,16 @@ std::optional<VectorXd> run_column(const Plant& plant, const Model& model,
   const double change = unknown.kind == Kind::theta ? kChange : 1.0;
   const FreeRun run = changed_run(plant, model, segment, record, unknown, change, ratio, cache);
   if (!run.good) return std::nullopt;
-  VectorXd out = VectorXd::Zero(system.residual.size());
+  Eigen::MatrixXcd forces = Eigen::MatrixXcd::Zero(plant.equations(), system.bins());
   std::size_t law = 0;
   for (const ActiveLaw& active : active_laws(plant, model)) {
     const LawTrack &from = system.tracks[law], &to = run.tracks[law];
     const VectorXcd force = band_of((to.force - from.force) / change, segment, ratio);
     const VectorXcd d = band_of((to.d - from.d) / change, segment, ratio);
-    out += whiten_rows(system, active.port.act, beyond(system.linear[law], force, d, segment.w));
+    forces += active.port.act * beyond(system.linear[law], force, d, segment.w).transpose();
     ++law;
   }
-  return out;
+  return whiten_rows(system, forces);
 }
 
 }  // namespace framewatch::estimator

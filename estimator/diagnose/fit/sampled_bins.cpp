@@ -7,27 +7,46 @@ namespace framewatch::estimator {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+namespace {
+
+/// Share of a column's square in a bin, times this, with which the bin is taken for its sake.
+constexpr double kOfEffects = 8;
+
+/// Chances of the bins for the sake of the columns of effects: what a resonance or a harmonic does
+/// lies in few of them.
+VectorXd chances_of_effects(const Columns& columns, Index rows, Index bins) {
+  VectorXd out = VectorXd::Zero(bins);
+  for (Index e = 0; e < columns.effects.cols(); ++e) {
+    const auto column = columns.effects.col(e);
+    const double total = std::max(column.squaredNorm(), 1e-300);
+    for (Index b = 0; b < bins; ++b)
+      out[b] += kOfEffects * column.segment(rows * b, rows).squaredNorm() / total;
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<SampledBin> sampled_bins(const Linearised& at, std::size_t record) {
   constexpr Index kOneOf = 8, kFewest = 64;
   constexpr double kEvenly = 0.5;  // share of the chances that does not depend on the motion
   const Whitened& system = at.systems[record];
   const Index bins = system.bins();
   const double wanted = static_cast<double>(std::max(bins / kOneOf, std::min(bins, kFewest)));
-  std::vector<Index> thetas;
+  VectorXd motion = VectorXd::Zero(bins);
   for (std::size_t u = 0; u < at.unknowns.size(); ++u)
-    if (at.unknowns[u].kind == Unknown::Kind::theta) thetas.push_back(static_cast<Index>(u));
-  VectorXd motion(bins);
-  for (Index b = 0; b < bins; ++b) {
-    double size = 0;
-    for (const Index u : thetas) size += std::norm(at.columns[record].size(b, u));
-    motion[b] = size * system.weights->whitener(b).squaredNorm();
-  }
+    if (at.unknowns[u].kind == Unknown::Kind::theta)
+      motion += at.columns[record].size.col(static_cast<Index>(u)).cwiseAbs2();
+  for (Index b = 0; b < bins; ++b) motion[b] *= system.weights->whitener(b).squared_norm();
   const double total = std::max(motion.sum(), 1e-300);
+  const VectorXd of_effects =
+      chances_of_effects(at.columns[record], 2 * system.operation.equations(), bins);
   std::vector<SampledBin> out;
   double passed = 0.5;  // of the sum of chances; a bin is taken where it passes a whole number
   for (Index b = 0; b < bins; ++b) {
-    const double chance = std::min(
-        1.0, wanted * (kEvenly / static_cast<double>(bins) + (1 - kEvenly) * motion[b] / total));
+    const double chance =
+        std::min(1.0, of_effects[b] + wanted * (kEvenly / static_cast<double>(bins) +
+                                                (1 - kEvenly) * motion[b] / total));
     passed += chance;
     if (passed < 1) continue;
     passed -= 1;

@@ -158,7 +158,7 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   if (!weights) {
     const auto operation = [&](Index b) { return out.operation[static_cast<std::size_t>(b)]; };
     const bool all_read = plant.unread.cols() == 0;
-    std::vector<MatrixXcd> own =
+    std::vector<Whitener> own =
         all_read ? whiteners(operation, noise, kArbitrary * pushed)
                  : whiteners(operation, noise, kArbitrary * pushed, {plant.read, plant.unread});
     if (own.empty()) return out;

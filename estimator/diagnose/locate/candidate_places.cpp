@@ -175,7 +175,7 @@ std::vector<CandidatePlace> candidate_places_of(const Plant& plant, const Model&
 MatrixXcd candidate_basis(const Whitened& system, Index bin,
                           const std::vector<CandidatePlace>& candidate_places) {
   const auto at = static_cast<std::size_t>(bin);
-  const Index n = system.operation[at].rows();
+  const Index n = system.operation.equations();
   Index count = 0;
   for (const CandidatePlace& s : candidate_places) count += s.size();
   MatrixXcd out(n, count);
@@ -188,7 +188,8 @@ MatrixXcd candidate_basis(const Whitened& system, Index bin,
       out.col(next++) = system.operation[at].col(s.axis);
     }
   }
-  out = (system.weights->whitener(bin) * out).eval();
+  const Whitener& whitener = system.weights->whitener(bin);
+  for (Index c = 0; c < count; ++c) out.col(c) = whitener.times(out.col(c));
   for (Index c = 0; c < count; ++c) {
     const double before = out.col(c).norm();
     for (Index b = 0; b < c; ++b) out.col(c) -= out.col(b) * out.col(b).dot(out.col(c));

@@ -20,7 +20,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr std::size_t kListsTogether = 256;
+constexpr int kParts = 4;  ///< of the bins of a record, at work at once
+/// Lists up to which the products of their own rows are less work than those of all equations.
+constexpr std::size_t kFewLists = 8;
 
 /// Adds real(C^H c) of a list's orthonormal directions; c: their products with the residual, the
 /// last of the columns C.
@@ -29,6 +31,17 @@ void add_last(const PlaceProducts& places, VectorXd& sum) {
     const Complex last = places.columns(i, places.columns.cols() - 1);
     sum += places.columns.row(i).real().transpose() * last.real() +
            places.columns.row(i).imag().transpose() * last.imag();
+  }
+}
+
+/// The same of a bin whose products are not computed.
+void add_last(const Whitened& system, Index bin, const std::vector<CandidatePlace>& places,
+              BinProducts& products, VectorXd& sum) {
+  const MatrixXcd basis = candidate_basis(system, bin, places);
+  for (Index i = 0; i < basis.cols(); ++i) {
+    const Eigen::RowVectorXcd columns = products.with_rows(bin, basis.col(i));
+    const Complex last = columns[columns.size() - 1];
+    sum += columns.real().transpose() * last.real() + columns.imag().transpose() * last.imag();
   }
 }
 
@@ -48,25 +61,25 @@ class Directions {
     }
   }
 
+  Index count() const { return static_cast<Index>(forces_.size()); }
+
   /// Adds what add_last() adds, without orthonormal directions.
-  void add(const BinProducts& products, VectorXd& sum) const {
-    const auto count = static_cast<Index>(forces_.size());
-    MatrixXcd square(count, count), columns(count, sum.size());
+  void add(const BinProducts& products, Eigen::Ref<VectorXd> sum) const {
+    const Index count = this->count();
+    MatrixXcd square(count, count);
+    VectorXcd last(count);
     for (Index i = 0; i < count; ++i) {
-      columns.row(i) = products.with_columns(at(products, i));
+      last[i] = products.with_last(at(products, i));
       for (Index j = 0; j <= i; ++j) {
         square(i, j) = products.between(at(products, i), at(products, j));
         square(j, i) = std::conj(square(i, j));
       }
-      square(i, i) *= 1 + kRegular;
+      if (count > 1) square(i, i) *= 1 + kRegular;
     }
-    const VectorXcd last = columns.col(columns.cols() - 1);
     const VectorXcd size =
         count == 1 ? VectorXcd(last / square(0, 0).real()) : VectorXcd(solve_ldlt(square, last));
     if (!size.allFinite()) return;
-    for (Index i = 0; i < count; ++i)
-      sum += columns.row(i).real().transpose() * size[i].real() +
-             columns.row(i).imag().transpose() * size[i].imag();
+    for (Index i = 0; i < count; ++i) products.add_columns(at(products, i), size[i], sum);
   }
 
  private:
@@ -89,14 +102,25 @@ std::vector<MatrixXd> without_sampled(const MatrixXd& square, const Linearised& 
   const std::vector<SampledBin> sampled = sampled_bins(at, record);
   std::vector<RowGram> along(lists.size(), RowGram(square.cols()));
   std::vector<VectorXd> last(lists.size(), VectorXd::Zero(square.cols()));
+  const std::vector<Directions> directions(lists.begin(), lists.end());
   BinProducts products(at, record, kept);
   auto next = sampled.begin();
-  for (Index b = 0; b < at.systems[record].bins(); ++b) {
-    products.compute(b);
+  const Whitened& system = at.systems[record];
+  for (Index b = 0; b < system.bins(); ++b) {
     const bool taken = next != sampled.end() && next->bin == b;
+    if (!taken && lists.size() <= kFewLists) {
+      for (std::size_t i = 0; i < lists.size(); ++i)
+        add_last(system, b, lists[i], products, last[i]);
+      continue;
+    }
+    products.compute(b);
     const double root = taken ? std::sqrt(next->weight) : 0;
     if (taken) ++next;
     for (std::size_t i = 0; i < lists.size(); ++i) {
+      if (!taken && directions[i].count() == 1) {
+        directions[i].add(products, last[i]);
+        continue;
+      }
       const PlaceProducts places = place_products(products, lists[i]);
       add_last(places, last[i]);
       if (!taken) continue;
@@ -129,28 +153,28 @@ std::vector<double> rough_misfits(const Linearised& at, const std::vector<Index>
     normal(i, i) += at.prior[kept[static_cast<std::size_t>(i)]] / at.level;
   normal.diagonal() *= 1 + 1e-9;
   const Ldlt factor(normal);
-  std::vector<double> out(lists.size());
-  const std::size_t groups = (lists.size() + kListsTogether - 1) / kListsTogether;
-  run_all(parallel, static_cast<int>(groups), [&](int group) {
-    const std::size_t first = static_cast<std::size_t>(group) * kListsTogether;
-    const std::size_t end = std::min(first + kListsTogether, lists.size());
-    std::vector<VectorXd> last(end - first, VectorXd::Zero(count + 1));
-    std::vector<Directions> directions;
-    for (std::size_t i = first; i < end; ++i) directions.emplace_back(lists[i]);
-    for (std::size_t r = 0; r < at.systems.size(); ++r) {
-      BinProducts products(at, r, kept);
-      for (Index b = 0; b < at.systems[r].bins(); ++b) {
-        products.compute(b);
-        for (std::size_t i = first; i < end; ++i)
-          directions[i - first].add(products, last[i - first]);
-      }
-    }
-    for (std::size_t i = first; i < end; ++i) {
-      const VectorXd rest = square.col(count) - last[i - first];
-      const VectorXd gradient = rest.head(count);
-      out[i] = rest[count] - gradient.dot(factor.solve(gradient));
+  std::vector<Directions> directions(lists.begin(), lists.end());
+  const auto parts = static_cast<int>(at.systems.size()) * kParts;
+  std::vector<MatrixXd> last(static_cast<std::size_t>(parts));
+  run_all(parallel, parts, [&](int part) {
+    const auto r = static_cast<std::size_t>(part / kParts);
+    MatrixXd& sum = last[static_cast<std::size_t>(part)];
+    sum = MatrixXd::Zero(count + 1, static_cast<Index>(lists.size()));
+    const Index bins = at.systems[r].bins(), end = bins * (part % kParts + 1) / kParts;
+    BinProducts products(at, r, kept);
+    for (Index b = bins * (part % kParts) / kParts; b < end; ++b) {
+      products.compute(b);
+      for (std::size_t i = 0; i < lists.size(); ++i)
+        directions[i].add(products, sum.col(static_cast<Index>(i)));
     }
   });
+  std::vector<double> out;
+  for (Index i = 0; i < static_cast<Index>(lists.size()); ++i) {
+    VectorXd rest = square.col(count);
+    for (const MatrixXd& of_part : last) rest -= of_part.col(i);
+    const VectorXd gradient = rest.head(count);
+    out.push_back(rest[count] - gradient.dot(factor.solve(gradient)));
+  }
   return out;
 }
 

@@ -22,10 +22,8 @@ Complex product(const Eigen::RowVectorXcd& equations, const BinProducts::Directi
   return out;
 }
 
-}  // namespace
-
-PlaceProducts place_products(const BinProducts& products,
-                             const std::vector<CandidatePlace>& places) {
+PlaceProducts products_of(const BinProducts& products, const std::vector<CandidatePlace>& places,
+                          bool with_columns) {
   std::vector<BinProducts::Direction> directions;
   for (const CandidatePlace& place : places) {
     if (place.kind == CandidatePlace::Kind::axis)
@@ -37,8 +35,9 @@ PlaceProducts place_products(const BinProducts& products,
   const auto count = static_cast<Index>(directions.size());
   for (Index i = 0; i < count; ++i) {
     const BinProducts::Direction& direction = directions[static_cast<std::size_t>(i)];
-    const Eigen::RowVectorXcd equations = products.under_metric(direction),
-                              columns = products.with_columns(direction);
+    const Eigen::RowVectorXcd equations = products.under_metric(direction);
+    Eigen::RowVectorXcd columns;
+    if (with_columns) columns = products.with_columns(direction);
     if (i == 0) {
       out.equations = MatrixXcd::Zero(count, equations.size());
       out.columns = MatrixXcd::Zero(count, columns.size());
@@ -59,6 +58,17 @@ PlaceProducts place_products(const BinProducts& products,
     out.columns.row(i) *= scale;
   }
   return out;
+}
+
+}  // namespace
+
+PlaceProducts place_products(const BinProducts& products,
+                             const std::vector<CandidatePlace>& places) {
+  return products_of(products, places, true);
+}
+
+MatrixXcd place_equations(const BinProducts& products, const std::vector<CandidatePlace>& places) {
+  return products_of(products, places, false).equations;
 }
 
 }  // namespace framewatch::estimator

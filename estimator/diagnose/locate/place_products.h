@@ -18,5 +18,8 @@ struct PlaceProducts {
 /// products: of the bin that they were computed for.
 PlaceProducts place_products(const BinProducts& products,
                              const std::vector<CandidatePlace>& places);
+/// Those with unit forces alone, which need no more than BinProducts::put_metric().
+Eigen::MatrixXcd place_equations(const BinProducts& products,
+                                 const std::vector<CandidatePlace>& places);
 
 }  // namespace framewatch::estimator

@@ -22,21 +22,29 @@ constexpr int kPrescribedSteps = 6;  ///< a sample: corners of laws lie between 
 constexpr double kDiverged_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
 constexpr int kGrows = 60, kIllinois = 60;
-constexpr double kRootPart = 1e-10, kLeastForce_n = 1e-12;
+constexpr double kRootPart = 1e-9, kLeastForce_n = 1e-12;
+/// Of the slopes that are remembered: steps by steeper ones are too short where a law becomes soft.
+constexpr double kSteepest = -2, kFlattest = -0.5;
 
-/// Root of `miss` near `start`. It falls by at least one per unit where the law does not soften:
-/// then the root lies between start and start + miss(start).
+/// Root of `miss` near `start`. slope: of `miss` about there, set to what it was found to be. Where
+/// the law does not soften it falls by at least one per unit.
 template <typename Miss>
-double root_near(const Miss& miss, double start) {
+double root_near(const Miss& miss, double start, double& slope) {
   double before = start, value_before = miss(before);
-  double f = before + value_before, value = miss(f);
-  for (int i = 0; i < kGrows && value * value_before > 0; ++i) {
+  double f = before;
+  const auto is_small = [&](double change) {
+    return std::abs(change) <= kRootPart * std::max({std::abs(f), std::abs(before), kLeastForce_n});
+  };
+  if (is_small(value_before)) return start;
+  f = before - value_before / slope;
+  double value = miss(f);
+  for (int i = 0; i < kGrows && value * value_before > 0 && !is_small(value); ++i) {
     const double width = 2 * (f - before);
     before = std::exchange(f, f + width);
     value_before = std::exchange(value, miss(f));
   }
-  const double small = kRootPart * std::max({std::abs(f), std::abs(before), kLeastForce_n});
-  for (int i = 0; i < kIllinois && std::abs(value) > small && std::abs(f - before) > small; ++i) {
+  if (f != before) slope = std::clamp((value - value_before) / (f - before), kSteepest, kFlattest);
+  for (int i = 0; i < kIllinois && !is_small(value) && !is_small(f - before); ++i) {
     const double next = (before * value - f * value_before) / (value - value_before);
     const double found = miss(next);
     if (found * value < 0) {
@@ -106,6 +114,7 @@ class RunForces {
   /// Forces of the laws at the end of a step that `system` has predicted.
   void solve_laws(const ModalSystem& system, double t, VectorXd& inputs) {
     const int sweeps = laws_.size() > 1 ? kSweeps : 1;
+    for (RunLaw& law : laws_) law.before = std::exchange(law.force, 2 * law.force - law.before);
     for (int sweep = 0; sweep < sweeps; ++sweep)
       for (std::size_t l = 0; l < laws_.size(); ++l) {
         solve(system, l, t);
@@ -135,7 +144,8 @@ class RunForces {
     LawMotion motion;
     ModalSystem::Observer seen;
     Index input;
-    double force = 0;
+    double force = 0, before = 0;  ///< at the end of this step and of the one before
+    double slope = -1;             ///< of what solve() brings to zero
   };
   struct RunSpring {
     double stiffness;
@@ -159,7 +169,7 @@ class RunForces {
     const double gv = law.seen.velocity_gain[law.input];
     // f = F(d + gd f, v + gv f): gd, gv < 0, F rises, so the root is bracketed.
     const auto miss = [&](double f) { return law.motion.force(d + gd * f, v + gv * f, t) - f; };
-    law.force = root_near(miss, law.force);
+    law.force = root_near(miss, law.force, law.slope);
     at_step_[l] = {d + gd * law.force, v + gv * law.force};
   }
 

@@ -45,7 +45,7 @@ void add_axis_proposals(const Fitter& fitter, const Localisation& place,
     const Index n = plant.equations();
     for (Index b = 0; b < s.bins(); ++b) {
       const auto at = static_cast<std::size_t>(b);
-      VectorXcd u = system.weights->whitener(b) * system.operation[at].col(axis);
+      VectorXcd u = system.weights->whitener(b).times(system.operation[at].col(axis));
       VectorXcd rest(n);
       rest.real() = system.rest.segment(2 * n * b, n);
       rest.imag() = system.rest.segment(2 * n * b + n, n);

@@ -48,7 +48,8 @@ MatrixXd ends_of(const Whitened& system, const RecordSegment& s,
     const double r = s.w[b] / middle;
     const Complex factors[] = {1 / (r * r), -kJ / r, 1, kJ * r};
     const Eigen::RowVectorXcd share =
-        along[static_cast<std::size_t>(b)].adjoint() * system.weights->whitener(b) / weight[b];
+        system.weights->whitener(b).adjoint_times(along[static_cast<std::size_t>(b)]).adjoint() /
+        weight[b];
     for (Index term = 0; term < 4; ++term)
       for (Index i = 0; i < n; ++i)
         columns[static_cast<std::size_t>(term * n + i)][b] = factors[term] * share[i];
@@ -92,9 +93,9 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
     std::vector<VectorXcd> along(static_cast<std::size_t>(s.bins()));
     for (Index b = 0; b < s.bins(); ++b) {
       const auto at = static_cast<std::size_t>(b);
-      VectorXcd u =
-          system.weights->whitener(b) * (axis ? VectorXcd(system.operation[at].col(candidate.axis))
-                                              : candidate.directions.col(0).cast<Complex>());
+      VectorXcd u = system.weights->whitener(b).times(
+          axis ? VectorXcd(system.operation[at].col(candidate.axis))
+               : VectorXcd(candidate.directions.col(0).cast<Complex>()));
       if (!others.empty()) {  // the part that the other places explain is not counted
         const MatrixXcd basis = candidate_basis(system, b, others);
         u -= (basis * (basis.adjoint() * u)).eval();

@@ -21,15 +21,19 @@ RowGram::RowGram(Index columns) : columns_(columns) {
   packed_.assign(size, 0.0);
 }
 
-Eigen::Block<RowMatrix> RowGram::rows(Index count) {
-  if (rows_.rows() != count) rows_ = RowMatrix::Zero(count, padded(static_cast<int>(columns_)));
-  return rows_.leftCols(columns_);
+Eigen::Block<RowMatrix> RowGram::rows(Index count, Index first) {
+  const Index length = padded(static_cast<int>(columns_)) - first;
+  if (rows_.rows() != count || rows_.cols() != length) rows_ = RowMatrix::Zero(count, length);
+  first_ = first;
+  return rows_.leftCols(columns_ - first);
 }
 
 void RowGram::add() {
-  kernels::in_use->add_rows(packed_.data(), packed_.data(), rows_.data(),
-                            static_cast<int>(rows_.rows()), static_cast<int>(columns_),
-                            static_cast<int>(rows_.cols()));
+  double* from = packed_.data();
+  for (Index i = 0; i < first_; ++i)
+    from += first_ + rows_.cols() - packed_row_begin(static_cast<int>(i));
+  kernels::in_use->add_rows(from, from, rows_.data(), static_cast<int>(rows_.rows()),
+                            static_cast<int>(columns_ - first_), static_cast<int>(rows_.cols()));
 }
 
 Eigen::MatrixXd RowGram::sum() const {

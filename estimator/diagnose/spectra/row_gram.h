@@ -17,8 +17,9 @@ class RowGram {
  public:
   explicit RowGram(Eigen::Index columns);
 
-  /// Where the caller writes the next rows before add(): count x columns. Contents do not persist.
-  Eigen::Block<RowMatrix> rows(Eigen::Index count);
+  /// Where the caller writes the next rows before add(), from column `first` on: count x columns
+  /// from there. They are zero before it; first: a multiple of kLane. Contents do not persist.
+  Eigen::Block<RowMatrix> rows(Eigen::Index count, Eigen::Index first = 0);
   /// Adds these rows to the sum.
   void add();
   /// These rows, padded with zeros to whole lanes.
@@ -27,7 +28,7 @@ class RowGram {
   Eigen::MatrixXd sum() const;
 
  private:
-  Eigen::Index columns_;
+  Eigen::Index columns_, first_ = 0;
   RowMatrix rows_;
   std::vector<double> packed_;
 };

@@ -17,7 +17,6 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr Index kEndTerms = 4;
-constexpr Index kSmall = 24;  ///< equations below which the kernels do not pay
 
 namespace {
 
@@ -31,32 +30,58 @@ constexpr int kLeastPower = 2 * kPower[0], kPowers = 2 * kPower[kEndTerms - 1] -
 /// that power of the relative frequency.
 class MetricMoments {
  public:
-  explicit MetricMoments(Index n) : sums_(kPowers, MatrixXd::Zero(n, n)) {}
+  explicit MetricMoments(Index n)
+      : n_(n),
+        even_(RowMatrix::Zero((kPowers + 1) / 2, padded(static_cast<int>(n * n)))),
+        odd_(RowMatrix::Zero(kPowers / 2, even_.cols())),
+        real_(RowMatrix::Zero(kTogether, even_.cols())),
+        imaginary_(real_),
+        even_factor_(even_.rows(), kTogether),
+        odd_factor_(odd_.rows(), kTogether) {}
 
   void add(const MatrixXcd& metric, double relative) {
+    const Eigen::Map<const Eigen::RowVectorXcd> row(metric.data(), n_ * n_);
+    real_.row(waiting_).head(n_ * n_) = row.real();
+    imaginary_.row(waiting_).head(n_ * n_) = row.imag();
     double factor = std::pow(relative, kLeastPower);
-    for (std::size_t p = 0; p < kPowers; ++p, factor *= relative) {
-      if (p % 2 == 0)
-        sums_[p] += factor * metric.real();
-      else
-        sums_[p] += factor * metric.imag();
-    }
+    for (Index p = 0; p < kPowers; ++p, factor *= relative)
+      (p % 2 == 0 ? even_factor_ : odd_factor_)(p / 2, waiting_) = factor;
+    if (++waiting_ == kTogether) add_waiting();
+  }
+
+  /// Adds those of the last bins: before between().
+  void add_waiting() {
+    const auto add = [&](const RowMatrix& factors, const RowMatrix& values, RowMatrix& sum) {
+      kernels::in_use->multiply_add(factors.data(), kTogether, static_cast<int>(factors.rows()),
+                                    static_cast<int>(waiting_), values.data(), sum.data(),
+                                    static_cast<int>(sum.cols()));
+    };
+    add(even_factor_, real_, even_);
+    add(odd_factor_, imaginary_, odd_);
+    waiting_ = 0;
   }
 
   /// Products of the columns of two end terms.
   MatrixXd between(Index a, Index b) const {
-    const MatrixXd& sum = sums_[static_cast<std::size_t>(kPower[a] + kPower[b] - kLeastPower)];
+    const Index power = kPower[a] + kPower[b] - kLeastPower;
+    const double* of_power = (power % 2 == 0 ? even_ : odd_).row(power / 2).data();
+    const Eigen::Map<const MatrixXd> sum(of_power, n_, n_);
     const bool turned = a % 2 != 0 && b % 2 == 0;
     return (turned ? -kSign[a] : kSign[a]) * kSign[b] * sum;
   }
 
  private:
-  std::vector<MatrixXd> sums_;
+  static constexpr int kTogether = 8;  ///< bins
+
+  Index n_, waiting_ = 0;
+  RowMatrix even_, odd_;  ///< powers x numbers of the metric
+  RowMatrix real_, imaginary_;
+  RowMatrix even_factor_, odd_factor_;
 };
 
 }  // namespace
 
-Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
+Weights::Weights(std::vector<Whitener> whitener, const VectorXd& w,
                  std::vector<HiddenOscillator> hidden, MatrixXd read)
     : whitener_(std::move(whitener)),
       relative_(w / std::sqrt(w[0] * w[w.size() - 1])),
@@ -82,6 +107,7 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
     along.bottomRows(n) = -under.imag();
     add_shares(b, along, shares);
   }
+  moments.add_waiting();
   for (Index i = 0; i < kEndTerms; ++i)
     for (Index j = 0; j < kEndTerms; ++j) sum.block(i * n, j * n, n, n) = moments.between(i, j);
   sum.rightCols(columns) = shares;
@@ -95,7 +121,7 @@ Weights::Weights(std::vector<MatrixXcd> whitener, const VectorXd& w,
 }
 
 VectorXcd Weights::forces_of(Index bin, const VectorXcd& rows) const {
-  const MatrixXcd& w = whitener(bin);
+  const MatrixXcd w = whitener(bin).whole();
   if (is_triangular()) return w.triangularView<Eigen::Lower>().solve(rows);
   const Index count = read_.cols();
   const MatrixXcd own = w.topRows(count) * read_.cast<Complex>();
@@ -103,24 +129,8 @@ VectorXcd Weights::forces_of(Index bin, const VectorXcd& rows) const {
          own.triangularView<Eigen::Lower>().solve(VectorXcd(rows.head(count)));
 }
 
-MatrixXcd Weights::metric(Index bin) const {
-  const MatrixXcd& w = whitener(bin);
-  const Index n = w.rows();
-  if (n < kSmall) return w.adjoint().lazyProduct(w);
-  RowGram gram(2 * n);
-  auto rows = gram.rows(n);
-  rows.leftCols(n) = w.real();
-  rows.rightCols(n) = w.imag();
-  gram.add();
-  const MatrixXd sum = gram.sum(), cross = sum.topRightCorner(n, n);
-  MatrixXcd out(n, n);
-  out.real() = sum.topLeftCorner(n, n) + sum.bottomRightCorner(n, n);
-  out.imag() = cross - cross.transpose();
-  return out;
-}
-
 void Weights::put_unit_forces(Index bin, bool transposed, RowMatrix& out) const {
-  const MatrixXcd& w = whitener(bin);
+  const MatrixXcd w = whitener(bin).whole();
   const Index n = w.rows();
   out.setZero(2 * n, padded(static_cast<int>(2 * n)));
   for (Index i = 0; i < n; ++i)
@@ -179,12 +189,8 @@ RowMatrix Weights::times_ends(Index bin, const RowMatrix& left) const {
 VectorXd Weights::whitened(const MatrixXcd& forces) const {
   const Index n = equations();
   VectorXd out(2 * forces.size());
-  VectorXcd row(n);
   for (Index b = 0; b < forces.cols(); ++b) {
-    if (n >= kSmall && is_triangular())
-      row.noalias() = whitener(b).triangularView<Eigen::Lower>() * forces.col(b);
-    else
-      row.noalias() = whitener(b) * forces.col(b);
+    const VectorXcd row = whitener(b).times(forces.col(b));
     out.segment(2 * n * b, n) = row.real();
     out.segment(2 * n * b + n, n) = row.imag();
   }
@@ -198,10 +204,7 @@ MatrixXcd Weights::turned_back(const VectorXd& rows) const {
   for (Index b = 0; b < bins(); ++b) {
     row.real() = rows.segment(2 * n * b, n);
     row.imag() = rows.segment(2 * n * b + n, n);
-    if (n >= kSmall && is_triangular())
-      out.col(b).noalias() = whitener(b).adjoint().triangularView<Eigen::Upper>() * row;
-    else
-      out.col(b).noalias() = whitener(b).adjoint() * row;
+    out.col(b) = whitener(b).adjoint_times(row);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "estimator/diagnose/spectra/row_gram.h"
+#include "estimator/diagnose/spectra/whitener.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -23,12 +24,12 @@ class Weights {
  public:
   /// whitener: inverse of L of every bin, L L^H = N D S D^H. w: rad/s of the bins. read: of
   /// whiteners of motions that not all are read (ReadMotions); empty where all are.
-  Weights(std::vector<Eigen::MatrixXcd> whitener, const Eigen::VectorXd& w,
+  Weights(std::vector<Whitener> whitener, const Eigen::VectorXd& w,
           std::vector<HiddenOscillator> hidden, Eigen::MatrixXd read = {});
 
   Eigen::Index bins() const { return static_cast<Eigen::Index>(whitener_.size()); }
-  Eigen::Index equations() const { return whitener_.front().rows(); }
-  const Eigen::MatrixXcd& whitener(Eigen::Index bin) const {
+  Eigen::Index equations() const { return whitener_.front().equations(); }
+  const Whitener& whitener(Eigen::Index bin) const {
     return whitener_[static_cast<std::size_t>(bin)];
   }
 
@@ -36,7 +37,7 @@ class Weights {
   Eigen::VectorXcd forces_of(Eigen::Index bin, const Eigen::VectorXcd& rows) const;
 
   /// Inverse of the equations' noise covariance in a bin: whitener^H whitener.
-  Eigen::MatrixXcd metric(Eigen::Index bin) const;
+  Eigen::MatrixXcd metric(Eigen::Index bin) const { return whitener(bin).metric(); }
 
   /// Forces, equations x bins, as whitened rows.
   Eigen::VectorXd whitened(const Eigen::MatrixXcd& forces) const;
@@ -65,7 +66,7 @@ class Weights {
   /// F' size; size: of the unscaled terms.
   Eigen::VectorXd shared(Eigen::Index bin, const Eigen::VectorXd& size) const;
 
-  std::vector<Eigen::MatrixXcd> whitener_;
+  std::vector<Whitener> whitener_;
   Eigen::VectorXd relative_;  ///< frequency of every bin over the band's middle
   std::vector<HiddenOscillator> hidden_;
   Eigen::MatrixXd read_;

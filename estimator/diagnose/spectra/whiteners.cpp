@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <complex>
 #include <cstddef>
+#include <utility>
 
 #include "estimator/numeric/complex.h"
 #include "estimator/numeric/kernels.h"
@@ -33,11 +34,13 @@ class SideBySide {
   }
   double& real(Index row, Index column, Index k) { return *at(row, column, k); }
 
-  void put(const MatrixXcd& from, Index k) {
-    for (Index i = 0; i < rows_; ++i)
-      for (Index j = 0; j < columns_; ++j) {
-        at(i, j, k)[0] = from(i, j).real();
-        at(i, j, k)[kBins] = from(i, j).imag();
+  /// Columns of a matrix in this order.
+  void put(const MatrixXcd& from, const std::vector<Index>& order, Index k) {
+    for (Index j = 0; j < columns_; ++j)
+      for (Index i = 0; i < rows_; ++i) {
+        const std::complex<double> x = from(i, order[static_cast<std::size_t>(j)]);
+        at(i, j, k)[0] = x.real();
+        at(i, j, k)[kBins] = x.imag();
       }
   }
 
@@ -118,11 +121,11 @@ std::vector<int> first_of_covariance(const Extent& axes, const MatrixXd& pushed)
 
 }  // namespace
 
-std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operation,
-                                 const MatrixXd& noise, const MatrixXd& pushed) {
+std::vector<Whitener> whiteners(const std::function<MatrixXcd(Index)>& operation,
+                                const MatrixXd& noise, const MatrixXd& pushed) {
   const MatrixXcd first_of_all = operation(0);
   const Index n = first_of_all.rows(), axes = first_of_all.cols(), bins = noise.cols();
-  std::vector<MatrixXcd> out;
+  std::vector<Whitener> out;
   SideBySide d(n, axes), matrix(n, n);
   Eigen::Matrix<double, kBins, Eigen::Dynamic> variance(kBins, axes);
   const std::vector<Index> order = by_first_equation(first_of_all);
@@ -130,7 +133,7 @@ std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operatio
     const Index here = std::min<Index>(kBins, bins - first);
     for (Index k = 0; k < kBins; ++k) {  // the last bin fills up the block
       const Index b = first + std::min(k, here - 1);
-      d.put(operation(b)(Eigen::all, order), k);
+      d.put(operation(b), order, k);
       variance.row(k) = noise.col(b)(order).transpose();
     }
     const Extent extent(d);
@@ -141,18 +144,18 @@ std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operatio
     for (Index k = 0; k < kBins && pushed.size() > 0; ++k) add_pushed(pushed, k, matrix);
     kernels::in_use->inverse_cholesky(matrix.data(), before.data(), static_cast<int>(n));
     for (Index k = 0; k < here; ++k) {
-      out.push_back(matrix.lower_triangle(k));
-      if (!out.back().allFinite()) return {};
+      out.emplace_back(matrix.lower_triangle(k));
+      if (!out.back().is_finite()) return {};
     }
   }
   return out;
 }
 
-std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operation,
-                                 const MatrixXd& noise, const MatrixXd& pushed,
-                                 const ReadMotions& motions) {
+std::vector<Whitener> whiteners(const std::function<MatrixXcd(Index)>& operation,
+                                const MatrixXd& noise, const MatrixXd& pushed,
+                                const ReadMotions& motions) {
   const Index n = motions.unread.rows(), axes = noise.rows(), hidden = motions.unread.cols();
-  std::vector<MatrixXcd> out;
+  std::vector<Whitener> out;
   for (Index b = 0; b < noise.cols(); ++b) {
     const MatrixXcd d = operation(b), of_hidden = d.rightCols(hidden);
     const MatrixXcd into = motions.read.transpose().cast<Complex>() * of_hidden;
@@ -168,9 +171,10 @@ std::vector<MatrixXcd> whiteners(const std::function<MatrixXcd(Index)>& operatio
     }
     const ComplexCholesky factor(covariance);
     if (!factor.good()) return {};
-    out.push_back(MatrixXcd::Zero(n, n));
-    out.back().topRows(n - hidden) = factor.whitened(left);
-    if (!out.back().allFinite()) return {};
+    MatrixXcd whole = MatrixXcd::Zero(n, n);
+    whole.topRows(n - hidden) = factor.whitened(left);
+    out.emplace_back(std::move(whole));
+    if (!out.back().is_finite()) return {};
   }
   return out;
 }

@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "estimator/diagnose/spectra/whitener.h"
+
 namespace framewatch::estimator {
 
 /// Inverse of the Cholesky factor L of the equations' noise covariance in every bin,
@@ -12,9 +14,8 @@ namespace framewatch::estimator {
 /// operation: D of every bin, equations x axes; noise: variances S, axes x bins; pushed: covariance
 /// of arbitrary forces, equations x equations, in units of the mean variance of an equation; or
 /// empty.
-std::vector<Eigen::MatrixXcd> whiteners(
-    const std::function<Eigen::MatrixXcd(Eigen::Index)>& operation, const Eigen::MatrixXd& noise,
-    const Eigen::MatrixXd& pushed);
+std::vector<Whitener> whiteners(const std::function<Eigen::MatrixXcd(Eigen::Index)>& operation,
+                                const Eigen::MatrixXd& noise, const Eigen::MatrixXd& pushed);
 
 /// Motions that no axis reads, orthonormal columns, and what completes them: equations x motions.
 struct ReadMotions {
@@ -25,8 +26,8 @@ struct ReadMotions {
 /// eliminated by Z' = read' - (read' D_u) (unread' D_u)^-1 unread': Z' D_u = 0. Whitening matrices
 /// L^-1 Z', L L^H = Z' D S D^H Z*, below them rows of zeros up to the number of equations. Source:
 /// docs/equations.md (46), (47).
-std::vector<Eigen::MatrixXcd> whiteners(
-    const std::function<Eigen::MatrixXcd(Eigen::Index)>& operation, const Eigen::MatrixXd& noise,
-    const Eigen::MatrixXd& pushed, const ReadMotions& motions);
+std::vector<Whitener> whiteners(const std::function<Eigen::MatrixXcd(Eigen::Index)>& operation,
+                                const Eigen::MatrixXd& noise, const Eigen::MatrixXd& pushed,
+                                const ReadMotions& motions);
 
 }  // namespace framewatch::estimator

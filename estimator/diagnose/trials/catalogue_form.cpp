@@ -52,7 +52,7 @@ void set_broadband(Effect& out, const Plant& plant, const std::vector<RecordSegm
   Eigen::VectorXd power(s.bins());
   Eigen::VectorXcd r(n);
   for (Eigen::Index b = 0; b < s.bins(); ++b) {
-    const Eigen::VectorXcd u = system.weights->whitener(b) * direction;
+    const Eigen::VectorXcd u = system.weights->whitener(b).times(direction);
     r.real() = system.rest.segment(2 * n * b, n);
     r.imag() = system.rest.segment(2 * n * b + n, n);
     const double weight = u.squaredNorm();

@@ -129,7 +129,10 @@ void add_modal_damping(const Plant& plant, Model& model) {
 FitResult with_free_damping(const Fitter& fitter, const FitResult& now) {
   const std::vector<std::size_t> ratios =
       modes_in_band(fitter.plant(), now.model, fitter.segments());
-  if (ratios.empty() || now.total_misfit() < kMisfit * fitter.expected(now.model)) return {};
+  const bool held = std::any_of(ratios.begin(), ratios.end(), [&](std::size_t e) {
+    return !now.model.effects[e].parameters[0].free;
+  });
+  if (!held || now.total_misfit() < kMisfit * fitter.expected(now.model)) return {};
   FitResult out = now;
   for (const std::size_t e : ratios) out.model.effects[e].parameters[0].free = true;
   double before = std::numeric_limits<double>::infinity();

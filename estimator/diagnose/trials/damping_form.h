@@ -14,7 +14,7 @@ namespace framewatch::estimator {
 void add_modal_damping(const Plant& plant, Model& model);
 
 /// Damping may be none of dashpots between floors: the fit with ratios of all modes in the band,
-/// whatever they are worth. Not good where nothing but noise is left already or there are none.
+/// whatever they are worth. Not good where nothing but noise is left already, or none is held.
 FitResult with_free_damping(const Fitter& fitter, const FitResult& now);
 
 /// Whether one dashpot between two floors or to the ground, one that the building has not, does as

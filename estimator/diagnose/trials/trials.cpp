@@ -15,8 +15,9 @@ namespace {
 
 constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
 constexpr int kSharpSteps = 12;
-constexpr int kTrialSteps = 3;    ///< of a free run's fit, before the costs are compared
-constexpr double kCostLimit = 4;  ///< times the least cost then: fits above it end there
+constexpr int kTrialSteps = 3;  ///< of a free run's fit, before the costs are compared
+/// Times the least cost then, or that without the trials' effects: fits above it end there.
+constexpr double kCostLimit = 4;
 constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
 
 /// A start model and the names of its new effects.
@@ -106,7 +107,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     options.holds_tolerated = c.fitter.plant().is_large();
     runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
-  double least = 1e300;
+  double least = c.now.cost;
   for (const FitResult& r : runs)
     if (r.good) least = std::min(least, r.cost);
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {

@@ -107,7 +107,7 @@ class Search {
     bool more = true;
     for (int round = 0; round < options_.rounds && more; ++round) {
       more = one_round(now, static_cast<std::size_t>(round));
-      if (!out_.effects.empty()) complete(now);
+      if (more) complete(now);
     }
   }
 
@@ -189,7 +189,6 @@ class Search {
     }
     const double needed = std::max(kLeastGain, kSignificant * std::sqrt(expected_now));
     if (excess < needed) return find_mass(now, located);
-
     // Beside laws that fit, a small rest is a linear effect or the shape of these laws: no further
     // law.
     const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
@@ -286,6 +285,7 @@ class Search {
       out_.rejected.push_back(out_.effects[i].chosen);
     out_.effects.resize(first);
     now = fit(first == 0 ? out_.linear : out_.effects.back().chosen.model, {}, kBackSteps);
+    if (first > 0) complete(now);
   }
 
   void adopt(const std::vector<Trial>& trials, FitResult& now) {

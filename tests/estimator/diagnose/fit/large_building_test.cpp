@@ -95,6 +95,30 @@ TEST(LargeBuilding, SampledBinsStandForAll) {
     EXPECT_NEAR(square(u, u) / columns.col(u).squaredNorm(), 1, kOff) << u;
 }
 
+/// A resonance that is narrower than the bins' distances from each other on average.
+TEST(LargeBuilding, BinsOfANarrowEffectAreAmongTheSampled) {
+  constexpr double kOff = 0.1;
+  const Case c;
+  const double hz =
+      1.7 * natural_frequencies_hz(c.small.structure, c.small.table, c.small.design).front();
+  const Model model = test::with_effects(
+      initial_model(c.plant),
+      {test::effect_of(LawForm::resonator, test::node_place(1, kStories), {500, hz, 0.002})});
+  const Linearised at = c.linearised(model);
+  const Index bins = at.systems[0].bins(), rows = 2 * c.plant.equations();
+  const std::vector<SampledBin> sampled = sampled_bins(at, 0);
+  EXPECT_LT(static_cast<double>(sampled.size()),
+            std::max(65.0, 0.25 * static_cast<double>(bins)) + 24);
+  ASSERT_EQ(at.columns[0].effects.cols(), 3);
+  for (Index e = 0; e < 3; ++e) {
+    const VectorXd column = at.columns[0].effects.col(e);
+    double square = 0;
+    for (const SampledBin& bin : sampled)
+      square += bin.weight * column.segment(rows * bin.bin, rows).squaredNorm();
+    EXPECT_NEAR(square / column.squaredNorm(), 1, kOff) << e;
+  }
+}
+
 TEST(LargeBuilding, AFitComesToTheNoise) {
   constexpr double kLow = 0.85, kHigh = 1.03;  // fitted values take their share
   const Case c;

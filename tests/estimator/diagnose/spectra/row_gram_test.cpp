@@ -86,5 +86,21 @@ TEST(RowGram, ASumOfManyIsThatOfParts) {
   EXPECT_LT((all.sum() - even.sum() - odd.sum()).cwiseAbs().maxCoeff(), kRounding * kBins * kRows);
 }
 
+TEST(RowGram, RowsMayBeginAtALaterColumn) {
+  constexpr Index kColumns = 13;
+  const RowMatrix all = random_rows(2, kColumns, 8), late = random_rows(3, kColumns, 9);
+  for (const Index first : {0, 4, 8, 12}) {
+    RowGram gram(kColumns);
+    gram.rows(3, first) = late.rightCols(kColumns - first);
+    gram.add();
+    gram.rows(2) = all;
+    gram.add();
+    MatrixXd expected = all.transpose() * all;
+    expected.bottomRightCorner(kColumns - first, kColumns - first) +=
+        late.rightCols(kColumns - first).transpose() * late.rightCols(kColumns - first);
+    EXPECT_LT((gram.sum() - expected).cwiseAbs().maxCoeff(), kRounding) << first;
+  }
+}
+
 }  // namespace row_gram_test
 }  // namespace framewatch::estimator

@@ -45,6 +45,12 @@ struct Equations {
   }
 };
 
+std::vector<MatrixXcd> whole(const std::vector<Whitener>& all) {
+  std::vector<MatrixXcd> out;
+  for (const Whitener& one : all) out.push_back(one.whole());
+  return out;
+}
+
 /// L^-1 covariance L^-H away from the identity.
 double miss(const MatrixXcd& whitener, const MatrixXcd& covariance) {
   return (whitener * covariance * whitener.adjoint() -
@@ -56,7 +62,7 @@ double miss(const MatrixXcd& whitener, const MatrixXcd& covariance) {
 TEST(Whiteners, NoiseOfEveryBinGetsUnitCovariance) {
   for (const Index bins : kBinCounts) {
     const Equations e(bins);
-    const std::vector<MatrixXcd> all = whiteners(e.of_bin(), e.noise, {});
+    const std::vector<MatrixXcd> all = whole(whiteners(e.of_bin(), e.noise, {}));
     ASSERT_EQ(all.size(), static_cast<std::size_t>(bins));
     for (Index b = 0; b < bins; ++b)
       EXPECT_LT(miss(all[static_cast<std::size_t>(b)], e.covariance(b)), kRounding)
@@ -66,7 +72,7 @@ TEST(Whiteners, NoiseOfEveryBinGetsUnitCovariance) {
 
 TEST(Whiteners, AreLowerTrianglesWithAPositiveDiagonal) {
   const Equations e(9);
-  for (const MatrixXcd& w : whiteners(e.of_bin(), e.noise, {})) {
+  for (const MatrixXcd& w : whole(whiteners(e.of_bin(), e.noise, {}))) {
     EXPECT_TRUE(w.isLowerTriangular(0.0));
     EXPECT_GT(w.diagonal().real().minCoeff(), 0);
     EXPECT_EQ(w.diagonal().imag().cwiseAbs().maxCoeff(), 0);
@@ -75,7 +81,7 @@ TEST(Whiteners, AreLowerTrianglesWithAPositiveDiagonal) {
 
 TEST(Whiteners, OfOneEquationIsOneOverItsDeviation) {
   const Equations e(3, 1, 2);
-  const std::vector<MatrixXcd> all = whiteners(e.of_bin(), e.noise, {});
+  const std::vector<MatrixXcd> all = whole(whiteners(e.of_bin(), e.noise, {}));
   for (std::size_t b = 0; b < all.size(); ++b)
     EXPECT_NEAR(all[b](0, 0).real(),
                 1 / std::sqrt(e.covariance(static_cast<Index>(b))(0, 0).real()), kRounding);
@@ -86,7 +92,7 @@ TEST(Whiteners, PushedForcesAddTheirCovariance) {
   const Equations e(9);
   const Eigen::Vector3d at(0, 1, 0.5);
   const MatrixXd pushed = kSize * at * at.transpose();
-  const std::vector<MatrixXcd> all = whiteners(e.of_bin(), e.noise, pushed);
+  const std::vector<MatrixXcd> all = whole(whiteners(e.of_bin(), e.noise, pushed));
   ASSERT_EQ(all.size(), 9U);
   for (Index b = 0; b < 9; ++b) {
     const MatrixXcd sensors = e.covariance(b);
@@ -105,7 +111,7 @@ TEST(Whiteners, UnreadMotionsAreEliminated) {
   MatrixXd basis = MatrixXd::Identity(4, 4);
   basis.topLeftCorner(2, 2) << 0.8, 0.6, -0.6, 0.8;
   const ReadMotions motions{basis.leftCols(2), basis.rightCols(2)};
-  const std::vector<MatrixXcd> all = whiteners(e.of_bin(), e.noise, {}, motions);
+  const std::vector<MatrixXcd> all = whole(whiteners(e.of_bin(), e.noise, {}, motions));
   ASSERT_EQ(all.size(), 9U);
   for (Index b = 0; b < 9; ++b) {
     const auto at = static_cast<std::size_t>(b);

@@ -121,6 +121,21 @@ TEST(DampingForm, OneDashpotToTheGroundIsAFinding) {
   EXPECT_TRUE(modal_damping_effects(d.model).empty());
 }
 
+TEST(DampingForm, RatiosThatAreFreeAreNotFreedAgain) {
+  const test::Small small = two_stories();
+  const Plant plant = small.plant();
+  const Effect law = test::effect_of(EffectKind::cubic_stiffness, test::in_frame(1), {1e8});
+  const auto segments = small.segments({small.record({law}, 1)});
+  const Fitter fitter(plant, segments, {});
+  Model start = initial_model(plant);
+  add_modal_damping(plant, start);
+  FitResult with = with_free_damping(fitter, fitter.fit(start, {}, {}));
+  ASSERT_TRUE(with.good);
+  EXPECT_FALSE(with_free_damping(fitter, with).good);
+  with.model.effects.front().parameters[0].free = false;
+  EXPECT_TRUE(with_free_damping(fitter, with).good);
+}
+
 TEST(DampingForm, LeavesALawBesideItItsName) {
   const test::Small small = two_stories();
   std::vector<Effect> effects = ratios();
