@@ -47,7 +47,8 @@ Columns contacts(const NeededSignal& n, const Scales& s) {
 
 Columns rates(const NeededSignal& n, const Scales& s) {
   const auto x = (n.v_t / s.v).array().eval();
-  Columns out{x * x.abs(), x.cube()};
+  const auto d = (n.d_t / s.d).array().eval();
+  Columns out{x * x.abs(), x.cube(), x * d.abs(), x * d.square()};
   for (const double width : {0.01, 0.05, 0.2}) out.push_back((x / width).tanh());
   return out;
 }
@@ -63,7 +64,29 @@ VectorXd stopped(const VectorXd& d, double limit) {
   return out;
 }
 
-/// Stop operators, and how they grow or fade with the deformation: pinching.
+/// Force of a spring over its stiffness that gives way at `limit` and is slack up to where it has
+/// been.
+VectorXd slackened(const VectorXd& d, double limit) {
+  VectorXd out(d.size());
+  double up = 0, down = 0;
+  for (Index i = 0; i < d.size(); ++i) {
+    out[i] = std::clamp(d[i] - up, 0.0, limit) - std::clamp(-d[i] - down, 0.0, limit);
+    up = std::max(up, d[i] - limit);
+    down = std::max(down, -d[i] - limit);
+  }
+  return out;
+}
+
+/// How far the deformation has gone to and fro, as a share of the whole way.
+VectorXd way(const VectorXd& d) {
+  VectorXd out(d.size());
+  double sum = 0;
+  for (Index i = 0; i < d.size(); ++i) out[i] = sum += i > 0 ? std::abs(d[i] - d[i - 1]) : 0;
+  return out / std::max(sum, 1e-300);
+}
+
+/// Stop operators, how they grow or fade with the deformation (pinching) and with all that was
+/// before (degrading), and springs that are slack.
 Columns memories(const NeededSignal& n, const Scales& s) {
   const VectorXd x = n.d_t / s.d;
   Columns out;
@@ -71,6 +94,9 @@ Columns memories(const NeededSignal& n, const Scales& s) {
   out.push_back(out[1].array() * x.array().abs());
   out.push_back(out[3].array() * x.array().abs());
   out.push_back(out[3].array() * x.array().square());
+  const VectorXd gone = way(x);
+  for (const std::size_t limit : {2, 3, 4, 5}) out.push_back(out[limit].cwiseProduct(gone));
+  for (const double limit : {0.1, 0.3, 0.6}) out.push_back(slackened(x, limit));
   return out;
 }
 
@@ -215,6 +241,31 @@ const char* law_kind_word(LawKind kind) {
       break;
   }
   return "external";
+}
+
+bool is_of_kind(EffectKind law, LawKind kind) {
+  switch (law) {
+    case EffectKind::cubic_stiffness:
+    case EffectKind::quadratic_stiffness:
+    case EffectKind::amplitude_dependence:
+      return kind == LawKind::elastic;
+    case EffectKind::one_sided_gap:
+    case EffectKind::two_sided_gap:
+      return kind == LawKind::impact;
+    case EffectKind::quadratic_damping:
+      return kind == LawKind::dissipative;
+    case EffectKind::coulomb_friction:
+      return kind == LawKind::dissipative || kind == LawKind::hysteretic;
+    case EffectKind::bilinear_hysteresis:
+    case EffectKind::bouc_wen:
+    case EffectKind::pinching:
+      return kind == LawKind::hysteretic;
+    case EffectKind::stiffness_drop:
+    case EffectKind::stiffness_drift:
+      return kind == LawKind::time_varying;
+    default:
+      return false;
+  }
 }
 
 KindOfLaw kind_of_law(const Fitter& fitter, const std::vector<NeededSignal>& needed) {

@@ -22,6 +22,10 @@ enum class LawKind {
 
 const char* law_kind_word(LawKind kind);
 
+/// Whether a law of the catalogue is of a kind. Friction is of two: it acts against the rate, and
+/// remembers where it stuck.
+bool is_of_kind(EffectKind law, LawKind kind);
+
 /// The force that a place needs beyond a linear element, averaged over cells of deformation and
 /// rate: a picture of the law.
 struct RestoringSurface {
@@ -41,10 +45,11 @@ struct KindOfLaw {
 };
 
 /// The kind by regression of the force on general functions: of deformation (powers; contacts from
-/// several clearances on), of rate, of the past (stop operators of several widths: Prandtl 1928,
-/// Masri and Caughey 1979), and of deformation with a stiffness that varies in time. The simplest
-/// of those that explain about as much as the best. needed: of an element or between floors, with
-/// its motion.
+/// several clearances on), of rate (as strong as the deformation says, too), of the past (stop
+/// operators of several widths: Prandtl 1928, Masri and Caughey 1979, which may fade with what was
+/// before; springs slack up to where they have been), and of deformation with a stiffness that
+/// varies in time. The simplest of those that explain about as much as the best. needed: of an
+/// element or between floors, with its motion.
 KindOfLaw kind_of_law(const Fitter& fitter, const std::vector<NeededSignal>& needed);
 
 }  // namespace framewatch::estimator

@@ -21,6 +21,7 @@
 #include "estimator/diagnose/trials/trial_names.h"
 #include "estimator/diagnose/trials/trial_relations.h"
 #include "estimator/diagnose/trials/wrong_labels.h"
+#include "estimator/diagnose/verdict/nearest_law.h"
 #include "estimator/diagnose/verdict/ramps.h"
 #include "estimator/diagnose/verdict/search_progress.h"
 #include "estimator/diagnose/verdict/verdict.h"
@@ -29,7 +30,6 @@
 namespace framewatch::estimator {
 namespace {
 
-using Eigen::Index;
 using Eigen::MatrixXcd;
 
 /// Fraction above which a second law at the place of the first does not call the first in question.
@@ -265,10 +265,10 @@ class Search {
     return true;
   }
 
-  /// Where no law explains enough to hold: the best one of an element that takes most of it.
+  /// Where no law explains enough to hold: the one that is near.
   void name_nearest(FitResult& now) {
-    if (!out_.effects.empty() || out_.rejected.empty() || !out_.reason.empty() ||
-        !is_nearest_law(context_of(now), out_.rejected.front()) ||
+    if (!out_.effects.empty() || !out_.reason.empty() ||
+        !nearest_law_first(context_of(now), out_.where, out_.rejected) ||
         fits_separately(fitter_, out_.linear, out_.ratio_before))
       return;
     adopt(std::exchange(out_.rejected, {}), now);

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/trials/trials.h"
+#include "estimator/diagnose/verdict/diagnosis.h"
+
+namespace framewatch::estimator {
+
+/// Puts the best of the rejected laws first that may be named in doubt: it takes most of the misfit
+/// (is_nearest_law()), at a place of `where` whose sort of force is known, and is of that sort.
+/// False when there is none.
+bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
+                       std::vector<Trial>& rejected);
+
+}  // namespace framewatch::estimator

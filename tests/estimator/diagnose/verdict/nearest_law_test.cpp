@@ -1,0 +1,75 @@
+#include "estimator/diagnose/verdict/nearest_law.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/estimator/diagnose/hand_made_trials.h"
+
+namespace framewatch::estimator {
+namespace nearest_law_test {
+
+using test::HandMade;
+
+constexpr double kExcess = 4000;
+constexpr int kFrame = 2, kOther = 1;
+
+/// A model with an excess of kExcess, the kind of force of one place, and laws that take some of
+/// it.
+struct Left {
+  HandMade made;
+  std::vector<WhereEntry> where{1};
+  double beyond = 0;
+
+  explicit Left(LawKind kind) {
+    made.now.misfit[0] += kExcess;
+    made.now.cost += kExcess;
+    beyond = made.now.total_misfit() - made.recorded.fitter.expected(made.now.model);
+    where.front().place = test::in_frame(kFrame);
+    where.front().kind.emplace().kind = kind;
+  }
+
+  Trial law(EffectKind kind, double share,
+            const EffectPlace& place = test::in_frame(kFrame)) const {
+    Trial out = made.trial(kind, share * beyond);
+    out.place = place;
+    out.model.effects.emplace_back();
+    out.model.effects.back().form = LawForm::power;
+    return out;
+  }
+  bool first(std::vector<Trial>& laws) const {
+    return nearest_law_first(made.context(), where, laws);
+  }
+};
+
+TEST(NearestLawOfAPlace, IsOfTheKindThatTheForceThereIs) {
+  const Left left(LawKind::dissipative);
+  std::vector<Trial> one{left.law(EffectKind::bouc_wen, 0.9)};
+  EXPECT_FALSE(left.first(one)) << "remembers";
+  std::vector<Trial> two{left.law(EffectKind::bouc_wen, 0.9),
+                         left.law(EffectKind::cubic_stiffness, 0.88),
+                         left.law(EffectKind::quadratic_damping, 0.85)};
+  ASSERT_TRUE(left.first(two));
+  EXPECT_EQ(two[0].kind, EffectKind::quadratic_damping);
+  EXPECT_EQ(two[1].kind, EffectKind::bouc_wen) << "the others stay in their order";
+  EXPECT_EQ(two[2].kind, EffectKind::cubic_stiffness);
+}
+
+TEST(NearestLawOfAPlace, TakesMostOfTheMisfit) {
+  const Left left(LawKind::hysteretic);
+  std::vector<Trial> little{left.law(EffectKind::bouc_wen, 0.5)};
+  EXPECT_FALSE(left.first(little));
+}
+
+TEST(NearestLawOfAPlace, ActsWhereTheKindIsKnown) {
+  Left left(LawKind::elastic);
+  EffectPlace whole = test::in_frame(kFrame);
+  whole.kind = PlaceKind::whole_frame;
+  std::vector<Trial> elsewhere{left.law(EffectKind::cubic_stiffness, 0.9, test::in_frame(kOther))};
+  std::vector<Trial> there{left.law(EffectKind::amplitude_dependence, 0.9, whole)};
+  EXPECT_FALSE(left.first(elsewhere));
+  EXPECT_TRUE(left.first(there)) << "the story is part of its frame";
+  left.where.front().kind.reset();
+  EXPECT_FALSE(left.first(there));
+}
+
+}  // namespace nearest_law_test
+}  // namespace framewatch::estimator
