@@ -22,4 +22,27 @@ bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry
   return true;
 }
 
+bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where) {
+  const auto is = [&](LawKind kind) { return is_of_kind(law.kind, kind); };
+  const bool of_deformation = is(LawKind::elastic) || is(LawKind::impact);
+  const bool other =
+      is(LawKind::dissipative) || is(LawKind::hysteretic) || is(LawKind::time_varying);
+  return std::any_of(where.begin(), where.end(), [&](const WhereEntry& w) {
+    if (!w.kind || !(w.place == law.place)) return false;
+    switch (w.kind->kind) {
+      case LawKind::elastic:
+      case LawKind::impact:
+        return other;
+      case LawKind::dissipative:
+      case LawKind::hysteretic:
+      case LawKind::time_varying:
+        return (of_deformation || other) && !is(w.kind->kind);
+      case LawKind::linear:
+      case LawKind::external:
+        break;
+    }
+    return false;
+  });
+}
+
 }  // namespace framewatch::estimator

@@ -71,5 +71,36 @@ TEST(NearestLawOfAPlace, ActsWhereTheKindIsKnown) {
   EXPECT_FALSE(left.first(there));
 }
 
+TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
+  struct Said {
+    LawKind kind;
+    EffectKind law;
+    bool contradicted;
+  };
+  const Said all[] = {
+      {LawKind::elastic, EffectKind::bouc_wen, true},
+      {LawKind::elastic, EffectKind::cubic_stiffness, false},
+      {LawKind::elastic, EffectKind::two_sided_gap, false},  // both of the deformation
+      {LawKind::impact, EffectKind::cubic_stiffness, false},
+      {LawKind::impact, EffectKind::coulomb_friction, true},
+      {LawKind::dissipative, EffectKind::bouc_wen, true},
+      {LawKind::hysteretic, EffectKind::coulomb_friction, false},
+      {LawKind::hysteretic, EffectKind::quadratic_stiffness, true},
+      {LawKind::time_varying, EffectKind::stiffness_drift, false},
+      {LawKind::hysteretic, EffectKind::stiffness_drop, true},
+      {LawKind::external, EffectKind::one_sided_gap, false},   // it is not known
+      {LawKind::hysteretic, EffectKind::added_damper, false},  // no law of an element
+  };
+  for (const Said& said : all) {
+    Left left(said.kind);
+    const Trial there = left.law(said.law, 1);
+    EXPECT_EQ(contradicts_the_kind(there, left.where), said.contradicted)
+        << law_kind_word(said.kind) << " " << describe(said.law).name;
+    EXPECT_FALSE(contradicts_the_kind(left.law(said.law, 1, test::in_frame(kOther)), left.where));
+    left.where.front().kind.reset();
+    EXPECT_FALSE(contradicts_the_kind(there, left.where));
+  }
+}
+
 }  // namespace nearest_law_test
 }  // namespace framewatch::estimator
