@@ -79,6 +79,10 @@ std::vector<Bound> bounds_of(const std::vector<Outcome>& outcomes) {
       [](const Outcome& o) { return o.verdict == "adequate"; }, 0.99);
   out.share("effect taken from the catalogue: confidently wrong", of_group(kTakenOut), wrong, 0.1,
             false);
+  for (const char* group : {"outside", kTakenOut})
+    out.share(
+        fmt::format("{}: no wrong name", group), of_group(group),
+        [](const Outcome& o) { return o.no_wrong_name(); }, 0.9);
   out.share("two effects: both", of_group("two_effects"), right, 0.85);
   out.share("three effects: all", of_group("three_effects"), right, 0.6);
   std::vector<double> removed, errors;
