@@ -20,7 +20,9 @@ constexpr int kTimes = 8;              ///< supports of a stiffness that varies 
 constexpr double kNearlyAll = 0.93;    ///< of the best share, that a simpler kind must explain
 constexpr double kKindFollows = 0.5;   ///< share below which no kind explains the force
 constexpr double kBeyondChance = 1.3;  ///< misfit of a linear element over noise
-constexpr double kAsImpact = 0.7;      ///< of the powers' rest, that contacts must leave at most
+constexpr double kAsImpact = 0.7;      ///< of the powers' rest, that a clearance must leave at most
+constexpr double kPowersDo = 0.97;     ///< share from which powers explain all
+constexpr int kClearances = 12;        ///< tried, up to the largest deformation
 
 /// Column in time of one record.
 using Columns = std::vector<VectorXd>;
@@ -34,14 +36,25 @@ Columns powers(const NeededSignal& n, const Scales& s) {
   return {x * x.abs(), x.cube(), x.square(), x.cube() * x.square()};
 }
 
-Columns contacts(const NeededSignal& n, const Scales& s) {
-  Columns out;
-  for (const double gap : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
-    out.push_back((n.d_t / s.d).array() - gap);
-    out.back() = out.back().cwiseMax(0);
-    out.push_back((-n.d_t / s.d).array() - gap);
-    out.back() = out.back().cwiseMax(0);
-  }
+/// Forces of springs of unit stiffness beyond a clearance: resisting the deformation up, and down.
+Columns contact(const NeededSignal& n, const Scales& s, double clearance) {
+  const auto x = (n.d_t / s.d).array().eval();
+  return {(x - clearance).cwiseMax(0), -(-x - clearance).cwiseMax(0)};
+}
+
+/// Springs, and after them dashpots that act where they do.
+Columns with_dashpots(Columns springs, const NeededSignal& n, const Scales& s) {
+  const std::size_t count = springs.size();
+  for (std::size_t i = 0; i < count; ++i)
+    springs.push_back((springs[i].array() != 0).select(n.v_t.array() / s.v, 0.0).matrix());
+  return springs;
+}
+
+/// Powers, and a broken line.
+Columns functions(const NeededSignal& n, const Scales& s) {
+  Columns out = powers(n, s);
+  for (const double at : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9})
+    for (VectorXd& column : contact(n, s, at)) out.push_back(std::move(column));
   return out;
 }
 
@@ -136,18 +149,20 @@ class KindSearch {
       out.share[static_cast<std::size_t>(kind)] =
           beyond > 0 ? std::clamp((linear - left) / beyond, 0.0, 1.0) : 0;
     };
-    const double smooth = rest([&](const NeededSignal& n) { return powers(n, scales_); }, false);
-    const double edged = rest([&](const NeededSignal& n) { return contacts(n, scales_); }, false);
-    share(LawKind::elastic, smooth);
-    share(LawKind::impact, edged);
+    share(LawKind::elastic, rest([&](const NeededSignal& n) { return powers(n, scales_); }, false));
+    const double smooth = out.share[static_cast<std::size_t>(LawKind::elastic)];
+    share(LawKind::elastic,
+          rest([&](const NeededSignal& n) { return functions(n, scales_); }, false));
+    share(LawKind::impact, rest_of_clearance());
     share(LawKind::dissipative,
           rest([&](const NeededSignal& n) { return rates(n, scales_); }, false));
     share(LawKind::hysteretic,
           rest([&](const NeededSignal& n) { return memories(n, scales_); }, false));
     share(LawKind::time_varying, rest([](const NeededSignal& n) { return times(n); }, true));
     out.kind = linear < kBeyondChance * noise ? LawKind::linear : simplest(out.share);
-    if (out.kind == LawKind::impact && edged - noise > kAsImpact * (smooth - noise))
-      out.kind = LawKind::elastic;
+    const double impact = out.share[static_cast<std::size_t>(LawKind::impact)];
+    if (out.kind == LawKind::elastic && smooth < kPowersDo && 1 - impact < kAsImpact * (1 - smooth))
+      out.kind = LawKind::impact;
     picture(out);
     return out;
   }
@@ -156,17 +171,48 @@ class KindSearch {
   /// Misfit beside a linear element. own: every record has its own coefficients.
   template <typename Make>
   double rest(const Make& make, bool own) const {
-    std::vector<std::vector<VectorXcd>> columns(needed_.size());
+    return sums(make, own).fit().misfit;
+  }
+
+  template <typename Make>
+  ScalarSums sums(const Make& make, bool own) const {
+    ScalarSums out;
     for (std::size_t r = 0; r < needed_.size(); ++r) {
       const RecordSegment& s = fitter_.segments()[r];
-      columns[r] = linear_columns(needed_[r], s.w);
+      std::vector<VectorXcd> columns = linear_columns(needed_[r], s.w);
       const Columns more = make(needed_[r]);
       for (std::size_t other = 0; other < (own ? needed_.size() : 1); ++other)
         for (const VectorXd& column : more)
-          columns[r].push_back(own && other != r ? VectorXcd(VectorXcd::Zero(s.bins()))
-                                                 : band_of(column, s, fitter_.ratio(r)));
+          columns.push_back(own && other != r ? VectorXcd(VectorXcd::Zero(s.bins()))
+                                              : band_of(column, s, fitter_.ratio(r)));
+      const ScalarSums one = scalar_sums(needed_[r], columns);
+      if (r == 0)
+        out = one;
+      else
+        out += one;
     }
-    return scalar_fit(needed_, columns).misfit;
+    return out;
+  }
+
+  /// The same beside springs that resist, and dashpots, beyond the best clearance, to both sides or
+  /// one.
+  double rest_of_clearance() const {
+    const std::vector<Index> sides[] = {{0, 1, 2, 4}, {0, 1, 3, 5}, {0, 1, 2, 3, 4, 5}};
+    double best = rest([](const NeededSignal&) { return Columns(); }, false);
+    for (int i = 1; i <= kClearances; ++i) {
+      const double clearance = static_cast<double>(i) / (kClearances + 1);
+      const ScalarSums all = sums(
+          [&](const NeededSignal& n) {
+            return with_dashpots(contact(n, scales_, clearance), n, scales_);
+          },
+          false);
+      for (const std::vector<Index>& kept : sides) {
+        const ScalarFit fit = ScalarSums{all.normal(kept, kept), all.right(kept), all.total}.fit();
+        const auto springs = static_cast<Index>(kept.size()) / 2 - 1;
+        if (fit.coefficients.segment(2, springs).minCoeff() > 0) best = std::min(best, fit.misfit);
+      }
+    }
+    return best;
   }
 
   static LawKind simplest(const std::array<double, 7>& share) {

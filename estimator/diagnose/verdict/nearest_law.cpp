@@ -7,15 +7,16 @@
 
 namespace framewatch::estimator {
 
+bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where) {
+  return std::any_of(where.begin(), where.end(), [&](const WhereEntry& w) {
+    return w.kind && same_spot(w.place, law.place) && is_of_kind(law.kind, w.kind->kind);
+  });
+}
+
 bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
                        std::vector<Trial>& rejected) {
-  const auto is_of_the_kind_there = [&](const Trial& law) {
-    return std::any_of(where.begin(), where.end(), [&](const WhereEntry& w) {
-      return w.kind && same_spot(w.place, law.place) && is_of_kind(law.kind, w.kind->kind);
-    });
-  };
   const auto nearest = std::find_if(rejected.begin(), rejected.end(), [&](const Trial& law) {
-    return is_nearest_law(context, law) && is_of_the_kind_there(law);
+    return is_nearest_law(context, law) && is_of_the_kind_there(law, where);
   });
   if (nearest == rejected.end()) return false;
   std::rotate(rejected.begin(), nearest, nearest + 1);

@@ -13,6 +13,9 @@ namespace framewatch::estimator {
 bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
                        std::vector<Trial>& rejected);
 
+/// Whether the sort of force that a law's place needs is known and the law's.
+bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where);
+
 /// Whether the sort of force that a law's place needs is known, and is not the law's. Contacts and
 /// other functions of the deformation are not told apart.
 bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where);

@@ -38,6 +38,9 @@ TEST(LawKind, IsFoundWithoutAFormula) {
   const KindOfLaw hysteretic = kind_with(EffectKind::bouc_wen, {4e6, 4e-3, 1, 0.5});
   EXPECT_STREQ(law_kind_word(hysteretic.kind), "hysteretic");
   EXPECT_GT(share_of(hysteretic, LawKind::hysteretic), kLeastShare);
+  const KindOfLaw impact = kind_with(EffectKind::two_sided_gap, {8e6, 1e-2});
+  EXPECT_STREQ(law_kind_word(impact.kind), "impact");
+  EXPECT_GT(share_of(impact, LawKind::impact), kLeastShare);
   const KindOfLaw dissipative = kind_with(EffectKind::coulomb_friction, {1.26e4, 4e-3});
   EXPECT_STREQ(law_kind_word(dissipative.kind), "dissipative");
 }
@@ -45,7 +48,7 @@ TEST(LawKind, IsFoundWithoutAFormula) {
 /// A law that no name of the catalogue has.
 class Unnamed : public ElementLaw {
  public:
-  enum class Sort { tires, slackens, grows };
+  enum class Sort { tires, slackens, grows, waves, gives };
   explicit Unnamed(Sort sort) : sort_(sort) {}
 
   double force(double, double d, double v, std::span<const double>) const override {
@@ -56,9 +59,13 @@ class Unnamed : public ElementLaw {
         return kStiffness *
                (std::clamp(d - up_, 0.0, kYield) - std::clamp(-d - down_, 0.0, kYield));
       case Sort::grows:
+        return kDamping * d * d * v;
+      case Sort::waves:
+        return 0.5 * kStiffness * kYield * std::sin(M_PI * d / kYield);
+      case Sort::gives:
         break;
     }
-    return kDamping * d * d * v;
+    return -0.6 * kStiffness * (d - std::clamp(d, -kYield, kYield));
   }
   void begin_step(double, double d) override {
     const double elastic = std::clamp(d - slider_, -limit(), limit());
@@ -87,13 +94,17 @@ TEST(LawKind, IsFoundOfLawsWithoutAName) {
                        needed_signals(recorded.fitter, recorded.freed(test::in_frame(kFrame))));
   };
   const KindOfLaw tires = kind(Unnamed::Sort::tires), slackens = kind(Unnamed::Sort::slackens),
-                  grows = kind(Unnamed::Sort::grows);
+                  grows = kind(Unnamed::Sort::grows), waves = kind(Unnamed::Sort::waves),
+                  gives = kind(Unnamed::Sort::gives);
   EXPECT_STREQ(law_kind_word(tires.kind), "hysteretic");
   EXPECT_GT(share_of(tires, LawKind::hysteretic), kLeastShare);
   EXPECT_STREQ(law_kind_word(slackens.kind), "hysteretic");
   EXPECT_GT(share_of(slackens, LawKind::hysteretic), kLeastShare);
   EXPECT_STREQ(law_kind_word(grows.kind), "dissipative");
   EXPECT_GT(share_of(grows, LawKind::dissipative), kMostOf);
+  EXPECT_STREQ(law_kind_word(waves.kind), "elastic") << "no contact";
+  EXPECT_GT(share_of(waves, LawKind::elastic), share_of(waves, LawKind::impact) + 0.3);
+  EXPECT_STREQ(law_kind_word(gives.kind), "elastic") << "softer beyond, no contact";
 }
 
 TEST(LawKind, EveryLawOfAnElementIsOfOneAndFrictionOfTwo) {
