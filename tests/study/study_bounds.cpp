@@ -68,6 +68,9 @@ std::vector<Bound> bounds_of(const std::vector<Outcome>& outcomes) {
         [&](const Outcome& o) { return o.group == "catalogue" && o.building == building; }, right,
         limit);
   out.share("a law of another form: name and place", of_group("other_form"), right, 0.9);
+  out.share(
+      "a law of another form: kind and place", of_group("other_form"),
+      [](const Outcome& o) { return o.kind_and_place(); }, 0.9);
   out.share("a law of another form: place", of_group("other_form"), placed, 0.92);
   out.share("a law of another form: confidently wrong", of_group("other_form"), wrong, 0, false);
   for (const char* group : {"catalogue", "two_effects", "practice"})

@@ -120,11 +120,10 @@ bool same_kind(const Json& truth, const std::string& name) {
 }
 
 bool is_near(const Json& truths, const Json& found) {
-  return found.value("confidence", 1.0) <= kDoubtful &&
-         std::any_of(truths.begin(), truths.end(), [&](const Json& truth) {
-           return same_place(truth["location"], found["location"]) &&
-                  same_kind(truth, text_of(found, "effect"));
-         });
+  return std::any_of(truths.begin(), truths.end(), [&](const Json& truth) {
+    return same_place(truth["location"], found["location"]) &&
+           same_kind(truth, text_of(found, "effect"));
+  });
 }
 
 void compare(const Json& truths, const Json& found, Outcome& out) {
@@ -153,6 +152,7 @@ void compare(const Json& truths, const Json& found, Outcome& out) {
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
     out.of_the_kind = out.of_the_kind && is_near(truths, found[i]);
+    out.in_doubt = out.in_doubt && found[i].value("confidence", 1.0) <= kDoubtful;
     if (explained[i]) continue;
     out.extra = true;
     out.confidently_wrong = out.confidently_wrong || found[i].value("confidence", 1.0) > kSure;

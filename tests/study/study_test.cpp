@@ -209,6 +209,8 @@ TEST(StudyScore, JudgesNamePlaceAndGap) {
   const Outcome near = diagnosed("partly_explained", "pinching", place.story, 0.5);
   EXPECT_TRUE(near.no_wrong_name()) << "remembers as Bouc-Wen does";
   EXPECT_FALSE(near.all_right());
+  EXPECT_TRUE(near.kind_and_place());
+  EXPECT_FALSE(otherwise.kind_and_place());
   for (const auto& [name, story, confidence] :
        {std::tuple("pinching", place.story, 0.6), std::tuple("pinching", 3 - place.story, 0.5),
         std::tuple("cubic_stiffness", place.story, 0.5)})
