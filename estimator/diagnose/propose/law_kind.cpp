@@ -293,8 +293,9 @@ bool is_of_kind(EffectKind law, LawKind kind) {
   switch (law) {
     case EffectKind::cubic_stiffness:
     case EffectKind::quadratic_stiffness:
-    case EffectKind::amplitude_dependence:
       return kind == LawKind::elastic;
+    case EffectKind::amplitude_dependence:
+      return kind == LawKind::elastic || kind == LawKind::hysteretic;
     case EffectKind::one_sided_gap:
     case EffectKind::two_sided_gap:
       return kind == LawKind::impact;

@@ -23,7 +23,7 @@ enum class LawKind {
 const char* law_kind_word(LawKind kind);
 
 /// Whether a law of the catalogue is of a kind. Friction is of two: it acts against the rate, and
-/// remembers where it stuck.
+/// remembers where it stuck. So is amplitude dependence, which may be slip.
 bool is_of_kind(EffectKind law, LawKind kind);
 
 /// The force that a place needs beyond a linear element, averaged over cells of deformation and

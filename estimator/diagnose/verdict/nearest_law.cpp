@@ -33,7 +33,7 @@ bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where
     switch (w.kind->kind) {
       case LawKind::elastic:
       case LawKind::impact:
-        return other;
+        return other && !of_deformation;
       case LawKind::dissipative:
       case LawKind::hysteretic:
       case LawKind::time_varying:

@@ -107,7 +107,7 @@ TEST(LawKind, IsFoundOfLawsWithoutAName) {
   EXPECT_STREQ(law_kind_word(gives.kind), "elastic") << "softer beyond, no contact";
 }
 
-TEST(LawKind, EveryLawOfAnElementIsOfOneAndFrictionOfTwo) {
+TEST(LawKind, EveryLawOfAnElementIsOfOneAndThoseThatStickOfTwo) {
   const LawKind kinds[] = {LawKind::elastic, LawKind::impact, LawKind::dissipative,
                            LawKind::hysteretic, LawKind::time_varying};
   for (const EffectDescription& d : effect_catalogue()) {
@@ -115,7 +115,9 @@ TEST(LawKind, EveryLawOfAnElementIsOfOneAndFrictionOfTwo) {
                                   [&](LawKind kind) { return is_of_kind(d.kind, kind); });
     const bool law = d.kind <= EffectKind::two_sided_gap || d.kind == EffectKind::stiffness_drop ||
                      d.kind == EffectKind::stiffness_drift;
-    EXPECT_EQ(of, d.kind == EffectKind::coulomb_friction ? 2 : law ? 1 : 0) << d.name;
+    const bool sticks =
+        d.kind == EffectKind::coulomb_friction || d.kind == EffectKind::amplitude_dependence;
+    EXPECT_EQ(of, sticks ? 2 : law ? 1 : 0) << d.name;
     EXPECT_FALSE(is_of_kind(d.kind, LawKind::external)) << d.name;
   }
   EXPECT_TRUE(is_of_kind(EffectKind::two_sided_gap, LawKind::impact));

@@ -83,6 +83,8 @@ TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
       {LawKind::elastic, EffectKind::two_sided_gap, false},  // both of the deformation
       {LawKind::impact, EffectKind::cubic_stiffness, false},
       {LawKind::impact, EffectKind::coulomb_friction, true},
+      {LawKind::elastic, EffectKind::amplitude_dependence, false},
+      {LawKind::hysteretic, EffectKind::amplitude_dependence, false},  // by slip
       {LawKind::dissipative, EffectKind::bouc_wen, true},
       {LawKind::hysteretic, EffectKind::coulomb_friction, false},
       {LawKind::hysteretic, EffectKind::quadratic_stiffness, true},
