@@ -23,7 +23,23 @@ bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry
   return true;
 }
 
+namespace {
+
+/// Whether it is a force from nowhere, and the likeliest place is an element whose force follows
+/// its motion.
+bool is_needless_force(const Trial& trial, const std::vector<WhereEntry>& where) {
+  const std::vector<ModelEffect>& effects = trial.model.effects;
+  if (effects.empty() || effects.back().form != LawForm::broadband || where.empty() ||
+      !where.front().kind)
+    return false;
+  const LawKind kind = where.front().kind->kind;
+  return kind != LawKind::external && kind != LawKind::linear;
+}
+
+}  // namespace
+
 bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where) {
+  if (is_needless_force(law, where)) return true;
   const auto is = [&](LawKind kind) { return is_of_kind(law.kind, kind); };
   const bool of_deformation = is(LawKind::elastic) || is(LawKind::impact);
   const bool other =

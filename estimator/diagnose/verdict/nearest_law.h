@@ -17,7 +17,8 @@ bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry
 bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where);
 
 /// Whether the sort of force that a law's place needs is known, and is not the law's. Contacts and
-/// other functions of the deformation are not told apart.
+/// other functions of the deformation are not told apart. A force that may be anything is
+/// contradicted where the likeliest place is an element whose force follows its motion.
 bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where);
 
 }  // namespace framewatch::estimator

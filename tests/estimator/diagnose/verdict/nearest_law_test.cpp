@@ -104,5 +104,20 @@ TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
   }
 }
 
+TEST(NearestLawOfAPlace, AForceFromNowhereIsContradictedByOneThatFollowsTheMotion) {
+  for (const auto& [kind, contradicted] : {std::pair(LawKind::time_varying, true),
+                                           {LawKind::external, false},
+                                           {LawKind::linear, false}}) {
+    Left left(kind);
+    Trial force = left.law(EffectKind::unmeasured_force, 1, test::at_node(kOther));
+    force.model.effects.back().form = LawForm::harmonic;
+    EXPECT_FALSE(contradicts_the_kind(force, left.where)) << "it has a frequency";
+    force.model.effects.back().form = LawForm::broadband;
+    EXPECT_EQ(contradicts_the_kind(force, left.where), contradicted) << law_kind_word(kind);
+    left.where.insert(left.where.begin(), WhereEntry());
+    EXPECT_FALSE(contradicts_the_kind(force, left.where)) << "another place is likelier";
+  }
+}
+
 }  // namespace nearest_law_test
 }  // namespace framewatch::estimator
