@@ -8,6 +8,7 @@
 namespace framewatch::estimator {
 
 bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where) {
+  if (law.place.kind == PlaceKind::whole_frame) return false;
   return std::any_of(where.begin(), where.end(), [&](const WhereEntry& w) {
     return w.kind && same_spot(w.place, law.place) && is_of_kind(law.kind, w.kind->kind);
   });

@@ -13,7 +13,8 @@ namespace framewatch::estimator {
 bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
                        std::vector<Trial>& rejected);
 
-/// Whether the sort of force that a law's place needs is known and the law's.
+/// Whether the sort of force that a law's place needs is known and the law's. Of a whole frame it
+/// is not: the sort of one story's force says nothing of the others'.
 bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where);
 
 /// Whether the sort of force that a law's place needs is known, and is not the law's. Contacts and

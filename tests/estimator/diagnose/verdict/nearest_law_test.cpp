@@ -64,9 +64,11 @@ TEST(NearestLawOfAPlace, ActsWhereTheKindIsKnown) {
   EffectPlace whole = test::in_frame(kFrame);
   whole.kind = PlaceKind::whole_frame;
   std::vector<Trial> elsewhere{left.law(EffectKind::cubic_stiffness, 0.9, test::in_frame(kOther))};
-  std::vector<Trial> there{left.law(EffectKind::amplitude_dependence, 0.9, whole)};
+  std::vector<Trial> all{left.law(EffectKind::amplitude_dependence, 0.9, whole)};
+  std::vector<Trial> there{left.law(EffectKind::cubic_stiffness, 0.9)};
   EXPECT_FALSE(left.first(elsewhere));
-  EXPECT_TRUE(left.first(there)) << "the story is part of its frame";
+  EXPECT_FALSE(left.first(all)) << "it is known of one story";
+  EXPECT_TRUE(left.first(there));
   left.where.front().kind.reset();
   EXPECT_FALSE(left.first(there));
 }
