@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "tests/study/hidden.h"
@@ -209,6 +210,30 @@ std::vector<std::string> accepted(const std::string& name) {
   return {};
 }
 
+estimator::LawKind sort_of(const std::string& name) {
+  using enum estimator::LawKind;
+  static const std::map<std::string, estimator::LawKind> kSorts{
+      {"smooth gap", elastic},
+      {"power 2.5", elastic},
+      {"damping power 1.6", dissipative},
+      {"stick and slip", hysteretic},
+      {"three sliders", hysteretic},
+      {"smooth drop", time_varying},
+      {"tanh softening", elastic},
+      {"two-slope softening", elastic},
+      {"Stribeck friction", dissipative},
+      {"stop with a dashpot", impact},
+      {"twelve sliders", hysteretic},
+      {"yielding that tires", hysteretic},
+      {"slack brace", hysteretic},
+      {"whole frame softens", elastic},
+      {"lopsided yield", hysteretic},
+      {"wavy spring", elastic},
+      {"damping that grows", dissipative},
+      {"pulsing stiffness", time_varying}};
+  return kSorts.at(name);
+}
+
 bool takes_over(const std::string& name) {
   return name == "three sliders" || name == "twelve sliders" || name == "yielding that tires" ||
          name == "slack brace" || name == "lopsided yield" || name == "tanh softening";
@@ -253,7 +278,7 @@ Draw draw_law(const std::string& name, const StudyBuilding& b, const Peaks& peak
     const int i = b.table().frame_stiffness(std::max(place.story, 1), place.frame);
     const LawScale e{b.theta[i], peaks.deformation[i], peaks.rate[i], peaks.seconds};
     if (takes_over(name)) hidden.theta[i] -= s * e.k;
-    hidden.laws.push_back({name, accepted(name), place,
+    hidden.laws.push_back({name, accepted(name), sort_of(name), place,
                            [=](int record) { return make_other(name, e, s, u, record); }});
   };
   return draw;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/diagnose/propose/law_kind.h"
 #include "estimator/simulate/element_law.h"
 #include "estimator/structure/effect.h"
 #include "tests/study/study_building.h"
@@ -24,6 +25,7 @@ struct Peaks {
 struct OtherLaw {
   std::string name;
   std::vector<std::string> accepted;  ///< names of the catalogue that describe it about
+  estimator::LawKind sort;            ///< of its force
   estimator::EffectPlace place;
   std::function<std::unique_ptr<estimator::ElementLaw>(int record)> make;
 };

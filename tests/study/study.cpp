@@ -36,8 +36,8 @@ generate  writes cases: config.toml, train.csv.gz, holdout.csv.gz, truth.json. E
 practice  imports the practice cases of FOLDER (that of the data folder), made with another program
 run       runs `framewatch diagnose` on every case without a diagnosis, and the first N (0) of every
           effect and building once more with the effect taken from the catalogue
-table     prints rates, confusion, gaps and what is asked as Markdown; exit 1 when there is no case or
-          less than what is asked
+table     prints rates, confusion, gaps and what is asked as Markdown, of what has been run to its end;
+          exit 1 when there is no case or less than what is asked
 )";
 
 struct Arguments {
@@ -172,16 +172,18 @@ std::string log_of(const std::string& directory, const std::string& folder) {
   return directory + (folder == "out" ? "/log.txt" : "/log-" + folder + ".txt");
 }
 
-/// One case, unless there is its diagnosis.
+/// One case, unless there is its diagnosis. Until it is done its log has another name.
 void diagnose_case(const std::string& program, const std::string& directory,
                    const std::string& folder, const std::string& more) {
   if (std::filesystem::exists(directory + "/" + folder + "/diagnosis.json")) return;
-  const std::string log = log_of(directory, folder);
+  const std::string log = log_of(directory, folder), running = log + ".running";
   const std::string command = fmt::format(
       "'{0}' diagnose '{1}/config.toml' --train '{1}/train.csv.gz' --holdout "
       "'{1}/holdout.csv.gz' --out '{1}/{2}' --quiet {3} >'{4}' 2>&1",
-      program, directory, folder, more, log);
+      program, directory, folder, more, running);
   const int status = std::system(command.c_str());
+  std::error_code code;
+  std::filesystem::rename(running, log, code);
   const bool done = WIFEXITED(status) && WEXITSTATUS(status) <= 1;  // 1: a gap remains
   fmt::print(stderr, "{}/{}: {}\n", directory, folder, done ? "done" : "not done, see " + log);
 }
@@ -190,7 +192,12 @@ int run(const Arguments& a) {
   const std::string program = a.text("--program", "framewatch");
   const long taken_out = a.number("--taken-out", 0);
   std::map<std::string, long> seen;
-  for (const std::string& directory : cases(a.directory)) {
+  const std::vector<std::string> all = cases(a.directory);
+  if (all.empty()) {
+    fmt::print(stderr, "no cases in {}\n", a.directory);
+    return 2;
+  }
+  for (const std::string& directory : all) {
     diagnose_case(program, directory, "out", "");
     const auto outcome = score(directory);
     if (outcome && outcome->group == "catalogue" &&
@@ -224,6 +231,11 @@ int table(const Arguments& a) {
 int main_of(int argc, char** argv) {
   Arguments a;
   if (argc >= 3) a = {argv[1], argv[2], {}};
+  for (int i = 1; i < argc; ++i)
+    if (argv[i] == std::string("--help")) {
+      fmt::print("{}", kUsage);
+      return 0;
+    }
   bool good = argc >= 3 && argc % 2 == 1;
   for (int i = 3; i + 1 < argc; i += 2) {
     const std::string key = argv[i];

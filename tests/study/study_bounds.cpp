@@ -68,6 +68,9 @@ std::vector<Bound> bounds_of(const std::vector<Outcome>& outcomes) {
         [&](const Outcome& o) { return o.group == "catalogue" && o.building == building; }, right,
         limit);
   out.share("a law of another form: name and place", of_group("other_form"), right, 0.9);
+  out.share(
+      "a law of another form: kind and place", of_group("other_form"),
+      [](const Outcome& o) { return o.kind_and_place(); }, 0.9);
   out.share("a law of another form: place", of_group("other_form"), placed, 0.92);
   out.share("a law of another form: confidently wrong", of_group("other_form"), wrong, 0, false);
   for (const char* group : {"catalogue", "two_effects", "practice"})
@@ -79,6 +82,10 @@ std::vector<Bound> bounds_of(const std::vector<Outcome>& outcomes) {
       [](const Outcome& o) { return o.verdict == "adequate"; }, 0.99);
   out.share("effect taken from the catalogue: confidently wrong", of_group(kTakenOut), wrong, 0.1,
             false);
+  for (const char* group : {"outside", kTakenOut})
+    out.share(
+        fmt::format("{}: no wrong name", group), of_group(group),
+        [](const Outcome& o) { return o.no_wrong_name(); }, 0.9);
   out.share("two effects: both", of_group("two_effects"), right, 0.85);
   out.share("three effects: all", of_group("three_effects"), right, 0.6);
   std::vector<double> removed, errors;

@@ -107,7 +107,8 @@ std::string truth_text(const StudyCase& c, const std::string& name) {
     out["effects"].push_back(
         {{"effect", law.name},
          {"location", daemon::location_json(law.place, c.building.truth, c.building.axes)},
-         {"accepted", law.accepted}});
+         {"accepted", law.accepted},
+         {"kind", estimator::law_kind_word(law.sort)}});
     out["hidden"] = out["effects"].front();
   }
   out["study"] = {{"group", c.group},

@@ -8,11 +8,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "estimator/diagnose/propose/law_kind.h"
+
 namespace framewatch::study {
 namespace {
 
 using Json = nlohmann::json;
-constexpr double kSure = 0.9;  ///< confidence
+constexpr double kSure = 0.9, kDoubtful = 0.5;  ///< confidence
 
 Json read_json(const std::string& path) {
   std::ifstream in(path);
@@ -102,6 +104,28 @@ void compare_parameters(const Json& truth, const Json& found, std::vector<double
   }
 }
 
+/// Whether a law is of the kind that the truth says, or that of the law hidden.
+bool same_kind(const Json& truth, const std::string& name) {
+  using estimator::LawKind;
+  const auto law = estimator::find_effect(name);
+  const auto hidden = estimator::find_effect(text_of(truth, "effect"));
+  if (!law) return false;
+  for (const LawKind kind : {LawKind::elastic, LawKind::impact, LawKind::dissipative,
+                             LawKind::hysteretic, LawKind::time_varying}) {
+    const bool there = hidden ? is_of_kind(*hidden, kind)
+                              : text_of(truth, "kind") == estimator::law_kind_word(kind);
+    if (there && is_of_kind(*law, kind)) return true;
+  }
+  return false;
+}
+
+bool is_near(const Json& truths, const Json& found) {
+  return std::any_of(truths.begin(), truths.end(), [&](const Json& truth) {
+    return same_place(truth["location"], found["location"]) &&
+           same_kind(truth, text_of(found, "effect"));
+  });
+}
+
 void compare(const Json& truths, const Json& found, Outcome& out) {
   std::vector<bool> explained(found.size(), false);
   for (const Json& truth : truths) {
@@ -127,6 +151,8 @@ void compare(const Json& truths, const Json& found, Outcome& out) {
     out.exact += exact;
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
+    out.of_the_kind = out.of_the_kind && is_near(truths, found[i]);
+    out.in_doubt = out.in_doubt && found[i].value("confidence", 1.0) <= kDoubtful;
     if (explained[i]) continue;
     out.extra = true;
     out.confidently_wrong = out.confidently_wrong || found[i].value("confidence", 1.0) > kSure;

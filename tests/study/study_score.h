@@ -20,10 +20,16 @@ struct Outcome {
   bool told_apart = true;  ///< false: right only among those that cannot be told apart
   bool extra = false;      ///< something was adopted that is not there
   bool confidently_wrong = false;  ///< and the diagnosis is sure of its name
+  bool of_the_kind = true;  ///< all that was adopted is at the place of a hidden effect and a law
+                            ///< of its kind
+  bool in_doubt = true;     ///< and has a confidence of at most a half
   std::optional<double> gap_before, gap_after, noise_floor;  ///< held out, overall
   std::vector<double> parameter_errors;  ///< relative, of what was named exactly
 
   bool abstained() const { return named.empty(); }
+  /// Nothing named, or nothing but what is near, and said to be in doubt.
+  bool no_wrong_name() const { return abstained() || (of_the_kind && in_doubt); }
+  bool kind_and_place() const { return !abstained() && of_the_kind; }
   bool all_right() const { return right == truths && !extra; }
   /// Share of what exceeds the noise floor that is gone.
   std::optional<double> removed() const;

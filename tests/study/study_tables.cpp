@@ -57,20 +57,22 @@ std::vector<Outcome> selected(const std::vector<Outcome>& outcomes,
 
 void add_summary(const std::vector<Outcome>& outcomes, std::string& out) {
   out +=
-      "| group | building | cases | name and place | place | abstained | confidently wrong | "
+      "| group | building | cases | name and place | place | abstained | no wrong name | "
+      "confidently wrong | "
       "`adequate` | excess removed, median | parameters, median error |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
   const auto rows =
       grouped(outcomes, [](const Outcome& o) { return o.group + " | " + o.building; });
   for (const auto& [key, group] : rows) {
     const int all = static_cast<int>(group.size());
     out += fmt::format(
-        "| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", key, all,
+        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", key, all,
         percent(count(group, [](const Outcome& o) { return o.truths > 0 && o.all_right(); }), all),
         percent(count(group,
                       [](const Outcome& o) { return o.truths > 0 && o.places_right == o.truths; }),
                 all),
         percent(count(group, [](const Outcome& o) { return o.abstained(); }), all),
+        percent(count(group, [](const Outcome& o) { return o.no_wrong_name(); }), all),
         percent(count(group, [](const Outcome& o) { return o.confidently_wrong; }), all),
         percent(count(group, [](const Outcome& o) { return o.verdict == "adequate"; }), all),
         removed(group), errors(group));

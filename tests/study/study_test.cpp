@@ -1,6 +1,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -204,6 +205,17 @@ TEST(StudyScore, JudgesNamePlaceAndGap) {
   EXPECT_TRUE(otherwise.confidently_wrong);
   EXPECT_FALSE(
       diagnosed("partly_explained", "cubic_stiffness", place.story, 0.5).confidently_wrong);
+
+  const Outcome near = diagnosed("partly_explained", "pinching", place.story, 0.5);
+  EXPECT_TRUE(near.no_wrong_name()) << "remembers as Bouc-Wen does";
+  EXPECT_FALSE(near.all_right());
+  EXPECT_TRUE(near.kind_and_place());
+  EXPECT_FALSE(otherwise.kind_and_place());
+  for (const auto& [name, story, confidence] :
+       {std::tuple("pinching", place.story, 0.6), std::tuple("pinching", 3 - place.story, 0.5),
+        std::tuple("cubic_stiffness", place.story, 0.5)})
+    EXPECT_FALSE(diagnosed("partly_explained", name, story, confidence).no_wrong_name())
+        << name << story << confidence;
 
   EXPECT_FALSE(score(directory, kTakenOut)->confidently_wrong) << "it was not diagnosed so";
   const std::vector<Bound> bounds = bounds_of({right, elsewhere});

@@ -20,7 +20,9 @@ constexpr int kTimes = 8;              ///< supports of a stiffness that varies 
 constexpr double kNearlyAll = 0.93;    ///< of the best share, that a simpler kind must explain
 constexpr double kKindFollows = 0.5;   ///< share below which no kind explains the force
 constexpr double kBeyondChance = 1.3;  ///< misfit of a linear element over noise
-constexpr double kAsImpact = 0.7;      ///< of the powers' rest, that contacts must leave at most
+constexpr double kAsImpact = 0.7;      ///< of the powers' rest, that a clearance must leave at most
+constexpr double kPowersDo = 0.97;     ///< share from which powers explain all
+constexpr int kClearances = 12;        ///< tried, up to the largest deformation
 
 /// Column in time of one record.
 using Columns = std::vector<VectorXd>;
@@ -34,20 +36,32 @@ Columns powers(const NeededSignal& n, const Scales& s) {
   return {x * x.abs(), x.cube(), x.square(), x.cube() * x.square()};
 }
 
-Columns contacts(const NeededSignal& n, const Scales& s) {
-  Columns out;
-  for (const double gap : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9}) {
-    out.push_back((n.d_t / s.d).array() - gap);
-    out.back() = out.back().cwiseMax(0);
-    out.push_back((-n.d_t / s.d).array() - gap);
-    out.back() = out.back().cwiseMax(0);
-  }
+/// Forces of springs of unit stiffness beyond a clearance: resisting the deformation up, and down.
+Columns contact(const NeededSignal& n, const Scales& s, double clearance) {
+  const auto x = (n.d_t / s.d).array().eval();
+  return {(x - clearance).cwiseMax(0), -(-x - clearance).cwiseMax(0)};
+}
+
+/// Springs, and after them dashpots that act where they do.
+Columns with_dashpots(Columns springs, const NeededSignal& n, const Scales& s) {
+  const std::size_t count = springs.size();
+  for (std::size_t i = 0; i < count; ++i)
+    springs.push_back((springs[i].array() != 0).select(n.v_t.array() / s.v, 0.0).matrix());
+  return springs;
+}
+
+/// Powers, and a broken line.
+Columns functions(const NeededSignal& n, const Scales& s) {
+  Columns out = powers(n, s);
+  for (const double at : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9})
+    for (VectorXd& column : contact(n, s, at)) out.push_back(std::move(column));
   return out;
 }
 
 Columns rates(const NeededSignal& n, const Scales& s) {
   const auto x = (n.v_t / s.v).array().eval();
-  Columns out{x * x.abs(), x.cube()};
+  const auto d = (n.d_t / s.d).array().eval();
+  Columns out{x * x.abs(), x.cube(), x * d.abs(), x * d.square()};
   for (const double width : {0.01, 0.05, 0.2}) out.push_back((x / width).tanh());
   return out;
 }
@@ -63,7 +77,29 @@ VectorXd stopped(const VectorXd& d, double limit) {
   return out;
 }
 
-/// Stop operators, and how they grow or fade with the deformation: pinching.
+/// Force of a spring over its stiffness that gives way at `limit` and is slack up to where it has
+/// been.
+VectorXd slackened(const VectorXd& d, double limit) {
+  VectorXd out(d.size());
+  double up = 0, down = 0;
+  for (Index i = 0; i < d.size(); ++i) {
+    out[i] = std::clamp(d[i] - up, 0.0, limit) - std::clamp(-d[i] - down, 0.0, limit);
+    up = std::max(up, d[i] - limit);
+    down = std::max(down, -d[i] - limit);
+  }
+  return out;
+}
+
+/// How far the deformation has gone to and fro, as a share of the whole way.
+VectorXd way(const VectorXd& d) {
+  VectorXd out(d.size());
+  double sum = 0;
+  for (Index i = 0; i < d.size(); ++i) out[i] = sum += i > 0 ? std::abs(d[i] - d[i - 1]) : 0;
+  return out / std::max(sum, 1e-300);
+}
+
+/// Stop operators, how they grow or fade with the deformation (pinching) and with all that was
+/// before (degrading), and springs that are slack.
 Columns memories(const NeededSignal& n, const Scales& s) {
   const VectorXd x = n.d_t / s.d;
   Columns out;
@@ -71,6 +107,9 @@ Columns memories(const NeededSignal& n, const Scales& s) {
   out.push_back(out[1].array() * x.array().abs());
   out.push_back(out[3].array() * x.array().abs());
   out.push_back(out[3].array() * x.array().square());
+  const VectorXd gone = way(x);
+  for (const std::size_t limit : {2, 3, 4, 5}) out.push_back(out[limit].cwiseProduct(gone));
+  for (const double limit : {0.1, 0.3, 0.6}) out.push_back(slackened(x, limit));
   return out;
 }
 
@@ -110,18 +149,20 @@ class KindSearch {
       out.share[static_cast<std::size_t>(kind)] =
           beyond > 0 ? std::clamp((linear - left) / beyond, 0.0, 1.0) : 0;
     };
-    const double smooth = rest([&](const NeededSignal& n) { return powers(n, scales_); }, false);
-    const double edged = rest([&](const NeededSignal& n) { return contacts(n, scales_); }, false);
-    share(LawKind::elastic, smooth);
-    share(LawKind::impact, edged);
+    share(LawKind::elastic, rest([&](const NeededSignal& n) { return powers(n, scales_); }, false));
+    const double smooth = out.share[static_cast<std::size_t>(LawKind::elastic)];
+    share(LawKind::elastic,
+          rest([&](const NeededSignal& n) { return functions(n, scales_); }, false));
+    share(LawKind::impact, rest_of_clearance());
     share(LawKind::dissipative,
           rest([&](const NeededSignal& n) { return rates(n, scales_); }, false));
     share(LawKind::hysteretic,
           rest([&](const NeededSignal& n) { return memories(n, scales_); }, false));
     share(LawKind::time_varying, rest([](const NeededSignal& n) { return times(n); }, true));
     out.kind = linear < kBeyondChance * noise ? LawKind::linear : simplest(out.share);
-    if (out.kind == LawKind::impact && edged - noise > kAsImpact * (smooth - noise))
-      out.kind = LawKind::elastic;
+    const double impact = out.share[static_cast<std::size_t>(LawKind::impact)];
+    if (out.kind == LawKind::elastic && smooth < kPowersDo && 1 - impact < kAsImpact * (1 - smooth))
+      out.kind = LawKind::impact;
     picture(out);
     return out;
   }
@@ -130,17 +171,48 @@ class KindSearch {
   /// Misfit beside a linear element. own: every record has its own coefficients.
   template <typename Make>
   double rest(const Make& make, bool own) const {
-    std::vector<std::vector<VectorXcd>> columns(needed_.size());
+    return sums(make, own).fit().misfit;
+  }
+
+  template <typename Make>
+  ScalarSums sums(const Make& make, bool own) const {
+    ScalarSums out;
     for (std::size_t r = 0; r < needed_.size(); ++r) {
       const RecordSegment& s = fitter_.segments()[r];
-      columns[r] = linear_columns(needed_[r], s.w);
+      std::vector<VectorXcd> columns = linear_columns(needed_[r], s.w);
       const Columns more = make(needed_[r]);
       for (std::size_t other = 0; other < (own ? needed_.size() : 1); ++other)
         for (const VectorXd& column : more)
-          columns[r].push_back(own && other != r ? VectorXcd(VectorXcd::Zero(s.bins()))
-                                                 : band_of(column, s, fitter_.ratio(r)));
+          columns.push_back(own && other != r ? VectorXcd(VectorXcd::Zero(s.bins()))
+                                              : band_of(column, s, fitter_.ratio(r)));
+      const ScalarSums one = scalar_sums(needed_[r], columns);
+      if (r == 0)
+        out = one;
+      else
+        out += one;
     }
-    return scalar_fit(needed_, columns).misfit;
+    return out;
+  }
+
+  /// The same beside springs that resist, and dashpots, beyond the best clearance, to both sides or
+  /// one.
+  double rest_of_clearance() const {
+    const std::vector<Index> sides[] = {{0, 1, 2, 4}, {0, 1, 3, 5}, {0, 1, 2, 3, 4, 5}};
+    double best = rest([](const NeededSignal&) { return Columns(); }, false);
+    for (int i = 1; i <= kClearances; ++i) {
+      const double clearance = static_cast<double>(i) / (kClearances + 1);
+      const ScalarSums all = sums(
+          [&](const NeededSignal& n) {
+            return with_dashpots(contact(n, scales_, clearance), n, scales_);
+          },
+          false);
+      for (const std::vector<Index>& kept : sides) {
+        const ScalarFit fit = ScalarSums{all.normal(kept, kept), all.right(kept), all.total}.fit();
+        const auto springs = static_cast<Index>(kept.size()) / 2 - 1;
+        if (fit.coefficients.segment(2, springs).minCoeff() > 0) best = std::min(best, fit.misfit);
+      }
+    }
+    return best;
   }
 
   static LawKind simplest(const std::array<double, 7>& share) {
@@ -215,6 +287,32 @@ const char* law_kind_word(LawKind kind) {
       break;
   }
   return "external";
+}
+
+bool is_of_kind(EffectKind law, LawKind kind) {
+  switch (law) {
+    case EffectKind::cubic_stiffness:
+    case EffectKind::quadratic_stiffness:
+      return kind == LawKind::elastic;
+    case EffectKind::amplitude_dependence:
+      return kind == LawKind::elastic || kind == LawKind::hysteretic;
+    case EffectKind::one_sided_gap:
+    case EffectKind::two_sided_gap:
+      return kind == LawKind::impact;
+    case EffectKind::quadratic_damping:
+      return kind == LawKind::dissipative;
+    case EffectKind::coulomb_friction:
+      return kind == LawKind::dissipative || kind == LawKind::hysteretic;
+    case EffectKind::bilinear_hysteresis:
+    case EffectKind::bouc_wen:
+    case EffectKind::pinching:
+      return kind == LawKind::hysteretic;
+    case EffectKind::stiffness_drop:
+    case EffectKind::stiffness_drift:
+      return kind == LawKind::time_varying;
+    default:
+      return false;
+  }
 }
 
 KindOfLaw kind_of_law(const Fitter& fitter, const std::vector<NeededSignal>& needed) {

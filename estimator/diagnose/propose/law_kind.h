@@ -13,7 +13,7 @@ namespace framewatch::estimator {
 enum class LawKind {
   linear,        ///< nothing beyond a spring and a dashpot
   elastic,       ///< of the deformation: what was stored comes back
-  impact,        ///< of the deformation, from a clearance on
+  impact,        ///< of the deformation, from a clearance on, and of the rate there
   dissipative,   ///< of the rate
   hysteretic,    ///< of the deformation and its past
   time_varying,  ///< a stiffness that changes with time
@@ -21,6 +21,10 @@ enum class LawKind {
 };
 
 const char* law_kind_word(LawKind kind);
+
+/// Whether a law of the catalogue is of a kind. Friction is of two: it acts against the rate, and
+/// remembers where it stuck. So is amplitude dependence, which may be slip.
+bool is_of_kind(EffectKind law, LawKind kind);
 
 /// The force that a place needs beyond a linear element, averaged over cells of deformation and
 /// rate: a picture of the law.
@@ -40,11 +44,13 @@ struct KindOfLaw {
   Eigen::VectorXd d_m, force_n;
 };
 
-/// The kind by regression of the force on general functions: of deformation (powers; contacts from
-/// several clearances on), of rate, of the past (stop operators of several widths: Prandtl 1928,
-/// Masri and Caughey 1979), and of deformation with a stiffness that varies in time. The simplest
-/// of those that explain about as much as the best. needed: of an element or between floors, with
-/// its motion.
+/// The kind by regression of the force on general functions: of deformation (powers, a broken
+/// line), of rate (as strong as the deformation says, too), of the past (stop operators of several
+/// widths: Prandtl 1928, Masri and Caughey 1979, which may fade with what was before; springs slack
+/// up to where they have been), of deformation with a stiffness that varies in time, and springs
+/// and dashpots beyond the best clearance, which count as impact where powers do worse. The
+/// simplest of those that explain about as much as the best. needed: of an element or between
+/// floors, with its motion.
 KindOfLaw kind_of_law(const Fitter& fitter, const std::vector<NeededSignal>& needed);
 
 }  // namespace framewatch::estimator

@@ -24,4 +24,8 @@ struct FoundEffect {
   std::vector<double> std_error;       ///< of the catalogue's parameters; 0: not known
 };
 
+/// The best of the trials, which come best first, as an effect: with the others, the names that the
+/// data cannot tell from its own, and the confidence by the margin to the best that contradicts it.
+FoundEffect effect_of(const std::vector<Trial>& trials);
+
 }  // namespace framewatch::estimator

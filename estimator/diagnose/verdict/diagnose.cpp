@@ -21,6 +21,7 @@
 #include "estimator/diagnose/trials/trial_names.h"
 #include "estimator/diagnose/trials/trial_relations.h"
 #include "estimator/diagnose/trials/wrong_labels.h"
+#include "estimator/diagnose/verdict/nearest_law.h"
 #include "estimator/diagnose/verdict/ramps.h"
 #include "estimator/diagnose/verdict/search_progress.h"
 #include "estimator/diagnose/verdict/verdict.h"
@@ -29,12 +30,10 @@
 namespace framewatch::estimator {
 namespace {
 
-using Eigen::Index;
 using Eigen::MatrixXcd;
 
 /// Fraction above which a second law at the place of the first does not call the first in question.
 constexpr double kOneLaw = 0.99;
-constexpr double kSame = 8;        ///< difference of costs that does not decide between names
 constexpr double kClearer = 0.7;   ///< excess of a place's misfit over that of another search
 constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong as right
 constexpr int kPolishSteps = 6, kBackSteps = 8;
@@ -78,6 +77,7 @@ class Search {
     search(now);
     if (out_.effects.empty()) search_with_free_damping(now);
     progress_.begin("what stays", 0.75, 0.8);
+    withdraw_other_kind(now);
     const bool several = find_several(now);
     if (!several) name_nearest(now);
     if (!out_.effects.empty() && !several) polish(now);
@@ -239,6 +239,18 @@ class Search {
     return true;
   }
 
+  /// A law is none beside which more than noise is left and whose place needs another sort of
+  /// force.
+  void withdraw_other_kind(FitResult& now) {
+    if (out_.effects.size() != 1 || ratio(now) < 1 + chance_of(fitter_, now.model) ||
+        !contradicts_the_kind(out_.effects.front().chosen, out_.where))
+      return;
+    out_.rejected = std::move(out_.effects.front().alternatives);
+    out_.rejected.insert(out_.rejected.begin(), std::move(out_.effects.front().chosen));
+    out_.effects.clear();
+    now = fit(out_.linear, {}, kBackSteps);
+  }
+
   /// Where nothing is named and no place explains the misfit alone: causes that act at once.
   bool find_several(FitResult& now) {
     if (!out_.effects.empty() || alone_ < kOnePlace ||
@@ -264,10 +276,10 @@ class Search {
     return true;
   }
 
-  /// Where no law explains enough to hold: the best one of an element that takes most of it.
+  /// Where no law explains enough to hold: the one that is near.
   void name_nearest(FitResult& now) {
-    if (!out_.effects.empty() || out_.rejected.empty() || !out_.reason.empty() ||
-        !is_nearest_law(context_of(now), out_.rejected.front()) ||
+    if (!out_.effects.empty() || !out_.reason.empty() ||
+        !nearest_law_first(context_of(now), out_.where, out_.rejected) ||
         fits_separately(fitter_, out_.linear, out_.ratio_before))
       return;
     adopt(std::exchange(out_.rejected, {}), now);
@@ -291,19 +303,7 @@ class Search {
   void adopt(const std::vector<Trial>& trials, FitResult& now) {
     const std::size_t known = out_.effects.size();
     const Trial& best = trials.front();
-    FoundEffect found;
-    found.chosen = best;
-    found.alternatives = without_duplicates(trials);
-    found.alternatives.erase(found.alternatives.begin());
-    for (const Trial& t : found.alternatives)
-      if (is_rival(t, best) && t.cost < best.cost + kSame && t.kind != best.kind &&
-          std::find(found.like.begin(), found.like.end(), t.kind) == found.like.end())
-        found.like.push_back(t.kind);
-    const auto rival = std::find_if(trials.begin(), trials.end(),
-                                    [&](const Trial& t) { return is_rival(t, best); });
-    const double margin = rival == trials.end() ? 1e3 : std::max(0.0, rival->cost - best.cost);
-    found.confidence =
-        found.like.empty() ? std::min(0.999, 1 - kDoubtful * std::exp(-margin / 20)) : kDoubtful;
+    FoundEffect found = effect_of(trials);
     auto next = static_cast<int>(now.model.effects.size());
     const auto place = [&](FoundEffect& effect) {
       effect.index = is_axis_error(effect.chosen.kind) ? -1 : next++;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "estimator/diagnose/locate/locate.h"
+#include "estimator/diagnose/verdict/nearest_law.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -154,16 +155,38 @@ void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosi
                    [](const LeadingLaw& a, const LeadingLaw& b) { return a.after < b.after; });
 }
 
+namespace {
+
+bool is_surrogate(std::size_t holdout_from, const Diagnosis& out) {
+  if (out.effects.size() != 1 || out.effects.front().index < 0) return false;
+  const FoundEffect& only = out.effects.front();
+  const PlaceKind at = only.chosen.place.kind;
+  const bool one_place = at == PlaceKind::frame || at == PlaceKind::panel ||
+                         at == PlaceKind::node || at == PlaceKind::node_pair;
+  double floor = 0;
+  for (std::size_t r = holdout_from; r < out.after.size(); ++r) floor += out.after[r].overall_floor;
+  floor /= static_cast<double>(std::max<std::size_t>(out.after.size() - holdout_from, 1));
+  return one_place && out.model.effects[static_cast<std::size_t>(only.index)].element_law() &&
+         mean_gap(out.after, holdout_from) > kNearFloor * floor &&
+         !is_of_the_kind_there(only.chosen, out.where);
+}
+
+}  // namespace
+
 bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
   if (out.effects.empty()) return false;
   const double before = mean_gap(out.before, holdout_from),
                after = mean_gap(out.after, holdout_from);
   const bool beyond =
       std::any_of(out.after.begin(), out.after.end(), [](const Gap& g) { return g.overall > 1; });
-  if (!beyond && after <= kWorse * before) return false;
+  const bool worse = beyond || after > kWorse * before;
+  if (!worse && !is_surrogate(holdout_from, out)) return false;
   for (const FoundEffect& e : out.effects) out.rejected.push_back(e.chosen);
   out.effects.clear();
-  out.reason = "the model with what was found is worse than the one without";
+  out.reason =
+      worse ? "the model with what was found is worse than the one without"
+            : "the law that comes nearest leaves too much for one that is not known to be of "
+              "the kind of force at its place";
   out.after = out.before;
   out.after_of_all = false;
   out.ratio_after = out.ratio_before;

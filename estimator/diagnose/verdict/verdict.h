@@ -28,7 +28,9 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
 void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out);
 
 /// Takes every name back whose model is worse than none: a gap above 100 % in any record, or, held
-/// out, above the one before by more than a tenth. Whether it did.
+/// out, above the one before by more than a tenth; and that of a law of one place that is alone,
+/// leaves a held-out gap of more than 2.5 times its floor, and is not of the kind that the force
+/// there is known to be. Whether it did.
 bool withdraw_worse(std::size_t holdout_from, Diagnosis& out);
 
 /// How far a name is to be trusted.

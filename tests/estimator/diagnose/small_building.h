@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/model/plant.h"
 #include "estimator/diagnose/spectra/record_segment.h"
 #include "estimator/simulate/linear_response.h"
+#include "estimator/simulate/nonlinear_building.h"
 #include "estimator/simulate/random.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
@@ -49,8 +52,27 @@ struct Small {
 
   /// What the axes read with these effects.
   Eigen::MatrixXd record(const std::vector<estimator::Effect>& effects, std::uint64_t seed) const {
-    estimator::ResponseStream stream(structure, table, truth, oblique_motion(seed), {kRate_hz}, {},
-                                     {}, effects);
+    return record(estimator::ResponseStream(structure, table, truth, oblique_motion(seed),
+                                            {kRate_hz}, {}, {}, effects),
+                  seed);
+  }
+
+  /// The same with a law beyond the catalogue in a frame.
+  Eigen::MatrixXd record_with_law(int frame, std::unique_ptr<estimator::ElementLaw> law,
+                                  std::uint64_t seed) const {
+    const estimator::ResponseOptions options{kRate_hz};
+    std::vector<estimator::PlacedLaw> laws;
+    laws.push_back({table.frame_stiffness(1, frame), std::move(law), {}});
+    auto building = std::make_unique<estimator::NonlinearBuilding>(
+        structure, table, truth, std::vector<estimator::Effect>(), std::move(laws),
+        estimator::ground_inputs(structure), estimator::fine_step_s(options));
+    return record(
+        estimator::ResponseStream(std::move(building), oblique_motion(seed), options, {}, {}),
+        seed);
+  }
+
+  /// What the axes read of a response, with their noise.
+  Eigen::MatrixXd record(estimator::ResponseStream stream, std::uint64_t seed) const {
     estimator::Random random(seed + 1000);
     const auto count = static_cast<Eigen::Index>(axes.size());
     Eigen::MatrixXd out(static_cast<Eigen::Index>(kSeconds * kRate_hz), count);

@@ -177,6 +177,45 @@ TEST(Withdraw, NamesWhoseModelIsWorseThanNone) {
   EXPECT_FALSE(withdraw_worse(1, none));
 }
 
+TEST(Withdraw, ALawThatLeavesMuchAndIsNotSeenToBeOfItsKind) {
+  constexpr double kFloor = 0.01;
+  enum class Seen { nothing, its_kind, another };
+  struct Found {
+    const char* what;
+    double held_floors;  // held-out gap over its floor
+    Seen seen;
+    LawForm form;
+    PlaceKind place;
+    bool withdrawn;
+  };
+  const Found all[] = {
+      {"not known", 2.6, Seen::nothing, LawForm::hysteresis, PlaceKind::frame, true},
+      {"another kind", 2.6, Seen::another, LawForm::hysteresis, PlaceKind::frame, true},
+      {"its kind", 2.6, Seen::its_kind, LawForm::hysteresis, PlaceKind::frame, false},
+      {"near the floor", 2.4, Seen::nothing, LawForm::hysteresis, PlaceKind::frame, false},
+      {"to the ground", 2.6, Seen::nothing, LawForm::gap_both, PlaceKind::node_pair, true},
+      {"no law", 2.6, Seen::nothing, LawForm::damper, PlaceKind::node_pair, false},
+      {"of all stories", 2.6, Seen::nothing, LawForm::amplitude, PlaceKind::building, false},
+  };
+  for (const Found& f : all) {
+    Diagnosis d;
+    d.before = {gap_with(0.2, kFloor), gap_with(0.2, kFloor)};
+    d.after = {gap_with(0.2, kFloor), gap_with(f.held_floors * kFloor, kFloor)};
+    d.model.effects.emplace_back().form = f.form;
+    FoundEffect& only = d.effects.emplace_back();
+    only.index = 0;
+    only.chosen.kind = EffectKind::bouc_wen;
+    only.chosen.place.kind = f.place;
+    WhereEntry& where = d.where.emplace_back();
+    where.place = only.chosen.place;
+    if (f.seen != Seen::nothing)
+      where.kind.emplace().kind =
+          f.seen == Seen::its_kind ? LawKind::hysteretic : LawKind::dissipative;
+    EXPECT_EQ(withdraw_worse(1, d), f.withdrawn) << f.what;
+    EXPECT_EQ(d.effects.empty(), f.withdrawn) << f.what;
+  }
+}
+
 TEST(Grade, OnlyASureNameWithNothingBesideItIsEstablished) {
   FoundEffect e;
   e.confidence = 0.99;

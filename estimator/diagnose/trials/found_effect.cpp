@@ -1,0 +1,37 @@
+#include "estimator/diagnose/trials/found_effect.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/diagnose/trials/trial_relations.h"
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kSame = 8;       ///< difference of costs that does not decide between names
+constexpr double kMargin = 20;    ///< difference that makes a doubt smaller by the factor e
+constexpr double kLargest = 1e3;  ///< without a rival
+constexpr double kAsLikelyWrong = 0.5, kSurest = 0.999;  ///< confidence
+
+}  // namespace
+
+FoundEffect effect_of(const std::vector<Trial>& trials) {
+  const Trial& best = trials.front();
+  FoundEffect out;
+  out.chosen = best;
+  out.alternatives = without_duplicates(trials);
+  out.alternatives.erase(out.alternatives.begin());
+  for (const Trial& t : out.alternatives)
+    if (is_rival(t, best) && t.cost < best.cost + kSame && t.kind != best.kind &&
+        std::find(out.like.begin(), out.like.end(), t.kind) == out.like.end())
+      out.like.push_back(t.kind);
+  const auto rival =
+      std::find_if(trials.begin(), trials.end(), [&](const Trial& t) { return is_rival(t, best); });
+  const double margin = rival == trials.end() ? kLargest : std::max(0.0, rival->cost - best.cost);
+  out.confidence = out.like.empty()
+                       ? std::min(kSurest, 1 - kAsLikelyWrong * std::exp(-margin / kMargin))
+                       : kAsLikelyWrong;
+  return out;
+}
+
+}  // namespace framewatch::estimator

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "estimator/diagnose/trials/trials.h"
+#include "estimator/diagnose/verdict/diagnosis.h"
+
+namespace framewatch::estimator {
+
+/// Puts the best of the rejected laws first that may be named in doubt: it takes most of the misfit
+/// (is_nearest_law()), at a place of `where` whose sort of force is known, and is of that sort.
+/// False when there is none.
+bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
+                       std::vector<Trial>& rejected);
+
+/// Whether the sort of force that a law's place needs is known and the law's. Of a whole frame it
+/// is not: the sort of one story's force says nothing of the others'.
+bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where);
+
+/// Whether the sort of force that a law's place needs is known, and is not the law's. Contacts and
+/// other functions of the deformation are not told apart. A force that may be anything is
+/// contradicted where the likeliest place is an element whose force follows its motion.
+bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where);
+
+}  // namespace framewatch::estimator

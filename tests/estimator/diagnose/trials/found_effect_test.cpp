@@ -1,0 +1,49 @@
+#include "estimator/diagnose/trials/found_effect.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/estimator/diagnose/hand_made_trials.h"
+
+namespace framewatch::estimator {
+namespace found_effect_test {
+
+using test::HandMade;
+
+TEST(EffectOf, TheBestTrialWithTheOthersBesideIt) {
+  const HandMade made;
+  const std::vector<Trial> trials{made.trial(EffectKind::cubic_stiffness, 500),
+                                  made.trial(EffectKind::cubic_stiffness, 490),
+                                  made.trial(EffectKind::bouc_wen, 400)};
+  const FoundEffect found = effect_of(trials);
+  EXPECT_EQ(found.chosen.kind, EffectKind::cubic_stiffness);
+  ASSERT_EQ(found.alternatives.size(), 1U) << "the same from another start is no other";
+  EXPECT_EQ(found.alternatives[0].kind, EffectKind::bouc_wen);
+  EXPECT_TRUE(found.like.empty());
+}
+
+TEST(EffectOf, IsAsSureAsTheBestRivalIsFar) {
+  const HandMade made;
+  const auto confidence = [&](double margin) {
+    return effect_of({made.trial(EffectKind::cubic_stiffness, 500),
+                      made.trial(EffectKind::bouc_wen, 500 - margin)})
+        .confidence;
+  };
+  EXPECT_NEAR(confidence(20), 1 - 0.5 * std::exp(-1), 1e-12);
+  EXPECT_NEAR(confidence(1000), 0.999, 1e-12);
+  EXPECT_NEAR(effect_of({made.trial(EffectKind::cubic_stiffness, 500)}).confidence, 0.999, 1e-12);
+}
+
+TEST(EffectOf, SaysWhichNamesAreAsGood) {
+  const HandMade made;
+  const FoundEffect found =
+      effect_of({made.trial(EffectKind::cubic_stiffness, 500),
+                 made.trial(EffectKind::bouc_wen, 495), made.trial(EffectKind::pinching, 480)});
+  ASSERT_EQ(found.like.size(), 1U);
+  EXPECT_EQ(found.like[0], EffectKind::bouc_wen);
+  EXPECT_DOUBLE_EQ(found.confidence, 0.5);
+}
+
+}  // namespace found_effect_test
+}  // namespace framewatch::estimator
