@@ -38,15 +38,6 @@ constexpr double kClearer = 0.7;   ///< excess of a place's misfit over that of 
 constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong as right
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 
-/// Shares of the search at which a round looks for places, tries laws, and is over.
-struct RoundShares {
-  double where, trials, end;
-
-  /// Where pairs of places are tried before.
-  double laws() const { return trials + 0.3 * (end - trials); }
-};
-constexpr RoundShares kRounds[] = {{0.05, 0.15, 0.5}, {0.5, 0.57, 0.7}, {0.7, 0.72, 0.75}};
-
 class Search {
  public:
   Search(const Plant& plant, std::vector<RecordSegment>& segments, const DiagnosisOptions& options)
@@ -69,8 +60,7 @@ class Search {
       return out_;
     }
     complete(now);
-    out_.linear = now.model;
-    out_.ratio_before = ratio(now);
+    set_linear(now);
     progress_.begin("labels", 0.02, 0.05);
     const std::vector<Trial> labels = wrong_labels(context_of(now));
     if (!labels.empty()) adopt(labels, now);
@@ -135,6 +125,11 @@ class Search {
     if (with.good && colour_noise(fitter_, segments_, with)) now = with;
     settle_damping(fitter_, std::move(with), now);
     colour_noise(fitter_, segments_, now);
+  }
+
+  void set_linear(const FitResult& now) {
+    out_.linear = now.model;
+    out_.ratio_before = ratio(now);
   }
 
   double ratio(const FitResult& now) const {
@@ -319,8 +314,10 @@ class Search {
     }
     const Model before = now.model;
     now = fit_to_the_end(fitter_, best.model, now.motion);
-    if (known > 0 && removes_needless(fitter_, before, now)) {
+    // Trials of a large building hold its masses: what these explain looks like the effect.
+    if ((known > 0 || plant_.is_large()) && removes_needless(fitter_, before, now)) {
       out_.effects.resize(known);
+      if (known == 0) set_linear(now);
       return;
     }
     remove_needless_earlier(fitter_, out_.effects, now);

@@ -9,6 +9,15 @@
 
 namespace framewatch::estimator {
 
+/// Shares of the search at which a round looks for places, tries laws, and is over.
+struct RoundShares {
+  double where, trials, end;
+
+  /// Where pairs of places are tried before.
+  double laws() const { return trials + 0.3 * (end - trials); }
+};
+inline constexpr RoundShares kRounds[] = {{0.05, 0.15, 0.5}, {0.5, 0.57, 0.7}, {0.7, 0.72, 0.75}};
+
 /// How much of a search is done: its stages have shares of the whole, and so has the work within a
 /// stage that runs in parallel. What comes after a stage is not known before it ends, so shares are
 /// those of a search that goes all its way: a shorter one ends early.
