@@ -111,8 +111,12 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
       gap = mean_gap(out.after, holdout_from);
     } else if (effect.ramp_mps3.empty()) {
       std::vector<Model> starts;
-      for (const Model& model : found)
+      for (const Model& model : found) {
         starts.push_back(with_first(model, out.effects, i + 1, fitter.plant()));
+        // Stiffnesses that make up for what is not there yet may be a long way off.
+        starts.push_back(starts.back());
+        starts.back().theta = out.linear.theta;
+      }
       gap = mean_gap(of_train(starts), holdout_from);
     }
     effect.after = gap;
