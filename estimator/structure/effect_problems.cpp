@@ -115,6 +115,9 @@ class Checker {
     if (effect_.kind == EffectKind::unmeasured_force &&
         effect_.value("low_hz") >= effect_.value("high_hz"))
       add("low_hz", "must be below high_hz");
+    if (effect_.kind == EffectKind::amplitude_dependence && effect_.value("slip") > 0 &&
+        effect_.value("softening") < 0)
+      add("softening", "must not be below 0 where joints slip: their loops would gain energy");
     if (effect_.kind == EffectKind::extra_mass) {
       const auto node = static_cast<std::size_t>((place_.story - 1) * (s_.nodes() / s_.stories) +
                                                  place_.crossing);

@@ -98,6 +98,11 @@ TEST(EffectProblems, NameTheKeyAndTheRule) {
   Effect light = test::example_effect(extra_mass, m);
   light.set("mass_kg", -20);
   EXPECT_EQ(first_problem(light), "mass_kg|extra_mass.mass_kg: leaves the node without mass");
+  Effect slips = test::example_effect(amplitude_dependence, m);
+  slips.set("slip", 1);
+  EXPECT_EQ(first_problem(slips), "none");
+  slips.set("softening", -0.1);
+  EXPECT_NE(first_problem(slips).find("softening: must not be below 0"), std::string::npos);
   Effect wrong = test::example_effect(cubic_stiffness, m);
   wrong.place.kind = PlaceKind::channel;
   EXPECT_NE(first_problem(wrong).find("no such place"), std::string::npos);
