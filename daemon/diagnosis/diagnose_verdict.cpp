@@ -78,10 +78,10 @@ std::string confidence_words(const estimator::FoundEffect& f) {
   const char* how = f.confidence >= 0.95  ? "sure"
                     : f.confidence >= 0.8 ? "likely"
                                           : "possible, others are nearly as good";
-  return fmt::format(
-      "{} (confidence {:.0f} %), it explains {:.0f} % of what the sensors' noise does "
-      "not",
-      how, 100 * f.confidence, 100 * f.chosen.fraction);
+  const std::string sure = fmt::format("{} (confidence {:.0f} %)", how, 100 * f.confidence);
+  if (std::isnan(f.chosen.fraction)) return sure;
+  return fmt::format("{}, it explains {:.0f} % of what the sensors' noise does not", sure,
+                     100 * f.chosen.fraction);
 }
 
 double share_of_gap(const DiagnoseOutput& o, double fall) {

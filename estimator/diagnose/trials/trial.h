@@ -23,8 +23,8 @@ struct Trial {
   TrialOutcome outcome = TrialOutcome::fitted;
   EffectKind kind = EffectKind::cubic_stiffness;
   EffectPlace place;
-  double cost = 0;             ///< misfit of the free run over all records, with the prior
-  double fraction = 0;         ///< of the misfit beyond noise that it explains
+  double cost = 0;      ///< misfit of the free run over all records, with the prior
+  double fraction = 0;  ///< of the misfit beyond noise that it explains; NaN: beside others only
   std::vector<double> misfit;  ///< of each record
   Model model;
   /// A second effect that was fitted together with it.

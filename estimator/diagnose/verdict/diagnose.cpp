@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "estimator/diagnose/fit/judged_fit.h"
@@ -260,6 +261,7 @@ class Search {
       FoundEffect found;
       found.chosen = std::move(cause.trial);
       found.chosen.model = several.model;
+      found.chosen.fraction = std::numeric_limits<double>::quiet_NaN();
       found.like = std::move(cause.like);
       found.confidence = kDoubtful;
       found.index = is_axis_error(found.chosen.kind) ? -1 : next++;
