@@ -48,12 +48,6 @@ constexpr std::array kPlainNames = {
 };
 static_assert(kPlainNames.size() == static_cast<std::size_t>(estimator::EffectKind::swapped) + 1);
 
-double mean_floor(const std::vector<estimator::Gap>& gaps, std::size_t from) {
-  double sum = 0;
-  for (std::size_t r = from; r < gaps.size(); ++r) sum += gaps[r].overall_floor;
-  return gaps.size() > from ? sum / static_cast<double>(gaps.size() - from) : 0;
-}
-
 }  // namespace
 
 std::string gap_percent(double share) {
@@ -164,8 +158,8 @@ std::string gap_sentence(const DiagnoseOutput& o) {
       "In the {} simulation and measurement differ by {} before and {} after; noise "
       "alone would make {} (of {}).{}",
       held_out ? "held-out records" : "records", gap_percent(estimator::mean_gap(d.before, from)),
-      gap_percent(estimator::mean_gap(d.after, from)), gap_percent(mean_floor(d.before, from)),
-      denominator_words(o),
+      gap_percent(estimator::mean_gap(d.after, from)),
+      gap_percent(estimator::mean_floor(d.before, from)), denominator_words(o),
       o.plant.unread.cols() == 0
           ? ""
           : " Compared are the channels that there are: floors without one follow from the others, "

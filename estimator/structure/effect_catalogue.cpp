@@ -163,10 +163,8 @@ std::vector<EffectDescription> friction_contact_and_weight() {
         within("damping_s2pm", "s^2/m", 0.0, -kAny, kAny, "g: of the squared rate"),
         within("slip", "", 0.0, 0, 1, "s: share of the softening that is slip in joints")},
        "f = k (-r D ((1 - s) x abs(x)^(p - 1) + s z(x)) + g v abs(v)), x = d/D, in every story of "
-       "the "
-       "frame, or of all frames of the direction; z(x) is x abs(x)^(p - 1) at first loading and, "
-       "from "
-       "every reversal on, twice that curve at half the size (Masing)",
+       "the frame, or of all frames of the direction; z(x) is x abs(x)^(p - 1) at first loading "
+       "and, from every reversal on, twice that curve at half the size (Masing)",
        "r > 0 softens, g > 0 resists the velocity. Dissipates where joints slip.",
        "Nayfeh and Mook, Nonlinear Oscillations, 1979; Iwan, J. Appl. Mech. 33 (1966)"},
       {one_sided_gap,

@@ -20,6 +20,12 @@ using Eigen::VectorXd;
 
 namespace {
 
+double mean_of(double Gap::*value, const std::vector<Gap>& gaps, std::size_t from) {
+  double sum = 0;
+  for (std::size_t r = from; r < gaps.size(); ++r) sum += gaps[r].*value;
+  return gaps.size() > from ? sum / static_cast<double>(gaps.size() - from) : 0;
+}
+
 /// Subtracts from e what arbitrary forces explain of it, estimated with the noise covariance.
 void subtract_forces(const MatrixXcd& directions, const MatrixXcd& covariance, VectorXcd& e) {
   const ComplexCholesky factor(covariance);
@@ -69,10 +75,7 @@ Gap force_gap(const Plant& plant, const Model& model, const RecordSegment& segme
   while (axis + 1 < axes && !plant.is_force(axis)) ++axis;
   for (Index b = 0; b < bins; ++b) {
     const auto at = static_cast<std::size_t>(b);
-    VectorXcd e(n);
-    e.real() = system.rest.segment(2 * n * b, n);
-    e.imag() = system.rest.segment(2 * n * b + n, n);
-    e = system.weights->forces_of(b, e);
+    VectorXcd e = system.weights->forces_of(b, rows_of_bin(system.rest, b, n));
     out.difference(axis, b) = plant.push.col(axis).cast<Complex>().dot(e);
     const VectorXcd row = system.operation[at].adjoint() * plant.push.col(axis).cast<Complex>();
     error += std::norm(out.difference(axis, b));
@@ -118,10 +121,7 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
   for (Index b = 0; b < bins; ++b) {
     const auto at = static_cast<std::size_t>(b);
     const VectorXd variance = bin_noise(model, segment, b);
-    VectorXcd e(n);
-    e.real() = system.rest.segment(2 * n * b, n);
-    e.imag() = system.rest.segment(2 * n * b + n, n);
-    e = system.weights->forces_of(b, e);
+    VectorXcd e = system.weights->forces_of(b, rows_of_bin(system.rest, b, n));
     if (pushed.cols() > 0)
       subtract_forces(pushed,
                       system.operation[at].leftCols(axes) * variance.asDiagonal() *
@@ -169,9 +169,11 @@ std::optional<Gap> free_run_gap(const Plant& plant, const Model& model,
 }
 
 double mean_gap(const std::vector<Gap>& gaps, std::size_t from) {
-  double error = 0;
-  for (std::size_t r = from; r < gaps.size(); ++r) error += gaps[r].overall;
-  return gaps.size() > from ? error / static_cast<double>(gaps.size() - from) : 0;
+  return mean_of(&Gap::overall, gaps, from);
+}
+
+double mean_floor(const std::vector<Gap>& gaps, std::size_t from) {
+  return mean_of(&Gap::overall_floor, gaps, from);
 }
 
 }  // namespace framewatch::estimator

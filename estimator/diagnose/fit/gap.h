@@ -38,5 +38,7 @@ Gap gap_of(const Plant& plant, const Model& model, const RecordSegment& segment,
 
 /// Mean NRMSE over the segments from `from` on; 0 when there is none.
 double mean_gap(const std::vector<Gap>& gaps, std::size_t from);
+/// The same of what noise alone would give.
+double mean_floor(const std::vector<Gap>& gaps, std::size_t from);
 
 }  // namespace framewatch::estimator

@@ -57,9 +57,10 @@ void sort_starts(std::vector<Start>& all) {
 /// them. None where all have them already.
 std::vector<Model> with_ratios(const Fitter& fitter, const Model& model) {
   const Plant& plant = fitter.plant();
+  const std::vector<std::size_t> ratios = modes_in_band(plant, model, fitter.segments());
   Model beside = model;
   bool any = false;
-  for (const std::size_t e : modes_in_band(plant, model, fitter.segments())) {
+  for (const std::size_t e : ratios) {
     LawParameter& ratio = beside.effects[e].parameters[0];
     any = any || !ratio.free;
     ratio.free = true;
@@ -68,7 +69,7 @@ std::vector<Model> with_ratios(const Fitter& fitter, const Model& model) {
   Model instead = beside;
   const auto elements = plant.element_count();
   instead.theta.tail(elements) *= kFewDashpots;
-  for (const std::size_t e : modes_in_band(plant, model, fitter.segments())) {
+  for (const std::size_t e : ratios) {
     double& ratio = instead.effects[e].parameters[0].value;
     ratio = std::max(ratio, kUsualRatio);
   }

@@ -32,10 +32,7 @@ BinCurvature::BinCurvature(const Linearised& at, std::size_t record, const std::
 VectorXcd BinCurvature::effect_force(Index bin, Index unknown) const {
   const Index n = system_.operation.equations();
   const auto rows = columns_.effects.col(columns_.row[static_cast<std::size_t>(unknown)]);
-  VectorXcd out(n);
-  out.real() = rows.segment(2 * n * bin, n);
-  out.imag() = rows.segment(2 * n * bin + n, n);
-  return system_.weights->forces_of(bin, out);
+  return system_.weights->forces_of(bin, rows_of_bin(rows, bin, n));
 }
 
 void BinCurvature::put_forces(Index bin, const RowMatrix& steps) {

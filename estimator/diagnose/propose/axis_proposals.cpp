@@ -46,9 +46,7 @@ void add_axis_proposals(const Fitter& fitter, const Localisation& place,
     for (Index b = 0; b < s.bins(); ++b) {
       const auto at = static_cast<std::size_t>(b);
       VectorXcd u = system.weights->whitener(b).times(system.operation[at].col(axis));
-      VectorXcd rest(n);
-      rest.real() = system.rest.segment(2 * n * b, n);
-      rest.imag() = system.rest.segment(2 * n * b + n, n);
+      const VectorXcd rest = rows_of_bin(system.rest, b, n);
       if (place.candidate_places.size() > 1) {
         const MatrixXcd basis = candidate_basis(
             system, b, {place.candidate_places.begin() + 1, place.candidate_places.end()});

@@ -89,7 +89,6 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
     NeededSignal one;
     one.force.resize(s.bins());
     one.weight.resize(s.bins());
-    VectorXcd rest(n);
     std::vector<VectorXcd> along(static_cast<std::size_t>(s.bins()));
     for (Index b = 0; b < s.bins(); ++b) {
       const auto at = static_cast<std::size_t>(b);
@@ -100,8 +99,7 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
         const MatrixXcd basis = candidate_basis(system, b, others);
         u -= (basis * (basis.adjoint() * u)).eval();
       }
-      rest.real() = system.residual.segment(2 * n * b, n);
-      rest.imag() = system.residual.segment(2 * n * b + n, n);
+      const VectorXcd rest = rows_of_bin(system.residual, b, n);
       one.weight[b] = std::max(u.squaredNorm(), 1e-300);
       one.force[b] = -u.dot(rest) / one.weight[b];
       along[at] = u;

@@ -81,6 +81,13 @@ class MetricMoments {
 
 }  // namespace
 
+VectorXcd rows_of_bin(const Eigen::Ref<const VectorXd>& rows, Index bin, Index equations) {
+  VectorXcd out(equations);
+  out.real() = rows.segment(2 * equations * bin, equations);
+  out.imag() = rows.segment(2 * equations * bin + equations, equations);
+  return out;
+}
+
 Weights::Weights(std::vector<Whitener> whitener, const VectorXd& w,
                  std::vector<HiddenOscillator> hidden, MatrixXd read)
     : whitener_(std::move(whitener)),

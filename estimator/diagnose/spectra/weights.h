@@ -17,6 +17,10 @@ struct HiddenOscillator {
   Eigen::VectorXcd transmissibility;
 };
 
+/// The whitened rows of one bin, complex. rows: of every bin, as Weights has them.
+Eigen::VectorXcd rows_of_bin(const Eigen::Ref<const Eigen::VectorXd>& rows, Eigen::Index bin,
+                             Eigen::Index equations);
+
 /// Weights of the equations of one segment, docs/equations.md (33), and the end terms (32) that are
 /// projected out of them. Whitened rows are the real parts, then the imaginary parts of every
 /// equation, bin by bin.

@@ -50,11 +50,9 @@ void set_broadband(Effect& out, const Plant& plant, const std::vector<RecordSegm
   const Eigen::VectorXcd direction =
       node_direction(plant, e.place.story, e.place.frame).cast<std::complex<double>>();
   Eigen::VectorXd power(s.bins());
-  Eigen::VectorXcd r(n);
   for (Eigen::Index b = 0; b < s.bins(); ++b) {
     const Eigen::VectorXcd u = system.weights->whitener(b).times(direction);
-    r.real() = system.rest.segment(2 * n * b, n);
-    r.imag() = system.rest.segment(2 * n * b + n, n);
+    const Eigen::VectorXcd r = rows_of_bin(system.rest, b, n);
     const double weight = u.squaredNorm();
     power[b] = std::max(0.0, std::norm(u.dot(r) / weight) - 1 / weight);
   }

@@ -8,10 +8,10 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kSame = 8;       ///< difference of costs that does not decide between names
-constexpr double kMargin = 20;    ///< difference that makes a doubt smaller by the factor e
-constexpr double kLargest = 1e3;  ///< without a rival
-constexpr double kAsLikelyWrong = 0.5, kSurest = 0.999;  ///< confidence
+constexpr double kSame = 8;        ///< difference of costs that does not decide between names
+constexpr double kMargin = 20;     ///< difference that makes a doubt smaller by the factor e
+constexpr double kLargest = 1e3;   ///< without a rival
+constexpr double kSurest = 0.999;  ///< confidence
 
 }  // namespace
 
@@ -28,9 +28,8 @@ FoundEffect effect_of(const std::vector<Trial>& trials) {
   const auto rival =
       std::find_if(trials.begin(), trials.end(), [&](const Trial& t) { return is_rival(t, best); });
   const double margin = rival == trials.end() ? kLargest : std::max(0.0, rival->cost - best.cost);
-  out.confidence = out.like.empty()
-                       ? std::min(kSurest, 1 - kAsLikelyWrong * std::exp(-margin / kMargin))
-                       : kAsLikelyWrong;
+  out.confidence =
+      out.like.empty() ? std::min(kSurest, 1 - kDoubtful * std::exp(-margin / kMargin)) : kDoubtful;
   return out;
 }
 

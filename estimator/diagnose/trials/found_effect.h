@@ -6,6 +6,9 @@
 
 namespace framewatch::estimator {
 
+/// Confidence in a name that is as likely wrong as right.
+inline constexpr double kDoubtful = 0.5;
+
 /// One effect of a diagnosis.
 struct FoundEffect {
   Trial chosen;

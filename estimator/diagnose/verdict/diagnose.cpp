@@ -35,8 +35,7 @@ using Eigen::MatrixXcd;
 
 /// Fraction above which a second law at the place of the first does not call the first in question.
 constexpr double kOneLaw = 0.99;
-constexpr double kClearer = 0.7;   ///< excess of a place's misfit over that of another search
-constexpr double kDoubtful = 0.5;  ///< confidence in a name that is as likely wrong as right
+constexpr double kClearer = 0.7;  ///< excess of a place's misfit over that of another search
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 
 class Search {

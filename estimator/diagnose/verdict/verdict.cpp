@@ -167,11 +167,8 @@ bool is_surrogate(std::size_t holdout_from, const Diagnosis& out) {
   const PlaceKind at = only.chosen.place.kind;
   const bool one_place = at == PlaceKind::frame || at == PlaceKind::panel ||
                          at == PlaceKind::node || at == PlaceKind::node_pair;
-  double floor = 0;
-  for (std::size_t r = holdout_from; r < out.after.size(); ++r) floor += out.after[r].overall_floor;
-  floor /= static_cast<double>(std::max<std::size_t>(out.after.size() - holdout_from, 1));
   return one_place && out.model.effects[static_cast<std::size_t>(only.index)].element_law() &&
-         mean_gap(out.after, holdout_from) > kNearFloor * floor &&
+         mean_gap(out.after, holdout_from) > kNearFloor * mean_floor(out.after, holdout_from) &&
          !is_of_the_kind_there(only.chosen, out.where);
 }
 
@@ -198,7 +195,6 @@ bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
 }
 
 void mark_approximate(const Fitter& fitter, Diagnosis& out) {
-  constexpr double kDoubtful = 0.5;  // a name that is as likely wrong as right
   if (out.ratio_after < 1 + chance_of(fitter, out.model)) return;
   for (FoundEffect& e : out.effects) {
     e.approximate = true;
