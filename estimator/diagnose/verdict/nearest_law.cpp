@@ -1,23 +1,45 @@
 #include "estimator/diagnose/verdict/nearest_law.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "estimator/diagnose/trials/select_trial.h"
 #include "estimator/diagnose/trials/trial_relations.h"
 
 namespace framewatch::estimator {
 
-bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where) {
-  if (law.place.kind == PlaceKind::whole_frame) return false;
-  return std::any_of(where.begin(), where.end(), [&](const WhereEntry& w) {
-    return w.kind && same_spot(w.place, law.place) && is_of_kind(law.kind, w.kind->kind);
+namespace {
+
+bool is_of_deformation(LawKind kind) {
+  return kind == LawKind::elastic || kind == LawKind::impact;
+}
+
+bool is_of_deformation(EffectKind law) {
+  return is_of_kind(law, LawKind::elastic) || is_of_kind(law, LawKind::impact);
+}
+
+/// The sort of force that the law's place needs, where it is known.
+std::optional<LawKind> kind_there(const Trial& law, const std::vector<WhereEntry>& where) {
+  if (law.place.kind == PlaceKind::whole_frame) return std::nullopt;
+  const auto there = std::find_if(where.begin(), where.end(), [&](const WhereEntry& w) {
+    return w.kind && same_spot(w.place, law.place);
   });
+  return there == where.end() ? std::nullopt : std::optional(there->kind->kind);
+}
+
+}  // namespace
+
+bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where) {
+  const std::optional<LawKind> kind = kind_there(law, where);
+  return kind &&
+         (is_of_kind(law.kind, *kind) || (is_of_deformation(*kind) && is_of_deformation(law.kind)));
 }
 
 bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
                        std::vector<Trial>& rejected) {
   const auto nearest = std::find_if(rejected.begin(), rejected.end(), [&](const Trial& law) {
-    return is_nearest_law(context, law) && is_of_the_kind_there(law, where);
+    const std::optional<LawKind> kind = kind_there(law, where);
+    return kind && is_of_kind(law.kind, *kind) && is_nearest_law(context, law);
   });
   if (nearest == rejected.end()) return false;
   std::rotate(rejected.begin(), nearest, nearest + 1);
@@ -42,7 +64,7 @@ bool is_needless_force(const Trial& trial, const std::vector<WhereEntry>& where)
 bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where) {
   if (is_needless_force(law, where)) return true;
   const auto is = [&](LawKind kind) { return is_of_kind(law.kind, kind); };
-  const bool of_deformation = is(LawKind::elastic) || is(LawKind::impact);
+  const bool of_deformation = is_of_deformation(law.kind);
   const bool other =
       is(LawKind::dissipative) || is(LawKind::hysteretic) || is(LawKind::time_varying);
   return std::any_of(where.begin(), where.end(), [&](const WhereEntry& w) {

@@ -13,12 +13,13 @@ namespace framewatch::estimator {
 bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
                        std::vector<Trial>& rejected);
 
-/// Whether the sort of force that a law's place needs is known and the law's. Of a whole frame it
-/// is not: the sort of one story's force says nothing of the others'.
+/// Whether the sort of force that a law's place needs is known and the law's. Contacts and other
+/// functions of the deformation are not told apart: a contact that stiffens as it closes is near
+/// both. Of a whole frame it is not known: one story's force says nothing of the others'.
 bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where);
 
 /// Whether the sort of force that a law's place needs is known, and is not the law's. Contacts and
-/// other functions of the deformation are not told apart. A force that may be anything is
+/// other functions of the deformation count as one here too. A force that may be anything is
 /// contradicted where the likeliest place is an element whose force follows its motion.
 bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where);
 

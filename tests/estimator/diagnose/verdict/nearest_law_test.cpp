@@ -73,6 +73,16 @@ TEST(NearestLawOfAPlace, ActsWhereTheKindIsKnown) {
   EXPECT_FALSE(left.first(there));
 }
 
+TEST(NearestLawOfAPlace, ThatHoldsMayBeAnyFunctionOfTheDeformation) {
+  const Left elastic(LawKind::elastic), impact(LawKind::impact), other(LawKind::hysteretic);
+  std::vector<Trial> gap{elastic.law(EffectKind::two_sided_gap, 0.9)};
+  const Trial spring = impact.law(EffectKind::cubic_stiffness, 0.98);
+  EXPECT_TRUE(is_of_the_kind_there(gap[0], elastic.where));
+  EXPECT_TRUE(is_of_the_kind_there(spring, impact.where));
+  EXPECT_FALSE(is_of_the_kind_there(spring, other.where));
+  EXPECT_FALSE(elastic.first(gap)) << "it does not hold, and is of another sort";
+}
+
 TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
   struct Said {
     LawKind kind;
