@@ -167,7 +167,7 @@ std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& 
   interpolate(config, component, out, problems);
   out.sha256 = sha256_of_file(path);
   if (problems.size() > before) return std::nullopt;
-  if (!component.any() && begins_in_motion(config, out))
+  if (!component.prescribed && begins_in_motion(config, out))
     out.samples.lead = lead_of(out.samples.accel.rows(), out.samples.rate_hz);
   return out;
 }
