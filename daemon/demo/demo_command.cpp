@@ -159,7 +159,7 @@ int demo(const DemoArguments& a) {
     fmt::print(stderr, "framewatch demo: {}\n", error);
     return 2;
   }
-  DemoLogs logs(a.report);
+  DemoLogs logs(a.report, a.building);
   WebSettings web;
   web.token = random_token();
   LiveView live(

@@ -13,7 +13,7 @@
 
 namespace framewatch::daemon {
 
-DemoLogs::DemoLogs(const std::string& report) : report_(report) {
+DemoLogs::DemoLogs(const std::string& report, int stories) : report_(report), stories_(stories) {
   if (report_.empty()) return;
   char name[] = "/tmp/framewatch-demo-XXXXXX";
   if (const char* made = ::mkdtemp(name)) folder_ = made;
@@ -39,16 +39,18 @@ void DemoLogs::estimate(std::int64_t time_us, const std::string& channel,
 
 void DemoLogs::write_report() {
   if (report_.empty()) return;
-  const std::string config = folder_ + "/table_two_story.toml";
-  std::ofstream(config) << kDemoConfig;
+  const bool tall = stories_ == 20;
+  const std::string config = folder_ + "/building.toml";
+  std::ofstream(config) << (tall ? kTallDemoConfig : kDemoConfig);
   if (!open_ || !raw_.close() || !estimates_.close()) return;
   ReportArguments a;
   a.estimates = folder_ + "/estimates.lcmlog";
   a.config = config;
   if (raw_.events() > 0) a.raw = {folder_ + "/raw.lcmlog"};
   a.out = report_;
-  a.title = "Demo: a frame loses 15 % of its stiffness";
-  (void)report(a);
+  a.title = tall ? "Demo: twenty stories, accelerometers on five levels"
+                 : "Demo: a frame loses 15 % of its stiffness";
+  if (report(a) != 0) fmt::print(stderr, "framewatch demo: no report\n");
 }
 
 }  // namespace framewatch::daemon

@@ -12,8 +12,8 @@ namespace framewatch::daemon {
 /// report nothing is stored.
 class DemoLogs {
  public:
-  /// report: the page to write; empty: none.
-  explicit DemoLogs(const std::string& report);
+  /// report: the page to write; empty: none. stories: of the building that is shown.
+  DemoLogs(const std::string& report, int stories);
   ~DemoLogs();
   DemoLogs(const DemoLogs&) = delete;
   DemoLogs& operator=(const DemoLogs&) = delete;
@@ -26,6 +26,7 @@ class DemoLogs {
 
  private:
   std::string report_, folder_;
+  int stories_;
   bool open_ = false;
   drivers::LcmLogWriter raw_, estimates_;
 };
