@@ -159,7 +159,7 @@ int demo(const DemoArguments& a) {
     fmt::print(stderr, "framewatch demo: {}\n", error);
     return 2;
   }
-  DemoLogs logs(a.report, a.building);
+  DemoLogs logs(a.report);
   WebSettings web;
   web.token = random_token();
   LiveView live(
@@ -217,7 +217,7 @@ int demo(const DemoArguments& a) {
   loop.receive_rest(estimation);
   estimation.finish();
   (void)view_source.handle(200);
-  logs.write_report();
+  logs.write_report(building);
   return view.finish();
 }
 

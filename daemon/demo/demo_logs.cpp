@@ -8,12 +8,11 @@
 
 #include <fmt/core.h>
 
-#include "daemon/lab/demo_files.h"
 #include "daemon/report/report_command.h"
 
 namespace framewatch::daemon {
 
-DemoLogs::DemoLogs(const std::string& report, int stories) : report_(report), stories_(stories) {
+DemoLogs::DemoLogs(const std::string& report) : report_(report) {
   if (report_.empty()) return;
   char name[] = "/tmp/framewatch-demo-XXXXXX";
   if (const char* made = ::mkdtemp(name)) folder_ = made;
@@ -37,19 +36,17 @@ void DemoLogs::estimate(std::int64_t time_us, const std::string& channel,
   open_ = open_ && estimates_.write(time_us, channel, bytes.data(), bytes.size());
 }
 
-void DemoLogs::write_report() {
+void DemoLogs::write_report(const DemoBuilding& building) {
   if (report_.empty()) return;
-  const bool tall = stories_ == 20;
   const std::string config = folder_ + "/building.toml";
-  std::ofstream(config) << (tall ? kTallDemoConfig : kDemoConfig);
+  std::ofstream(config) << building.config_text;
   if (!open_ || !raw_.close() || !estimates_.close()) return;
   ReportArguments a;
   a.estimates = folder_ + "/estimates.lcmlog";
   a.config = config;
   if (raw_.events() > 0) a.raw = {folder_ + "/raw.lcmlog"};
   a.out = report_;
-  a.title = tall ? "Demo: twenty stories, accelerometers on five levels"
-                 : "Demo: a frame loses 15 % of its stiffness";
+  a.title = building.title;
   if (report(a) != 0) fmt::print(stderr, "framewatch demo: no report\n");
 }
 

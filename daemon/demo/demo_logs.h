@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/demo/demo_scenario.h"
 #include "drivers/lcm/lcm_log.h"
 
 namespace framewatch::daemon {
@@ -12,8 +13,8 @@ namespace framewatch::daemon {
 /// report nothing is stored.
 class DemoLogs {
  public:
-  /// report: the page to write; empty: none. stories: of the building that is shown.
-  DemoLogs(const std::string& report, int stories);
+  /// report: the page to write; empty: none.
+  explicit DemoLogs(const std::string& report);
   ~DemoLogs();
   DemoLogs(const DemoLogs&) = delete;
   DemoLogs& operator=(const DemoLogs&) = delete;
@@ -21,12 +22,11 @@ class DemoLogs {
   void raw(std::int64_t time_us, const std::string& channel, const void* data, std::size_t size);
   void estimate(std::int64_t time_us, const std::string& channel,
                 const std::vector<std::uint8_t>& bytes);
-  /// Closes the logs and writes the report about them.
-  void write_report();
+  /// Closes the logs and writes the report about them. building: that was shaken.
+  void write_report(const DemoBuilding& building);
 
  private:
   std::string report_, folder_;
-  int stories_;
   bool open_ = false;
   drivers::LcmLogWriter raw_, estimates_;
 };

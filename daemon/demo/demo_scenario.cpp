@@ -32,8 +32,19 @@ Scenario tall_demo_scenario() {
 }
 
 DemoBuilding demo_building(int stories) {
-  if (stories == 20) return {tall_demo_scenario(), "kx_6to10_y2", 0.2, 12};
-  return {demo_scenario(), "kx_1_y2", 0.15, 6};
+  if (stories == 20)
+    return {tall_demo_scenario(),
+            "kx_6to10_y2",
+            0.2,
+            12,
+            kTallDemoConfig,
+            "Demo: twenty stories, accelerometers on five levels"};
+  return {demo_scenario(),
+          "kx_1_y2",
+          0.15,
+          6,
+          kDemoConfig,
+          "Demo: a frame loses 15 % of its stiffness"};
 }
 
 Eigen::VectorXd after_loss(const DemoBuilding& b) {

@@ -20,7 +20,9 @@ struct DemoBuilding {
   Scenario scenario;
   std::string loses;  ///< parameter of which all stories lose stiffness
   double loss_ratio;
-  double forgotten_s;  ///< after so long windows and filters have seen nothing else
+  double forgotten_s;       ///< after so long windows and filters have seen nothing else
+  std::string config_text;  ///< of the scenario's configuration
+  std::string title;        ///< of a report
 };
 /// stories: 2 or 20.
 DemoBuilding demo_building(int stories);
