@@ -108,6 +108,24 @@ class BoucWen : public ElementLaw {
   bool slip_lock_ = false;
 };
 
+/// A brace that yields to either side and is slack up to where it has yielded.
+class SlackBrace : public ElementLaw {
+ public:
+  explicit SlackBrace(const Effect& e)
+      : kh_(e.value("kh_npm")), dy_(e.value("dy_m")), up_(e.value("play_m")), down_(up_) {}
+  double force(double, double d, double, std::span<const double>) const override {
+    return kh_ * (std::clamp(d - up_, 0.0, dy_) - std::clamp(-d - down_, 0.0, dy_));
+  }
+  void begin_step(double, double d) override {
+    up_ = std::max(up_, d - dy_);
+    down_ = std::max(down_, -d - dy_);
+  }
+  double stiffness_bound() const override { return kh_; }
+
+ private:
+  double kh_, dy_, up_, down_;
+};
+
 }  // namespace
 
 std::unique_ptr<ElementLaw> make_slider(double kh, double dy) {
@@ -115,6 +133,8 @@ std::unique_ptr<ElementLaw> make_slider(double kh, double dy) {
 }
 
 std::unique_ptr<ElementLaw> make_hysteretic_law(const Effect& e) {
+  if (e.kind == EffectKind::pinching && e.value("slack") > 0)
+    return std::make_unique<SlackBrace>(e);
   if (e.kind != EffectKind::bilinear_hysteresis) return std::make_unique<BoucWen>(e);
   if (e.value("spread") > 0 || e.value("strength_loss") > 0)
     return std::make_unique<YieldingSprings>(e);

@@ -117,13 +117,19 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
         within("slip_work", "", 0.0, 0, 1e6, "E: work e in which it opens; 0: open from the start"),
         within("slip_lock", "", 0.0, 0, 1, "1: the slip zone is about zero deformation, not force"),
         kStrengthLoss,
-        kStiffnessLoss},
+        kStiffnessLoss,
+        within("slack", "", 0.0, 0, 1,
+               "1: a brace that yields and is slack by what it has yielded, in place of z"),
+        within("play_m", "m", 0.0, 0, kAny, "of such a brace: deformation that is slack at first")},
        "f = kh z; z' = h v/(1 + b e) (1 - (1 + a e) abs(z/dy)^n (beta sgn(v z) + 1 - beta)); "
        "h = 1 - p (1 - exp(-e/E)) exp(-((z/dy sgn(v) - q)/w)^2), or with slip_lock d/dy in place "
        "of "
-       "z/dy sgn(v) - q; e' = z v/dy^2",
+       "z/dy sgn(v) - q; e' = z v/dy^2; with slack f = kh (clip(d - u, 0, dy) - clip(-d - w, 0, "
+       "dy)), "
+       "u = max(play, largest d so far - dy), w the same of -d",
        "As bouc_wen; p = 0 is bouc_wen.",
-       "Baber and Noori, J. Eng. Mech. 111 (1985); Foliente, J. Struct. Eng. 121 (1995)"},
+       "Baber and Noori, J. Eng. Mech. 111 (1985); Foliente, J. Struct. Eng. 121 (1995); slack: "
+       "Tremblay and Filiatrault, Earthquake Eng. Struct. Dyn. 25 (1996)"},
   };
 }
 

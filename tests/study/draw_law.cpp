@@ -64,20 +64,23 @@ class Sliders : public estimator::ElementLaw {
   double loss_, work_ = 0;
 };
 
-/// A brace that yields to either side and is slack by what it has yielded.
+/// A brace that yields to either side, hardens, and is slack by what it has yielded.
 class SlackBrace : public estimator::ElementLaw {
  public:
   SlackBrace(double stiffness, double yield) : k_(stiffness), yield_(yield) {}
   double force(double, double d, double, std::span<const double>) const override {
-    return k_ * (std::clamp(d - up_, 0.0, yield_) - std::clamp(-d - down_, 0.0, yield_));
+    return k_ * (std::clamp(d - up_, 0.0, limit(up_)) - std::clamp(-d - down_, 0.0, limit(down_)));
   }
   void begin_step(double, double d) override {
-    up_ = std::max(up_, d - yield_);
-    down_ = std::max(down_, -d - yield_);
+    up_ = std::max(up_, d - limit(up_));
+    down_ = std::max(down_, -d - limit(down_));
   }
   double stiffness_bound() const override { return k_; }
 
  private:
+  double limit(double slack) const { return yield_ + kHardens * slack; }
+
+  static constexpr double kHardens = 0.15;
   double k_, yield_, up_ = 0, down_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/diagnose/law/slack.h"
 #include "estimator/diagnose/law/sliding.h"
 
 namespace framewatch::estimator {
@@ -37,7 +38,7 @@ bool is_element_law(LawForm form) {
 }
 
 bool is_hysteretic(LawForm form) {
-  return form >= LawForm::hysteresis && form <= LawForm::slip_lock;
+  return form >= LawForm::hysteresis && form <= LawForm::slack;
 }
 
 bool is_contact(LawForm form) {
@@ -47,6 +48,7 @@ bool is_contact(LawForm form) {
 LawMotion::LawMotion(const LawValues& values) : values_(values) {
   if (values.form == LawForm::sliders) memory_.assign(SliderIndex::kCount, 0.0);
   if (values.form == LawForm::asymptotic) memory_ = no_reversal(values);
+  if (values.form == LawForm::slack) memory_ = first_slack(values.p);
   if (values.form == LawForm::amplitude && value_or(values.p, A::slip, 0) > 0)
     slip_.emplace(values.p[A::exponent]);
   if (!has_z(values.form)) return;
@@ -88,6 +90,8 @@ double LawMotion::plain_force(double d, double v, double t) {
       return p[0] * slider_force(values_, memory_, d, work_);
     case LawForm::asymptotic:
       return p[0] * p[1] * asymptotic_z(values_, memory_, z_, d_, d);
+    case LawForm::slack:
+      return p[0] * slack_force(p, memory_, d);
     case LawForm::friction:
       return p[0] * (preslides(values_) ? sliding_z(p, z_, v_, v, t - t_) : steady_friction(p, v));
     case LawForm::power_damping:
@@ -122,6 +126,8 @@ void LawMotion::accept(double d, double v, double t) {
       const double z = asymptotic_z(values_, memory_, z_, d_, d);
       turn(memory_, z_, d_, d);
       z_ = z;
+    } else if (values_.form == LawForm::slack) {
+      slacken(values_.p, memory_, d);
     } else {
       const double z = next_z(d);
       work_ += 0.5 * (z_ + z) * (d - d_) / dy;

@@ -17,6 +17,7 @@ enum class LawForm {
   asymptotic,     ///< kh z, a curve from every reversal toward yielding: hysteretic_force.h
   pinched,        ///< hysteresis with a slip zone about zero force
   slip_lock,      ///< hysteresis with a slip zone about zero deformation
+  slack,          ///< a brace that is slack by what it has yielded: slack.h
   friction,       ///< fc (1 + s exp(-(v/vs)^2)) tanh(v/v0), with presliding: sliding.h
   power_damping,  ///< a sgn(v) |v/V|^p
   amplitude,      ///< a ((1 - s) sgn(d) |d/D|^p + s slip(d/D)) + b sgn(v) |v/V|^q: slip_curve.h

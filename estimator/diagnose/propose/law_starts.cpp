@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "estimator/diagnose/law/hysteretic_force.h"
+#include "estimator/diagnose/law/law.h"
+#include "estimator/diagnose/law/slack.h"
 #include "estimator/diagnose/law/sliding.h"
 
 namespace framewatch::estimator {
@@ -145,6 +147,18 @@ LawStarts slip_lock(const LawScale& s) {
   return out;
 }
 
+/// Braces that are slack by what they have yielded.
+LawStarts slack(const LawScale& s) {
+  LawStarts out{F::slack, EffectKind::pinching, {}};
+  for (const double play : {0.0, 0.1, 0.3})  // of the largest deformation
+    for (const double yield : shrinking(0.8, 0.05, 0.7))
+      out.shapes.push_back(
+          {linear_parameter(1, 0.01 * s.stiffness),
+           logarithmic_parameter(yield * s.deformation, 1e-3 * s.deformation, 2 * s.deformation),
+           held(play * s.deformation, 0.005 * s.deformation, 0, s.deformation)});
+  return out;
+}
+
 LawStarts friction(const LawScale& s, bool stribeck) {
   LawStarts out{F::friction, EffectKind::coulomb_friction, {}};
   for (const double v0 : {0.1, 0.03, 0.01, 0.003})
@@ -159,6 +173,11 @@ LawStarts friction(const LawScale& s, bool stribeck) {
   return out;
 }
 
+/// Whether the force has the velocity's sign: then its amplitude is not negative.
+bool resists_velocity(LawForm form) {
+  return is_hysteretic(form) || form == F::friction || form == F::power_damping;
+}
+
 }  // namespace
 
 std::vector<LawStarts> contact_starts(const LawScale& s) {
@@ -166,13 +185,30 @@ std::vector<LawStarts> contact_starts(const LawScale& s) {
   for (const F form : {F::gap_positive, F::gap_negative, F::gap_both}) {
     out.push_back(
         {form, form == F::gap_both ? EffectKind::two_sided_gap : EffectKind::one_sided_gap, {}});
-    for (double g = 0.03; g < 0.97; g += g < 0.1 ? 0.03 : 0.07)
+    const auto add = [&](double gap, double dashpot) {
+      LawParameter damping =
+          held(dashpot * s.deformation / s.rate, 0.01 * s.force() / s.rate, 0, 1e15);
+      damping.free = dashpot > 0;
       out.back().shapes.push_back(
           {linear_parameter(1, 0.01 * s.stiffness),
-           logarithmic_parameter(g * s.deformation, 1e-3 * s.deformation, s.deformation),
-           held(0, 0.01 * s.force() / s.rate, 0, 1e15)});
+           logarithmic_parameter(gap * s.deformation, 1e-3 * s.deformation, s.deformation),
+           damping});
+    };
+    for (double g = 0.03; g < 0.97; g += g < 0.1 ? 0.03 : 0.07) add(g, 0);
+    for (const double dashpot : {0.15, 0.5, 1.5})
+      for (double g = 0.06; g < 0.9; g += 0.12) add(g, dashpot);
   }
   return out;
+}
+
+bool has_amplitude(const ModelEffect& effect, double amplitude) {
+  const bool contact_damps = is_contact(effect.form) && effect.parameters[2].value > 0;
+  return amplitude > 0 || !(contact_damps || resists_velocity(effect.form));
+}
+
+void set_amplitude(ModelEffect& effect, double amplitude) {
+  effect.parameters[0].value = amplitude;
+  if (is_contact(effect.form)) effect.parameters[2].value *= amplitude;
 }
 
 std::vector<LawStarts> plain_starts(const LawScale& s) {
@@ -201,13 +237,9 @@ std::vector<LawStarts> hysteretic_starts(const LawScale& s, bool pinching) {
                              hardening(s),   sliders(s),     asymptotic(s)};
   if (pinching)
     for (LawStarts& one :
-         std::vector<LawStarts>{slip_about_force(s), slip_that_opens(s), slip_lock(s)})
+         std::vector<LawStarts>{slip_about_force(s), slip_that_opens(s), slip_lock(s), slack(s)})
       out.push_back(std::move(one));
   return out;
-}
-
-bool resists_velocity(LawForm form) {
-  return is_hysteretic(form) || form == F::friction || form == F::power_damping;
 }
 
 void free_shape(ModelEffect& effect) {
@@ -228,6 +260,9 @@ void free_shape(ModelEffect& effect) {
       for (const std::size_t i :
            {+H::exponent, +H::beta, +H::offset, +H::pinched_strength, +H::pinched_stiffness})
         release(i);
+      break;
+    case F::slack:
+      release(SlackIndex::play);
       break;
     case F::friction:
       release(FrictionIndex::presliding);

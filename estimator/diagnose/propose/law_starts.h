@@ -16,7 +16,8 @@ struct LawScale {
   double force() const { return stiffness * deformation; }
 };
 
-/// One family of laws with the shapes from which a fit may start; amplitudes are 1.
+/// One family of laws with the shapes from which a fit may start; amplitudes are 1, and a contact's
+/// dashpot is that of a spring of 1 N/m.
 struct LawStarts {
   LawForm form;
   EffectKind kind;  ///< first guess of the name
@@ -30,8 +31,10 @@ std::vector<LawStarts> contact_starts(const LawScale& scale);
 /// Hysteresis of every kind. pinching: also with slip zones.
 std::vector<LawStarts> hysteretic_starts(const LawScale& scale, bool pinching);
 
-/// Whether the force has the velocity's sign: then its amplitude is not negative.
-bool resists_velocity(LawForm form);
+/// Whether a start of an effect may have an amplitude: what damps does not drive.
+bool has_amplitude(const ModelEffect& effect, double amplitude);
+/// Gives a start its amplitude, and a contact the dashpot that belongs to it.
+void set_amplitude(ModelEffect& effect, double amplitude);
 
 /// Frees the parameters that a first fit holds: exponents, unloading, losses, dashpots.
 void free_shape(ModelEffect& effect);

@@ -82,6 +82,7 @@ EffectKind name_of_fit(const ModelEffect& effect, const RecordSegment& segment) 
     case LawForm::pinched:
       return slips(effect) ? EffectKind::pinching : name_of_fit(without_slip(effect), segment);
     case LawForm::slip_lock:
+    case LawForm::slack:
       return EffectKind::pinching;
     case LawForm::friction:
       return EffectKind::coulomb_friction;

@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "estimator/diagnose/law/hysteretic_force.h"
+#include "estimator/diagnose/law/slack.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 
@@ -80,6 +81,12 @@ void set_hysteresis(const ModelEffect& e, Effect& out) {
     out.set("strength_loss", value_or(p, SliderIndex::loss, 0));
   }
   if (e.form == LawForm::asymptotic) out.set("spread", spread_like(p[AsymptoteIndex::sharpness]));
+  if (e.form == LawForm::slack) {
+    out.set("slip_ratio", 0);
+    out.set("slack", 1);
+    out.set("play_m", p[SlackIndex::play]);
+    return;
+  }
   if (out.kind == EffectKind::bilinear_hysteresis) return;
   const bool plain = e.form == LawForm::hysteresis;
   out.set("exponent", p[H::exponent]);

@@ -66,6 +66,7 @@ LawForm form_of(const Effect& effect) {
     case bouc_wen:
       return LawForm::hysteresis;
     case pinching:
+      if (effect.value("slack") > 0) return LawForm::slack;
       return effect.value("slip_lock") > 0 ? LawForm::slip_lock : LawForm::pinched;
     case coulomb_friction:
       return effect.value("stick_npm") > 0 ? LawForm::hysteresis : LawForm::friction;
@@ -223,6 +224,11 @@ void set_element_parameters(const Plant& plant, const std::vector<RecordSegment>
     case LawForm::pinched:
     case LawForm::slip_lock:
       set_hysteresis(effect, e);
+      break;
+    case LawForm::slack:
+      e.parameters = {sized(value("kh_npm")),
+                      logarithmic_parameter(value("dy_m"), 1e-4 * d, 1e3 * d),
+                      bounded_parameter(value("play_m"), 0.005 * d, 0, d, value("play_m") > 0)};
       break;
     case LawForm::friction:
       e.parameters = {

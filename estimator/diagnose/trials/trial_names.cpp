@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/diagnose/law/hysteretic_force.h"
+#include "estimator/diagnose/law/slack.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 
 namespace framewatch::estimator {
@@ -60,6 +61,13 @@ bool has_wrong_sign(const ModelEffect& effect) {
   return positive && effect.parameters[0].plain() < 0;
 }
 
+/// Whether a brace that would be slack by what it yields does yield: one that does not is a
+/// clearance.
+bool yields(const ModelEffect& slack) {
+  return slack.parameters[SlackIndex::play].plain() + slack.parameters[SlackIndex::dy].plain() <
+         slack.deformation;
+}
+
 }  // namespace
 
 bool is_excluded(const TrialContext& c, EffectKind kind) {
@@ -85,6 +93,7 @@ bool may_be_named(const TrialContext& c, const Trial& t) {
     const ModelEffect& effect = t.model.effects[e];
     if (has_wrong_sign(effect)) return false;
     if (effect.form == LawForm::resonator && is_no_oscillator(c, effect)) return false;
+    if (effect.form == LawForm::slack && !yields(effect)) return false;
     const bool slips = effect.form == LawForm::pinched || effect.form == LawForm::slip_lock;
     if (slips && (dissipation(effect) < kDissipates ||
                   effect.parameters[HysteresisIndex::width].plain() < kNarrowestSlip ||

@@ -106,6 +106,7 @@ TEST(NameOfFit, OtherFormsHaveOneName) {
   };
   const Named all[] = {
       {LawForm::slip_lock, "pinching"},
+      {LawForm::slack, "pinching"},
       {LawForm::friction, "coulomb_friction"},
       {LawForm::power_damping, "quadratic_damping"},
       {LawForm::gap_positive, "one_sided_gap"},
