@@ -20,7 +20,7 @@ constexpr std::size_t kMostTried = 9, kFewestTried = 3, kMostCauses = 3;
 constexpr std::size_t kMostWork = 60;  ///< laws times equations
 constexpr std::size_t kKept = 3;       ///< sets of one size that lead to larger ones
 constexpr std::size_t kFinished = 6;   ///< that are fitted to their end
-constexpr double kTakes = 0.9;         ///< gap with one cause over that without any
+constexpr double kTakes = 0.9;         ///< gap with one cause over that without any, at most
 constexpr double kTakesToo = 0.95;     ///< gap with one more: a tenth of the misfit's power
 constexpr double kNearly = 1.1;        ///< gap over the best's, of a set that does nearly as well
 constexpr double kLeastShare = 0.1;    ///< of the design, of a start's stiffness or damping
@@ -115,7 +115,7 @@ class Selection {
       kept = larger(kept);
       const auto leads =
           std::find_if(kept.begin(), kept.end(), [&](const CauseSet& s) { return may_lead(s); });
-      if (leads != kept.end() && leads->held_out < takes(best, size) * best.held_out) best = *leads;
+      if (leads != kept.end() && is_worth(*leads, best)) best = *leads;
       if (kept.size() > kKept) kept.resize(kKept);
     }
     return result(without_needless(std::move(best)));
@@ -149,10 +149,13 @@ class Selection {
     return true;
   }
 
-  /// Gap, over that of a set, below which a larger one is worth its causes.
-  double takes(const CauseSet& s, std::size_t size) const {
-    const auto more = static_cast<int>(size - s.members.size());
-    return s.members.empty() ? kTakes * std::pow(kTakesToo, more - 1) : std::pow(kTakesToo, more);
+  /// Whether a set is worth the causes that it has more than another: by the gap of all records,
+  /// and by half as much in the held-out ones.
+  static bool is_worth(const CauseSet& larger, const CauseSet& s) {
+    const auto more = static_cast<int>(larger.members.size() - s.members.size());
+    const double takes =
+        s.members.empty() ? kTakes * std::pow(kTakesToo, more - 1) : std::pow(kTakesToo, more);
+    return larger.all < takes * s.all && larger.held_out < 0.5 * (1 + takes) * s.held_out;
   }
 
   bool has_law(const Trial& t) const {
@@ -251,7 +254,7 @@ class Selection {
   CauseSet without_needless(CauseSet best) const {
     for (std::size_t i = 0; i < best.members.size() && best.members.size() > 1;) {
       CauseSet less = without(best, i);
-      const bool needless = may_lead(less) && best.held_out > kTakesToo * less.held_out;
+      const bool needless = may_lead(less) && !is_worth(best, less);
       if (needless) best = std::move(less);
       i = needless ? 0 : i + 1;
     }
