@@ -79,6 +79,10 @@ double Fitter::prior_cost(const Model& model) const {
   return sum;
 }
 
+int Fitter::ratio(std::size_t record, const Model& model) const {
+  return steps_of(model, ratio(record));
+}
+
 std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<MatrixXcd>& motion,
                                       Forcing forcing, const std::vector<Whitened>* weights,
                                       RunCache* cache) const {
@@ -86,9 +90,9 @@ std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<Matr
   for (std::size_t r = 0; r < segments_.size(); ++r) {
     std::optional<std::vector<LawTrack>> tracks =
         tracks_of(plant_, model, segments_[r], r, forcing,
-                  r < motion.size() ? motion[r] : MatrixXcd(), ratio_[r], cache);
+                  r < motion.size() ? motion[r] : MatrixXcd(), ratio(r, model), cache);
     if (!tracks) return {};
-    out.push_back(whiten(plant_, model, segments_[r], r, std::move(*tracks), ratio_[r],
+    out.push_back(whiten(plant_, model, segments_[r], r, std::move(*tracks), ratio(r, model),
                          weights ? (*weights)[r].weights : nullptr));
     if (!out.back().good) return {};
   }
@@ -114,7 +118,7 @@ Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
   }
   for (std::size_t r = 0; r < segments_.size(); ++r)
     out.columns.push_back(columns_of(plant_, model, segments_[r], r, out.systems[r], out.unknowns,
-                                     ratio_[r], options.through_run, cache));
+                                     ratio(r, model), options.through_run, cache));
   out.level = std::max(1.0, total_misfit(out.systems) / expected(model));
   out.prior *= out.level;
   out.pull *= out.level;
@@ -222,7 +226,7 @@ std::vector<Whitened> Fitter::reweighted(const Model& model,
                                          const std::vector<Whitened>& systems) const {
   std::vector<Whitened> out;
   for (std::size_t r = 0; r < segments_.size(); ++r) {
-    out.push_back(whiten(plant_, model, segments_[r], r, systems[r].tracks, ratio_[r]));
+    out.push_back(whiten(plant_, model, segments_[r], r, systems[r].tracks, ratio(r, model)));
     if (!out.back().good) return {};
   }
   return out;

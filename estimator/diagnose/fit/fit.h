@@ -65,7 +65,9 @@ class Fitter {
   const Plant& plant() const { return plant_; }
   const std::vector<RecordSegment>& segments() const { return segments_; }
   const Tolerances& tolerances() const { return tolerances_; }
+  /// Steps per sample of a record: in which measured motion drives laws, and of a model's runs.
   int ratio(std::size_t record) const { return ratio_[record]; }
+  int ratio(std::size_t record, const Model& model) const;
 
  private:
   /// Systems of the model with its own weights and the law tracks of `systems`.

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/axis_readings.h"
-#include "estimator/diagnose/fit/prescribed_motion.h"
+#include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/numeric/complex.h"
 
@@ -64,15 +64,8 @@ std::optional<std::vector<LawTrack>> tracks_of(const Plant& plant, const Model& 
   if (!any) return out;
   const MatrixXcd driving = motion.size() > 0 ? motion : calibrated(model, segment);
   for (const ActiveLaw& active : active_laws(plant, model)) {
-    const VectorXcd q = (active.port.sense * driving).transpose();
-    const VectorXcd d = -q.array() / segment.w.array().square();
-    const VectorXcd v = d.array() * segment.w.array() * kJ;
-    LawTrack& track =
-        out.emplace_back(LawTrack{signal_of(d, segment, ratio), signal_of(v, segment, ratio), {}});
-    if (auto whole = prescribed_motion(plant, segment, active.port.sense, ratio)) {
-      track.d = std::move(whole->d);
-      track.v = std::move(whole->v);
-    }
+    MeasuredDeformation m = measured_deformation(plant, segment, active.port.sense, driving, ratio);
+    LawTrack& track = out.emplace_back(LawTrack{std::move(m.d), std::move(m.v), {}});
     track.force =
         law_force(law_at(model, active, record), track.d, track.v, 1 / (segment.rate_hz * ratio));
   }

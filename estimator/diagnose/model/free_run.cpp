@@ -18,6 +18,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kStepsPerPeriod = 30;
+constexpr int kFewestSteps = 2, kMostSteps = 12;  ///< a sample
+constexpr int kContactSteps = 4;     ///< in place of one: contacts come and go within it
 constexpr int kPrescribedSteps = 6;  ///< a sample: corners of laws lie between samples
 constexpr double kDiverged_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
@@ -184,8 +186,14 @@ class RunForces {
 
 int steps_per_sample(const Plant& plant, double rate_hz) {
   if (plant.prescribed) return kPrescribedSteps;
-  return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * plant.highest_hz / rate_hz)), 2,
-                    12);
+  return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * plant.highest_hz / rate_hz)),
+                    kFewestSteps, kMostSteps);
+}
+
+int steps_of(const Model& model, int ratio) {
+  const bool contact = std::any_of(model.effects.begin(), model.effects.end(),
+                                   [](const ModelEffect& e) { return is_contact(e.form); });
+  return contact ? std::max(ratio, std::min(kContactSteps * ratio, kMostSteps)) : ratio;
 }
 
 FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& segment,

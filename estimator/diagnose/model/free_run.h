@@ -38,5 +38,7 @@ FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& se
 
 /// Steps per sample that resolve the model's highest mode.
 int steps_per_sample(const Plant& plant, double rate_hz);
+/// Those of a model: finer where it has contacts.
+int steps_of(const Model& model, int ratio);
 
 }  // namespace framewatch::estimator

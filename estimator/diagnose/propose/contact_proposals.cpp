@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/diagnose/model/law_port.h"
 #include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/scalar_fit.h"
-#include "estimator/numeric/complex.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -17,25 +17,17 @@ using Eigen::VectorXd;
 constexpr std::size_t kMostFrames = 4;  ///< whole frames that are tried in one direction
 constexpr double kFirstShare = 0.05;    ///< of the stiffness that a start takes at the peak
 
-/// Deformation of a port in one record, with its rate: Fitter::ratio() steps a sample.
-struct PortMotion {
-  VectorXd d, v;
-};
-
-PortMotion motion_of(const Fitter& fitter, const Localisation& place, const LawPort& port,
-                     std::size_t record) {
-  const RecordSegment& s = fitter.segments()[record];
-  const VectorXcd q = (port.sense * place.motion[record]).transpose();
-  const VectorXcd d = -q.array() / s.w.array().square();
-  const int ratio = fitter.ratio(record);
-  return {signal_of(d, s, ratio), signal_of(VectorXcd(d.array() * s.w.array() * kJ), s, ratio)};
+MeasuredDeformation motion_of(const Fitter& fitter, const Localisation& place, const LawPort& port,
+                              std::size_t record) {
+  return measured_deformation(fitter.plant(), fitter.segments()[record], port.sense,
+                              place.motion[record], fitter.ratio(record));
 }
 
 void set_scales(const Fitter& fitter, const Localisation& place, ModelEffect& effect) {
   effect.deformation = effect.rate = 1e-12;
   for (const LawPort& port : law_ports(fitter.plant(), place.model, effect))
     for (std::size_t r = 0; r < fitter.segments().size(); ++r) {
-      const PortMotion motion = motion_of(fitter, place, port, r);
+      const MeasuredDeformation motion = motion_of(fitter, place, port, r);
       effect.deformation = std::max(effect.deformation, motion.d.cwiseAbs().maxCoeff());
       effect.rate = std::max(effect.rate, motion.v.cwiseAbs().maxCoeff());
     }
@@ -59,7 +51,7 @@ void add_contact_proposals(const Fitter& fitter, const Localisation& place,
   effect.place = pair;
   set_scales(fitter, place, effect);
   const LawPort port = law_ports(plant, place.model, effect).front();
-  std::vector<PortMotion> motion;
+  std::vector<MeasuredDeformation> motion;
   for (std::size_t r = 0; r < needed.size(); ++r)
     motion.push_back(motion_of(fitter, place, port, r));
   const double k = plant.design[plant.table.frame_stiffness(pair.story, pair.frame)];
@@ -82,7 +74,7 @@ void add_contact_proposals(const Fitter& fitter, const Localisation& place,
       chosen = effect;
     }
     if (least.misfit > 1e299) continue;
-    chosen.parameters[0].value = least.coefficients[0];
+    set_amplitude(chosen, least.coefficients[0]);
     out.push_back(proposal_of(place, std::move(chosen), family.kind, least.misfit));
   }
 }

@@ -54,7 +54,7 @@ class ElementProposals {
   }
 
   void add(ModelEffect effect, EffectKind kind, const ScalarFit& fit) {
-    effect.parameters[0].value = fit.coefficients[2];
+    set_amplitude(effect, fit.coefficients[2]);
     Proposal p{place_.model, kind, effect.place, fit.misfit};
     const Index elements = fitter_.plant().element_count();
     const double least = 0.05 * fitter_.plant().design[element_];
@@ -71,7 +71,7 @@ class ElementProposals {
     for (const std::vector<LawParameter>& shape : family.shapes) {
       const ModelEffect effect = effect_of(family.form, shape);
       const ScalarFit fit = fit_of(effect);
-      if (resists_velocity(family.form) && fit.coefficients[2] < 0) continue;
+      if (!has_amplitude(effect, fit.coefficients[2])) continue;
       if (fit.misfit < least.misfit) {
         least = fit;
         chosen = effect;

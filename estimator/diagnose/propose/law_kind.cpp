@@ -36,18 +36,16 @@ Columns powers(const NeededSignal& n, const Scales& s) {
   return {x * x.abs(), x.cube(), x.square(), x.cube() * x.square()};
 }
 
-/// Forces of springs of unit stiffness beyond a clearance: resisting the deformation up, and down.
-Columns contact(const NeededSignal& n, const Scales& s, double clearance) {
+/// Forces of springs of unit stiffness, each with a dashpot beside it, beyond a clearance:
+/// resisting the deformation up, and down. They only push.
+Columns contact(const NeededSignal& n, const Scales& s, double clearance, double dashpot = 0) {
   const auto x = (n.d_t / s.d).array().eval();
-  return {(x - clearance).cwiseMax(0), -(-x - clearance).cwiseMax(0)};
-}
-
-/// Springs, and after them dashpots that act where they do.
-Columns with_dashpots(Columns springs, const NeededSignal& n, const Scales& s) {
-  const std::size_t count = springs.size();
-  for (std::size_t i = 0; i < count; ++i)
-    springs.push_back((springs[i].array() != 0).select(n.v_t.array() / s.v, 0.0).matrix());
-  return springs;
+  const auto damped = (dashpot * n.v_t / s.v).array().eval();
+  const auto side = [&](double sign) -> VectorXd {
+    const auto in = (sign * x - clearance).eval();
+    return sign * (in > 0).select((in + sign * damped).cwiseMax(0), 0.0);
+  };
+  return {side(1), side(-1)};
 }
 
 /// Powers, and a broken line.
@@ -194,24 +192,23 @@ class KindSearch {
     return out;
   }
 
-  /// The same beside springs that resist, and dashpots, beyond the best clearance, to both sides or
+  /// The same beside springs with dashpots that push beyond the best clearance, to both sides or
   /// one.
   double rest_of_clearance() const {
-    const std::vector<Index> sides[] = {{0, 1, 2, 4}, {0, 1, 3, 5}, {0, 1, 2, 3, 4, 5}};
+    const std::vector<Index> sides[] = {{0, 1, 2}, {0, 1, 3}, {0, 1, 2, 3}};
     double best = rest([](const NeededSignal&) { return Columns(); }, false);
-    for (int i = 1; i <= kClearances; ++i) {
-      const double clearance = static_cast<double>(i) / (kClearances + 1);
-      const ScalarSums all = sums(
-          [&](const NeededSignal& n) {
-            return with_dashpots(contact(n, scales_, clearance), n, scales_);
-          },
-          false);
-      for (const std::vector<Index>& kept : sides) {
-        const ScalarFit fit = ScalarSums{all.normal(kept, kept), all.right(kept), all.total}.fit();
-        const auto springs = static_cast<Index>(kept.size()) / 2 - 1;
-        if (fit.coefficients.segment(2, springs).minCoeff() > 0) best = std::min(best, fit.misfit);
+    for (const double dashpot : {0.0, 0.1, 0.3, 1.0, 3.0})
+      for (int i = 1; i <= kClearances; ++i) {
+        const double clearance = static_cast<double>(i) / (kClearances + 1);
+        const ScalarSums all = sums(
+            [&](const NeededSignal& n) { return contact(n, scales_, clearance, dashpot); }, false);
+        for (const std::vector<Index>& kept : sides) {
+          const ScalarFit fit =
+              ScalarSums{all.normal(kept, kept), all.right(kept), all.total}.fit();
+          const auto springs = static_cast<Index>(kept.size()) - 2;
+          if (fit.coefficients.tail(springs).minCoeff() > 0) best = std::min(best, fit.misfit);
+        }
       }
-    }
     return best;
   }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/diagnose/fit/prescribed_motion.h"
+#include "estimator/diagnose/fit/measured_deformation.h"
 #include "estimator/numeric/complex.h"
 
 namespace framewatch::estimator {
@@ -106,16 +106,13 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
     }
     one.ends = ends_of(system, s, along, one.weight);
     if (candidate.kind == CandidatePlace::Kind::element) {
-      const VectorXcd q =
-          (plant.building.sense.row(candidate.element) * place.motion[r]).transpose();
-      one.d = -q.array() / s.w.array().square();
-      one.d_t = signal_of(one.d, s, fitter.ratio(r));
-      one.v_t = signal_of(one.d.array() * s.w.array() * Complex(0, 1), s, fitter.ratio(r));
       const Eigen::RowVectorXd sense = plant.building.sense.row(candidate.element);
-      if (auto whole = prescribed_motion(plant, s, sense, fitter.ratio(r))) {
-        one.d_t = std::move(whole->d);
-        one.v_t = std::move(whole->v);
-      }
+      const VectorXcd q = (sense * place.motion[r]).transpose();
+      one.d = -q.array() / s.w.array().square();
+      MeasuredDeformation m =
+          measured_deformation(plant, s, sense, place.motion[r], fitter.ratio(r));
+      one.d_t = std::move(m.d);
+      one.v_t = std::move(m.v);
     }
     out.push_back(std::move(one));
   }

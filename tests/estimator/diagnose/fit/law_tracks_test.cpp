@@ -101,6 +101,7 @@ TEST(LawTracks, FollowTheMotionThatIsGiven) {
   constexpr int kFrame = 1;
   constexpr double kAmplitude = 0.4, kStiffness = 2e5;  // m/s^2 of the frame's axis
   Measured m;
+  m.segment.accel.setZero();  // nothing above the band either
   m.model.effects = {effect_of(LawForm::power, test::frame_place(kFrame), {kStiffness, 1})};
   MatrixXcd motion = MatrixXcd::Zero(6, m.segment.bins());
   motion(kFrame, kBin) = 0.5 * kAmplitude * static_cast<double>(m.segment.intervals());

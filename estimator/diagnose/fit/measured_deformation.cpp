@@ -1,0 +1,75 @@
+#include "estimator/diagnose/fit/measured_deformation.h"
+
+#include "estimator/diagnose/spectra/fourier.h"
+#include "estimator/numeric/complex.h"
+
+namespace framewatch::estimator {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+bool is_prescribed(const Plant& plant, const RecordSegment& segment, const RowVectorXd& sense) {
+  if (!plant.prescribed) return false;
+  for (Index a = 0; a < sense.size(); ++a)
+    if (sense[a] != 0 && !segment.is_displaced(a) && !plant.is_input(a)) return false;
+  return true;
+}
+
+VectorXd frequencies(const RecordSegment& segment, Index bins) {
+  const double step = 2 * M_PI * segment.rate_hz / static_cast<double>(segment.intervals());
+  return VectorXd::LinSpaced(bins, 0, step * static_cast<double>(bins - 1));
+}
+
+MeasuredDeformation displaced(const RecordSegment& segment, const RowVectorXd& sense, int ratio) {
+  const Index samples = segment.intervals();
+  VectorXd d = VectorXd::Zero(samples + 1);
+  for (Index a = 0; a < sense.size(); ++a)
+    if (segment.is_displaced(a)) d += sense[a] * segment.accel.col(a);
+
+  // A line between the ends is taken off, and added again: the rest is periodic.
+  const double slope = (d[samples] - d[0]) / static_cast<double>(samples), first = d[0];
+  const VectorXd line =
+      VectorXd::LinSpaced(samples, first, first + slope * static_cast<double>(samples - 1));
+  const Index bins = segment.first_bin + segment.bins();
+  const VectorXcd half = forward_fourier(VectorXd(d.head(samples) - line)).head(bins);
+  const VectorXcd rate = half.array() * frequencies(segment, bins).array() * kJ;
+  MeasuredDeformation out{ratio * inverse_fourier(half, samples * ratio),
+                          ratio * inverse_fourier(rate, samples * ratio)};
+  for (Index i = 0; i < out.d.size(); ++i)
+    out.d[i] += first + slope * static_cast<double>(i) / ratio;
+  out.v.array() += slope * segment.rate_hz;
+  return out;
+}
+
+/// Spectrum of the deformation's acceleration from 0 to just below half the sampling rate, its
+/// readings above the band, nothing below it.
+VectorXcd acceleration(const RecordSegment& segment, const RowVectorXd& sense,
+                       const MatrixXcd& motion) {
+  const Index samples = segment.intervals(), end = segment.first_bin + segment.bins();
+  VectorXd read = VectorXd::Zero(samples);
+  for (Index a = 0; a < sense.size(); ++a)
+    if (!segment.is_displaced(a)) read += sense[a] * segment.accel.col(a).head(samples);
+  VectorXcd out = forward_fourier(read).head((samples + 1) / 2);
+  out.head(segment.first_bin).setZero();
+  out.segment(segment.first_bin, end - segment.first_bin) = (sense * motion).transpose();
+  return out;
+}
+
+}  // namespace
+
+MeasuredDeformation measured_deformation(const Plant& plant, const RecordSegment& segment,
+                                         const RowVectorXd& sense, const MatrixXcd& motion,
+                                         int ratio) {
+  if (is_prescribed(plant, segment, sense)) return displaced(segment, sense, ratio);
+  const VectorXcd accel = acceleration(segment, sense, motion);
+  const VectorXd w = frequencies(segment, accel.size()).cwiseMax(1e-12);
+  const Index samples = segment.intervals() * ratio;
+  return {ratio * inverse_fourier(VectorXcd(-accel.array() / w.array().square()), samples),
+          ratio * inverse_fourier(VectorXcd(-accel.array() * kJ / w.array()), samples)};
+}
+
+}  // namespace framewatch::estimator
