@@ -171,8 +171,8 @@ class Search {
     const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
     progress_.begin("where", shares.where, shares.trials, {0.4, 0.35});
     Located located = locate(fitter_, now, options_.parallel);
-    if (located.places.empty()) return false;
     relocate_beside(context_of(now), out_.effects, located);
+    if (located.places.empty()) return false;
     const Localisation& place = located.places.front();
     if (place.ratio - 1 > kClearer * (to_beat_ - 1)) return false;
     alone_ = place.ratio;
@@ -204,8 +204,8 @@ class Search {
       append(trials, trials_of_pairs(context, located, bound));
       holds = select_trial(context, bound, needed, trials);
     }
-    if (!holds && is_element(place)) {
-      append(trials, trials_of_whole_frame(context, place));
+    if (!holds) {
+      append(trials, trials_of_whole_frame(context, located));
       holds = select_trial(context, bound, needed, trials);
     }
     if (trials.empty() || trials.front().outcome != TrialOutcome::fitted) return false;
