@@ -237,8 +237,10 @@ class Search {
   /// A law is none beside which more than noise is left and whose place needs another sort of
   /// force.
   void withdraw_other_kind(FitResult& now) {
-    if (out_.effects.size() != 1 || ratio(now) < 1 + chance_of(fitter_, now.model) ||
-        !contradicts_the_kind(out_.effects.front().chosen, out_.where))
+    const double excess = ratio(now) - 1;
+    if (out_.effects.size() != 1 || excess < chance_of(fitter_, now.model) ||
+        !contradicts_the_kind(out_.effects.front().chosen, out_.where,
+                              excess / std::max(out_.ratio_before - 1, excess)))
       return;
     out_.rejected = std::move(out_.effects.front().alternatives);
     out_.rejected.insert(out_.rejected.begin(), std::move(out_.effects.front().chosen));
