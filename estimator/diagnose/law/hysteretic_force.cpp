@@ -13,6 +13,10 @@ constexpr double kSharp = 20;          ///< exponent above which hysteresis is c
 constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
 constexpr double kYielded = 1e-12;  ///< change of z below which the rest of a step changes nothing
 constexpr double kMostSlides = 5000;
+/// Share of the first slope from which a law that yields comes to its end as a linear one does, and
+/// from which longer steps do.
+constexpr double kNearlyYielded = 1e-3, kYields = 0.1;
+constexpr double kLongerSlide = 0.25;
 constexpr double kLargestZ = 1e3;  ///< of hysteresis that hardens
 /// Square of the distance from a slip zone, in its widths, beyond which it changes nothing.
 constexpr double kOutside = 40;
@@ -45,7 +49,26 @@ class Slope {
     return (1 - level * turn) / shape_.softer;
   }
 
+  /// Share of its first slope that loading has left.
+  double share(double rising) const { return rising * shape_.softer; }
+
+  /// z after sliding on by `left` from where its share is small: it approaches its end as
+  /// exp(-rate travel), the slope's change with z held.
+  double at_end(double z, double d, double direction, double left, double rising) const {
+    const double rate = p_[H::exponent] * (1 - share(rising)) / (std::abs(z) * shape_.softer);
+    const double travel = pinched_ ? left * slip(z, d, direction) : slid(d, direction, left);
+    return z - direction * rising / rate * std::expm1(-rate * travel);
+  }
+
  private:
+  /// Integral of slip(), where it is about zero deformation.
+  double slid(double d, double direction, double left) const {
+    if (shape_.slip == 0) return left;
+    const double width = p_[H::width], to = d + direction * left;
+    const double zone = std::abs(std::erf(to / width) - std::erf(d / width));
+    return left - shape_.slip * width * 0.5 * std::sqrt(M_PI) * zone;
+  }
+
   const std::vector<double>& p_;
   const WornShape& shape_;
   bool pinched_;
@@ -116,11 +139,16 @@ double HystereticStep::end(const LawValues& values, double d_now) {
   }
   double rising = first.rising, at_start = first.slope;
   for (double left = std::abs(travel);;) {
-    if (z * direction > 0 && rising * left < kYielded && rising > -kYielded) break;
-    const double h = direction * std::min(left, longest);
+    const bool loads = z * direction > 0;
+    if (loads && rising * left < kYielded && rising > -kYielded) break;
+    const double share = loads ? std::abs(slope.share(rising)) : 1;
+    if (share < kNearlyYielded)
+      return std::clamp(slope.at_end(z, at, direction, left, rising), -most, most);
+    const double slide = share < kYields ? std::max(longest, kLongerSlide) : longest;
+    const double h = direction * std::min(left, slide);
     z = std::clamp(z + h * slope(z + 0.5 * h * at_start, at + 0.5 * h, direction), -most, most);
     at += h;
-    left -= longest;
+    left -= slide;
     if (!(left > 0)) break;
     rising = slope.without_slip(z, direction);
     at_start = slope.slip(z, at, direction) * rising;

@@ -16,6 +16,8 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kMostFrames = 4;  ///< whole frames that are tried in one direction
 constexpr double kFirstShare = 0.05;    ///< of the stiffness that a start takes at the peak
+/// Exponents that softening starts from: of the squared deformation, and soonest at the smallest.
+constexpr double kSoftens = 2, kSoftensSooner = 1.3;
 
 MeasuredDeformation motion_of(const Fitter& fitter, const Localisation& place, const LawPort& port,
                               std::size_t record) {
@@ -89,15 +91,20 @@ std::vector<Proposal> amplitude_proposals(const Fitter& fitter, const Localisati
   for (const LawPort& port : law_ports(fitter.plant(), place.model, effect))
     k = std::max(k, place.model.theta[port.element]);
   const double force = kFirstShare * k * effect.deformation;
-  effect.parameters = {
-      linear_parameter(-force, 0.2 * force), bounded_parameter(2, 0.02, 1.02, 6, false),
-      linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
+  const auto softening = [&](double exponent) {
+    ModelEffect out = effect;
+    out.parameters = {
+        linear_parameter(-force, 0.2 * force), bounded_parameter(exponent, 0.02, 1.02, 6, false),
+        linear_parameter(0.2 * force, 0.2 * force), bounded_parameter(2, 0.02, 1, 5, false)};
+    return out;
+  };
   ModelEffect slipping = effect;
   slipping.parameters = {bounded_parameter(-force, 0.2 * force, -1e300, 0),
                          bounded_parameter(1.5, 0.02, 1.02, 6, false), fixed_parameter(0),
                          fixed_parameter(2), fixed_parameter(1)};
   const EffectKind kind = EffectKind::amplitude_dependence;
-  return {proposal_of(place, std::move(effect), kind, 0),
+  return {proposal_of(place, softening(kSoftens), kind, 0),
+          proposal_of(place, softening(kSoftensSooner), kind, 0),
           proposal_of(place, std::move(slipping), kind, 0)};
 }
 

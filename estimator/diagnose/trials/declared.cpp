@@ -77,8 +77,9 @@ Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segme
     shrink(&Model::mass_change, share, {});
     shrink(&Model::gain, share, out.free_gain);
     shrink(&Model::clock_s, share, out.free_clock);
-    const int steps = share > 0 ? kOnTheWay : kFitSteps;
-    const FitResult next = exact.fit(out, {}, thorough(out, steps));
+    FitOptions options = thorough(out, share > 0 ? kOnTheWay : kFitSteps);
+    options.through_run = share == 0;
+    const FitResult next = exact.fit(out, {}, options);
     if (next.good) out = next.model;
   }
   return out;

@@ -11,6 +11,13 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kPairShare = 0.4;  ///< of the excess that two places must leave at most
+/// Excess at a law's place over that at the best one, up to which the rest may be the law's shape.
+constexpr double kAboutAsLikely = 2;
+constexpr int kLawSteps = 6;
+
+std::size_t at(int index) {
+  return static_cast<std::size_t>(index);
+}
 
 /// Frames that bend turn at every floor. Where not every floor is read, a force at the top explains
 /// more of that than a moment at the base: the latter is tried all the same.
@@ -20,6 +27,30 @@ void add_moments(const std::vector<Localisation>& all, std::vector<Localisation>
   };
   if (std::any_of(places.begin(), places.end(), is_moment)) return;
   std::copy_if(all.begin(), all.end(), std::back_inserter(places), is_moment);
+}
+
+/// The elements that a law found before acts on.
+std::vector<CandidatePlace> places_of_law(const Located& located, const EffectPlace& law,
+                                          const Structure& structure) {
+  std::vector<CandidatePlace> out;
+  for (const Localisation& l : located.once) {
+    const CandidatePlace& one = l.candidate_places.front();
+    if (one.kind != CandidatePlace::Kind::element) continue;
+    const int frame = one.place.frame;
+    const bool of_frame = law.kind == PlaceKind::whole_frame && frame == law.frame;
+    const bool of_building = law.kind == PlaceKind::building && frame >= 0 &&
+                             structure.direction(frame) == law.direction;
+    if (one.place == law || of_frame || of_building) out.push_back(one);
+  }
+  return out;
+}
+
+/// The misfit where that law may be any.
+Localisation localise_law(const TrialContext& context, const Located& located,
+                          const std::vector<CandidatePlace>& own) {
+  for (const Localisation& l : located.places)
+    if (own.size() == 1 && l.candidate_places.front().place == own.front().place) return l;
+  return localise(context.fitter, context.now.model, context.now.motion, own, kLawSteps);
 }
 
 }  // namespace
@@ -37,15 +68,32 @@ double bound_of(const Plant& plant, const Localisation& places) {
 
 void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>& found,
                      Located& located) {
-  const Localisation& place = located.places.front();
-  const bool of_law = std::any_of(found.begin(), found.end(), [&](const FoundEffect& e) {
-    return e.chosen.place == place.candidate_places.front().place && is_element(place);
+  if (located.places.empty()) return;
+  const double chance = chance_of(context.fitter, context.now.model);
+  const double least = located.places.front().ratio - 1;
+  const bool best_of_law = std::any_of(found.begin(), found.end(), [&](const FoundEffect& e) {
+    return e.chosen.place == located.places.front().candidate_places.front().place &&
+           is_element(located.places.front());
   });
-  if (!of_law || place.ratio < 1 + chance_of(context.fitter, context.now.model)) return;
-  std::vector<Localisation> beside = locate_beside(
-      context.fitter, context.now, located.once, place.candidate_places.front(), context.parallel);
-  if (!beside.empty() && beside.front().ratio - 1 < kPairShare * (place.ratio - 1))
-    located.places = std::move(beside);
+  if (best_of_law && least < chance) return;
+  for (const FoundEffect& e : found) {
+    if (e.index < 0 || !context.now.model.effects[at(e.index)].element_law()) continue;
+    const std::vector<CandidatePlace> own =
+        places_of_law(located, e.chosen.place, context.fitter.plant().structure);
+    if (own.empty()) continue;
+    const Localisation law = localise_law(context, located, own);
+    if (law.ratio - 1 > kAboutAsLikely * std::max(least, chance) + chance) continue;
+    if (own.size() == 1 && law.ratio > 1 + chance) {
+      std::vector<Localisation> beside =
+          locate_beside(context.fitter, context.now, located.once, own.front(), context.parallel);
+      if (!beside.empty() && beside.front().ratio - 1 < kPairShare * (law.ratio - 1)) {
+        located.places = std::move(beside);
+        return;
+      }
+    }
+    if (!best_of_law) located.places.clear();
+    return;
+  }
 }
 
 std::vector<Trial> trials_of_places(const TrialContext& context, const Located& located,
@@ -59,15 +107,17 @@ std::vector<Trial> trials_of_places(const TrialContext& context, const Located& 
   return try_places(context, places);
 }
 
-std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Localisation& place) {
-  const int frame = place.candidate_places.front().place.frame;
-  if (frame < 0 || context.fitter.plant().structure.stories < 2 ||
+std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Located& located) {
+  const auto place = std::find_if(located.places.begin(), located.places.end(), [](const auto& p) {
+    return p.candidate_places.front().place.frame >= 0;
+  });
+  if (place == located.places.end() || context.fitter.plant().structure.stories < 2 ||
       is_excluded(context, EffectKind::amplitude_dependence))
     return {};
   EffectPlace whole;
   whole.kind = PlaceKind::whole_frame;
-  whole.frame = frame;
-  return try_effects(context, amplitude_proposals(context.fitter, place, whole));
+  whole.frame = place->candidate_places.front().place.frame;
+  return try_effects(context, amplitude_proposals(context.fitter, *place, whole));
 }
 
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,

@@ -17,8 +17,9 @@ bool is_element(const Localisation& place);
 /// equations which these remove.
 double bound_of(const Plant& plant, const Localisation& places);
 
-/// Replaces the located places by those that leave least beside the best one, if that is the place
-/// of an element law found before and does not suffice alone.
+/// Replaces the located places by those that leave least beside the place of an element law found
+/// before, if that is the best one or about as likely and does not suffice alone. None stay where
+/// the rest may be the shape of such a law.
 void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>& found,
                      Located& located);
 
@@ -26,8 +27,8 @@ void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>
 std::vector<Trial> trials_of_places(const TrialContext& context, const Located& located,
                                     bool small);
 
-/// Fits one law of all stories of the frame that a place's element belongs to.
-std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Localisation& place);
+/// Fits one law of all stories of the likeliest frame: that of the best place of one direction.
+std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Located& located);
 
 /// Fits two laws at two places, if two places explain what one does not; sets bound to theirs then.
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,

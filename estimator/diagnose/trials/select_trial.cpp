@@ -50,16 +50,21 @@ void sharpen(const TrialContext& context, double enough, double needed,
     Trial& t = trials[static_cast<std::size_t>(i)];
     if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit) return;
     const bool late = ends_with_harmonic(t.model) && t.cost > enough;
-    if (late || t.fraction < kSharp) t = sharpened(context, t, t.model);
+    if (t.sharpened || !(late || t.fraction < kSharp)) return;
+    t = sharpened(context, t, t.model);
+    t.sharpened = true;
   });
 }
 
 /// Fits the leading trials again from a fit to the record with the weakest effect alone.
 void approach(const TrialContext& context, std::vector<Trial>& trials) {
+  const double limit = kHopeless * trials.front().cost;
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
-    if (t.outcome == TrialOutcome::fitted && t.fraction > kBlunt)
-      t = sharpened(context, t, fitted_to_the_weakest(context, t.model));
+    if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit || t.approached)
+      return;
+    t = sharpened(context, t, fitted_to_the_weakest(context, t.model));
+    t.approached = true;
   });
 }
 

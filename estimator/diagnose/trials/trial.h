@@ -29,6 +29,7 @@ struct Trial {
   Model model;
   /// A second effect that was fitted together with it.
   std::optional<std::pair<EffectKind, EffectPlace>> second;
+  bool sharpened = false, approached = false;  ///< select_trial() fits it so once
 };
 
 }  // namespace framewatch::estimator

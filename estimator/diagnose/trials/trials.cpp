@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
 constexpr int kSharpSteps = 12;
-constexpr int kTrialSteps = 3;  ///< of a free run's fit, before the costs are compared
+constexpr int kWeakestSteps = 6;  ///< to the weakest record, which is a start only
+constexpr int kTrialSteps = 3;    ///< of a free run's fit, before the costs are compared
 /// Times the least cost then, or that without the trials' effects: fits above it end there.
 constexpr double kCostLimit = 4;
 constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
@@ -163,7 +164,7 @@ Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
     if (strength(r) < strength(weakest)) weakest = r;
   const std::vector<RecordSegment> one{all[weakest]};
   const Fitter alone(c.fitter.plant(), one, c.fitter.tolerances());
-  const FitResult run = alone.fit(model, {}, thorough(model, kSharpSteps));
+  const FitResult run = alone.fit(model, {}, thorough(model, kWeakestSteps));
   return run.good ? run.model : model;
 }
 

@@ -171,8 +171,8 @@ class Search {
     const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
     progress_.begin("where", shares.where, shares.trials, {0.4, 0.35});
     Located located = locate(fitter_, now, options_.parallel);
-    if (located.places.empty()) return false;
     relocate_beside(context_of(now), out_.effects, located);
+    if (located.places.empty()) return false;
     const Localisation& place = located.places.front();
     if (place.ratio - 1 > kClearer * (to_beat_ - 1)) return false;
     alone_ = place.ratio;
@@ -204,8 +204,8 @@ class Search {
       append(trials, trials_of_pairs(context, located, bound));
       holds = select_trial(context, bound, needed, trials);
     }
-    if (!holds && is_element(place)) {
-      append(trials, trials_of_whole_frame(context, place));
+    if (!holds) {
+      append(trials, trials_of_whole_frame(context, located));
       holds = select_trial(context, bound, needed, trials);
     }
     if (trials.empty() || trials.front().outcome != TrialOutcome::fitted) return false;
@@ -237,8 +237,10 @@ class Search {
   /// A law is none beside which more than noise is left and whose place needs another sort of
   /// force.
   void withdraw_other_kind(FitResult& now) {
-    if (out_.effects.size() != 1 || ratio(now) < 1 + chance_of(fitter_, now.model) ||
-        !contradicts_the_kind(out_.effects.front().chosen, out_.where))
+    const double excess = ratio(now) - 1;
+    if (out_.effects.size() != 1 || excess < chance_of(fitter_, now.model) ||
+        !contradicts_the_kind(out_.effects.front().chosen, out_.where,
+                              excess / std::max(out_.ratio_before - 1, excess)))
       return;
     out_.rejected = std::move(out_.effects.front().alternatives);
     out_.rejected.insert(out_.rejected.begin(), std::move(out_.effects.front().chosen));

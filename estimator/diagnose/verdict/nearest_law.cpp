@@ -10,6 +10,10 @@ namespace framewatch::estimator {
 
 namespace {
 
+/// What a law leaves over what a general force of the kind does, below which the law is better
+/// evidence than the kind.
+constexpr double kFarLess = 0.1;
+
 bool is_of_deformation(LawKind kind) {
   return kind == LawKind::elastic || kind == LawKind::impact;
 }
@@ -61,7 +65,7 @@ bool is_needless_force(const Trial& trial, const std::vector<WhereEntry>& where)
 
 }  // namespace
 
-bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where) {
+bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where, double left) {
   if (is_needless_force(law, where)) return true;
   const auto is = [&](LawKind kind) { return is_of_kind(law.kind, kind); };
   const bool of_deformation = is_of_deformation(law.kind);
@@ -69,6 +73,8 @@ bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where
       is(LawKind::dissipative) || is(LawKind::hysteretic) || is(LawKind::time_varying);
   return std::any_of(where.begin(), where.end(), [&](const WhereEntry& w) {
     if (!w.kind || !(w.place == law.place)) return false;
+    const double share = w.kind->share[static_cast<std::size_t>(w.kind->kind)];
+    if (left < kFarLess * (1 - share)) return false;
     switch (w.kind->kind) {
       case LawKind::elastic:
       case LawKind::impact:

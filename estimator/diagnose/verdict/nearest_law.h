@@ -20,7 +20,9 @@ bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where
 
 /// Whether the sort of force that a law's place needs is known, and is not the law's. Contacts and
 /// other functions of the deformation count as one here too. A force that may be anything is
-/// contradicted where the likeliest place is an element whose force follows its motion.
-bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where);
+/// contradicted where the likeliest place is an element whose force follows its motion. left: share
+/// of the misfit beyond noise that stays with the law; where that is far less than a general force
+/// of the kind leaves, the law is the better evidence.
+bool contradicts_the_kind(const Trial& law, const std::vector<WhereEntry>& where, double left = 1);
 
 }  // namespace framewatch::estimator

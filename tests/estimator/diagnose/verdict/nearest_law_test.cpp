@@ -116,6 +116,14 @@ TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
   }
 }
 
+TEST(NearestLawOfAPlace, LeavesFarLessThanItsKindWhereThatDoesNotCount) {
+  Left left(LawKind::elastic);
+  left.where.front().kind->share[static_cast<std::size_t>(LawKind::elastic)] = 0.8;
+  const Trial loop = left.law(EffectKind::pinching, 1);
+  EXPECT_TRUE(contradicts_the_kind(loop, left.where, 0.05));
+  EXPECT_FALSE(contradicts_the_kind(loop, left.where, 0.01));
+}
+
 TEST(NearestLawOfAPlace, AForceFromNowhereIsContradictedByOneThatFollowsTheMotion) {
   for (const auto& [kind, contradicted] : {std::pair(LawKind::time_varying, true),
                                            {LawKind::external, false},
