@@ -92,7 +92,8 @@ void free_ratios(const Fitter& fitter, int steps, Start& best) {
 std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
   std::vector<Gap> out;
   for (std::size_t r = 0; r < fitter.segments().size(); ++r)
-    if (auto gap = free_run_gap(fitter.plant(), model, fitter.segments()[r], r, fitter.ratio(r, model)))
+    if (auto gap =
+            free_run_gap(fitter.plant(), model, fitter.segments()[r], r, fitter.ratio(r, model)))
       out.push_back(std::move(*gap));
   return out;
 }

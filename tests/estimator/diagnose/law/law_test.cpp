@@ -222,25 +222,6 @@ TEST(Law, SlipLocksAwayFromZeroDeformation) {
   EXPECT_GT(force[3] - force[2], 0.5 * 0.1 * kStiffness * kYields_m);
 }
 
-TEST(Law, ABraceIsSlackByWhatItHasYieldedAsTheSimulators) {
-  const LawValues law{LawForm::slack, {kStiffness, kYields_m, 0.3 * kYields_m}, 1, 1};
-  Effect effect = make_effect(EffectKind::pinching, test::frame_place(0));
-  effect.set("kh_npm", law.p[0]);
-  effect.set("dy_m", law.p[1]);
-  effect.set("slack", 1);
-  effect.set("play_m", law.p[2]);
-  const VectorXd d = growing_cycles(500), force = force_over(law, d);
-  EXPECT_LT((force - simulated_force(effect, d)).cwiseAbs().maxCoeff(), 0.02 * force.maxCoeff());
-  VectorXd twice(5);
-  twice << 4 * kYields_m, 3.5 * kYields_m, 0, 3 * kYields_m, 5 * kYields_m;
-  const VectorXd again = force_over(law, twice) / (kStiffness * kYields_m);
-  EXPECT_NEAR(again[0], 1, kRounding);    // what it gives way at
-  EXPECT_NEAR(again[1], 0.5, kRounding);  // elastic on its way back
-  EXPECT_NEAR(again[2], 0, kRounding);
-  EXPECT_NEAR(again[3], 0, kRounding);  // slack up to where it has been
-  EXPECT_NEAR(again[4], 1, kRounding);
-}
-
 /// A slip zone does not keep friction from yielding: with a tiny yield deformation it moves a
 /// thousand of them in every step.
 TEST(Law, FrictionWithASlipZoneSlidesAtItsForce) {
