@@ -21,6 +21,8 @@ constexpr double kHzStep = 0.2;      ///< over the record's length
 constexpr double kOnsetStep = 0.01;  ///< of the record
 constexpr double kFineStep = 5e-4;   ///< likewise
 constexpr double kLatestOnset = 0.6;
+constexpr std::size_t kLines = 4;  ///< of a force, that are fitted beside a linear element
+constexpr int kNear = 4;           ///< steps of a frequency to either side of a line's bin
 
 /// Sum of exp(j angle i) over n samples.
 Complex geometric(double angle, double n) {
@@ -111,12 +113,50 @@ OnsetFit best_onset(const RecordSegment& s, const NeededSignal& needed, double h
   return best;
 }
 
+/// Misfit of all records with a line from their begin beside a linear element.
+double misfit_with_line(const Fitter& fitter, const std::vector<NeededSignal>& needed, double hz) {
+  double out = 0;
+  for (std::size_t r = 0; r < needed.size(); ++r)
+    out += fit_from(fitter.segments()[r], needed[r], hz, 0).misfit;
+  return out;
+}
+
+/// Frequencies of the strongest lines of the force itself: most of the motion may be theirs, and
+/// what a linear element takes of the force then takes the line.
+std::vector<double> lines_of_force_hz(const RecordSegment& s, const NeededSignal& needed) {
+  const VectorXd power = needed.weight.array() * needed.force.array().abs2();
+  std::vector<Index> peaks;
+  for (Index b = 1; b + 1 < power.size(); ++b)
+    if (power[b] > power[b - 1] && power[b] >= power[b + 1]) peaks.push_back(b);
+  std::sort(peaks.begin(), peaks.end(), [&](Index i, Index j) { return power[i] > power[j]; });
+  if (peaks.size() > kLines) peaks.resize(kLines);
+  std::vector<double> out;
+  for (const Index b : peaks) out.push_back(s.w[b] / (2 * M_PI));
+  return out;
+}
+
+/// The better of the strongest line beyond a linear element and of one fitted beside it.
+double line_hz(const Fitter& fitter, const std::vector<NeededSignal>& needed) {
+  double best_hz = strongest_line_hz(fitter, needed);
+  double least = misfit_with_line(fitter, needed, best_hz);
+  const double step = kHzStep / fitter.segments()[0].seconds();
+  for (const double middle : lines_of_force_hz(fitter.segments()[0], needed[0]))
+    for (int i = -kNear; i <= kNear; ++i) {
+      const double hz = middle + i * step;
+      const double misfit = misfit_with_line(fitter, needed, hz);
+      if (misfit >= least) continue;
+      least = misfit;
+      best_hz = hz;
+    }
+  return best_hz;
+}
+
 }  // namespace
 
 Proposal harmonic_proposal(const Fitter& fitter, const Localisation& place,
                            const std::vector<NeededSignal>& needed, const EffectPlace& node) {
   const Band band = fit_band(fitter);
-  const double hz = strongest_line_hz(fitter, needed);
+  const double hz = line_hz(fitter, needed);
   ModelEffect e;
   e.form = LawForm::harmonic;
   e.place = node;

@@ -69,6 +69,15 @@ TEST(NodeProposals, AHarmonicForceIsProposedWithItsFrequencySizeAndOnset) {
             0.2 * misfit([](const ModelEffect& e) { return e.element_law(); }));
 }
 
+TEST(NodeProposals, AHarmonicForceThatMakesMostOfTheMotionHasItsFrequency) {
+  constexpr double kForce_n = 1e5, kHz = 2.3;
+  const AtNode at(test::effect_of(EffectKind::unmeasured_force, test::at_node(kFrame),
+                                  {kForce_n, kHz, 0.4, 0, 0.1, 10, 1, 0}));
+  const ModelEffect* harmonic = at.of_form(LawForm::harmonic);
+  ASSERT_NE(harmonic, nullptr);
+  EXPECT_NEAR(harmonic->parameters[0].plain() / kHz, 1, kForceHzOff);
+}
+
 TEST(NodeProposals, AForceThatGoesOnAtRestMayBeAnything) {
   const Recorded recorded(test::records_with({}));
   const Localisation place = recorded.freed(test::in_frame(kFrame));
