@@ -3,17 +3,33 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/diagnose/law/sliding.h"
+
 namespace framewatch::estimator {
 namespace {
 
 constexpr double kStiffer[] = {1, 1.6, 2.5, 4}, kNarrower[] = {1, 0.9, 0.8};
-constexpr double kFits = 1.5;  ///< misfit over the expected, below which a fit is a good start
+constexpr double kForces[] = {0.02, 0.04, 0.08, 0.16, 0.3, 0.6};  ///< of the spring's largest
+constexpr double kSticks = 3e-3;  ///< of the largest rate: below it friction holds
+constexpr double kFits = 1.5;     ///< misfit over the expected, below which a fit is a good start
 
 bool ends_with_clearance(const Model& model) {
   if (model.effects.empty()) return false;
   const LawForm form = model.effects.back().form;
   return form == LawForm::gap_positive || form == LawForm::gap_negative ||
          form == LawForm::gap_both;
+}
+
+/// Mean factor of the design that the frames of a model have, but one.
+double mean_factor(const Plant& plant, const Model& model, int but) {
+  double sum = 0;
+  int count = 0;
+  for (const Element& element : plant.elements) {
+    if (element.frame < 0 || element.stiffness == but) continue;
+    sum += model.theta[element.stiffness] / plant.design[element.stiffness];
+    ++count;
+  }
+  return count > 0 ? sum / count : 1;
 }
 
 }  // namespace
@@ -35,6 +51,28 @@ FitResult free_run_start(const Fitter& fitter, FitResult fit) {
       if (started.good && (!best.good || started.cost < best.cost)) best = std::move(started);
     }
   return best.good ? best : fit;
+}
+
+FitResult friction_start(const Fitter& fitter, const Model& from) {
+  const Plant& plant = fitter.plant();
+  Model model = from;
+  ModelEffect& friction = model.effects.back();
+  const int element = element_of(plant, friction.place);
+  const double factor = mean_factor(plant, model, element);
+  for (const Eigen::Index i : {Eigen::Index(element), element + plant.element_count()})
+    model.theta[i] = factor * plant.design[i];
+  FitOptions run;
+  run.forcing = forcing_of(model);
+  run.max_steps = 0;
+  FitResult best;
+  friction.parameters[FrictionIndex::v0].value = std::log(kSticks * friction.rate);
+  for (const double share : kForces) {
+    friction.parameters[FrictionIndex::fc].value =
+        share * model.theta[element] * friction.deformation;
+    FitResult started = fitter.fit(model, {}, run);
+    if (started.good && (!best.good || started.cost < best.cost)) best = std::move(started);
+  }
+  return best;
 }
 
 }  // namespace framewatch::estimator

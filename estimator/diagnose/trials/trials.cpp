@@ -15,10 +15,13 @@ namespace {
 
 constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
 constexpr int kSharpSteps = 12;
+constexpr int kFromFarSteps = 20;
 constexpr int kWeakestSteps = 6;  ///< to the weakest record, which is a start only
 constexpr int kTrialSteps = 3;    ///< of a free run's fit, before the costs are compared
 /// Times the least cost then, or that without the trials' effects: fits above it end there.
 constexpr double kCostLimit = 4;
+/// Cost of the best trial over that without one, above which friction is begun anew.
+constexpr double kNothingFound = 0.3;
 constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
 
 /// A start model and the names of its new effects.
@@ -81,6 +84,31 @@ std::vector<Fitted> worth_a_free_run(const TrialContext& c, std::vector<Fitted> 
   return out;
 }
 
+/// Friction of elements, begun anew.
+void begin_friction_anew(const TrialContext& c, const std::vector<Fitted>& kept,
+                         std::vector<FitResult>& runs) {
+  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Candidate& candidate = *kept[at].candidate;
+    if (candidate.second || candidate.model.effects.empty() ||
+        candidate.model.effects.back().form != LawForm::friction)
+      return;
+    const FitResult from = friction_start(c.fitter, candidate.model);
+    if (!from.good) return;
+    FitOptions options = full_fit(from.model);
+    options.max_steps = kFromFarSteps;
+    FitResult run = c.fitter.fit(from.model, from.motion, options);
+    if (run.good && (!runs[at].good || run.cost < runs[at].cost)) runs[at] = std::move(run);
+  });
+}
+
+double least_cost(const TrialContext& c, const std::vector<FitResult>& runs) {
+  double out = c.now.cost;
+  for (const FitResult& r : runs)
+    if (r.good) out = std::min(out, r.cost);
+  return out;
+}
+
 /// Fits candidates in parallel: all under the measured motion, then the best of each place with
 /// free runs.
 std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& candidates) {
@@ -108,9 +136,9 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     options.holds_tolerated = c.fitter.plant().is_large();
     runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
-  double least = c.now.cost;
-  for (const FitResult& r : runs)
-    if (r.good) least = std::min(least, r.cost);
+  if (!c.fitter.plant().is_large() && least_cost(c, runs) > kNothingFound * c.now.cost)
+    begin_friction_anew(c, kept, runs);
+  const double least = least_cost(c, runs);
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     if (!runs[at].good) return;

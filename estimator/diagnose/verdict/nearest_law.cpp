@@ -1,7 +1,6 @@
 #include "estimator/diagnose/verdict/nearest_law.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "estimator/diagnose/trials/select_trial.h"
 #include "estimator/diagnose/trials/trial_relations.h"
@@ -22,28 +21,36 @@ bool is_of_deformation(EffectKind law) {
   return is_of_kind(law, LawKind::elastic) || is_of_kind(law, LawKind::impact);
 }
 
-/// The sort of force that the law's place needs, where it is known.
-std::optional<LawKind> kind_there(const Trial& law, const std::vector<WhereEntry>& where) {
-  if (law.place.kind == PlaceKind::whole_frame) return std::nullopt;
+/// What the force that the law's place needs was found to be.
+const KindOfLaw* known_there(const Trial& law, const std::vector<WhereEntry>& where) {
+  if (law.place.kind == PlaceKind::whole_frame) return nullptr;
   const auto there = std::find_if(where.begin(), where.end(), [&](const WhereEntry& w) {
     return w.kind && same_spot(w.place, law.place);
   });
-  return there == where.end() ? std::nullopt : std::optional(there->kind->kind);
+  return there == where.end() ? nullptr : &*there->kind;
+}
+
+/// Whether a law leaves far less than general functions of the motion do. Friction that sticks is
+/// none of them: it is what holds.
+bool is_better_than_its_kind(const Trial& law, const KindOfLaw& known) {
+  const double best = *std::max_element(known.share.begin(), known.share.end());
+  return 1 - law.fraction < kFarLess * (1 - best);
 }
 
 }  // namespace
 
 bool is_of_the_kind_there(const Trial& law, const std::vector<WhereEntry>& where) {
-  const std::optional<LawKind> kind = kind_there(law, where);
-  return kind &&
-         (is_of_kind(law.kind, *kind) || (is_of_deformation(*kind) && is_of_deformation(law.kind)));
+  const KindOfLaw* known = known_there(law, where);
+  return known && (is_of_kind(law.kind, known->kind) || is_better_than_its_kind(law, *known) ||
+                   (is_of_deformation(known->kind) && is_of_deformation(law.kind)));
 }
 
 bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
                        std::vector<Trial>& rejected) {
   const auto nearest = std::find_if(rejected.begin(), rejected.end(), [&](const Trial& law) {
-    const std::optional<LawKind> kind = kind_there(law, where);
-    return kind && is_of_kind(law.kind, *kind) && is_nearest_law(context, law);
+    const KindOfLaw* known = known_there(law, where);
+    return known && (is_of_kind(law.kind, known->kind) || is_better_than_its_kind(law, *known)) &&
+           is_nearest_law(context, law);
   });
   if (nearest == rejected.end()) return false;
   std::rotate(rejected.begin(), nearest, nearest + 1);

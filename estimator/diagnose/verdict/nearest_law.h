@@ -8,7 +8,8 @@
 namespace framewatch::estimator {
 
 /// Puts the best of the rejected laws first that may be named in doubt: it takes most of the misfit
-/// (is_nearest_law()), at a place of `where` whose sort of force is known, and is of that sort.
+/// (is_nearest_law()), at a place of `where` whose sort of force is known, and is of that sort or
+/// leaves far less than general functions of the motion do.
 /// False when there is none.
 bool nearest_law_first(const TrialContext& context, const std::vector<WhereEntry>& where,
                        std::vector<Trial>& rejected);
