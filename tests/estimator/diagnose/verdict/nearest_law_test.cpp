@@ -83,6 +83,21 @@ TEST(NearestLawOfAPlace, ThatHoldsMayBeAnyFunctionOfTheDeformation) {
   EXPECT_FALSE(elastic.first(gap)) << "it does not hold, and is of another sort";
 }
 
+/// Friction that sticks is no function of the motion that is measured.
+TEST(NearestLawOfAPlace, OrLeavesFarLessThanAnyFunctionOfTheMotion) {
+  Left left(LawKind::external);
+  left.where.front().kind->share[static_cast<std::size_t>(LawKind::hysteretic)] = 0.2;
+  std::vector<Trial> most{left.law(EffectKind::coulomb_friction, 0.95)};
+  std::vector<Trial> less{left.law(EffectKind::coulomb_friction, 0.9)};
+  most[0].fraction = 0.95;
+  less[0].fraction = 0.9;
+  EXPECT_TRUE(left.first(most));
+  EXPECT_TRUE(is_of_the_kind_there(most[0], left.where));
+  EXPECT_FALSE(left.first(less));
+  EXPECT_FALSE(is_of_the_kind_there(less[0], left.where));
+  EXPECT_FALSE(is_of_the_kind_there(most[0], {}));
+}
+
 TEST(NearestLawOfAPlace, IsContradictedByAnotherKindThere) {
   struct Said {
     LawKind kind;
