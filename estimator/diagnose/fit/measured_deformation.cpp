@@ -46,12 +46,14 @@ MeasuredDeformation displaced(const RecordSegment& segment, const RowVectorXd& s
 }
 
 /// Spectrum of the deformation's acceleration from 0 to just below half the sampling rate, its
-/// readings above the band, nothing below it.
+/// readings above the band where axes read all of it, nothing below.
 VectorXcd acceleration(const RecordSegment& segment, const RowVectorXd& sense,
                        const MatrixXcd& motion) {
   const Index samples = segment.intervals(), end = segment.first_bin + segment.bins();
+  const Index axes = segment.accel.cols();
+  const bool is_read = (sense.tail(sense.size() - axes).array() == 0).all();
   VectorXd read = VectorXd::Zero(samples);
-  for (Index a = 0; a < sense.size(); ++a)
+  for (Index a = 0; a < axes && is_read; ++a)
     if (!segment.is_displaced(a)) read += sense[a] * segment.accel.col(a).head(samples);
   VectorXcd out = forward_fourier(read).head((samples + 1) / 2);
   out.head(segment.first_bin).setZero();

@@ -12,12 +12,12 @@ struct MeasuredDeformation {
   Eigen::VectorXd d, v;  ///< m, m/s
 };
 
-/// motion: spectra of the axes in the band, sums of samples of acceleration, m/s^2; axes x bins.
-/// sense: over the axes, their motion to the deformation's.
+/// motion: spectra in the band, sums of samples of acceleration, m/s^2; axes x bins. sense: over
+/// the axes, their motion to the deformation's. Behind the axes, motions that none reads.
 ///
-/// What lies above the band belongs to it, as it was read: a stiff contact is shorter than the
-/// band is wide. Of a prescribed motion, measured as displacement, what is slower than the band
-/// does too, since hysteresis remembers it.
+/// What lies above the band belongs to it, where axes read all of it: a stiff contact is shorter
+/// than the band is wide. Of a prescribed motion, measured as displacement, what is slower than the
+/// band does too, since hysteresis remembers it.
 MeasuredDeformation measured_deformation(const Plant& plant, const RecordSegment& segment,
                                          const Eigen::RowVectorXd& sense,
                                          const Eigen::MatrixXcd& motion, int ratio);
