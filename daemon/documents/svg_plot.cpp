@@ -11,7 +11,8 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kLeft = 62, kRight = 14, kBottom = 42, kTop = 10;  // px around the plotting area
+constexpr double kLeft = 72, kRight = 14, kBottom = 42, kTop = 10;  // px around the plotting area
+constexpr double kFromEdge = 12;                                    // of the label beside it
 constexpr double kLine = 17;                                        // px, title and legend
 constexpr double kCharacter = 6.1;                                  // px, mean width in the legend
 constexpr double kFar = 1e4;  // px: what lies further outside is cut before it is written
@@ -234,8 +235,8 @@ std::string SvgPlot::svg() const {
   out += "</svg>";
   out += fmt::format("<rect class=\"o\" width=\"{:.1f}\" height=\"{:.1f}\"/>", a.width, a.height);
   out += text("xe", a.width / 2, a.height + below - 8, a.x.label);
-  out += fmt::format("<text class=\"xe\" transform=\"translate(-48 {:.1f}) rotate(-90)\">{}</text>",
-                     a.height / 2, html_text(a.y.label));
+  out += fmt::format("<text class=\"xe\" transform=\"translate({} {:.1f}) rotate(-90)\">{}</text>",
+                     kFromEdge - kLeft, a.height / 2, html_text(a.y.label));
   return out + "</g></svg>\n";
 }
 
