@@ -20,6 +20,16 @@ bool ends_with_clearance(const Model& model) {
          form == LawForm::gap_both;
 }
 
+/// Keeps the better of a fit and of a model's free run as it is.
+void take_better(FitResult& best, const Fitter& fitter, const Model& model,
+                 const std::vector<Eigen::MatrixXcd>& motion) {
+  FitOptions run;
+  run.forcing = forcing_of(model);
+  run.max_steps = 0;
+  FitResult started = fitter.fit(model, motion, run);
+  if (started.good && (!best.good || started.cost < best.cost)) best = std::move(started);
+}
+
 /// Mean factor of the design that the frames of a model have, but one.
 double mean_factor(const Plant& plant, const Model& model, int but) {
   double sum = 0;
@@ -37,9 +47,6 @@ double mean_factor(const Plant& plant, const Model& model, int but) {
 FitResult free_run_start(const Fitter& fitter, FitResult fit) {
   if (!ends_with_clearance(fit.model) || fit.total_misfit() < kFits * fitter.expected(fit.model))
     return fit;
-  FitOptions run;
-  run.forcing = forcing_of(fit.model);
-  run.max_steps = 0;
   FitResult best;
   for (const double stiffer : kStiffer)
     for (const double narrower : kNarrower) {
@@ -47,8 +54,7 @@ FitResult free_run_start(const Fitter& fitter, FitResult fit) {
       std::vector<LawParameter>& parameters = model.effects.back().parameters;
       parameters[0].value *= stiffer;
       parameters[1].value += std::log(narrower);
-      FitResult started = fitter.fit(model, fit.motion, run);
-      if (started.good && (!best.good || started.cost < best.cost)) best = std::move(started);
+      take_better(best, fitter, model, fit.motion);
     }
   return best.good ? best : fit;
 }
@@ -61,16 +67,12 @@ FitResult friction_start(const Fitter& fitter, const Model& from) {
   const double factor = mean_factor(plant, model, element);
   for (const Eigen::Index i : {Eigen::Index(element), element + plant.element_count()})
     model.theta[i] = factor * plant.design[i];
-  FitOptions run;
-  run.forcing = forcing_of(model);
-  run.max_steps = 0;
   FitResult best;
   friction.parameters[FrictionIndex::v0].value = std::log(kSticks * friction.rate);
   for (const double share : kForces) {
     friction.parameters[FrictionIndex::fc].value =
         share * model.theta[element] * friction.deformation;
-    FitResult started = fitter.fit(model, {}, run);
-    if (started.good && (!best.good || started.cost < best.cost)) best = std::move(started);
+    take_better(best, fitter, model, {});
   }
   return best;
 }

@@ -12,7 +12,7 @@ FitResult free_run_start(const Fitter& fitter, FitResult fit);
 
 /// Start values for the free run of friction that sticks so long that measured, noisy motion says
 /// little of its force. `model` ends with it, the building is as its place left it. The best of
-/// forces up to that of the element's spring at its largest deformation; not good where none can be
+/// forces from .02 to .6 of the spring's at its largest deformation; not good where none can be
 /// computed.
 FitResult friction_start(const Fitter& fitter, const Model& model);
 
