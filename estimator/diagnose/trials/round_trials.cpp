@@ -117,6 +117,9 @@ std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Loca
   EffectPlace whole;
   whole.kind = PlaceKind::whole_frame;
   whole.frame = place->candidate_places.front().place.frame;
+  const Structure& structure = context.fitter.plant().structure;
+  const bool along_x = structure.direction(whole.frame) == Direction::x;
+  if ((along_x ? structure.n() : structure.m()) < 2) return {};  // that of the building
   return try_effects(context, amplitude_proposals(context.fitter, *place, whole));
 }
 
