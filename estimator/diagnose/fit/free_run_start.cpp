@@ -14,10 +14,7 @@ constexpr double kSticks = 3e-3;  ///< of the largest rate: below it friction ho
 constexpr double kFits = 1.5;     ///< misfit over the expected, below which a fit is a good start
 
 bool ends_with_clearance(const Model& model) {
-  if (model.effects.empty()) return false;
-  const LawForm form = model.effects.back().form;
-  return form == LawForm::gap_positive || form == LawForm::gap_negative ||
-         form == LawForm::gap_both;
+  return !model.effects.empty() && is_contact(model.effects.back().form);
 }
 
 /// Keeps the better of a fit and of a model's free run as it is.

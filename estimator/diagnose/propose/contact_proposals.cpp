@@ -12,7 +12,6 @@ namespace framewatch::estimator {
 namespace {
 
 using Eigen::VectorXcd;
-using Eigen::VectorXd;
 
 constexpr std::size_t kMostFrames = 4;  ///< whole frames that are tried in one direction
 constexpr double kFirstShare = 0.05;    ///< of the stiffness that a start takes at the peak
