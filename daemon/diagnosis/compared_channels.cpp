@@ -1,5 +1,7 @@
 #include "daemon/diagnosis/compared_channels.h"
 
+#include "estimator/motion/acquisition.h"
+
 namespace framewatch::daemon {
 
 ComparedChannels compared_channels(const Config& config, std::vector<DiagnoseRecord>& records) {
@@ -11,6 +13,7 @@ ComparedChannels compared_channels(const Config& config, std::vector<DiagnoseRec
     if (axis.check) continue;
     columns.push_back(static_cast<Eigen::Index>(new_place.size()) - 1);
     out.axes.push_back(axis);
+    out.axes.back().delay -= estimator::whole_delay_s(axis.delay, config.pipeline.options.rate_hz);
   }
   const auto moved = [&](int& channel) {
     if (channel >= 0) channel = new_place[static_cast<std::size_t>(channel)];

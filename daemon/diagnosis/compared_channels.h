@@ -10,6 +10,7 @@ namespace framewatch::daemon {
 /// The channels that a diagnosis is made from: all but those for a check, which may be of floors
 /// whose motion a small error of gain would decide.
 struct ComparedChannels {
+  /// With the rest of their delays, which is less than a sample: records have no more of them.
   std::vector<estimator::SensorAxis> axes;
   std::vector<estimator::Effect> known;  ///< of the configuration, places by these axes
 };

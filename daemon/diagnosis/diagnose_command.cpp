@@ -24,6 +24,7 @@
 #include "daemon/diagnosis/diagnose_records.h"
 #include "daemon/diagnosis/diagnose_report.h"
 #include "daemon/diagnosis/diagnose_verdict.h"
+#include "daemon/diagnosis/segment_problems.h"
 #include "drivers/base/text_output.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 
@@ -76,24 +77,6 @@ std::vector<DiagnoseRecord> read_records(const Config& config, const DiagnoseArg
   std::vector<std::string> paths = a.train;
   paths.insert(paths.end(), a.holdout.begin(), a.holdout.end());
   return read_diagnose_records(config, paths, a.component, problems);
-}
-
-void check_segments(const std::vector<DiagnoseRecord>& records,
-                    const estimator::DiagnosisInput& input,
-                    const estimator::ComponentTest& component, std::vector<std::string>& problems) {
-  for (std::size_t r = 0; r < input.segments.size(); ++r) {
-    const estimator::RecordSegment& s = input.segments[r];
-    const estimator::SegmentFault fault = estimator::fault_of(input.plant, s, component);
-    if (fault == estimator::SegmentFault::too_short)
-      problems.push_back(
-          fmt::format("{}: too short: {} frequencies lie in the building's band, at least {} are "
-                      "needed",
-                      records[r].path, s.bins(), estimator::kFewestBins));
-    else if (fault == estimator::SegmentFault::no_excitation)
-      problems.push_back(records[r].path +
-                         ": no excitation: the floors' motion does not stand out of "
-                         "the sensors' noise");
-  }
 }
 
 /// Shows on a terminal how far a diagnosis is: every piece of its parallel work counts.
@@ -176,7 +159,8 @@ int diagnose_command(const DiagnoseArguments& a) {
                a.config);
     return kBadInput;
   }
-  check_segments(records, *input, a.component, problems);
+  for (std::size_t r = 0; r < records.size(); ++r)
+    add_segment_problems(records[r].path, *input, r, a.component, problems);
   if (print_all(problems)) return kBadInput;
 
   const estimator::Diagnosis diagnosis = run_diagnosis(a, *input, options);

@@ -14,6 +14,8 @@
 #include "drivers/formats/record_file.h"
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
+#include "estimator/diagnose/spectra/upsampled.h"
+#include "estimator/motion/acquisition.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -21,6 +23,8 @@ namespace {
 constexpr Eigen::Index kLeastInstants = 400;
 constexpr int kMostMissing = 3;  ///< successive samples that are interpolated
 constexpr double kEverything_s = 1e9;
+
+constexpr double kSameInstant = 1e-6;  ///< of a sample
 
 constexpr double kMoving = 0.1;      ///< rms of the first second over that of all
 constexpr double kLead_s = 40;       ///< at most; half of the record at most
@@ -147,6 +151,25 @@ void interpolate(const Config& config, const estimator::ComponentTest& component
   }
 }
 
+/// Takes the whole samples of the channels' delays off the columns, as an acquisition takes them
+/// off the stamps of a log. Instants that not every channel has are cut away.
+void take_whole_delays(const Config& config, estimator::RecordSamples& samples) {
+  const auto& axes = config.pipeline.axes;
+  Eigen::Index later = 0, earlier = 0;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    double instants =
+        estimator::whole_delay_s(axes[a].delay, config.pipeline.options.rate_hz) * samples.rate_hz;
+    if (std::abs(instants - std::round(instants)) < kSameInstant) instants = std::round(instants);
+    const auto column = samples.accel.col(static_cast<Eigen::Index>(a));
+    samples.accel.col(static_cast<Eigen::Index>(a)) =
+        estimator::upsampled(Eigen::VectorXd(column), 1, -instants);
+    later = std::max(later, static_cast<Eigen::Index>(std::ceil(instants)));
+    earlier = std::max(earlier, static_cast<Eigen::Index>(std::ceil(-instants)));
+  }
+  const Eigen::Index rows = std::max<Eigen::Index>(0, samples.accel.rows() - later - earlier);
+  samples.accel = Eigen::MatrixXd(samples.accel.middleRows(rows > 0 ? earlier : 0, rows));
+}
+
 /// Empty when there is a problem.
 std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& path,
                                        const estimator::ComponentTest& component,
@@ -158,13 +181,15 @@ std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& 
     problems.push_back(path + ": cannot be opened: " + why);
     return std::nullopt;
   }
-  const bool read = drivers::is_event_log(path) ? from_log(config, out, problems)
-                                                : from_record(config, component, out, problems);
+  const bool log = drivers::is_event_log(path);
+  const bool read =
+      log ? from_log(config, out, problems) : from_record(config, component, out, problems);
   if (!read) return std::nullopt;
+  interpolate(config, component, out, problems);
+  if (!log && problems.size() == before) take_whole_delays(config, out.samples);
   if (out.samples.accel.rows() < kLeastInstants)
     problems.push_back(fmt::format("{}: {} instants are too short, at least {} are needed", path,
                                    out.samples.accel.rows(), kLeastInstants));
-  interpolate(config, component, out, problems);
   out.sha256 = sha256_of_file(path);
   if (problems.size() > before) return std::nullopt;
   if (!component.prescribed && begins_in_motion(config, out))

@@ -27,6 +27,10 @@ std::vector<std::uint8_t> axes_to_repair(const std::vector<SensorAxis>& axes, bo
 
 }  // namespace
 
+double whole_delay_s(double delay_s, double rate_hz) {
+  return std::round(delay_s * rate_hz) / rate_hz;
+}
+
 Acquisition::Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOptions& options,
                          Sink sink, bool lone_spikes)
     : axes_(axes),
@@ -37,7 +41,7 @@ Acquisition::Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOpt
       sink_(std::move(sink)) {
   for (SensorAxis& axis : axes_) {
     bound_.push_back(sample_bound(axis));
-    const double whole = std::round(axis.delay * options.rate_hz) / options.rate_hz;
+    const double whole = whole_delay_s(axis.delay, options.rate_hz);
     whole_delay_.emplace_back(std::llround(whole * 1e6));
     axis.delay -= whole;
   }

@@ -13,6 +13,9 @@
 
 namespace framewatch::estimator {
 
+/// The part of a delay that is whole samples, s.
+double whole_delay_s(double delay_s, double rate_hz);
+
 /// Raw samples in, clean sample sets out: what no sensor can have measured rejected (SampleBound),
 /// whole-sample delays taken off the stamps, axes merged on one grid, failing sensors' values
 /// removed, calibrated, single losses filled. The fraction of a

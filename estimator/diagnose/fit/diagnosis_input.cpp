@@ -7,6 +7,7 @@
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/model/make_plant.h"
 #include "estimator/diagnose/model/run_system.h"
+#include "estimator/diagnose/spectra/delay.h"
 #include "estimator/diagnose/spectra/fourier.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/eigenvalues.h"
@@ -31,6 +32,9 @@ constexpr double kLowestModes = 5;  ///< times the lowest natural frequency
 constexpr int kDesignFits = 2;      ///< of a building that has no design
 constexpr double kLeastOfGuess = 0.01;
 constexpr double kLeastSignal = 5;  ///< rms of a floor's motion in the band over its noise
+constexpr double kSlowLow = 0.1, kSlowHigh = 0.5;  ///< of the lowest natural frequency
+constexpr double kApart = 0.25;                    ///< of the lowest natural period
+constexpr double kAlike = 0.95, kLessAlike = 0.8;  ///< correlation; of that, without the delay
 
 /// Natural frequencies of the design, with the bending of its frames.
 std::vector<double> design_frequencies(const Structure& structure, const Plant& plant,
@@ -155,6 +159,29 @@ SegmentFault fault_of(const Plant& plant, const RecordSegment& segment,
   if (!component.any() && !(signal_ratio(plant, segment) > kLeastSignal))
     return SegmentFault::no_excitation;
   return SegmentFault::none;
+}
+
+std::vector<ClockOffset> clocks_apart(const Plant& plant, const RecordSegment& segment) {
+  std::vector<ClockOffset> out;
+  if (plant.prescribed || segment.bins() == 0) return out;
+  const double lowest_hz = segment.w[0] / (2 * M_PI * kBandLow);
+  const Band slow{kSlowLow * lowest_hz, kSlowHigh * lowest_hz};
+  const auto axis = [&](Index a) { return plant.axes[static_cast<std::size_t>(a)]; };
+  for (Index base = 0; base < plant.axis_count(); ++base) {
+    if (axis(base).story > 0 || axis(base).frame >= 0 || !axis(base).horizontal()) continue;
+    for (Index a = 0; a < plant.axis_count(); ++a) {
+      if (axis(a).story == 0 || !axis(a).horizontal() || segment.is_displaced(a) ||
+          axis(a).direction != axis(base).direction)
+        continue;
+      const Delay delay =
+          delay_between(segment.accel.col(base), segment.accel.col(a), segment.rate_hz, slow);
+      const double seconds = delay.seconds - (axis(a).delay - axis(base).delay);
+      if (delay.likeness > kAlike && delay.undelayed < kLessAlike * delay.likeness &&
+          std::abs(seconds) * lowest_hz > kApart)
+        out.push_back({a, base, seconds});
+    }
+  }
+  return out;
 }
 
 }  // namespace framewatch::estimator

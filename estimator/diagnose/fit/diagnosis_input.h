@@ -49,4 +49,16 @@ enum class SegmentFault { none, too_short, no_excitation };
 SegmentFault fault_of(const Plant& plant, const RecordSegment& segment,
                       const ComponentTest& component);
 
+/// An axis above the base whose clock is not the base's.
+struct ClockOffset {
+  Eigen::Index axis = 0, base = 0;
+  double seconds = 0;  ///< that the axis reads later than the base, its configured delay apart
+};
+
+/// Axes that read later or earlier than the base along their direction by more than a quarter of
+/// the lowest natural period, beyond which no fit finds a delay. From motion slower than half of
+/// the lowest natural frequency, where a building goes with its base whatever it is made of; none
+/// where there is too little of it to tell.
+std::vector<ClockOffset> clocks_apart(const Plant& plant, const RecordSegment& segment);
+
 }  // namespace framewatch::estimator

@@ -20,6 +20,7 @@ constexpr double kClose = 1.1;    ///< gap over the best one's: a start that is 
 constexpr double kHonest = 0.97;  ///< gap with a damping that is no dashpots', over that with them
 constexpr double kFewDashpots = 0.1, kUsualRatio = 0.005;
 constexpr double kSameGap = 1e-9;  ///< of gaps, relative: those of one model
+constexpr double kSameEnd = 5e-3;  ///< the same of fits that ended at one place
 
 struct Start {
   Model model;
@@ -45,12 +46,22 @@ void fit_to_the_end(const Fitter& fitter, int steps, Start& at) {
   }
 }
 
-/// Sorted by their gaps, each model once.
-void sort_starts(std::vector<Start>& all) {
+/// Sorted by their gaps, once each of those that are the same but for a share `same` of them.
+void sort_starts(double same, std::vector<Start>& all) {
   std::stable_sort(all.begin(), all.end(),
                    [](const Start& a, const Start& b) { return a.gap < b.gap; });
-  const auto same = [](const Start& a, const Start& b) { return b.gap - a.gap < kSameGap * a.gap; };
-  all.erase(std::unique(all.begin(), all.end(), same), all.end());
+  const auto is_same = [same](const Start& a, const Start& b) {
+    return b.gap - a.gap < same * a.gap;
+  };
+  all.erase(std::unique(all.begin(), all.end(), is_same), all.end());
+}
+
+/// Without those whose gap is far above that of the first, the best.
+void keep_close(std::vector<Start>& sorted) {
+  const double limit = kClose * sorted.front().gap;
+  sorted.erase(std::find_if(sorted.begin() + 1, sorted.end(),
+                            [&](const Start& s) { return !(s.gap < limit); }),
+               sorted.end());
 }
 
 /// Starts whose modes in the band have ratios of their own: beside the dashpots, and beside few of
@@ -77,14 +88,24 @@ std::vector<Model> with_ratios(const Fitter& fitter, const Model& model) {
 }
 
 /// Damping may be none that dashpots between floors make: ratios of the modes stay where the gap
-/// falls clearly with them.
-void free_ratios(const Fitter& fitter, int steps, Start& best) {
-  for (const Model& model : with_ratios(fitter, best.model)) {
-    Start one{model, rms_gap(fitter, model)};
+/// falls clearly with them. ends: where fits without them ended, best first; the best with them may
+/// begin at another one.
+Start with_free_ratios(const Fitter& fitter, int steps, const std::vector<Start>& ends,
+                       const Parallel& parallel) {
+  std::vector<Start> all;
+  for (const Start& end : ends)
+    for (Model& model : with_ratios(fitter, end.model)) all.push_back({std::move(model)});
+  run_all(parallel, static_cast<int>(all.size()), [&](int i) {
+    Start& one = all[static_cast<std::size_t>(i)];
+    one.gap = rms_gap(fitter, one.model);
     fit_free_run(fitter, kFirstSteps, one);
-    if (one.gap < kHonest * best.gap) fit_to_the_end(fitter, steps, one);
-    if (one.gap < kHonest * best.gap) best = std::move(one);
-  }
+    if (one.gap < kHonest * ends.front().gap) fit_to_the_end(fitter, steps, one);
+  });
+  Start best = ends.front();
+  const double most = kHonest * best.gap;
+  for (Start& one : all)
+    if (one.gap < std::min(most, best.gap)) best = std::move(one);
+  return best;
 }
 
 }  // namespace
@@ -140,18 +161,17 @@ JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int
 
   std::vector<Start> all{{out.model, out.gap}};
   for (const Model& model : starts) all.push_back({model, rms_gap(fitter, model)});
-  sort_starts(all);
+  sort_starts(kSameGap, all);
   run_all(parallel, static_cast<int>(all.size()),
           [&](int i) { fit_free_run(fitter, kFirstSteps, all[static_cast<std::size_t>(i)]); });
-  sort_starts(all);
-  Start best = all.front();
-  std::erase_if(all, [close = kClose * best.gap](const Start& s) { return !(s.gap < close); });
-  if (fitter.plant().is_large() && all.size() > 1) all.resize(1);
+  sort_starts(kSameGap, all);
+  keep_close(all);
+  if (fitter.plant().is_large()) all.resize(1);
   run_all(parallel, static_cast<int>(all.size()),
           [&](int i) { fit_to_the_end(fitter, steps, all[static_cast<std::size_t>(i)]); });
-  for (Start& s : all)
-    if (s.gap < best.gap) best = std::move(s);
-  free_ratios(fitter, steps, best);
+  sort_starts(kSameEnd, all);
+  keep_close(all);
+  Start best = with_free_ratios(fitter, steps, all, parallel);
   out.model = std::move(best.model);
   out.gap = best.gap;
   return out;

@@ -36,20 +36,33 @@ struct CauseSet {
   bool named = false;                                         ///< its effects may have their names
 };
 
+/// Whether hysteresis that got no free run at a place is of another name than the one that did:
+/// beside other causes it may do better.
+bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& other) {
+  const auto hysteretic = [&](const Trial& t) {
+    return t.model.effects.size() > c.now.model.effects.size() &&
+           is_hysteretic(t.model.effects.back().form);
+  };
+  return other.outcome == TrialOutcome::screened_out && fitted.place == other.place &&
+         hysteretic(fitted) && hysteretic(other);
+}
+
 /// Laws that may be causes, best first, one of every name and place.
 std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
   const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
   const std::size_t most = std::clamp(kMostWork / equations, kFewestTried, kMostTried);
   std::vector<const Trial*> out;
   for (const Trial& t : tried) {
-    if (t.outcome != TrialOutcome::fitted || t.second) continue;
+    const bool otherwise = std::any_of(out.begin(), out.end(),
+                                       [&](const Trial* o) { return yields_otherwise(c, *o, t); });
+    if (t.second || (t.outcome != TrialOutcome::fitted && !otherwise)) continue;
     const bool anything = t.kind == EffectKind::unmeasured_force || t.kind == EffectKind::clipping;
     const bool again = std::any_of(out.begin(), out.end(), [&](const Trial* o) {
       return o->kind == t.kind && o->place == t.place;
     });
     if (anything || again || is_excluded(c, t.kind)) continue;
     // What acts on the whole building is rarely the best alone, and often beside others.
-    if (out.size() < most || t.place.kind == PlaceKind::building) out.push_back(&t);
+    if (out.size() < most || otherwise || t.place.kind == PlaceKind::building) out.push_back(&t);
   }
   return out;
 }

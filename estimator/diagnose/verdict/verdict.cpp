@@ -229,7 +229,8 @@ void judge(const Fitter& fitter, Diagnosis& out) {
     if (!adequate && out.reason.empty() && fits_separately(fitter, out.linear, out.ratio_before))
       out.reason =
           "each record alone fits a linear building, all of them together do not: they are of "
-          "different buildings, or the building changed between them";
+          "different buildings, or the building changed between them; measure both in one state of "
+          "it, or diagnose the records of each state alone";
     return;
   }
   const double fraction =

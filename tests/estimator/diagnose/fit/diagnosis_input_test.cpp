@@ -63,5 +63,37 @@ TEST(DiagnosisInput, RecordsAreTooShortOrWithoutExcitation) {
   EXPECT_EQ(fault(), SegmentFault::no_excitation);
 }
 
+/// The middle of a record, its floors `late` instants late.
+Eigen::MatrixXd with_late_floors(const Eigen::MatrixXd& record, Eigen::Index late) {
+  constexpr Eigen::Index kFloors = 4, kMargin = 100;
+  const Eigen::Index rows = record.rows() - 2 * kMargin;
+  Eigen::MatrixXd out = record.middleRows(kMargin, rows);
+  out.leftCols(kFloors) = record.leftCols(kFloors).middleRows(kMargin - late, rows);
+  return out;
+}
+
+TEST(DiagnosisInput, FloorsHaveTheClockOfTheBase) {
+  Small small;
+  const Eigen::MatrixXd whole = small.record({}, 1);
+  const auto offsets = [&](Eigen::Index late) {
+    const auto input = diagnosis_input(small.structure, small.axes, small.design, {},
+                                       {{kRate_hz, with_late_floors(whole, late), 0}});
+    return clocks_apart(input->plant, input->segments.front());
+  };
+  EXPECT_TRUE(offsets(0).empty());
+  EXPECT_TRUE(offsets(1).empty()) << "a delay that is fitted";
+  for (const Eigen::Index late : {25, -60}) {
+    const std::vector<ClockOffset> found = offsets(late);
+    ASSERT_EQ(found.size(), 4U);
+    for (const ClockOffset& o : found) {
+      EXPECT_EQ(o.base,
+                small.axes[static_cast<std::size_t>(o.axis)].direction == Direction::x ? 4 : 5);
+      EXPECT_NEAR(o.seconds, static_cast<double>(late) / kRate_hz, 2 / kRate_hz);
+    }
+  }
+  for (std::size_t a = 0; a < 4; ++a) small.axes[a].delay = 25 / kRate_hz;
+  EXPECT_TRUE(offsets(25).empty()) << "the configuration says so";
+}
+
 }  // namespace diagnosis_input_test
 }  // namespace framewatch::estimator
