@@ -3,10 +3,13 @@
 #include <cstddef>
 #include <utility>
 
+#include "estimator/diagnose/fit/judged_fit.h"
+
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kEndSteps = 6;
+constexpr int kEndSteps = 6, kJudgedSteps = 6;
+constexpr double kNothing = 0.98;  ///< gap with an effect over the one without
 
 /// Replaces `now` by the fit of a smaller model, started from it, unless that is worse; whether
 /// it did so.
@@ -34,6 +37,12 @@ bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now)
   start.free_gain = before.free_gain;
   start.free_clock = before.free_clock;
   return replaced_by(fitter, start, now);
+}
+
+bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
+                   const Parallel& parallel) {
+  const double gap = judged_fit(fitter, {with}, kJudgedSteps, parallel).gap;
+  return gap > kNothing * judged_fit(fitter, {without}, kJudgedSteps, parallel).gap;
 }
 
 void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,

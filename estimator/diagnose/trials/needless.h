@@ -6,6 +6,7 @@
 
 #include "estimator/diagnose/fit/fit.h"
 #include "estimator/diagnose/trials/found_effect.h"
+#include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
 
@@ -20,6 +21,12 @@ FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
 /// Removes what was added to the model `before` if that, fitted on from here, does as well: after
 /// an unfinished fit a needless effect looks useful. Whether it did so.
 bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now);
+
+/// Whether the free runs of both models, each fitted to what it is judged by, disagree with the
+/// records alike, though one has an effect more: equations that a law leaves a little wrong are met
+/// better by effects that are not there, motion is not.
+bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
+                   const Parallel& parallel);
 
 /// Removes masses, springs and dampers that the last of the effects replaces.
 void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,
