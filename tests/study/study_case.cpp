@@ -151,6 +151,7 @@ std::optional<StudyCase> make_case(const std::string& group, const std::string& 
   const std::vector<std::string> parts = parts_of(name);
   if (parts.empty()) return c;
 
+  c.filtered = std::find(parts.begin(), parts.end(), "time_shift") != parts.end();
   const LinearShare share(c);
   const double floor = share.noise_floor(options.noise_ratio);
   c.gap_over_floor = 1e9;

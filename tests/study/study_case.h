@@ -32,6 +32,7 @@ struct StudyCase {
   Hidden hidden;
   std::vector<estimator::PlanMotion> motions;     ///< train, holdout
   std::vector<estimator::Effect> ground_dampers;  ///< the damping that goes with the masses
+  bool filtered = false;      ///< clean_record(): a late reading is one of a filtered record
   double gap_over_floor = 0;  ///< what no linear model explains, of the train record
 };
 

@@ -69,12 +69,6 @@ Eigen::MatrixXd run(const StudyCase& c, int record, const std::vector<estimator:
   return out;
 }
 
-bool any_late(const std::vector<estimator::Effect>& effects) {
-  return std::any_of(effects.begin(), effects.end(), [](const estimator::Effect& e) {
-    return e.kind == estimator::EffectKind::time_shift;
-  });
-}
-
 /// The small errors that every instrument has.
 std::vector<estimator::Effect> instrument_errors(const StudyBuilding& b) {
   std::vector<estimator::Effect> out;
@@ -138,7 +132,7 @@ bool write_record(const StudyCase& c, int record, const std::string& path, std::
 }  // namespace
 
 Eigen::MatrixXd clean_record(const StudyCase& c, int record) {
-  return run(c, record, {}, any_late(c.hidden.effects));
+  return run(c, record, {}, c.filtered);
 }
 
 Eigen::MatrixXd measured(const StudyCase& c, int record) {

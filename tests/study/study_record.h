@@ -7,7 +7,7 @@
 namespace framewatch::study {
 
 /// Channels of a record without noise and without the small errors of every instrument, at the
-/// sampling rate, unfiltered unless a channel is late: instants x axes, m/s^2.
+/// sampling rate, filtered where StudyCase::filtered says so: instants x axes, m/s^2.
 Eigen::MatrixXd clean_record(const StudyCase& c, int record);
 
 }  // namespace framewatch::study

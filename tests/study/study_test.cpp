@@ -111,8 +111,9 @@ TEST(StudyCase, MayHideThreeEffects) {
 
 TEST(StudyCase, WhatIsHiddenShows) {
   constexpr double kShows = 2;  // times the noise of all channels; one sensor's fault is in one
-  for (const char* name : {"bouc_wen", "gain_error", "smooth gap", "cubic_stiffness+gain_error",
-                           "slack brace", "yielding that tires", "whole frame softens"}) {
+  for (const char* name :
+       {"bouc_wen", "gain_error", "time_shift", "smooth gap", "cubic_stiffness+gain_error",
+        "slack brace", "yielding that tires", "whole frame softens"}) {
     const StudyCase c = made("any", name, quick());
     EXPECT_GE(c.gap_over_floor, 3) << name;
     StudyCase nothing = c;

@@ -15,25 +15,14 @@ constexpr double kLargestMisfit = 60;   ///< 1/f noise does not reach so far abo
 constexpr double kLowestCorner = 0.05;  ///< of the band's lowest frequency
 constexpr double kRatio = 1.12;         ///< of neighbouring corners that are tried
 constexpr int kCorners = 80;
-constexpr Index kBinsOfCell = 24;
 constexpr int kTimes = 3, kSteps = 6;
 constexpr double kSame = 0.15;        ///< relative difference of corners
 constexpr double kPerhapsNoise = 10;  ///< spread_of() with which a fit is tried
 constexpr double kLikeNoise = 2;      ///< the same with which it is noise
 
-/// Mean square of the rest of one equation in neighbouring bins.
-struct Cell {
-  double hz, now_hz;  ///< frequency, corner of the weights
-  double level;       ///< 1: noise as it was taken to be
-  double numbers;
-
-  /// Noise with the corner over noise as it was taken to be.
-  double expected(double corner_hz) const { return (1 + corner_hz / hz) / (1 + now_hz / hz); }
-};
-
-std::vector<Cell> cells_of(const Whitened& system, const RecordSegment& segment) {
+std::vector<NoiseCell> cells_of(const Whitened& system, const RecordSegment& segment) {
   const Index n = system.operation.equations();
-  std::vector<Cell> out;
+  std::vector<NoiseCell> out;
   for (Index from = 0; from + kBinsOfCell <= system.bins(); from += kBinsOfCell)
     for (Index i = 0; i < n; ++i) {
       double power = 0;
@@ -45,46 +34,44 @@ std::vector<Cell> cells_of(const Whitened& system, const RecordSegment& segment)
   return out;
 }
 
-std::vector<Cell> cells_of(const Fitter& fitter, const FitResult& now) {
+std::vector<NoiseCell> cells_of(const Fitter& fitter, const FitResult& now) {
   const std::vector<Whitened> systems =
       fitter.systems(now.model, now.motion, forcing_of(now.model));
-  std::vector<Cell> out;
+  std::vector<NoiseCell> out;
   for (std::size_t r = 0; r < systems.size(); ++r) {
-    const std::vector<Cell> more = cells_of(systems[r], fitter.segments()[r]);
+    const std::vector<NoiseCell> more = cells_of(systems[r], fitter.segments()[r]);
     out.insert(out.end(), more.begin(), more.end());
   }
   return out;
 }
 
 /// Half the likelihood's logarithm of noise with the corner, negative.
-double cost_of(const std::vector<Cell>& cells, double corner_hz) {
+double cost_of(const std::vector<NoiseCell>& cells, double corner_hz) {
   double out = 0;
-  for (const Cell& c : cells) {
+  for (const NoiseCell& c : cells) {
     const double expected = c.expected(corner_hz);
     out += c.numbers * (c.level / expected + std::log(expected));
   }
   return out;
 }
 
-double likeliest_corner_hz(const std::vector<Cell>& cells) {
+}  // namespace
+
+double likeliest_corner_hz(const std::vector<NoiseCell>& cells) {
   double lowest = cells.front().hz;
-  for (const Cell& c : cells) lowest = std::min(lowest, c.hz);
+  for (const NoiseCell& c : cells) lowest = std::min(lowest, c.hz);
   double best = 0, corner = kLowestCorner * lowest;
   for (int i = 0; i < kCorners; ++i, corner *= kRatio)
     if (cost_of(cells, corner) < cost_of(cells, best)) best = corner;
   return best;
 }
 
-/// Mean square by which cells exceed noise with the corner, over that of such noise. What a model
-/// lacks leaves more than noise; less is noise of unlike channels.
-double spread_of(const std::vector<Cell>& cells, double corner_hz) {
+double spread_of(const std::vector<NoiseCell>& cells, double corner_hz) {
   double out = 0;
-  for (const Cell& c : cells)
+  for (const NoiseCell& c : cells)
     out += 2 * c.numbers * std::pow(std::max(c.level / c.expected(corner_hz) - 1, 0.0), 2);
   return out / static_cast<double>(cells.size());
 }
-
-}  // namespace
 
 bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now) {
   const Plant& plant = fitter.plant();
@@ -99,7 +86,7 @@ bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, Fi
   FitResult coloured = now;
   double spread = kPerhapsNoise;
   for (int i = 0; i <= kTimes; ++i) {
-    const std::vector<Cell> cells = cells_of(fitter, coloured);
+    const std::vector<NoiseCell> cells = cells_of(fitter, coloured);
     if (cells.empty()) break;
     const double corner_hz = likeliest_corner_hz(cells);
     spread = spread_of(cells, corner_hz);

@@ -20,21 +20,6 @@ constexpr double kWorse = 1.02;  ///< misfit of a record, relative
 /// By how much an arbitrary force must be better than a law, of the misfit beyond noise.
 constexpr double kArbitraryPrice = 1 - kExplains;
 
-/// Number of fitted values of a model beyond those of the linear building.
-double fitted_values(const Model& model) {
-  const auto free = [](const std::vector<LawParameter>& parameters) {
-    return std::count_if(parameters.begin(), parameters.end(),
-                         [](const LawParameter& k) { return k.free; });
-  };
-  auto out = static_cast<double>(model.free_gain.size() + model.free_clock.size());
-  for (const ModelEffect& e : model.effects) {
-    out += static_cast<double>(free(e.parameters));
-    for (const std::vector<LawParameter>& parameters : e.record_parameters)
-      out += static_cast<double>(free(parameters));
-  }
-  return out;
-}
-
 bool is_arbitrary_force(const Trial& t) {
   return !t.model.effects.empty() && t.model.effects.back().form == LawForm::broadband;
 }
@@ -69,6 +54,20 @@ void approach(const TrialContext& context, std::vector<Trial>& trials) {
 }
 
 }  // namespace
+
+double fitted_values(const Model& model) {
+  const auto free = [](const std::vector<LawParameter>& parameters) {
+    return std::count_if(parameters.begin(), parameters.end(),
+                         [](const LawParameter& k) { return k.free; });
+  };
+  auto out = static_cast<double>(model.free_gain.size() + model.free_clock.size());
+  for (const ModelEffect& e : model.effects) {
+    out += static_cast<double>(free(e.parameters));
+    for (const std::vector<LawParameter>& parameters : e.record_parameters)
+      out += static_cast<double>(free(parameters));
+  }
+  return out;
+}
 
 bool worsens(const Trial& trial, const FitResult& now, double chance) {
   for (std::size_t r = 0; r < now.misfit.size(); ++r)

@@ -17,6 +17,9 @@ bool select_trial(const TrialContext& context, double bound, double needed,
 /// no record, though it does not hold.
 bool is_nearest_law(const TrialContext& context, const Trial& trial);
 
+/// Number of fitted values of a model beyond those of the linear building.
+double fitted_values(const Model& model);
+
 /// Whether a trial fits any record worse than the present model does, by more than chance.
 bool worsens(const Trial& trial, const FitResult& now, double chance);
 

@@ -102,11 +102,56 @@ void begin_friction_anew(const TrialContext& c, const std::vector<Fitted>& kept,
   });
 }
 
+/// A model with the effects and the freed readings that another has beyond it, of a size.
+Model with_new(const Model& now, const Model& other, double size) {
+  Model out = now;
+  for (std::size_t e = now.effects.size(); e < other.effects.size(); ++e) {
+    out.effects.push_back(other.effects[e]);
+    if (out.effects.back().parameters.empty()) continue;
+    LawParameter& amplitude = out.effects.back().parameters[0];
+    const double value =
+        amplitude.logarithmic ? amplitude.value + std::log(size) : size * amplitude.value;
+    amplitude.value = std::clamp(value, amplitude.low, amplitude.high);
+  }
+  for (const int axis : other.free_gain) out.gain[axis] = other.gain[axis];
+  for (const int axis : other.free_clock) out.clock_s[axis] = other.clock_s[axis];
+  out.free_gain = other.free_gain;
+  out.free_clock = other.free_clock;
+  return out;
+}
+
 double least_cost(const TrialContext& c, const std::vector<FitResult>& runs) {
   double out = c.now.cost;
   for (const FitResult& r : runs)
     if (r.good) out = std::min(out, r.cost);
   return out;
+}
+
+/// Laws found before were fitted to free runs; driven by measured, noisy motion they lead the
+/// building astray: candidates begun again in the present model, with their effects or little of
+/// them.
+void begin_beside_laws(const TrialContext& c, const std::vector<Fitted>& kept,
+                       std::vector<FitResult>& runs) {
+  const std::vector<ModelEffect>& found = c.now.model.effects;
+  if (std::none_of(found.begin(), found.end(),
+                   [](const ModelEffect& e) { return e.element_law(); }))
+    return;
+  const double least = least_cost(c, runs);
+  if (least < kNearNoise * c.fitter.expected(c.now.model)) return;
+  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    FitOptions options = full_fit(kept[at].fit.model);
+    options.max_steps = 0;
+    FitResult from;
+    for (const double size : {1.0, 0.1}) {
+      FitResult one =
+          c.fitter.fit(with_new(c.now.model, kept[at].fit.model, size), c.now.motion, options);
+      if (one.good && (!from.good || one.cost < from.cost)) from = std::move(one);
+    }
+    if (!from.good || from.cost > kCostLimit * least) return;
+    FitResult run = c.fitter.fit(from.model, from.motion, full_fit(from.model));
+    if (run.good && (!runs[at].good || run.cost < runs[at].cost)) runs[at] = std::move(run);
+  });
 }
 
 /// Fits candidates in parallel: all under the measured motion, then the best of each place with
@@ -130,7 +175,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     out.push_back(trial_of(c, *f.candidate, f.fit, TrialOutcome::diverged));
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    const FitResult from = free_run_start(c.fitter, std::move(kept[at].fit));
+    const FitResult from = free_run_start(c.fitter, kept[at].fit);
     FitOptions options = full_fit(from.model);
     options.max_steps = kTrialSteps;
     options.holds_tolerated = c.fitter.plant().is_large();
@@ -141,14 +186,17 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   const double least = least_cost(c, runs);
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    if (!runs[at].good) return;
-    if (runs[at].cost < kCostLimit * least && runs[at].steps == kTrialSteps) {
-      const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion, full_fit(runs[at].model));
-      if (on.good && on.cost < runs[at].cost) runs[at] = on;
-    }
+    if (!runs[at].good || runs[at].cost > kCostLimit * least || runs[at].steps != kTrialSteps)
+      return;
+    const FitResult on = c.fitter.fit(runs[at].model, runs[at].motion, full_fit(runs[at].model));
+    if (on.good && on.cost < runs[at].cost) runs[at] = on;
+  });
+  begin_beside_laws(c, kept, runs);
+  for (std::size_t at = 0; at < kept.size(); ++at) {
+    if (!runs[at].good) continue;
     Trial& t = out[at] = trial_of(c, *kept[at].candidate, runs[at], TrialOutcome::fitted);
     if (!may_be_named(c, t)) t.outcome = TrialOutcome::other_law;
-  });
+  }
   append(trials, std::move(out));
   return trials;
 }
@@ -207,7 +255,8 @@ Trial sharpened(const TrialContext& c, const Trial& trial, const Model& from) {
   return out.cost < trial.cost && may_be_named(c, out) ? out : trial;
 }
 
-std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisation>& places) {
+std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisation>& places,
+                              const std::function<bool(EffectKind)>& wanted) {
   std::vector<std::vector<Proposal>> proposals(places.size());
   c.progress("laws at " + std::to_string(places.size()) + " places");
   run_all(c.parallel, static_cast<int>(places.size()), [&](int i) {
@@ -219,6 +268,7 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
     const bool axis = places[i].candidate_places.front().kind == CandidatePlace::Kind::axis;
     std::size_t count = 0;
     for (const Proposal& p : proposals[i]) {
+      if (wanted && !wanted(p.kind)) continue;
       // A family of laws with several names is judged by the name that its fit has.
       if (is_excluded(c, p.kind) && p.kind != EffectKind::cubic_stiffness &&
           p.kind != EffectKind::bilinear_hysteresis && p.kind != EffectKind::bouc_wen)

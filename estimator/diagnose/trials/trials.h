@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "estimator/diagnose/locate/localise.h"
@@ -19,8 +20,9 @@ Model fitted_to_the_weakest(const TrialContext& context, const Model& model);
 /// Frees the shapes of all laws (free_shape).
 void free_shapes(Model& model);
 
-/// Fits the laws of each place.
-std::vector<Trial> try_places(const TrialContext& context, const std::vector<Localisation>& places);
+/// Fits the laws of each place. wanted: those that are tried by their first names; empty: all.
+std::vector<Trial> try_places(const TrialContext& context, const std::vector<Localisation>& places,
+                              const std::function<bool(EffectKind)>& wanted = {});
 
 /// Fits effects that are proposed for the present model and its motion.
 std::vector<Trial> try_effects(const TrialContext& context, const std::vector<Proposal>& proposals);

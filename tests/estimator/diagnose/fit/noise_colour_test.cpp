@@ -6,6 +6,7 @@
 
 #include "estimator/diagnose/fit/axis_readings.h"
 #include "estimator/diagnose/fit/model_error.h"
+#include "tests/estimator/diagnose/flicker.h"
 #include "tests/estimator/diagnose/hidden_effect.h"
 
 namespace framewatch::estimator {
@@ -14,36 +15,6 @@ namespace noise_colour_test {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-/// 1/f noise of so many times the white noise that is believed, at corner_hz as strong: a sum of
-/// noises that forget in steps of four.
-VectorXd flicker(Index samples, double corner_hz, std::uint64_t seed) {
-  constexpr int kParts = 7;
-  constexpr double kStep = 4;
-  Random random(seed);
-  VectorXd out = VectorXd::Zero(samples);
-  // A part of unit power at f0 has the density 2 f0 / (pi (f^2 + f0^2)); of all in steps of four
-  // the sum is about 1 / (f ln 4).
-  const double power = 2 * corner_hz * std::log(kStep) / test::kRate_hz;
-  double f0 = 0.25 * test::kRate_hz;
-  for (int part = 0; part < kParts; ++part, f0 /= kStep) {
-    const double keep = std::exp(-2 * M_PI * f0 / test::kRate_hz);
-    double now = random.normal();
-    for (double& value : out) {
-      value += test::kNoise_mps2 * std::sqrt(power) * now;
-      now = keep * now + std::sqrt(1 - keep * keep) * random.normal();
-    }
-  }
-  return out;
-}
-
-std::vector<MatrixXd> with_flicker(std::vector<MatrixXd> records, double corner_hz) {
-  std::uint64_t seed = 50;
-  for (MatrixXd& record : records)
-    for (Index a = 0; a < record.cols(); ++a)
-      record.col(a) += flicker(record.rows(), corner_hz, ++seed);
-  return records;
-}
 
 /// What colour_noise() makes of the linear model's fit to records.
 struct Coloured {
@@ -61,7 +32,7 @@ struct Coloured {
 
 TEST(NoiseColour, IsFoundWhereNothingElseIsMissing) {
   constexpr double kCorner_hz = 20;
-  const Coloured c(with_flicker(test::records_with({}, {1, 2}), kCorner_hz));
+  const Coloured c(test::with_flicker(test::records_with({}, {1, 2}), kCorner_hz));
   EXPECT_GT(c.misfit_before, 1.5);
   ASSERT_TRUE(c.is);
   EXPECT_NEAR(c.recorded.segments.front().corner_hz / kCorner_hz, 1, 0.35);

@@ -1,0 +1,349 @@
+#include "estimator/diagnose/verdict/effect_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "estimator/diagnose/fit/noise_colour.h"
+#include "estimator/diagnose/locate/beside_place.h"
+#include "estimator/diagnose/trials/damping_form.h"
+#include "estimator/diagnose/trials/implausible_masses.h"
+#include "estimator/diagnose/trials/in_its_stead.h"
+#include "estimator/diagnose/trials/needless.h"
+#include "estimator/diagnose/trials/round_trials.h"
+#include "estimator/diagnose/trials/select_trial.h"
+#include "estimator/diagnose/trials/trial_names.h"
+#include "estimator/diagnose/trials/trial_relations.h"
+#include "estimator/diagnose/verdict/verdict.h"
+#include "estimator/diagnose/verdict/where.h"
+
+namespace framewatch::estimator {
+namespace {
+
+/// Fraction above which a second law at the place of the first does not call the first in question.
+constexpr double kOneLaw = 0.99;
+constexpr double kClearer = 0.7;  ///< excess of a place's misfit over that of another search
+constexpr int kStepsBack = 8, kPlaceSteps = 8;
+constexpr std::size_t kLeadLaws = 3;  ///< laws beside which another is looked for
+constexpr double kLeadTakes = 0.3;    ///< of the misfit that a free place takes
+constexpr double kTogether = 0.97;    ///< of the misfit beyond noise, that two explain
+constexpr double kMostOfRest = 0.8;   ///< of what is left beside the first, by the second
+constexpr double kColoured = 1.05, kMostColoured = 3;  ///< ratios of places beside which noise is
+
+bool changes_with_time(EffectKind kind) {
+  return is_of_kind(kind, LawKind::time_varying);
+}
+
+/// Reduction of the cost that is more than chance.
+double needed_of(const Fitter& fitter, const Model& model) {
+  return std::max(kLeastGain, kSignificant * std::sqrt(fitter.expected(model)));
+}
+
+/// Of trials, best first, those beside which another effect may be.
+std::vector<Trial> leads_of(const std::vector<Trial>& trials) {
+  std::vector<Trial> out;
+  for (const Trial& t : trials) {
+    const bool again = std::any_of(out.begin(), out.end(), [&](const Trial& o) {
+      return o.kind == t.kind && o.place == t.place;
+    });
+    if (t.outcome != TrialOutcome::fitted || t.second || again || t.fraction < kLeadTakes ||
+        t.kind == EffectKind::unmeasured_force)
+      continue;
+    out.push_back(t);
+    if (out.size() == kLeadLaws) break;
+  }
+  return out;
+}
+
+}  // namespace
+
+void EffectSearch::run(FitResult& now) {
+  const FitResult linear = now;
+  const double corner_hz = segments_.front().corner_hz;
+  rounds(now, 0);
+  // A component has one place; in a large building every round takes long.
+  const bool more = fitter_.plant().equations() > 1 && !fitter_.plant().is_large();
+  if (more && out_.effects.empty()) look_ahead(now);
+  if (out_.effects.empty()) search_with_free_damping(now);
+  if (more) choose_laws_again(now);
+  if (!out_.effects.empty()) return;
+  for (RecordSegment& s : segments_) s.corner_hz = corner_hz;
+  now = linear;
+  set_linear(now);
+}
+
+/// The laws once more, beside all that was found since; where another is chosen, what it leaves.
+void EffectSearch::choose_laws_again(FitResult& now) {
+  bool another = false;
+  for (FoundEffect& effect : out_.effects) another |= choose_again(context_of(now), effect, now);
+  if (!another) return;
+  complete(now);
+  rounds(now, out_.effects.size());
+}
+
+void EffectSearch::rounds(FitResult& now, std::size_t first) {
+  for (std::size_t round = first; round < static_cast<std::size_t>(options_.rounds); ++round) {
+    if (!one_round(now, round)) return;
+    complete(now);
+  }
+}
+
+/// What is missing may hide the form of the damping, and that what is missing: once more with
+/// ratios that need not be worth their price until something is found.
+void EffectSearch::search_with_free_damping(FitResult& now) {
+  FitResult free = with_free_damping(fitter_, now);
+  if (!free.good) return;
+  Diagnosis before = out_;
+  out_.where.clear();
+  to_beat_ = alone_;
+  rounds(free, 0);
+  if (!out_.effects.empty()) {
+    now = std::move(free);
+    return;
+  }
+  out_ = std::move(before);
+  alone_ = to_beat_;
+}
+
+/// Two effects, neither of which holds without the other: each of the best laws is taken for
+/// granted, and stays where another is found beside it and little is left.
+void EffectSearch::look_ahead(FitResult& now) {
+  const Diagnosis before = out_;
+  const double alone = alone_;
+  const double corner_hz = segments_.front().corner_hz;
+  for (const Trial& lead : leads_of(before.rejected)) {
+    FitResult with = now;
+    if (explains_beside(lead, with)) {
+      now = std::move(with);
+      return;
+    }
+    out_ = before;
+    alone_ = alone;
+    for (RecordSegment& s : segments_) s.corner_hz = corner_hz;
+  }
+}
+
+bool EffectSearch::explains_beside(const Trial& lead, FitResult& now) {
+  std::vector<Trial> trials = out_.rejected;
+  const auto at = std::find_if(trials.begin(), trials.end(), [&](const Trial& t) {
+    return t.kind == lead.kind && t.place == lead.place && !t.second;
+  });
+  std::rotate(trials.begin(), at, at + 1);
+  out_.rejected.clear();
+  const double before = ratio(now);
+  before_lead_ = now.cost;
+  adopt(trials, now);
+  if (!out_.effects.empty()) {
+    const bool here = find_beside_at(lead, now);
+    if (here) complete(now);
+    rounds(now, here ? 2 : 1);
+  }
+  before_lead_ = 0;
+  if (out_.effects.size() < 2 || ratio(now) - 1 > (1 - kTogether) * (before - 1)) return false;
+  for (FoundEffect& e : out_.effects) e.confidence = std::min(e.confidence, kDoubtful);
+  return true;
+}
+
+/// What changes with time beside a law of the motion, or the other way round, at the same place.
+bool EffectSearch::find_beside_at(const Trial& lead, FitResult& now) {
+  std::vector<CandidatePlace> own = candidate_places_of(fitter_.plant(), now.model);
+  std::erase_if(own, [&](const CandidatePlace& p) {
+    return p.kind != CandidatePlace::Kind::element || !(p.place == lead.place);
+  });
+  if (own.empty()) return false;
+  const Localisation here = localise(fitter_, now.model, now.motion, own, kPlaceSteps);
+  if (here.ratio > kOnePlace) return false;
+  const TrialContext context = context_of(now);
+  std::vector<Trial> trials = try_places(context, {here}, [&](EffectKind kind) {
+    return changes_with_time(kind) != changes_with_time(lead.kind);
+  });
+  const double bound = std::min(now.cost, bound_of(fitter_.plant(), here));
+  return holds(context, bound, needed_of(fitter_, now.model), trials) && adopt_held(trials, now);
+}
+
+/// Whether the best of the trials is enough; beside a law that is taken for granted, with it.
+bool EffectSearch::holds(const TrialContext& context, double bound, double needed,
+                         std::vector<Trial>& trials) {
+  if (select_trial(context, bound, needed, trials)) return true;
+  if (before_lead_ == 0 || trials.empty()) return false;
+  const Trial& best = trials.front();
+  return best.outcome == TrialOutcome::fitted &&
+         before_lead_ - best.cost > kTogether * (before_lead_ - bound) &&
+         best.fraction > kMostOfRest && !worsens(best, context.now, needed);
+}
+
+void EffectSearch::complete(FitResult& now) {
+  const double by_place_hz = segments_.front().corner_hz;
+  if (by_place_hz > 0) set_corner(0, now);
+  FitResult with = with_free_damping(fitter_, now);
+  if (with.good && out_.effects.empty() && one_damper_does(context_of(now), with)) with = now;
+  if (with.good && colour_noise(fitter_, segments_, with)) now = with;
+  settle_damping(fitter_, std::move(with), now);
+  colour_noise(fitter_, segments_, now);
+  if (segments_.front().corner_hz == 0 && by_place_hz > 0 && ratio(now) > kColoured)
+    set_corner(by_place_hz, now);
+}
+
+void EffectSearch::set_corner(double corner_hz, FitResult& now) {
+  for (RecordSegment& s : segments_) s.corner_hz = corner_hz;
+  const FitResult again = fitter_.fit(now.model, now.motion, thorough(now.model, kStepsBack));
+  if (again.good) now = again;
+}
+
+/// Noise has its colour before all that is missing is known: that of what is left where anything
+/// may act at the likeliest place.
+void EffectSearch::colour_by_place(FitResult& now, Located& located) {
+  const Plant& plant = fitter_.plant();
+  if (plant.unread.cols() > 0 || plant.equations() < 2 || located.places.empty() ||
+      located.places.front().ratio < kColoured || located.places.front().ratio > kMostColoured ||
+      !colour_beside(fitter_, segments_, located.places.front()))
+    return;
+  set_corner(segments_.front().corner_hz, now);
+  if (out_.effects.empty()) set_linear(now);
+  located = locate(fitter_, now, options_.parallel);
+}
+
+void EffectSearch::set_linear(const FitResult& now) {
+  out_.linear = now.model;
+  out_.ratio_before = ratio(now);
+}
+
+double EffectSearch::ratio(const FitResult& now) const {
+  return now.total_misfit() / fitter_.expected(now.model);
+}
+
+TrialContext EffectSearch::context_of(const FitResult& now) const {
+  return {fitter_, now, options_.without, options_.parallel,
+          [this](const std::string& what) { progress_.say(what); }};
+}
+
+bool EffectSearch::one_round(FitResult& now, std::size_t round) {
+  const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
+  progress_.begin("where", shares.where, shares.trials, {0.4, 0.35});
+  Located located = locate(fitter_, now, options_.parallel);
+  colour_by_place(now, located);
+  relocate_beside(context_of(now), out_.effects, located);
+  if (located.places.empty()) return false;
+  const Localisation& place = located.places.front();
+  if (place.ratio - 1 > kClearer * (to_beat_ - 1)) return false;
+  alone_ = place.ratio;
+  const double expected_now = fitter_.expected(now.model);
+  const double excess = now.total_misfit() - std::clamp(place.ratio, 0.5, 1.0) * expected_now;
+  if (out_.where.empty()) {
+    out_.where = where_of(fitter_, located.places);
+    out_.map = map_of(located);
+  }
+  const double needed = needed_of(fitter_, now.model);
+  if (excess < needed) return find_mass(now, located);
+  // Beside laws that fit, a small rest is a linear effect or the shape of these laws: no further
+  // law.
+  const bool small = !out_.effects.empty() && ratio(now) < kAdequate;
+  if (small && is_element(place)) return false;
+  bool found = false;
+  const std::vector<Trial> trials = trials_of(now, located, round, small, found);
+  if (trials.empty() || trials.front().outcome != TrialOutcome::fitted) return false;
+  if (found) return adopt_held(trials, now);
+  out_.rejected = without_duplicates(trials);
+  return false;
+}
+
+/// The trials of a round, best first, and whether the best one holds.
+std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& located,
+                                           std::size_t round, bool small, bool& found) {
+  const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
+  const Localisation& place = located.places.front();
+  const double needed = std::max(kLeastGain, kSignificant * std::sqrt(fitter_.expected(now.model)));
+  std::vector<Trial> trials;
+  double bound = std::min(now.cost, bound_of(fitter_.plant(), place));
+  const bool pairs = place.ratio > kOnePlace;
+  const TrialContext context = context_of(now);
+  if (pairs) {
+    progress_.begin("two places", shares.trials, shares.laws());
+    trials = trials_of_pairs(context, located, bound);
+  }
+  progress_.begin("laws", shares.trials, shares.end, {0.05, 0.2, 0.2, 0.2});
+  append(trials, trials_of_places(context, located, small));
+  found = holds(context, bound, needed, trials);
+  // Several forces at one place may be those of two effects.
+  if (!found && !pairs && place.candidate_places.front().size() > 1) {
+    append(trials, trials_of_pairs(context, located, bound));
+    found = holds(context, bound, needed, trials);
+  }
+  if (!found) {
+    append(trials, trials_of_whole_frame(context, located));
+    found = holds(context, bound, needed, trials);
+  }
+  return trials;
+}
+
+/// Adopts the best of trials that hold, unless it is a second law at the place of an earlier one:
+/// what changes with time beside a law of the motion is none.
+bool EffectSearch::adopt_held(const std::vector<Trial>& trials, FitResult& now) {
+  const Trial& best = trials.front();
+  for (std::size_t i = 0; i < out_.effects.size(); ++i) {
+    const FoundEffect& earlier = out_.effects[i];
+    if (!same_spot(earlier.chosen.place, best.place) ||
+        changes_with_time(earlier.chosen.kind) != changes_with_time(best.kind))
+      continue;
+    // Two laws at one place are a single law that the catalogue does not have.
+    const bool whole = earlier.chosen.place.kind == PlaceKind::whole_frame;
+    if (earlier.chosen.fraction < kOneLaw && fitter_.plant().equations() > 1 && !whole)
+      withdraw(now, i);
+    return false;
+  }
+  adopt(trials, now);
+  return true;
+}
+
+bool EffectSearch::find_mass(FitResult& now, const Located& located) {
+  std::vector<Trial> trials = implausible_masses(context_of(now), located);
+  std::erase_if(trials, [&](const Trial& t) { return worsens(t, now, kImplausibleMasses); });
+  if (trials.empty()) return false;
+  adopt(trials, now);
+  return true;
+}
+
+/// Goes back to the model before the effect `first` was added.
+void EffectSearch::withdraw(FitResult& now, std::size_t first) {
+  const Plant& plant = fitter_.plant();
+  out_.reason = "no single law of the catalogue is what acts at " +
+                place_text(out_.effects[first].chosen.place, plant.structure, plant.axes);
+  out_.rejected.clear();
+  for (std::size_t i = first; i < out_.effects.size(); ++i)
+    out_.rejected.push_back(out_.effects[i].chosen);
+  out_.effects.resize(first);
+  const Model& model = first == 0 ? out_.linear : out_.effects.back().chosen.model;
+  now = fitter_.fit(model, {}, thorough(model, kStepsBack));
+  if (first > 0) complete(now);
+}
+
+void EffectSearch::adopt(const std::vector<Trial>& trials, FitResult& now) {
+  const std::size_t known = out_.effects.size();
+  const Trial& best = trials.front();
+  FoundEffect found = effect_of(trials);
+  auto next = static_cast<int>(now.model.effects.size());
+  const auto place = [&](FoundEffect& effect) {
+    effect.index = is_axis_error(effect.chosen.kind) ? -1 : next++;
+  };
+  FoundEffect other = found;
+  place(found);
+  out_.effects.push_back(std::move(found));
+  if (best.second) {
+    other.chosen.kind = best.second->first;
+    other.chosen.place = best.second->second;
+    place(other);
+    out_.effects.push_back(std::move(other));
+  }
+  const Model before = now.model;
+  now = fit_to_the_end(fitter_, best.model, now.motion);
+  // Trials of a large building hold its masses: what these explain looks like the effect.
+  if ((known > 0 || fitter_.plant().is_large()) && removes_needless(fitter_, before, now)) {
+    out_.effects.resize(known);
+    if (known == 0) set_linear(now);
+    return;
+  }
+  remove_needless_earlier(fitter_, out_.effects, now);
+}
+
+}  // namespace framewatch::estimator

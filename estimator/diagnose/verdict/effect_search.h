@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "estimator/diagnose/locate/locate.h"
+#include "estimator/diagnose/trials/trial_context.h"
+#include "estimator/diagnose/verdict/diagnosis.h"
+#include "estimator/diagnose/verdict/search_progress.h"
+
+namespace framewatch::estimator {
+
+/// Looks for effects, one or two in a round, and adds them to a diagnosis and to a fit. Whatever it
+/// refers to must outlive it.
+class EffectSearch {
+ public:
+  /// segments: those of the fitter; their noise is coloured. options: `parallel` tells the
+  /// progress.
+  EffectSearch(const Fitter& fitter, std::vector<RecordSegment>& segments,
+               const DiagnosisOptions& options, SearchProgress& progress, Diagnosis& out)
+      : fitter_(fitter), segments_(segments), options_(options), progress_(progress), out_(out) {}
+
+  /// Until nothing more is found. now: the model that is extended.
+  void run(FitResult& now);
+  /// Adds the effect, or both, of the first of the trials, which come best first.
+  void adopt(const std::vector<Trial>& trials, FitResult& now);
+  /// Adds what no effect stands for: the form of the damping, and the colour of the noise.
+  void complete(FitResult& now);
+  void set_linear(const FitResult& now);
+  double ratio(const FitResult& now) const;  ///< misfit over its expectation
+  TrialContext context_of(const FitResult& now) const;
+  /// Localisation::ratio of the likeliest place, in the last round.
+  double alone() const { return alone_; }
+
+ private:
+  void rounds(FitResult& now, std::size_t first);
+  void search_with_free_damping(FitResult& now);
+  void look_ahead(FitResult& now);
+  void choose_laws_again(FitResult& now);
+  void colour_by_place(FitResult& now, Located& located);
+  void set_corner(double corner_hz, FitResult& now);
+  bool holds(const TrialContext& context, double bound, double needed, std::vector<Trial>& trials);
+  bool find_beside_at(const Trial& lead, FitResult& now);
+  bool explains_beside(const Trial& lead, FitResult& now);
+  bool one_round(FitResult& now, std::size_t round);
+  std::vector<Trial> trials_of(const FitResult& now, const Located& located, std::size_t round,
+                               bool small, bool& holds);
+  bool adopt_held(const std::vector<Trial>& trials, FitResult& now);
+  bool find_mass(FitResult& now, const Located& located);
+  void withdraw(FitResult& now, std::size_t first);
+
+  const Fitter& fitter_;
+  std::vector<RecordSegment>& segments_;
+  const DiagnosisOptions& options_;
+  SearchProgress& progress_;
+  Diagnosis& out_;
+  double to_beat_ = 1e300;  ///< alone() of another search
+  double alone_ = 0;
+  double before_lead_ = 0;  ///< cost before a law that is taken for granted; 0: none is
+};
+
+}  // namespace framewatch::estimator
