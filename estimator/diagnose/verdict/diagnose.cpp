@@ -63,7 +63,10 @@ class Diagnoser {
     withdraw_other_kind(now);
     const bool several = find_several(now);
     if (!several) name_nearest(now);
-    if (!out_.effects.empty() && !several) polish(now);
+    if (!out_.effects.empty() && !several) {
+      drop_what_takes_nothing(now);
+      polish(now);
+    }
     name_by_shape(search_.context_of(now), out_.effects);
     out_.ratio_after = search_.ratio(now);
     out_.noise_corner_hz = segments_.front().corner_hz;
@@ -84,6 +87,20 @@ class Diagnoser {
  private:
   FitResult fit(const Model& model, const std::vector<MatrixXcd>& motion, int steps) const {
     return fitter_.fit(model, motion, thorough(model, steps));
+  }
+
+  /// Effects in doubt, found beside others, without which the gap is as large go again.
+  void drop_what_takes_nothing(FitResult& now) {
+    while (out_.effects.size() > 1) {
+      const bool fits = search_.ratio(now) < 1 + chance_of(fitter_, now.model);
+      if (fits && out_.effects.back().confidence > kDoubtful) return;
+      const Model less = with_first(now.model, out_.effects, out_.effects.size() - 1, plant_);
+      if (!takes_nothing(fitter_, now.model, less, options_.parallel)) return;
+      FitResult fitted = fit_to_the_end(fitter_, less, now.motion);
+      if (!fitted.good) return;
+      out_.effects.pop_back();
+      now = std::move(fitted);
+    }
   }
 
   /// Fits everything once more, with the shape of hysteresis free.

@@ -58,7 +58,8 @@ std::vector<RecordSegment> training(const Fitter& fitter, std::size_t holdout_fr
   return {all.begin(), all.begin() + static_cast<long>(std::min(holdout_from, all.size()))};
 }
 
-/// The model without the effects from `first` on.
+}  // namespace
+
 Model with_first(const Model& model, const std::vector<FoundEffect>& effects, std::size_t first,
                  const Plant& plant) {
   Model out = model;
@@ -80,8 +81,6 @@ Model with_first(const Model& model, const std::vector<FoundEffect>& effects, st
   for (const int index : leaving) out.effects.erase(out.effects.begin() + index);
   return out;
 }
-
-}  // namespace
 
 void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out) {
   const std::size_t holdout_from = options.holdout_from;

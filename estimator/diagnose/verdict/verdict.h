@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "estimator/diagnose/fit/judged_fit.h"
@@ -18,6 +19,10 @@ bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_bef
 
 /// Marks the effects as approximate where more than noise is left, beyond chance.
 void mark_approximate(const Fitter& fitter, Diagnosis& out);
+
+/// The model without the effects from `first` on.
+Model with_first(const Model& model, const std::vector<FoundEffect>& effects, std::size_t first,
+                 const Plant& plant);
 
 /// Sets Diagnosis::before and after, and before and after of its effects in their order: gaps of
 /// models fitted to the segments before `options.holdout_from` alone, as they are judged
