@@ -67,6 +67,7 @@ void EffectSearch::run(FitResult& now) {
   if (more && out_.effects.empty()) look_ahead(now);
   if (out_.effects.empty()) search_with_free_damping(now);
   if (more) choose_laws_again(now);
+  if (by_place_) doubt_all();
   if (!out_.effects.empty()) return;
   for (RecordSegment& s : segments_) s.corner_hz = corner_hz;
   now = linear;
@@ -141,7 +142,7 @@ bool EffectSearch::explains_beside(const Trial& lead, FitResult& now) {
   }
   before_lead_ = 0;
   if (out_.effects.size() < 2 || ratio(now) - 1 > (1 - kTogether) * (before - 1)) return false;
-  for (FoundEffect& e : out_.effects) e.confidence = std::min(e.confidence, kDoubtful);
+  doubt_all();
   return true;
 }
 
@@ -162,7 +163,7 @@ bool EffectSearch::find_beside_at(const Trial& lead, FitResult& now) {
   return holds(context, bound, needed_of(fitter_, now.model), trials) && adopt_held(trials, now);
 }
 
-/// Whether the best of the trials is enough; beside a law that is taken for granted, with it.
+/// Whether the best of the trials is enough, with a law that is taken for granted.
 bool EffectSearch::holds(const TrialContext& context, double bound, double needed,
                          std::vector<Trial>& trials) {
   if (select_trial(context, bound, needed, trials)) return true;
@@ -181,8 +182,8 @@ void EffectSearch::complete(FitResult& now) {
   if (with.good && colour_noise(fitter_, segments_, with)) now = with;
   settle_damping(fitter_, std::move(with), now);
   colour_noise(fitter_, segments_, now);
-  if (segments_.front().corner_hz == 0 && by_place_hz > 0 && ratio(now) > kColoured)
-    set_corner(by_place_hz, now);
+  by_place_ = segments_.front().corner_hz == 0 && by_place_hz > 0 && ratio(now) > kColoured;
+  if (by_place_) set_corner(by_place_hz, now);
 }
 
 void EffectSearch::set_corner(double corner_hz, FitResult& now) {
@@ -199,14 +200,10 @@ void EffectSearch::colour_by_place(FitResult& now, Located& located) {
       located.places.front().ratio < kColoured || located.places.front().ratio > kMostColoured ||
       !colour_beside(fitter_, segments_, located.places.front()))
     return;
+  by_place_ = true;
   set_corner(segments_.front().corner_hz, now);
   if (out_.effects.empty()) set_linear(now);
   located = locate(fitter_, now, options_.parallel);
-}
-
-void EffectSearch::set_linear(const FitResult& now) {
-  out_.linear = now.model;
-  out_.ratio_before = ratio(now);
 }
 
 double EffectSearch::ratio(const FitResult& now) const {

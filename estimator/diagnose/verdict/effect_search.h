@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -26,7 +27,10 @@ class EffectSearch {
   void adopt(const std::vector<Trial>& trials, FitResult& now);
   /// Adds what no effect stands for: the form of the damping, and the colour of the noise.
   void complete(FitResult& now);
-  void set_linear(const FitResult& now);
+  void set_linear(const FitResult& now) {
+    out_.linear = now.model;
+    out_.ratio_before = ratio(now);
+  }
   double ratio(const FitResult& now) const;  ///< misfit over its expectation
   TrialContext context_of(const FitResult& now) const;
   /// Localisation::ratio of the likeliest place, in the last round.
@@ -37,6 +41,9 @@ class EffectSearch {
   void search_with_free_damping(FitResult& now);
   void look_ahead(FitResult& now);
   void choose_laws_again(FitResult& now);
+  void doubt_all() {
+    for (FoundEffect& e : out_.effects) e.confidence = std::min(e.confidence, kDoubtful);
+  }
   void colour_by_place(FitResult& now, Located& located);
   void set_corner(double corner_hz, FitResult& now);
   bool holds(const TrialContext& context, double bound, double needed, std::vector<Trial>& trials);
@@ -56,6 +63,7 @@ class EffectSearch {
   Diagnosis& out_;
   double to_beat_ = 1e300;  ///< alone() of another search
   double alone_ = 0;
+  bool by_place_ = false;  ///< the noise's colour is that beside a place, not what the model leaves
   double before_lead_ = 0;  ///< cost before a law that is taken for granted; 0: none is
 };
 
