@@ -1,5 +1,6 @@
 #include "estimator/diagnose/propose/law_starts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -209,6 +210,13 @@ bool has_amplitude(const ModelEffect& effect, double amplitude) {
 void set_amplitude(ModelEffect& effect, double amplitude) {
   effect.parameters[0].value = amplitude;
   if (is_contact(effect.form)) effect.parameters[2].value *= amplitude;
+}
+
+void scale_amplitude(double factor, ModelEffect& effect) {
+  if (effect.parameters.empty()) return;
+  LawParameter& size = effect.parameters[0];
+  const double value = size.logarithmic ? size.value + std::log(factor) : size.value * factor;
+  size.value = std::clamp(value, size.low, size.high);
 }
 
 std::vector<LawStarts> plain_starts(const LawScale& s) {

@@ -35,6 +35,8 @@ std::vector<LawStarts> hysteretic_starts(const LawScale& scale, bool pinching);
 bool has_amplitude(const ModelEffect& effect, double amplitude);
 /// Gives a start its amplitude, and a contact the dashpot that belongs to it.
 void set_amplitude(ModelEffect& effect, double amplitude);
+/// Multiplies the amplitude that an effect has, if it has one, within its bounds.
+void scale_amplitude(double factor, ModelEffect& effect);
 
 /// Frees the parameters that a first fit holds: exponents, unloading, losses, dashpots.
 void free_shape(ModelEffect& effect);

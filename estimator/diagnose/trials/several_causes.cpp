@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/judged_fit.h"
+#include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/name_of_fit.h"
 #include "estimator/diagnose/trials/trial_names.h"
 #include "estimator/diagnose/trials/trials.h"
@@ -67,11 +68,6 @@ std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Tria
   return out;
 }
 
-void scale(double part, LawParameter& size) {
-  const double value = size.logarithmic ? size.value + std::log(part) : size.value * part;
-  size.value = std::clamp(value, size.low, size.high);
-}
-
 /// What an effect that is added to a model begins with.
 enum class Start {
   changed,  ///< stiffnesses and dampings that change as they did with the trial
@@ -87,7 +83,7 @@ Model extended(const TrialContext& c, const Model& model, const Trial& t, Start 
   free_shapes(out);
   const double part = start == Start::little ? kLittle : 1;
   for (std::size_t e = model.effects.size(); e < out.effects.size(); ++e)
-    if (!out.effects[e].parameters.empty()) scale(part, out.effects[e].parameters[0]);
+    scale_amplitude(part, out.effects[e]);
   const auto add = [&](std::vector<int> Model::*freed, Eigen::VectorXd Model::*errors) {
     for (const int axis : t.model.*freed) {
       if (std::find((out.*freed).begin(), (out.*freed).end(), axis) != (out.*freed).end()) continue;

@@ -107,11 +107,7 @@ Model with_new(const Model& now, const Model& other, double size) {
   Model out = now;
   for (std::size_t e = now.effects.size(); e < other.effects.size(); ++e) {
     out.effects.push_back(other.effects[e]);
-    if (out.effects.back().parameters.empty()) continue;
-    LawParameter& amplitude = out.effects.back().parameters[0];
-    const double value =
-        amplitude.logarithmic ? amplitude.value + std::log(size) : size * amplitude.value;
-    amplitude.value = std::clamp(value, amplitude.low, amplitude.high);
+    scale_amplitude(size, out.effects.back());
   }
   for (const int axis : other.free_gain) out.gain[axis] = other.gain[axis];
   for (const int axis : other.free_clock) out.clock_s[axis] = other.clock_s[axis];

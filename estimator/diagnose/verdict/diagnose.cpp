@@ -89,15 +89,16 @@ class Diagnoser {
     return fitter_.fit(model, motion, thorough(model, steps));
   }
 
-  /// Effects in doubt, found beside others, without which the gap is as large go again.
+  /// Effects in doubt, found beside others, without which fit or gap are as good go again.
   void drop_what_takes_nothing(FitResult& now) {
     while (out_.effects.size() > 1) {
       const bool fits = search_.ratio(now) < 1 + chance_of(fitter_, now.model);
       if (fits && out_.effects.back().confidence > kDoubtful) return;
       const Model less = with_first(now.model, out_.effects, out_.effects.size() - 1, plant_);
-      if (!takes_nothing(fitter_, now.model, less, options_.parallel)) return;
       FitResult fitted = fit_to_the_end(fitter_, less, now.motion);
       if (!fitted.good) return;
+      const bool needless = fitted.cost < now.cost + kLeastGain;
+      if (!needless && !takes_nothing(fitter_, now.model, fitted.model, options_.parallel)) return;
       out_.effects.pop_back();
       now = std::move(fitted);
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "estimator/diagnose/locate/locate.h"
+#include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
 
 namespace framewatch::estimator {
@@ -14,6 +15,7 @@ constexpr double kNearFloor = 2.5;     ///< NRMSE over its floor
 constexpr double kAtFloor = 1.15;      ///< the same
 constexpr double kUndetermined = 1.5;  ///< gap of a model of the training records over that of all
 constexpr int kTrainSteps = 8;
+constexpr double kLittle = 0.1;      ///< of an effect's size
 constexpr std::size_t kLeading = 3;  ///< rejected laws whose free run is fitted
 constexpr int kLeadingSteps = 4;
 constexpr double kLeads = 0.9;     ///< gap with a law over the one without
@@ -112,9 +114,15 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
       std::vector<Model> starts;
       for (const Model& model : found) {
         starts.push_back(with_first(model, out.effects, i + 1, fitter.plant()));
-        // Stiffnesses that make up for what is not there yet may be a long way off.
+        // Stiffnesses that make up for what is not there yet may be a long way off, and so may what
+        // its neighbours made of an effect.
         starts.push_back(starts.back());
         starts.back().theta = out.linear.theta;
+        starts.push_back(starts.back());
+        for (std::size_t e = 0; e <= i; ++e)
+          if (out.effects[e].index >= 0)
+            scale_amplitude(kLittle,
+                            starts.back().effects[static_cast<std::size_t>(out.effects[e].index)]);
       }
       gap = mean_gap(of_train(starts), holdout_from);
     }
