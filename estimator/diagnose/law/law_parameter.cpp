@@ -9,6 +9,11 @@ double LawParameter::plain() const {
   return logarithmic ? std::exp(value) : value;
 }
 
+bool at_bound(const LawParameter& parameter) {
+  constexpr double kNear = 1e-6;
+  return parameter.value <= parameter.low + kNear || parameter.value >= parameter.high - kNear;
+}
+
 LawParameter linear_parameter(double value, double step) {
   LawParameter out;
   out.value = value;

@@ -16,6 +16,9 @@ struct LawParameter {
   double plain() const;
 };
 
+/// Whether a value has run into one of its bounds.
+bool at_bound(const LawParameter& parameter);
+
 /// Free, without bounds. step: > 0 or taken as its size.
 LawParameter linear_parameter(double value, double step);
 /// Free, fitted by its logarithm. value, low, high: > 0, as the law has them.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "estimator/diagnose/fit/judged_fit.h"
@@ -147,7 +148,28 @@ class Selection {
   }
 
   CauseSet finished(const CauseSet& s) const {
-    return judged(s.members, free_run_fit(train_, {s.model}, kJointSteps, true).model);
+    std::vector<Model> starts{s.model};
+    if (std::optional<Model> again = begun_anew(s)) starts.push_back(std::move(*again));
+    return judged(s.members, free_run_fit(train_, starts, kJointSteps, true).model);
+  }
+
+  /// The set's model where shapes that have run into their bounds are those of the trials again:
+  /// the way there leads past others. Empty where none has.
+  std::optional<Model> begun_anew(const CauseSet& s) const {
+    Model out = s.model;
+    bool any = false;
+    for (std::size_t i = 0; i < s.members.size(); ++i) {
+      const Trial& t = *tried_[s.members[i]];
+      if (is_axis_error(t.kind)) continue;
+      std::vector<LawParameter>& now = out.effects[effect_of(s, i)].parameters;
+      const std::vector<LawParameter>& then = t.model.effects.back().parameters;
+      const bool bound =
+          has_law(t) && std::any_of(now.begin() + 1, now.end(),
+                                    [](const LawParameter& k) { return k.free && at_bound(k); });
+      for (std::size_t k = 1; bound && k < now.size(); ++k) now[k].value = then[k].value;
+      any = any || bound;
+    }
+    return any ? std::optional(out) : std::nullopt;
   }
 
   /// Names that stay, and no record whose gap grows.

@@ -37,12 +37,6 @@ double highest_hz(const Fitter& fitter) {
   return out;
 }
 
-/// A parameter at its bound means that another law acts.
-bool at_bound(const LawParameter& parameter) {
-  constexpr double kNear = 1e-6;
-  return parameter.value <= parameter.low + kNear || parameter.value >= parameter.high - kNear;
-}
-
 /// A resonator that is none: its frequency lies above the band, its mass exceeds that of its frame,
 /// or its damping is at its bound or too strong for a resonance.
 bool is_no_oscillator(const TrialContext& c, const ModelEffect& effect) {
