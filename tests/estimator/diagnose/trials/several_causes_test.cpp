@@ -84,5 +84,24 @@ TEST(SeveralCauses, ACauseThatMakesAHeldOutRecordWorseIsNotChosen) {
   EXPECT_TRUE(several_causes(made.context(), tried, 1).causes.empty());
 }
 
+/// Beside other causes a law may be best that was not at its place: hysteresis of another name than
+/// the one that had a free run there.
+TEST(SeveralCauses, HysteresisThatHadNoFreeRunMayBeACause) {
+  const HandMade made(test::records_with(
+      {test::effect_of(EffectKind::bouc_wen, test::in_frame(2), {4e6, 0.004, 1, 0.5})}, {1, 2}));
+  std::vector<Trial> tried = tried_at(made, {test::in_frame(2)});
+  const auto of = [&](EffectKind kind) {
+    return *std::find_if(tried.begin(), tried.end(),
+                         [&](const Trial& t) { return t.kind == kind; });
+  };
+  Trial round = of(EffectKind::bouc_wen), sharp = of(EffectKind::bilinear_hysteresis);
+  round.outcome = TrialOutcome::screened_out;
+  EXPECT_TRUE(several_causes(made.context(), {round}, 1).causes.empty());
+  sharp.outcome = TrialOutcome::fitted;
+  const SeveralCauses several = several_causes(made.context(), {sharp, round}, 1);
+  ASSERT_EQ(several.causes.size(), 1U);
+  EXPECT_EQ(several.causes.front().trial.kind, EffectKind::bouc_wen);
+}
+
 }  // namespace several_causes_test
 }  // namespace framewatch::estimator
