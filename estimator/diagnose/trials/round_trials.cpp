@@ -107,9 +107,11 @@ std::vector<Trial> trials_of_places(const TrialContext& context, const Located& 
   return try_places(context, places);
 }
 
-std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Located& located) {
-  const auto place = std::find_if(located.places.begin(), located.places.end(), [](const auto& p) {
-    return p.candidate_places.front().place.frame >= 0;
+std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Located& located,
+                                         int frame) {
+  const auto place = std::find_if(located.places.begin(), located.places.end(), [&](const auto& p) {
+    const int own = p.candidate_places.front().place.frame;
+    return own >= 0 && (frame < 0 || own == frame);
   });
   if (place == located.places.end() || context.fitter.plant().structure.stories < 2 ||
       is_excluded(context, EffectKind::amplitude_dependence))

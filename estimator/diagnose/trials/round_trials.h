@@ -27,8 +27,10 @@ void relocate_beside(const TrialContext& context, const std::vector<FoundEffect>
 std::vector<Trial> trials_of_places(const TrialContext& context, const Located& located,
                                     bool small);
 
-/// Fits one law of all stories of the likeliest frame: that of the best place of one direction.
-std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Located& located);
+/// Fits one law of all stories of a frame. frame: -1: the likeliest, that of the best place of one
+/// direction.
+std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Located& located,
+                                         int frame);
 
 /// Fits two laws at two places, if two places explain what one does not; sets bound to theirs then.
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,

@@ -42,4 +42,12 @@ bool is_rival(const Trial& t, const Trial& best) {
          !(best.second ? is_same(t, best) : first || second);
 }
 
+int common_frame(const Trial& trial) {
+  const auto in_frame = [](const EffectPlace& p) { return p.kind == PlaceKind::frame; };
+  return trial.second && in_frame(trial.place) && in_frame(trial.second->second) &&
+                 trial.place.frame == trial.second->second.frame
+             ? trial.place.frame
+             : -1;
+}
+
 }  // namespace framewatch::estimator

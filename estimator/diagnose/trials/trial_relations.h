@@ -17,4 +17,7 @@ std::vector<Trial> without_duplicates(const std::vector<Trial>& trials);
 /// arbitrary force does as well as any law and is no rival.
 bool is_rival(const Trial& trial, const Trial& best);
 
+/// The frame in whose stories both effects of a trial are; -1: they are not in one.
+int common_frame(const Trial& trial);
+
 }  // namespace framewatch::estimator

@@ -43,11 +43,8 @@ double needed_of(const Fitter& fitter, const Model& model) {
 /// Of trials, best first, those beside which another effect may be.
 std::vector<Trial> leads_of(const std::vector<Trial>& trials) {
   std::vector<Trial> out;
-  for (const Trial& t : trials) {
-    const bool again = std::any_of(out.begin(), out.end(), [&](const Trial& o) {
-      return o.kind == t.kind && o.place == t.place;
-    });
-    if (t.outcome != TrialOutcome::fitted || t.second || again || t.fraction < kLeadTakes ||
+  for (const Trial& t : without_duplicates(trials)) {
+    if (t.outcome != TrialOutcome::fitted || t.second || t.fraction < kLeadTakes ||
         t.kind == EffectKind::unmeasured_force)
       continue;
     out.push_back(t);
@@ -250,7 +247,7 @@ std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& 
                                            std::size_t round, bool small, bool& found) {
   const RoundShares& shares = kRounds[std::min<std::size_t>(round, std::size(kRounds) - 1)];
   const Localisation& place = located.places.front();
-  const double needed = std::max(kLeastGain, kSignificant * std::sqrt(fitter_.expected(now.model)));
+  const double needed = needed_of(fitter_, now.model);
   std::vector<Trial> trials;
   double bound = std::min(now.cost, bound_of(fitter_.plant(), place));
   const bool pairs = place.ratio > kOnePlace;
@@ -268,8 +265,14 @@ std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& 
     found = holds(context, bound, needed, trials);
   }
   if (!found) {
-    append(trials, trials_of_whole_frame(context, located));
+    append(trials, trials_of_whole_frame(context, located, -1));
     found = holds(context, bound, needed, trials);
+  } else if (const int frame = common_frame(trials.front()); frame >= 0) {
+    // One cause rather than two: what holds of a whole frame is no chance in each of its stories.
+    std::vector<Trial> whole = trials_of_whole_frame(context, located, frame);
+    const bool one = holds(context, bound, needed, whole);
+    append(trials, whole);
+    if (one) std::rotate(trials.begin(), trials.end() - std::ssize(whole), trials.end());
   }
   return trials;
 }

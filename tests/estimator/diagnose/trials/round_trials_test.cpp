@@ -66,7 +66,7 @@ TEST(AWholeFrame, IsNotTriedInASingleStory) {
   HandMade made;
   Located located;
   located.places.push_back(made.recorded.freed(test::in_frame(kFrame)));
-  EXPECT_TRUE(trials_of_whole_frame(made.context(), located).empty());
+  EXPECT_TRUE(trials_of_whole_frame(made.context(), located, -1).empty());
 }
 
 }  // namespace round_trials_test

@@ -24,5 +24,19 @@ TEST(SameSpot, AForceAtTheFirstFloorIsOneOnItsFrame) {
   EXPECT_FALSE(same_spot(frame, upper));
 }
 
+TEST(CommonFrame, IsThatOfTwoStories) {
+  Trial pair;
+  pair.place = test::in_frame(2);
+  EXPECT_EQ(common_frame(pair), -1);
+  EffectPlace upper = test::in_frame(2);
+  upper.story = 2;
+  pair.second = {EffectKind::quadratic_stiffness, upper};
+  EXPECT_EQ(common_frame(pair), 2);
+  pair.second->second.frame = 3;
+  EXPECT_EQ(common_frame(pair), -1);
+  pair.second->second = test::at_node(2);
+  EXPECT_EQ(common_frame(pair), -1);
+}
+
 }  // namespace trial_relations_test
 }  // namespace framewatch::estimator
