@@ -1,6 +1,8 @@
 #include "estimator/diagnose/verdict/verdict.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "estimator/diagnose/locate/locate.h"
 #include "estimator/diagnose/propose/law_starts.h"
@@ -86,6 +88,11 @@ Model with_first(const Model& model, const std::vector<FoundEffect>& effects, st
 
 void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out) {
   const std::size_t holdout_from = options.holdout_from;
+  // Infinite where a run diverges.
+  const auto held_out = [&](const std::vector<Gap>& gaps) {
+    return gaps.size() < fitter.segments().size() ? std::numeric_limits<double>::infinity()
+                                                  : mean_gap(gaps, holdout_from);
+  };
   const std::vector<RecordSegment> seen = training(fitter, holdout_from);
   const Fitter train(fitter.plant(), seen, fitter.tolerances());
   const auto of_train = [&](const std::vector<Model>& starts) {
@@ -100,7 +107,7 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
   if (out.trained) found.push_back(*out.trained);
   out.after = of_train(found);
   const std::vector<Gap> all = gaps_of(fitter, out.model);
-  if (mean_gap(out.after, holdout_from) > kUndetermined * mean_gap(all, holdout_from)) {
+  if (held_out(out.after) > kUndetermined * held_out(all)) {
     out.after = all;
     out.after_of_all = true;
   }
@@ -124,7 +131,8 @@ void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& 
             scale_amplitude(kLittle,
                             starts.back().effects[static_cast<std::size_t>(out.effects[e].index)]);
       }
-      gap = mean_gap(of_train(starts), holdout_from);
+      const double with = held_out(of_train(starts));
+      if (std::isfinite(with)) gap = with;
     }
     effect.after = gap;
   }
@@ -186,6 +194,7 @@ bool withdraw_worse(std::size_t holdout_from, Diagnosis& out) {
   const double before = mean_gap(out.before, holdout_from),
                after = mean_gap(out.after, holdout_from);
   const bool beyond =
+      out.after.size() < out.before.size() ||  // a run diverges
       std::any_of(out.after.begin(), out.after.end(), [](const Gap& g) { return g.overall > 1; });
   const bool worse = beyond || after > kWorse * before;
   if (!worse && !is_surrogate(holdout_from, out)) return false;

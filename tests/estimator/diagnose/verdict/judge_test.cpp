@@ -177,6 +177,20 @@ TEST(Withdraw, NamesWhoseModelIsWorseThanNone) {
   EXPECT_FALSE(withdraw_worse(1, none));
 }
 
+/// The gap of a run that diverges is missing: the mean of the others once made tanh in a whole
+/// building a gap of 0 %.
+TEST(Withdraw, WhatMakesTheRunOfAnyRecordDiverge) {
+  Diagnosis d;
+  d.before.resize(2);
+  d.after.resize(1);
+  for (Gap& g : d.before) g.overall = 0.5;
+  d.after[0].overall = 0.1;
+  d.effects.emplace_back();
+  EXPECT_TRUE(withdraw_worse(1, d));
+  EXPECT_TRUE(d.effects.empty());
+  EXPECT_EQ(d.after.size(), 2U);
+}
+
 TEST(Withdraw, ALawThatLeavesMuchAndIsNotSeenToBeOfItsKind) {
   constexpr double kFloor = 0.01;
   enum class Seen { nothing, its_kind, another };
