@@ -160,6 +160,7 @@ void take_whole_delays(const Config& config, estimator::RecordSamples& samples) 
     double instants =
         estimator::whole_delay_s(axes[a].delay, config.pipeline.options.rate_hz) * samples.rate_hz;
     if (std::abs(instants - std::round(instants)) < kSameInstant) instants = std::round(instants);
+    if (instants == 0) continue;
     const auto column = samples.accel.col(static_cast<Eigen::Index>(a));
     samples.accel.col(static_cast<Eigen::Index>(a)) =
         estimator::upsampled(Eigen::VectorXd(column), 1, -instants);

@@ -73,6 +73,10 @@ double spread_of(const std::vector<NoiseCell>& cells, double corner_hz) {
   return out / static_cast<double>(cells.size());
 }
 
+void set_corner(double corner_hz, std::vector<RecordSegment>& segments) {
+  for (RecordSegment& s : segments) s.corner_hz = corner_hz;
+}
+
 bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, FitResult& now) {
   const Plant& plant = fitter.plant();
   const double misfit = now.total_misfit() / fitter.expected(now.model);
@@ -80,9 +84,6 @@ bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, Fi
   if (plant.unread.cols() > 0 || plant.equations() < 2) return false;
   if (misfit < kMisfit || misfit > kLargestMisfit) return false;
   const double earlier_hz = segments.front().corner_hz;
-  const auto set = [&](double corner_hz) {
-    for (RecordSegment& s : segments) s.corner_hz = corner_hz;
-  };
   FitResult coloured = now;
   double spread = kPerhapsNoise;
   for (int i = 0; i <= kTimes; ++i) {
@@ -92,7 +93,7 @@ bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, Fi
     spread = spread_of(cells, corner_hz);
     if (corner_hz == 0 || spread > kPerhapsNoise || i == kTimes) break;
     if (std::abs(corner_hz - segments.front().corner_hz) < kSame * corner_hz) break;
-    set(corner_hz);
+    set_corner(corner_hz, segments);
     FitResult again = fitter.fit(coloured.model, coloured.motion, thorough(now.model, kSteps));
     if (!again.good) {
       spread = kPerhapsNoise;
@@ -102,7 +103,7 @@ bool colour_noise(const Fitter& fitter, std::vector<RecordSegment>& segments, Fi
   }
   if (segments.front().corner_hz == earlier_hz) return false;
   if (spread > kLikeNoise) {
-    set(earlier_hz);
+    set_corner(earlier_hz, segments);
     return false;
   }
   now = std::move(coloured);

@@ -23,6 +23,9 @@ double likeliest_corner_hz(const std::vector<NoiseCell>& cells);
 /// lacks leaves more than noise; less is noise of unlike channels.
 double spread_of(const std::vector<NoiseCell>& cells, double corner_hz);
 
+/// Gives all segments a corner.
+void set_corner(double corner_hz, std::vector<RecordSegment>& segments);
+
 /// Where noise that grows toward low frequencies (RecordSegment::corner_hz) is all that a fit
 /// leaves, alike in all equations and smooth over frequency: gives it to the segments, which are
 /// those of the fitter, and fits again. Whether it did so.

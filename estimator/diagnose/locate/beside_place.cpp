@@ -75,9 +75,6 @@ double corner_of_most(std::vector<NoiseCell>& cells) {
 bool colour_beside(const Fitter& fitter, std::vector<RecordSegment>& segments,
                    const Localisation& place) {
   const double before_hz = segments.front().corner_hz;
-  const auto set = [&](double corner_hz) {
-    for (RecordSegment& s : segments) s.corner_hz = corner_hz;
-  };
   Localisation now = place;
   double spread = 0;
   for (int i = 0; i <= kTimesBeside; ++i) {
@@ -87,10 +84,10 @@ bool colour_beside(const Fitter& fitter, std::vector<RecordSegment>& segments,
     spread = spread_of(cells, corner_hz);
     if (i == kTimesBeside || corner_hz == 0) break;
     if (std::abs(corner_hz - segments.front().corner_hz) < kSameCorner * corner_hz) break;
-    set(corner_hz);
+    set_corner(corner_hz, segments);
     now = localise(fitter, now.model, now.motion, now.candidate_places, kStepsBeside);
   }
-  if (spread > kNoiseBeside) set(before_hz);
+  if (spread > kNoiseBeside) set_corner(before_hz, segments);
   return segments.front().corner_hz != before_hz;
 }
 

@@ -66,7 +66,7 @@ void EffectSearch::run(FitResult& now) {
   if (more) choose_laws_again(now);
   if (by_place_) doubt_all();
   if (!out_.effects.empty()) return;
-  for (RecordSegment& s : segments_) s.corner_hz = corner_hz;
+  set_corner(corner_hz, segments_);
   now = linear;
   set_linear(now);
 }
@@ -118,7 +118,7 @@ void EffectSearch::look_ahead(FitResult& now) {
     }
     out_ = before;
     alone_ = alone;
-    for (RecordSegment& s : segments_) s.corner_hz = corner_hz;
+    set_corner(corner_hz, segments_);
   }
 }
 
@@ -173,18 +173,18 @@ bool EffectSearch::holds(const TrialContext& context, double bound, double neede
 
 void EffectSearch::complete(FitResult& now) {
   const double by_place_hz = segments_.front().corner_hz;
-  if (by_place_hz > 0) set_corner(0, now);
+  if (by_place_hz > 0) fit_with_corner(0, now);
   FitResult with = with_free_damping(fitter_, now);
   if (with.good && out_.effects.empty() && one_damper_does(context_of(now), with)) with = now;
   if (with.good && colour_noise(fitter_, segments_, with)) now = with;
   settle_damping(fitter_, std::move(with), now);
   colour_noise(fitter_, segments_, now);
   by_place_ = segments_.front().corner_hz == 0 && by_place_hz > 0 && ratio(now) > kColoured;
-  if (by_place_) set_corner(by_place_hz, now);
+  if (by_place_) fit_with_corner(by_place_hz, now);
 }
 
-void EffectSearch::set_corner(double corner_hz, FitResult& now) {
-  for (RecordSegment& s : segments_) s.corner_hz = corner_hz;
+void EffectSearch::fit_with_corner(double corner_hz, FitResult& now) {
+  set_corner(corner_hz, segments_);
   const FitResult again = fitter_.fit(now.model, now.motion, thorough(now.model, kStepsBack));
   if (again.good) now = again;
 }
@@ -198,7 +198,7 @@ void EffectSearch::colour_by_place(FitResult& now, Located& located) {
       !colour_beside(fitter_, segments_, located.places.front()))
     return;
   by_place_ = true;
-  set_corner(segments_.front().corner_hz, now);
+  fit_with_corner(segments_.front().corner_hz, now);
   if (out_.effects.empty()) set_linear(now);
   located = locate(fitter_, now, options_.parallel);
 }

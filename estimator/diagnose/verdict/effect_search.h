@@ -45,7 +45,7 @@ class EffectSearch {
     for (FoundEffect& e : out_.effects) e.confidence = std::min(e.confidence, kDoubtful);
   }
   void colour_by_place(FitResult& now, Located& located);
-  void set_corner(double corner_hz, FitResult& now);
+  void fit_with_corner(double corner_hz, FitResult& now);
   bool holds(const TrialContext& context, double bound, double needed, std::vector<Trial>& trials);
   bool find_beside_at(const Trial& lead, FitResult& now);
   bool explains_beside(const Trial& lead, FitResult& now);
