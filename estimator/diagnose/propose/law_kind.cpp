@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "estimator/diagnose/propose/scalar_fit.h"
@@ -127,6 +128,14 @@ Columns times(const NeededSignal& n) {
   return out;
 }
 
+/// Indices of the linear columns, then of some behind them.
+std::vector<Index> with_linear(Index linear, const std::vector<Index>& others) {
+  std::vector<Index> out(static_cast<std::size_t>(linear));
+  std::iota(out.begin(), out.end(), Index{0});
+  for (const Index other : others) out.push_back(linear + other);
+  return out;
+}
+
 class KindSearch {
  public:
   KindSearch(const Fitter& fitter, const std::vector<NeededSignal>& needed)
@@ -195,7 +204,9 @@ class KindSearch {
   /// The same beside springs with dashpots that push beyond the best clearance, to both sides or
   /// one.
   double rest_of_clearance() const {
-    const std::vector<Index> sides[] = {{0, 1, 2}, {0, 1, 3}, {0, 1, 2, 3}};
+    const Index linear = needed_.front().has_mass ? 3 : 2;
+    const std::vector<Index> sides[] = {with_linear(linear, {0}), with_linear(linear, {1}),
+                                        with_linear(linear, {0, 1})};
     double best = rest([](const NeededSignal&) { return Columns(); }, false);
     for (const double dashpot : {0.0, 0.1, 0.3, 1.0, 3.0})
       for (int i = 1; i <= kClearances; ++i) {
@@ -205,7 +216,7 @@ class KindSearch {
         for (const std::vector<Index>& kept : sides) {
           const ScalarFit fit =
               ScalarSums{all.normal(kept, kept), all.right(kept), all.total}.fit();
-          const auto springs = static_cast<Index>(kept.size()) - 2;
+          const auto springs = static_cast<Index>(kept.size()) - linear;
           if (fit.coefficients.tail(springs).minCoeff() > 0) best = std::min(best, fit.misfit);
         }
       }
@@ -310,6 +321,11 @@ bool is_of_kind(EffectKind law, LawKind kind) {
     default:
       return false;
   }
+}
+
+bool follows_motion(LawKind kind) {
+  return kind == LawKind::elastic || kind == LawKind::impact || kind == LawKind::dissipative ||
+         kind == LawKind::hysteretic;
 }
 
 KindOfLaw kind_of_law(const Fitter& fitter, const std::vector<NeededSignal>& needed) {

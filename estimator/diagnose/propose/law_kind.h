@@ -22,6 +22,9 @@ enum class LawKind {
 
 const char* law_kind_word(LawKind kind);
 
+/// Whether a force of a kind is a function of the motion and its past.
+bool follows_motion(LawKind kind);
+
 /// Whether a law of the catalogue is of a kind. Friction is of two: it acts against the rate, and
 /// remembers where it stuck. So is amplitude dependence, which may be slip.
 bool is_of_kind(EffectKind law, LawKind kind);
@@ -49,8 +52,8 @@ struct KindOfLaw {
 /// widths: Prandtl 1928, Masri and Caughey 1979, which may fade with what was before; springs slack
 /// up to where they have been), of deformation with a stiffness that varies in time, and springs
 /// and dashpots beyond the best clearance, which count as impact where powers do worse. The
-/// simplest of those that explain about as much as the best. needed: of an element or between
-/// floors, with its motion.
+/// simplest of those that explain about as much as the best. needed: of an element, or of a
+/// floor with its motion (set_motion_of_floor()).
 KindOfLaw kind_of_law(const Fitter& fitter, const std::vector<NeededSignal>& needed);
 
 }  // namespace framewatch::estimator

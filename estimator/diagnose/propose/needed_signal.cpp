@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/measured_deformation.h"
+#include "estimator/diagnose/model/law_port.h"
 #include "estimator/numeric/complex.h"
 
 namespace framewatch::estimator {
@@ -61,6 +62,18 @@ MatrixXd ends_of(const Whitened& system, const RecordSegment& s,
   return orthonormal(std::move(out));
 }
 
+void set_deformation(const Fitter& fitter, const Localisation& place,
+                     const Eigen::RowVectorXd& sense, std::size_t record, NeededSignal& out) {
+  const RecordSegment& s = fitter.segments()[record];
+  const MatrixXcd& motion = place.motion[record];
+  const VectorXcd q = (sense * motion).transpose();
+  out.d = -q.array() / s.w.array().square();
+  MeasuredDeformation m =
+      measured_deformation(fitter.plant(), s, sense, motion, fitter.ratio(record));
+  out.d_t = std::move(m.d);
+  out.v_t = std::move(m.v);
+}
+
 }  // namespace
 
 VectorXcd NeededSignal::without_ends(const VectorXcd& signal) const {
@@ -105,18 +118,23 @@ std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisatio
       along[at] = u;
     }
     one.ends = ends_of(system, s, along, one.weight);
-    if (candidate.kind == CandidatePlace::Kind::element) {
-      const Eigen::RowVectorXd sense = plant.building.sense.row(candidate.element);
-      const VectorXcd q = (sense * place.motion[r]).transpose();
-      one.d = -q.array() / s.w.array().square();
-      MeasuredDeformation m =
-          measured_deformation(plant, s, sense, place.motion[r], fitter.ratio(r));
-      one.d_t = std::move(m.d);
-      one.v_t = std::move(m.v);
-    }
+    if (candidate.kind == CandidatePlace::Kind::element)
+      set_deformation(fitter, place, plant.building.sense.row(candidate.element), r, one);
     out.push_back(std::move(one));
   }
   return out;
+}
+
+void set_motion_of_floor(const Fitter& fitter, const Localisation& place,
+                         std::vector<NeededSignal>& needed) {
+  ModelEffect contact;
+  contact.place = place.candidate_places.front().place;
+  contact.place.kind = PlaceKind::node_pair;
+  const LawPort port = law_ports(fitter.plant(), place.model, contact).front();
+  for (std::size_t r = 0; r < needed.size(); ++r) {
+    set_deformation(fitter, place, port.sense, r, needed[r]);
+    needed[r].has_mass = true;
+  }
 }
 
 Band fit_band(const Fitter& fitter) {
@@ -125,7 +143,9 @@ Band fit_band(const Fitter& fitter) {
 }
 
 std::vector<VectorXcd> linear_columns(const NeededSignal& needed, const VectorXd& w) {
-  return {needed.d, needed.d.array() * w.array() * kJ};
+  std::vector<VectorXcd> out{needed.d, needed.d.array() * w.array() * kJ};
+  if (needed.has_mass) out.emplace_back(needed.d.array() * w.array().square());
+  return out;
 }
 
 std::vector<VectorXcd> columns_with(const ModelEffect& effect, const Fitter& fitter,

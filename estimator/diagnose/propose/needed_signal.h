@@ -15,6 +15,7 @@ struct NeededSignal {
   Eigen::VectorXd weight;    ///< 1 / variance of it
   Eigen::VectorXcd d;        ///< deformation of the element, m, per bin; empty: not an element
   Eigen::VectorXd d_t, v_t;  ///< deformation and its rate in time, Fitter::ratio() steps a sample
+  bool has_mass = false;     ///< of a floor: a mass there is linear too
   /// What motion beyond the segment's ends can add to the force (Weights): an orthonormal basis of
   /// real parts, then imaginary parts, times the roots of the weights. Empty: nothing.
   Eigen::MatrixXd ends;
@@ -26,10 +27,16 @@ struct NeededSignal {
 /// The signal that the first place of a localisation needs in every record.
 std::vector<NeededSignal> needed_signals(const Fitter& fitter, const Localisation& place);
 
+/// Gives what a floor (a node in one direction, or two) needs the deformation of a contact there:
+/// over the ground, or over the lower floor.
+void set_motion_of_floor(const Fitter& fitter, const Localisation& place,
+                         std::vector<NeededSignal>& needed);
+
 /// The band of a fit, that of its first record.
 Band fit_band(const Fitter& fitter);
 
-/// Forces of a linear spring and a linear dashpot of unit size under the needed deformation.
+/// Forces of a linear spring and a linear dashpot of unit size under the needed deformation, and
+/// with has_mass of a mass.
 /// w: rad/s of the bins.
 std::vector<Eigen::VectorXcd> linear_columns(const NeededSignal& needed, const Eigen::VectorXd& w);
 

@@ -132,12 +132,6 @@ bool follows_motion(const RecordSegment& s, const NeededSignal& needed, int rati
   return linear - curved > share * std::max(linear - noise, 0.0) + noise;
 }
 
-/// Whether a force is a function of the element's motion and its past, whatever its law.
-bool is_of_motion(LawKind kind) {
-  return kind == LawKind::elastic || kind == LawKind::impact || kind == LawKind::dissipative ||
-         kind == LawKind::hysteretic;
-}
-
 }  // namespace
 
 void add_node_proposals(const Fitter& fitter, const Localisation& place,
@@ -152,7 +146,7 @@ void add_node_proposals(const Fitter& fitter, const Localisation& place,
     const double share = at_rest < kAsMuch ? kFollows : kMostly;
     if (follows_motion(s, needed[r], fitter.ratio(r), share)) return;
   }
-  if (needed.front().d_t.size() > 0 && is_of_motion(kind_of_law(fitter, needed).kind)) return;
+  if (needed.front().d_t.size() > 0 && follows_motion(kind_of_law(fitter, needed).kind)) return;
   ModelEffect e;
   e.form = LawForm::broadband;
   e.place = node;

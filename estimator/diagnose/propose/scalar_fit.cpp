@@ -57,7 +57,10 @@ VectorXcd beyond_linear(const RecordSegment& s, const NeededSignal& needed) {
   if (needed.d.size() == 0) return needed.without_ends(needed.force);
   const std::vector<VectorXcd> columns = linear_columns(needed, s.w);
   const VectorXd fit = scalar_fit({needed}, {columns}).coefficients;
-  return needed.without_ends(needed.force - fit[0] * columns[0] - fit[1] * columns[1]);
+  VectorXcd rest = needed.force;
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    rest -= fit[static_cast<Eigen::Index>(c)] * columns[c];
+  return needed.without_ends(rest);
 }
 
 }  // namespace framewatch::estimator

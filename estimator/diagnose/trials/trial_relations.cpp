@@ -10,9 +10,16 @@ bool is_same(const Trial& a, const Trial& b) {
   return a.kind == b.kind && a.place == b.place && a.second == b.second;
 }
 
+/// A floor against the ground is the floor.
+EffectPlace as_node(EffectPlace place) {
+  if (place.kind == PlaceKind::node_pair && place.to_story == 0) place.kind = PlaceKind::node;
+  return place;
+}
+
 }  // namespace
 
-bool same_spot(const EffectPlace& a, const EffectPlace& b) {
+bool same_spot(const EffectPlace& first, const EffectPlace& second) {
+  const EffectPlace a = as_node(first), b = as_node(second);
   if (a == b) return true;
   for (const auto& [whole, part] : {std::pair(a, b), std::pair(b, a)})
     if (whole.kind == PlaceKind::whole_frame && part.kind == PlaceKind::frame)

@@ -7,7 +7,8 @@
 namespace framewatch::estimator {
 
 /// Whether two places are one to the equations: a force on the lowest story of a frame is one at
-/// its floor, and a story of a frame is part of the whole frame.
+/// its floor, one between a floor and the ground is one at that floor, and a story of a frame is
+/// part of the whole frame.
 bool same_spot(const EffectPlace& a, const EffectPlace& b);
 
 /// The first trial of every name and place; the others came from other start values.

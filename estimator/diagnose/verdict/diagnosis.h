@@ -26,7 +26,7 @@ struct WhereEntry {
   std::size_t record = 0;
   double from_s = 0, to_s = 0, low_hz = 0, high_hz = 0;
   double peak = 0;                ///< of that signal: N, of an axis m/s^2
-  std::optional<KindOfLaw> kind;  ///< of the likeliest element
+  std::optional<KindOfLaw> kind;  ///< of the likeliest element, and of a floor that needs a law
 };
 
 /// The best of the laws that were tried and not named: the free run with it, fitted to the training

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "estimator/diagnose/propose/needed_signal.h"
+#include "estimator/diagnose/trials/round_trials.h"
 
 namespace framewatch::estimator {
 namespace {
@@ -28,10 +29,28 @@ std::pair<Index, Index> middle(const VectorXd& energy) {
   return {first, last};
 }
 
+/// Whether it is a floor in one direction, or one against another, at which a contact may act.
+bool is_floor(const Localisation& place) {
+  const CandidatePlace& at = place.candidate_places.front();
+  const bool floor =
+      at.kind == CandidatePlace::Kind::node || at.kind == CandidatePlace::Kind::link;
+  return floor && at.size() == 1 && at.place.story >= 2;
+}
+
+/// Of an element what sort of force it needs; of a floor, where anything may act, one that follows
+/// its motion.
+std::optional<KindOfLaw> kind_at(const Fitter& fitter, const Localisation& place,
+                                 std::vector<NeededSignal> needed) {
+  if (is_floor(place)) set_motion_of_floor(fitter, place, needed);
+  KindOfLaw kind = kind_of_law(fitter, needed);
+  if (is_floor(place) && !follows_motion(kind.kind)) return {};
+  return kind;
+}
+
 void describe_signal(const Fitter& fitter, const Localisation& place, bool kind,
                      WhereEntry& entry) {
   const std::vector<NeededSignal> needed = needed_signals(fitter, place);
-  if (kind) entry.kind = kind_of_law(fitter, needed);
+  if (kind) entry.kind = kind_at(fitter, place, needed);
   double most = -1;
   for (std::size_t r = 0; r < needed.size(); ++r) {
     // Without the noise of the needed signal.
@@ -56,16 +75,17 @@ void describe_signal(const Fitter& fitter, const Localisation& place, bool kind,
 
 std::vector<WhereEntry> where_of(const Fitter& fitter, const std::vector<Localisation>& places) {
   std::vector<WhereEntry> out;
-  bool kind = false;
+  bool element = false, floor = false;
   for (const Localisation& place : places) {
     WhereEntry entry;
     entry.place = place.candidate_places.front().place;
     entry.ratio = place.ratio;
-    const bool first_element =
-        !kind && place.candidate_places.front().kind == CandidatePlace::Kind::element;
+    const bool first_element = !element && is_element(place);
+    const bool first_floor = !floor && is_floor(place);
     if (out.size() < kDescribed) {
-      describe_signal(fitter, place, first_element, entry);
-      kind = kind || first_element;
+      describe_signal(fitter, place, first_element || first_floor, entry);
+      element |= first_element;
+      floor |= first_floor;
     }
     out.push_back(entry);
   }

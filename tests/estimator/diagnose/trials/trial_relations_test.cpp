@@ -24,6 +24,16 @@ TEST(SameSpot, AForceAtTheFirstFloorIsOneOnItsFrame) {
   EXPECT_FALSE(same_spot(frame, upper));
 }
 
+TEST(SameSpot, AStopBetweenAFloorAndTheGroundIsAtTheFloor) {
+  EffectPlace floor = test::at_node(1), stop;
+  floor.story = 3;
+  stop = floor;
+  stop.kind = PlaceKind::node_pair;
+  EXPECT_TRUE(same_spot(stop, floor));
+  stop.to_story = 1;
+  EXPECT_FALSE(same_spot(stop, floor));
+}
+
 TEST(CommonFrame, IsThatOfTwoStories) {
   Trial pair;
   pair.place = test::in_frame(2);

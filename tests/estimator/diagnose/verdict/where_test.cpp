@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include <gtest/gtest.h>
 
 #include "tests/estimator/diagnose/hidden_effect.h"
+#include "tests/estimator/diagnose/other_buildings.h"
 
 namespace framewatch::estimator {
 namespace where_test {
@@ -81,6 +83,34 @@ TEST(Where, OnlyTheLikeliestPlacesAreDescribed) {
     EXPECT_EQ(where[i].place, places[i].candidate_places.front().place);
     EXPECT_EQ(where[i].peak > 0, i < kDescribed) << i;
   }
+}
+
+/// What the upper floor of two needs along the first frame, beside an effect there.
+WhereEntry of_upper_floor(EffectKind kind, PlaceKind at, std::initializer_list<double> values) {
+  const test::Small small = test::tower(2);
+  EffectPlace place = test::at_node(0);
+  place.story = 2;
+  const EffectPlace node = place;
+  place.kind = at;
+  const Plant plant = small.plant();
+  const auto segments = small.segments({small.record({test::effect_of(kind, place, values)}, 1)});
+  const Fitter fitter(plant, segments, {});
+  const Model start = fitter.fit(initial_model(plant), {}, {}).model;
+  for (const CandidatePlace& candidate : candidate_places_of(plant, start))
+    if (candidate.place == node)
+      return where_of(fitter, {localise(fitter, start, {}, {candidate}, 6)}).front();
+  return {};
+}
+
+TEST(Where, AFloorNeedsASortOfForceWhereItFollowsItsMotion) {
+  const WhereEntry stop =
+      of_upper_floor(EffectKind::one_sided_gap, PlaceKind::node_pair, {2e7, 0.01, 1, 0});
+  ASSERT_TRUE(stop.kind);
+  EXPECT_STREQ(law_kind_word(stop.kind->kind), "impact");
+  const WhereEntry oscillator =
+      of_upper_floor(EffectKind::tuned_mass_damper, PlaceKind::node, {2000, 2.1, 0.05});
+  ASSERT_GT(oscillator.peak, 0);
+  EXPECT_FALSE(oscillator.kind) << "has a motion of its own";
 }
 
 }  // namespace where_test
