@@ -32,8 +32,7 @@ std::pair<Index, Index> middle(const VectorXd& energy) {
 /// Whether it is a floor in one direction, or one against another, at which a contact may act.
 bool is_floor(const Localisation& place) {
   const CandidatePlace& at = place.candidate_places.front();
-  const bool floor =
-      at.kind == CandidatePlace::Kind::node || at.kind == CandidatePlace::Kind::link;
+  const bool floor = at.kind == CandidatePlace::Kind::node || at.kind == CandidatePlace::Kind::link;
   return floor && at.size() == 1 && at.place.story >= 2;
 }
 
