@@ -1,5 +1,6 @@
 #include "estimator/diagnose/fit/free_run_start.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,22 +10,46 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kStiffer[] = {1, 1.6, 2.5, 4}, kNarrower[] = {1, 0.9, 0.8};
-constexpr double kForces[] = {0.02, 0.04, 0.08, 0.16, 0.3, 0.6};  ///< of the spring's largest
+/// Forces of friction that are tried, of the spring's largest.
+constexpr double kLeastForce = 0.02, kNextForce = M_SQRT2;
+constexpr std::size_t kForces = 14, kStarts = 2;
 constexpr double kSticks = 3e-3;  ///< of the largest rate: below it friction holds
-constexpr double kFits = 1.5;     ///< misfit over the expected, below which a fit is a good start
+constexpr double kSmoother = 3;
+constexpr double kFits = 1.5;  ///< misfit over the expected, below which a fit is a good start
 
 bool ends_with_clearance(const Model& model) {
   return !model.effects.empty() && is_contact(model.effects.back().form);
 }
 
-/// Keeps the better of a fit and of a model's free run as it is.
-void take_better(FitResult& best, const Fitter& fitter, const Model& model,
-                 const std::vector<Eigen::MatrixXcd>& motion) {
+/// A model's free run, not fitted.
+FitResult as_it_runs(const Fitter& fitter, const Model& model,
+                     const std::vector<Eigen::MatrixXcd>& motion) {
   FitOptions run;
   run.forcing = forcing_of(model);
   run.max_steps = 0;
-  FitResult started = fitter.fit(model, motion, run);
-  if (started.good && (!best.good || started.cost < best.cost)) best = std::move(started);
+  return fitter.fit(model, motion, run);
+}
+
+bool is_better(const FitResult& a, const FitResult& b) {
+  return a.good && (!b.good || a.cost < b.cost);
+}
+
+/// Friction between the forces that were tried, and as smooth as comes nearest: from a force that
+/// is too large no step leads down, since it holds.
+FitResult closer(const Fitter& fitter, FitResult best) {
+  const auto try_with = [&](double force, double smoothness) {
+    Model model = best.model;
+    std::vector<LawParameter>& parameters = model.effects.back().parameters;
+    parameters[FrictionIndex::fc].value *= force;
+    parameters[FrictionIndex::v0].value += std::log(smoothness);
+    return as_it_runs(fitter, model, {});
+  };
+  for (const double step : {std::sqrt(kNextForce), std::sqrt(std::sqrt(kNextForce))})
+    for (FitResult& run : std::vector{try_with(1 / step, 1), try_with(step, 1)})
+      if (is_better(run, best)) best = std::move(run);
+  for (FitResult& run : std::vector{try_with(1, 1 / kSmoother), try_with(1, kSmoother)})
+    if (is_better(run, best)) best = std::move(run);
+  return best;
 }
 
 /// Mean factor of the design that the frames of a model have, but one.
@@ -51,12 +76,13 @@ FitResult free_run_start(const Fitter& fitter, FitResult fit) {
       std::vector<LawParameter>& parameters = model.effects.back().parameters;
       parameters[0].value *= stiffer;
       parameters[1].value += std::log(narrower);
-      take_better(best, fitter, model, fit.motion);
+      FitResult run = as_it_runs(fitter, model, fit.motion);
+      if (is_better(run, best)) best = std::move(run);
     }
   return best.good ? best : fit;
 }
 
-FitResult friction_start(const Fitter& fitter, const Model& from) {
+std::vector<FitResult> friction_starts(const Fitter& fitter, const Model& from) {
   const Plant& plant = fitter.plant();
   Model model = from;
   ModelEffect& friction = model.effects.back();
@@ -64,14 +90,22 @@ FitResult friction_start(const Fitter& fitter, const Model& from) {
   const double factor = mean_factor(plant, model, element);
   for (const Eigen::Index i : {Eigen::Index(element), element + plant.element_count()})
     model.theta[i] = factor * plant.design[i];
-  FitResult best;
   friction.parameters[FrictionIndex::v0].value = std::log(kSticks * friction.rate);
-  for (const double share : kForces) {
-    friction.parameters[FrictionIndex::fc].value =
-        share * model.theta[element] * friction.deformation;
-    take_better(best, fitter, model, {});
+  friction.parameters[FrictionIndex::fc].value =
+      kLeastForce * model.theta[element] * friction.deformation;
+  std::vector<FitResult> tried;
+  for (std::size_t i = 0; i < kForces; ++i) {
+    tried.push_back(as_it_runs(fitter, model, {}));
+    friction.parameters[FrictionIndex::fc].value *= kNextForce;
   }
-  return best;
+  std::vector<FitResult> out;
+  for (std::size_t i = 0; i < kForces; ++i)
+    if (tried[i].good && (i == 0 || is_better(tried[i], tried[i - 1])) &&
+        (i + 1 == kForces || is_better(tried[i], tried[i + 1])))
+      out.push_back(closer(fitter, tried[i]));
+  std::stable_sort(out.begin(), out.end(), is_better);
+  if (out.size() > kStarts) out.resize(kStarts);
+  return out;
 }
 
 }  // namespace framewatch::estimator

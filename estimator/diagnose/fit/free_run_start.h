@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "estimator/diagnose/fit/fit.h"
 
 namespace framewatch::estimator {
@@ -11,9 +13,9 @@ namespace framewatch::estimator {
 FitResult free_run_start(const Fitter& fitter, FitResult fit);
 
 /// Start values for the free run of friction that sticks so long that measured, noisy motion says
-/// little of its force. `model` ends with it, the building is as its place left it. The best of
-/// forces from .02 to .6 of the spring's at its largest deformation; not good where none can be
-/// computed.
-FitResult friction_start(const Fitter& fitter, const Model& model);
+/// little of its force. `model` ends with it, the building is as its place left it. Of forces from
+/// .02 to 1.8 of the spring's at its largest deformation those that come nearer than their
+/// neighbours, two at most, best first.
+std::vector<FitResult> friction_starts(const Fitter& fitter, const Model& model);
 
 }  // namespace framewatch::estimator

@@ -84,22 +84,40 @@ std::vector<Fitted> worth_a_free_run(const TrialContext& c, std::vector<Fitted> 
   return out;
 }
 
-/// Friction of elements, begun anew.
-void begin_friction_anew(const TrialContext& c, const std::vector<Fitted>& kept,
-                         std::vector<FitResult>& runs) {
-  run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
+bool ends_with_friction(const Model& model) {
+  return !model.effects.empty() && model.effects.back().form == LawForm::friction;
+}
+
+/// Friction of elements, begun anew, whatever measured motion made of it.
+void begin_friction_anew(const TrialContext& c, const std::vector<Candidate>& candidates,
+                         std::vector<Fitted>& kept, std::vector<FitResult>& runs) {
+  std::vector<Fitted> anew(candidates.size());
+  run_all(c.parallel, static_cast<int>(candidates.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
-    const Candidate& candidate = *kept[at].candidate;
-    if (candidate.second || candidate.model.effects.empty() ||
-        candidate.model.effects.back().form != LawForm::friction)
-      return;
-    const FitResult from = friction_start(c.fitter, candidate.model);
-    if (!from.good) return;
-    FitOptions options = full_fit(from.model);
-    options.max_steps = kFromFarSteps;
-    FitResult run = c.fitter.fit(from.model, from.motion, options);
-    if (run.good && (!runs[at].good || run.cost < runs[at].cost)) runs[at] = std::move(run);
+    const Candidate& candidate = candidates[at];
+    if (candidate.second || !ends_with_friction(candidate.model)) return;
+    anew[at].candidate = &candidate;
+    for (const FitResult& from : friction_starts(c.fitter, candidate.model)) {
+      FitOptions options = full_fit(from.model);
+      options.max_steps = kFromFarSteps;
+      FitResult run = c.fitter.fit(from.model, from.motion, options);
+      if (run.good && (!anew[at].fit.good || run.cost < anew[at].fit.cost))
+        anew[at].fit = std::move(run);
+    }
   });
+  for (Fitted& f : anew) {
+    if (!f.fit.good) continue;
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const Fitted& other) {
+      return other.candidate == f.candidate;
+    });
+    const auto at = static_cast<std::size_t>(same - kept.begin());
+    if (same == kept.end()) {
+      runs.push_back(f.fit);
+      kept.push_back(std::move(f));
+    } else if (!runs[at].good || f.fit.cost < runs[at].cost) {
+      runs[at] = std::move(f.fit);
+    }
+  }
 }
 
 /// A model with the effects and the freed readings that another has beyond it, of a size.
@@ -166,9 +184,6 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   std::vector<Trial> trials;
   std::vector<Fitted> kept = worth_a_free_run(c, std::move(first), trials);
   std::vector<FitResult> runs(kept.size());
-  std::vector<Trial> out;
-  for (const Fitted& f : kept)
-    out.push_back(trial_of(c, *f.candidate, f.fit, TrialOutcome::diverged));
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     const FitResult from = free_run_start(c.fitter, kept[at].fit);
@@ -178,7 +193,7 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
     runs[at] = c.fitter.fit(from.model, from.motion, options);
   });
   if (!c.fitter.plant().is_large() && least_cost(c, runs) > kNothingFound * c.now.cost)
-    begin_friction_anew(c, kept, runs);
+    begin_friction_anew(c, candidates, kept, runs);
   const double least = least_cost(c, runs);
   run_all(c.parallel, static_cast<int>(kept.size()), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
@@ -189,11 +204,12 @@ std::vector<Trial> fit_all(const TrialContext& c, const std::vector<Candidate>& 
   });
   begin_beside_laws(c, kept, runs);
   for (std::size_t at = 0; at < kept.size(); ++at) {
-    if (!runs[at].good) continue;
-    Trial& t = out[at] = trial_of(c, *kept[at].candidate, runs[at], TrialOutcome::fitted);
-    if (!may_be_named(c, t)) t.outcome = TrialOutcome::other_law;
+    const Fitted& f = kept[at];
+    const bool good = runs[at].good;
+    trials.push_back(trial_of(c, *f.candidate, good ? runs[at] : f.fit,
+                              good ? TrialOutcome::fitted : TrialOutcome::diverged));
+    if (good && !may_be_named(c, trials.back())) trials.back().outcome = TrialOutcome::other_law;
   }
-  append(trials, std::move(out));
   return trials;
 }
 
@@ -263,13 +279,17 @@ std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisat
   for (std::size_t i = 0; i < places.size(); ++i) {
     const bool axis = places[i].candidate_places.front().kind == CandidatePlace::Kind::axis;
     std::size_t count = 0;
+    bool friction = false;
     for (const Proposal& p : proposals[i]) {
       if (wanted && !wanted(p.kind)) continue;
       // A family of laws with several names is judged by the name that its fit has.
       if (is_excluded(c, p.kind) && p.kind != EffectKind::cubic_stiffness &&
           p.kind != EffectKind::bilinear_hysteresis && p.kind != EffectKind::bouc_wen)
         continue;
-      if (!axis && count++ >= kLawsFitted) break;
+      // What measured motion makes of friction that sticks is no reason to leave it out.
+      const bool first_friction = !friction && ends_with_friction(p.model);
+      friction |= first_friction;
+      if (!axis && count++ >= kLawsFitted && !first_friction) continue;
       candidates.push_back({p.model, places[i].motion, p.kind, p.place, {}, i, kFirstSteps});
     }
   }

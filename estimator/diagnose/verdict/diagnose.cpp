@@ -8,6 +8,7 @@
 
 #include "estimator/diagnose/fit/judged_fit.h"
 #include "estimator/diagnose/fit/model_error.h"
+#include "estimator/diagnose/fit/noise_colour.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/trials/declared.h"
 #include "estimator/diagnose/trials/known_effects.h"
@@ -29,6 +30,7 @@ namespace {
 using Eigen::MatrixXcd;
 
 constexpr int kPolishSteps = 6, kBackSteps = 8;
+constexpr double kMostGone = 0.1;  ///< of the misfit beyond noise, that is left
 
 class Diagnoser {
  public:
@@ -61,8 +63,8 @@ class Diagnoser {
     search_.run(now);
     progress_.begin("what stays", 0.75, 0.8);
     withdraw_other_kind(now);
-    const bool several = find_several(now);
-    if (!several) name_nearest(now);
+    const bool several = find_several(now) && !find_beside_several(now);
+    if (out_.effects.empty()) name_nearest(now);
     if (!out_.effects.empty() && !several) {
       drop_what_takes_nothing(now);
       polish(now);
@@ -168,6 +170,27 @@ class Diagnoser {
     }
     out_.trained = std::move(several.model);
     now = together;
+    return true;
+  }
+
+  /// Causes that take most of the misfit let the place of another show itself.
+  bool find_beside_several(FitResult& now) {
+    if (plant_.is_large() || search_.ratio(now) - 1 > kMostGone * (out_.ratio_before - 1))
+      return false;
+    const Diagnosis before = out_;
+    const double corner_hz = segments_.front().corner_hz;
+    FitResult with = fit_to_the_end(fitter_, now.model, now.motion);
+    if (!with.good) return false;
+    search_.complete(with);
+    search_.rounds(with, out_.effects.size());
+    if (out_.effects.size() <= before.effects.size()) {
+      out_ = before;
+      set_corner(corner_hz, segments_);
+      return false;
+    }
+    for (FoundEffect& e : out_.effects) e.confidence = kDoubtful;
+    out_.trained.reset();
+    now = std::move(with);
     return true;
   }
 

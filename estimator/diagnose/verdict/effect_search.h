@@ -23,6 +23,8 @@ class EffectSearch {
 
   /// Until nothing more is found. now: the model that is extended.
   void run(FitResult& now);
+  /// What else is missing, from the round `first` on.
+  void rounds(FitResult& now, std::size_t first);
   /// Adds the effect, or both, of the first of the trials, which come best first.
   void adopt(const std::vector<Trial>& trials, FitResult& now);
   /// Adds what no effect stands for: the form of the damping, and the colour of the noise.
@@ -37,7 +39,6 @@ class EffectSearch {
   double alone() const { return alone_; }
 
  private:
-  void rounds(FitResult& now, std::size_t first);
   void search_with_free_damping(FitResult& now);
   void look_ahead(FitResult& now);
   void choose_laws_again(FitResult& now);

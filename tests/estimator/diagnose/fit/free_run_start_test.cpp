@@ -9,13 +9,15 @@ namespace framewatch::estimator {
 namespace free_run_start_test {
 
 constexpr int kFrame = 2;         // of 8e6 N/m; without friction it deforms by about 16 mm
-constexpr double kForce_n = 4e4;  // holds most of the time
-constexpr double kWithin = 2;     // the forces that are tried are twice as large each
+constexpr double kWithin = 1.25;  // the forces that are tried are 1.09 times as large each
 
-TEST(FrictionStart, OfFrictionThatSticksIsNearItsForce) {
+class FrictionStart : public testing::TestWithParam<double> {};
+
+TEST_P(FrictionStart, OfFrictionThatSticksIsNearItsForce) {
+  const double force_n = GetParam();
   const EffectPlace place = test::in_frame(kFrame);
   Effect hidden = make_effect(EffectKind::coulomb_friction, place);
-  hidden.set("fc_n", kForce_n);
+  hidden.set("fc_n", force_n);
   hidden.set("v0_mps", 1e-3);
   const test::Recorded recorded(test::records_with({hidden}));
   const Localisation freed = recorded.freed(place);
@@ -31,19 +33,23 @@ TEST(FrictionStart, OfFrictionThatSticksIsNearItsForce) {
   friction.parameters[3].free = false;
   Model model = freed.model;
   model.effects = {friction};
-  const FitResult start = friction_start(recorded.fitter, model);
-  ASSERT_TRUE(start.good);
+  const std::vector<FitResult> starts = friction_starts(recorded.fitter, model);
+  ASSERT_FALSE(starts.empty());
+  const FitResult& start = starts.front();
   const double force = start.model.effects[0].parameters[FrictionIndex::fc].plain();
-  EXPECT_GT(force, kForce_n / kWithin);
-  EXPECT_LT(force, kForce_n * kWithin);
+  EXPECT_GT(force, force_n / kWithin);
+  EXPECT_LT(force, force_n * kWithin);
   FitOptions options;
   options.forcing = Forcing::simulated;
   options.max_steps = 20;
   const FitResult end = recorded.fitter.fit(start.model, {}, options);
   ASSERT_TRUE(end.good);
   EXPECT_LT(end.total_misfit(), 2 * recorded.fitter.expected(end.model));
-  EXPECT_NEAR(end.model.effects[0].parameters[FrictionIndex::fc].plain() / kForce_n, 1, 0.02);
+  EXPECT_NEAR(end.model.effects[0].parameters[FrictionIndex::fc].plain() / force_n, 1, 0.02);
 }
+
+// The last two hold most of the time.
+INSTANTIATE_TEST_SUITE_P(Forces, FrictionStart, testing::Values(1e4, 2.5e4, 4e4));
 
 }  // namespace free_run_start_test
 }  // namespace framewatch::estimator
