@@ -131,6 +131,60 @@ TEST(ComponentTest, TheBoucWenBenchmarkIsNamedAndItsUnseenSweepSimulated) {
   EXPECT_LT(d.after[1].overall, kLargestGap);
 }
 
+/// A spring that hardens and damps the more the faster it is.
+struct HardeningDamper {
+  static constexpr double kRate_hz = 200, kMass_kg = 2, kStiffness_npm = 5e3, kDamping_nspm = 4,
+                          kCubic_npm3 = 4e7, kQuadratic_ns2pm2 = 25;
+
+  static double accel(double y, double v, double u) {
+    return (u - kDamping_nspm * v - kStiffness_npm * y - kCubic_npm3 * y * y * y -
+            kQuadratic_ns2pm2 * v * std::abs(v)) /
+           kMass_kg;
+  }
+
+  /// Base at rest, noisy displacement, force; by Stoermer and Verlet at 200 steps a sample.
+  static MatrixXd record(double force_n, std::uint64_t seed) {
+    constexpr int kSub = 200;
+    constexpr Index kSamples = 3000;
+    constexpr double kNoise_m = 1e-5, h = 1 / (kRate_hz * kSub);
+    const Signal tones = multisine(kRate_hz / kSamples, 1, 12, seed);
+    Random random(seed + 100);
+    MatrixXd out = MatrixXd::Zero(kSamples, 3);
+    double y = 0, v = 0;
+    for (Index i = 0; i < kSamples; ++i) {
+      const double t = static_cast<double>(i) / kRate_hz, u = force_n * tones(t);
+      out.row(i) << 0, y + kNoise_m * random.normal(), u;
+      for (int j = 0; j < kSub; ++j) {
+        y += h / 2 * v;
+        v += h * accel(y, v, force_n * tones(t + (j + 0.5) * h));
+        y += h / 2 * v;
+      }
+    }
+    return out;
+  }
+};
+
+TEST(ComponentTest, ASpringThatHardensAndADampingThatGrowsAreBothNamed) {
+#ifndef __OPTIMIZE__
+  GTEST_SKIP() << "minutes without optimisation";
+#endif
+  using Of = HardeningDamper;
+  constexpr double kOff = 0.05, kLargestGap = 0.005;
+  const Diagnosis d = diagnosis_of(Of::kMass_kg, 1.1 * Of::kStiffness_npm, Of::kRate_hz, false,
+                                   {Of::record(5, 1), Of::record(3, 2)});
+  ASSERT_EQ(d.effects.size(), 2U);
+  EXPECT_EQ(d.effects[0].chosen.kind, EffectKind::cubic_stiffness);
+  EXPECT_EQ(d.effects[1].chosen.kind, EffectKind::quadratic_damping);
+  // Their forces at the largest motion.
+  const ModelEffect &spring = d.model.effects[0], &damper = d.model.effects[1];
+  EXPECT_NEAR(spring.parameters[0].plain() / (Of::kCubic_npm3 * std::pow(spring.deformation, 3)), 1,
+              kOff);
+  EXPECT_NEAR(damper.parameters[0].plain() / (Of::kQuadratic_ns2pm2 * std::pow(damper.rate, 2)), 1,
+              kOff);
+  EXPECT_LT(d.after[1].overall, kLargestGap);
+  EXPECT_EQ(d.verdict, Verdict::explained);
+}
+
 /// Stiffness beside a joint that sticks elastically up to `stick` m and then slides.
 MatrixXd sliding_record(double stick_m, std::uint64_t seed) {
   constexpr double kRate_hz = 100, kStiffness_npm = 5000, kSlide_n = 400, kNoise_n = 2;

@@ -323,6 +323,10 @@ bool is_of_kind(EffectKind law, LawKind kind) {
   }
 }
 
+bool is_of_deformation(EffectKind law) {
+  return is_of_kind(law, LawKind::elastic) || is_of_kind(law, LawKind::impact);
+}
+
 bool follows_motion(LawKind kind) {
   return kind == LawKind::elastic || kind == LawKind::impact || kind == LawKind::dissipative ||
          kind == LawKind::hysteretic;

@@ -28,6 +28,7 @@ bool follows_motion(LawKind kind);
 /// Whether a law of the catalogue is of a kind. Friction is of two: it acts against the rate, and
 /// remembers where it stuck. So is amplitude dependence, which may be slip.
 bool is_of_kind(EffectKind law, LawKind kind);
+bool is_of_deformation(EffectKind law);  ///< alone: elastic, or an impact
 
 /// The force that a place needs beyond a linear element, averaged over cells of deformation and
 /// rate: a picture of the law.

@@ -8,6 +8,7 @@
 #include "estimator/diagnose/propose/name_of_fit.h"
 #include "estimator/diagnose/trials/needless.h"
 #include "estimator/diagnose/trials/select_trial.h"
+#include "estimator/diagnose/trials/sharpened.h"
 #include "estimator/diagnose/trials/trial_names.h"
 #include "estimator/diagnose/trials/trials.h"
 

@@ -39,10 +39,15 @@ bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now)
   return replaced_by(fitter, start, now);
 }
 
+double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
+                 const Parallel& parallel) {
+  const double gap = judged_fit(fitter, {with}, kJudgedSteps, parallel).gap;
+  return gap / judged_fit(fitter, {without}, kJudgedSteps, parallel).gap;
+}
+
 bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
                    const Parallel& parallel) {
-  const double gap = judged_fit(fitter, {with}, kJudgedSteps, parallel).gap;
-  return gap > kNothing * judged_fit(fitter, {without}, kJudgedSteps, parallel).gap;
+  return gap_ratio(fitter, with, without, parallel) > kNothing;
 }
 
 void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,

@@ -22,6 +22,10 @@ FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
 /// an unfinished fit a needless effect looks useful. Whether it did so.
 bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now);
 
+/// Mean gap of a model with an effect over that of one without, both fitted to what is judged.
+double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
+                 const Parallel& parallel);
+
 /// Whether the free runs of both models, each fitted to what it is judged by, disagree with the
 /// records alike, though one has an effect more: equations that a law leaves a little wrong are met
 /// better by effects that are not there, motion is not.

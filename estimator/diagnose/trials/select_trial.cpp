@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/diagnose/fit/onset.h"
+#include "estimator/diagnose/trials/sharpened.h"
 
 namespace framewatch::estimator {
 namespace {

@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "estimator/diagnose/fit/free_run_start.h"
-#include "estimator/diagnose/fit/onset.h"
-#include "estimator/diagnose/propose/law_starts.h"
 #include "estimator/diagnose/propose/propose.h"
 #include "estimator/diagnose/trials/trial_names.h"
 
@@ -14,10 +12,8 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr std::size_t kLawsFitted = 6, kLawsRun = 3, kPairLaws = 2;
-constexpr int kSharpSteps = 12;
 constexpr int kFromFarSteps = 20;
-constexpr int kWeakestSteps = 6;  ///< to the weakest record, which is a start only
-constexpr int kTrialSteps = 3;    ///< of a free run's fit, before the costs are compared
+constexpr int kTrialSteps = 3;  ///< of a free run's fit, before the costs are compared
 /// Times the least cost then, or that without the trials' effects: fits above it end there.
 constexpr double kCostLimit = 4;
 /// Cost of the best trial over that without one, above which friction is begun anew.
@@ -232,40 +228,13 @@ Candidate joined(const Localisation& pair, const Proposal& p, const Proposal& q)
   return {model, pair.motion, p.kind, p.place, std::pair(q.kind, q.place), 0, kPairSteps};
 }
 
+void add_joined(const Localisation& pair, const std::vector<Proposal>& first,
+                const std::vector<Proposal>& second, std::vector<Candidate>& out) {
+  for (const Proposal& p : first)
+    for (const Proposal& q : second) out.push_back(joined(pair, p, q));
+}
+
 }  // namespace
-
-void free_shapes(Model& model) {
-  for (ModelEffect& e : model.effects) free_shape(e);
-}
-
-Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
-  const bool of_records =
-      std::any_of(model.effects.begin(), model.effects.end(),
-                  [](const ModelEffect& e) { return !e.record_parameters.empty(); });
-  const std::vector<RecordSegment>& all = c.fitter.segments();
-  if (all.size() < 2 || of_records) return model;
-  const auto strength = [&](std::size_t r) {
-    return c.now.misfit[r] / c.fitter.expected(r, c.now.model);
-  };
-  std::size_t weakest = 0;
-  for (std::size_t r = 1; r < all.size(); ++r)
-    if (strength(r) < strength(weakest)) weakest = r;
-  const std::vector<RecordSegment> one{all[weakest]};
-  const Fitter alone(c.fitter.plant(), one, c.fitter.tolerances());
-  const FitResult run = alone.fit(model, {}, thorough(model, kWeakestSteps));
-  return run.good ? run.model : model;
-}
-
-Trial sharpened(const TrialContext& c, const Trial& trial, const Model& from) {
-  Model start = from;
-  free_shapes(start);
-  FitResult run = c.fitter.fit(start, {}, thorough(start, kSharpSteps));
-  if (!run.good) return trial;
-  if (ends_with_harmonic(run.model)) run = with_onsets(c.fitter, std::move(run));
-  Trial out = trial;
-  set_fit(c, run, out);
-  return out.cost < trial.cost && may_be_named(c, out) ? out : trial;
-}
 
 std::vector<Trial> try_places(const TrialContext& c, const std::vector<Localisation>& places,
                               const std::function<bool(EffectKind)>& wanted) {
@@ -328,8 +297,7 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
     });
     if (list->size() > kPairLaws) list->resize(kPairLaws);
   }
-  for (const Proposal& p : first)
-    for (const Proposal& q : second) candidates.push_back(joined(pair, p, q));
+  add_joined(pair, first, second, candidates);
   // One of the two may suffice alone, though its place was not found alone.
   std::size_t from = 0;
   for (const std::vector<Proposal>* list : {&first, &second}) {
@@ -337,6 +305,14 @@ std::vector<Trial> try_pair(const TrialContext& c, const Localisation& pair) {
     for (const Proposal& p : *list)
       candidates.push_back({p.model, pair.motion, p.kind, p.place, {}, from, kPairSteps});
   }
+  return fit_all(c, candidates);
+}
+
+std::vector<Trial> try_together(const TrialContext& c, const Localisation& place,
+                                const std::vector<Proposal>& first,
+                                const std::vector<Proposal>& second) {
+  std::vector<Candidate> candidates;
+  add_joined(place, first, second, candidates);
   return fit_all(c, candidates);
 }
 

@@ -9,17 +9,6 @@
 
 namespace framewatch::estimator {
 
-/// A trial fitted on from a model of its kind, with the shape of hysteresis free; unchanged when
-/// that is no better.
-Trial sharpened(const TrialContext& context, const Trial& trial, const Model& from);
-
-/// A model fitted to the one record with the smallest relative misfit. A strongly nonlinear law
-/// converges there where a fit to all records does not.
-Model fitted_to_the_weakest(const TrialContext& context, const Model& model);
-
-/// Frees the shapes of all laws (free_shape).
-void free_shapes(Model& model);
-
 /// Fits the laws of each place. wanted: those that are tried by their first names; empty: all.
 std::vector<Trial> try_places(const TrialContext& context, const std::vector<Localisation>& places,
                               const std::function<bool(EffectKind)>& wanted = {});
@@ -29,5 +18,10 @@ std::vector<Trial> try_effects(const TrialContext& context, const std::vector<Pr
 
 /// Fits two laws at the two places of a pair, and of two axes their exchange.
 std::vector<Trial> try_pair(const TrialContext& context, const Localisation& pair);
+
+/// Fits every law of the first list with every one of the second, all of them at one place.
+std::vector<Trial> try_together(const TrialContext& context, const Localisation& place,
+                                const std::vector<Proposal>& first,
+                                const std::vector<Proposal>& second);
 
 }  // namespace framewatch::estimator

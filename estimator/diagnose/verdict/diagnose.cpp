@@ -15,13 +15,16 @@
 #include "estimator/diagnose/trials/needless.h"
 #include "estimator/diagnose/trials/parameter_errors.h"
 #include "estimator/diagnose/trials/round_trials.h"
+#include "estimator/diagnose/trials/select_trial.h"
 #include "estimator/diagnose/trials/several_causes.h"
+#include "estimator/diagnose/trials/sharpened.h"
 #include "estimator/diagnose/trials/trial_names.h"
 #include "estimator/diagnose/trials/wrong_labels.h"
 #include "estimator/diagnose/verdict/effect_search.h"
 #include "estimator/diagnose/verdict/nearest_law.h"
 #include "estimator/diagnose/verdict/ramps.h"
 #include "estimator/diagnose/verdict/search_progress.h"
+#include "estimator/diagnose/verdict/two_sorts.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
 namespace framewatch::estimator {
@@ -30,7 +33,8 @@ namespace {
 using Eigen::MatrixXcd;
 
 constexpr int kPolishSteps = 6, kBackSteps = 8;
-constexpr double kMostGone = 0.1;  ///< of the misfit beyond noise, that is left
+constexpr double kTakesSome = 0.95;  ///< gap with a law over that without
+constexpr double kMostGone = 0.1;    ///< of the misfit beyond noise, that is left
 
 class Diagnoser {
  public:
@@ -65,6 +69,7 @@ class Diagnoser {
     withdraw_other_kind(now);
     const bool several = find_several(now) && !find_beside_several(now);
     if (out_.effects.empty()) name_nearest(now);
+    find_two_sorts(now);
     if (!out_.effects.empty() && !several) {
       drop_what_takes_nothing(now);
       polish(now);
@@ -104,6 +109,23 @@ class Diagnoser {
       out_.effects.pop_back();
       now = std::move(fitted);
     }
+  }
+
+  /// Of a component, laws of two sorts in the place of one where that takes a tenth of the power
+  /// that is left. Hysteresis is of both.
+  void find_two_sorts(FitResult& now) {
+    if (plant_.equations() != 1 || out_.effects.size() != 1 || search_.ratio(now) < kNearNoise ||
+        is_of_kind(out_.effects.front().chosen.kind, LawKind::hysteretic))
+      return;
+    FitResult linear = fit(out_.linear, {}, kBackSteps);
+    const std::vector<Trial> trials =
+        trials_of_two_sorts(search_.context_of(linear), out_.effects.front().chosen.place);
+    if (trials.empty() || worsens(trials.front(), now, 0) ||
+        gap_ratio(fitter_, trials.front().model, now.model, options_.parallel) > kTakesSome)
+      return;
+    out_.effects.clear();
+    search_.adopt(trials, linear);
+    now = std::move(linear);
   }
 
   /// Fits everything once more, with the shape of hysteresis free.

@@ -17,10 +17,6 @@ bool is_of_deformation(LawKind kind) {
   return kind == LawKind::elastic || kind == LawKind::impact;
 }
 
-bool is_of_deformation(EffectKind law) {
-  return is_of_kind(law, LawKind::elastic) || is_of_kind(law, LawKind::impact);
-}
-
 /// What the force that the law's place needs was found to be.
 const KindOfLaw* known_there(const Trial& law, const std::vector<WhereEntry>& where) {
   if (law.place.kind == PlaceKind::whole_frame) return nullptr;
