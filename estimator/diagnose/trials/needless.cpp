@@ -41,8 +41,12 @@ bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now)
 
 bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
                    const Parallel& parallel) {
-  const double gap = judged_fit(fitter, {with}, kJudgedSteps, parallel).gap;
-  return gap > kNothing * judged_fit(fitter, {without}, kJudgedSteps, parallel).gap;
+  const Model* models[] = {&with, &without};
+  double gaps[2];
+  run_all(parallel, 2, [&](int i) {
+    gaps[i] = judged_fit(fitter, {*models[i]}, kJudgedSteps, fitter.within()).gap;
+  });
+  return gaps[0] > kNothing * gaps[1];
 }
 
 void remove_needless_earlier(const Fitter& fitter, std::vector<FoundEffect>& effects,
