@@ -25,6 +25,9 @@ const char* law_kind_word(LawKind kind);
 /// Whether a law of the catalogue is of a kind. Friction is of two: it acts against the rate, and
 /// remembers where it stuck. So is amplitude dependence, which may be slip.
 bool is_of_kind(EffectKind law, LawKind kind);
+inline bool changes_with_time(EffectKind law) {
+  return is_of_kind(law, LawKind::time_varying);
+}
 
 /// The force that a place needs beyond a linear element, averaged over cells of deformation and
 /// rate: a picture of the law.

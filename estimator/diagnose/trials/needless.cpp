@@ -10,6 +10,9 @@ namespace {
 
 constexpr int kEndSteps = 6, kJudgedSteps = 6;
 constexpr double kNothing = 0.98;  ///< gap with an effect over the one without
+constexpr int kRoughSteps = 4;
+constexpr double kClearly =
+    0.5;  ///< the same after so many steps, that no further fit makes nothing
 
 /// Replaces `now` by the fit of a smaller model, started from it, unless that is worse; whether
 /// it did so.
@@ -41,6 +44,8 @@ bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now)
 
 bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
                    const Parallel& parallel) {
+  const double first = free_run_fit(fitter, {without}, kRoughSteps, false).gap;
+  if (rms_gap(fitter, with) < kClearly * first) return false;
   const Model* models[] = {&with, &without};
   double gaps[2];
   run_all(parallel, 2, [&](int i) {
