@@ -111,6 +111,9 @@ estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
   options.parallel = [&](int count, const std::function<void(int)>& work) {
     workers.run("", count, work);
   };
+  options.within = [&](int count, const std::function<void(int)>& work) {
+    workers.run_within(count, work);
+  };
   options.progress = [&](const std::string& what, double done, double then) {
     progress.tell(what, done, then);
   };

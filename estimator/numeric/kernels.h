@@ -77,6 +77,9 @@ struct Table {
   void (*multiply_add)(const double* a, int a_stride, int rows, int inner, const double* b,
                        double* out, int columns);
 
+  /// out += a x + b y; columns: a multiple of a lane.
+  void (*add_two)(double a, const double* x, double b, const double* y, double* out, int columns);
+
   /// score -= A x for a symmetric front A in packed rows; x and score `stride` long, x zero beyond
   /// the front.
   void (*subtract_product)(const double* packed, const double* x, double* score, int front,

@@ -15,8 +15,8 @@ namespace {
 constexpr Table kTable = {filter_rows,      add_rows,         add,
                           sum_into_front,   partial_cholesky, substitute_back,
                           forward_columns,  backward_columns, multiply_add,
-                          subtract_product, replace_sorted,   noise_covariance,
-                          inverse_cholesky};
+                          add_two,          subtract_product, replace_sorted,
+                          noise_covariance, inverse_cholesky};
 
 }  // namespace
 }  // namespace framewatch::estimator::kernels

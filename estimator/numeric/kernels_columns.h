@@ -116,5 +116,17 @@ void multiply_add(const double* a, int a_stride, int rows, int inner, const doub
   });
 }
 
+void add_two(double a, const double* x, double b, const double* y, double* out, int columns) {
+  for_lanes(0, columns, [&](auto of, int j) FRAMEWATCH_INLINE {
+    using Vector = decltype(of);
+    typename Vector::Type sum, one, other;
+    load<Vector>(sum, out + j);
+    load<Vector>(one, x + j);
+    load<Vector>(other, y + j);
+    sum += a * one + b * other;
+    store<Vector>(out + j, sum);
+  });
+}
+
 }  // namespace
 }  // namespace framewatch::estimator::kernels

@@ -134,6 +134,7 @@ void BinProducts::compute(Index bin) {
 
 void BinProducts::put_others() {
   const Index first = all_.real.rows() - metric_.rows();
+  const int width = static_cast<int>(all_.real.cols());
   Index k = 0;
   for (const std::vector<Direction>* list : {&elements_, &axes_}) {
     if (list == &axes_ && !axes_too_) break;
@@ -141,15 +142,10 @@ void BinProducts::put_others() {
       all_.real.row(k).setZero();
       all_.imaginary.row(k).setZero();
       for (const Entry& e : one) {
-        const auto x = all_.real.row(first + e.equation);
-        const auto y = all_.imaginary.row(first + e.equation);
-        if (e.imaginary == 0) {
-          all_.real.row(k) += e.real * x;
-          all_.imaginary.row(k) += e.real * y;
-        } else {
-          all_.real.row(k) += e.real * x + e.imaginary * y;
-          all_.imaginary.row(k) += e.real * y - e.imaginary * x;
-        }
+        const double *x = &all_.real(first + e.equation, 0),
+                     *y = &all_.imaginary(first + e.equation, 0);
+        kernels::in_use->add_two(e.real, x, e.imaginary, y, &all_.real(k, 0), width);
+        kernels::in_use->add_two(e.real, y, -e.imaginary, x, &all_.imaginary(k, 0), width);
       }
       ++k;
     }
@@ -162,9 +158,10 @@ void BinProducts::add_square(RowMatrix& sum, double weight) {
   for (Index u = 0; u < own; ++u) {
     const Index k = direction_of_[static_cast<std::size_t>(u)];
     if (k < 0) continue;
-    sum.row(u).segment(u, own - u) +=
-        weight * size_real_[u] * all_.real.row(k).segment(u, own - u) +
-        weight * size_imaginary_[u] * all_.imaginary.row(k).segment(u, own - u);
+    const int from = packed_row_begin(static_cast<int>(u));
+    kernels::in_use->add_two(weight * size_real_[u], &all_.real(k, from),
+                             weight * size_imaginary_[u], &all_.imaginary(k, from), &sum(u, from),
+                             static_cast<int>(sum.cols()) - from);
     for (const Index v : effects_)
       if (v < u)
         sum(v, u) +=

@@ -22,7 +22,7 @@ class BinProducts {
   void put_metric(Eigen::Index bin);
   const Eigen::MatrixXcd& metric() const { return metric_; }
   /// Adds the products of the columns with each other, `weight` times, to the upper triangle of
-  /// `sum`.
+  /// `sum`; its rows are padded, and what is left of the diagonal is anything.
   void add_square(RowMatrix& sum, double weight = 1);
   /// The columns under the metric, at the equations: real parts, then imaginary parts with opposite
   /// sign; 2 equations x columns, padded. As Weights::add_shares() takes them.

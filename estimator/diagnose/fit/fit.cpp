@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "estimator/diagnose/fit/fit_columns.h"
 #include "estimator/diagnose/fit/normal_equations.h"
@@ -22,6 +23,14 @@ double total_misfit(const std::vector<Whitened>& systems) {
   double out = 0;
   for (const Whitened& s : systems) out += s.misfit;
   return out;
+}
+
+bool all_good(const std::vector<Whitened>& systems) {
+  return std::all_of(systems.begin(), systems.end(), [](const Whitened& s) { return s.good; });
+}
+
+RunCache* of_record(std::vector<RunCache>* caches, std::size_t record) {
+  return caches ? &(*caches)[record % caches->size()] : nullptr;
 }
 
 void store_misfit(const std::vector<Whitened>& systems, double prior, FitResult& out) {
@@ -49,8 +58,8 @@ FitOptions thorough(const Model& model, int max_steps) {
 }
 
 Fitter::Fitter(const Plant& plant, const std::vector<RecordSegment>& segments,
-               const Tolerances& tolerances)
-    : plant_(plant), segments_(segments), tolerances_(tolerances) {
+               const Tolerances& tolerances, Parallel within)
+    : plant_(plant), segments_(segments), tolerances_(tolerances), within_(std::move(within)) {
   for (const RecordSegment& s : segments) ratio_.push_back(steps_per_sample(plant, s.rate_hz));
 }
 
@@ -85,22 +94,21 @@ int Fitter::ratio(std::size_t record, const Model& model) const {
 
 std::vector<Whitened> Fitter::systems(const Model& model, const std::vector<MatrixXcd>& motion,
                                       Forcing forcing, const std::vector<Whitened>* weights,
-                                      RunCache* cache) const {
-  std::vector<Whitened> out;
-  for (std::size_t r = 0; r < segments_.size(); ++r) {
-    std::optional<std::vector<LawTrack>> tracks =
-        tracks_of(plant_, model, segments_[r], r, forcing,
-                  r < motion.size() ? motion[r] : MatrixXcd(), ratio(r, model), cache);
-    if (!tracks) return {};
-    out.push_back(whiten(plant_, model, segments_[r], r, std::move(*tracks), ratio(r, model),
-                         weights ? (*weights)[r].weights : nullptr));
-    if (!out.back().good) return {};
-  }
-  return out;
+                                      std::vector<RunCache>* caches) const {
+  std::vector<Whitened> out(segments_.size());
+  of_all([&](std::size_t r) {
+    std::optional<std::vector<LawTrack>> tracks = tracks_of(
+        plant_, model, segments_[r], r, forcing, r < motion.size() ? motion[r] : MatrixXcd(),
+        ratio(r, model), of_record(caches, r));
+    if (tracks)
+      out[r] = whiten(plant_, model, segments_[r], r, std::move(*tracks), ratio(r, model),
+                      weights ? (*weights)[r].weights : nullptr);
+  });
+  return all_good(out) ? std::move(out) : std::vector<Whitened>();
 }
 
 Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
-                             const FitOptions& options, RunCache* cache) const {
+                             const FitOptions& options, std::vector<RunCache>* caches) const {
   Linearised out;
   out.plant = &plant_;
   out.unknowns = unknowns_of(plant_, model, tolerances_);
@@ -116,9 +124,11 @@ Linearised Fitter::linearise(const Model& model, std::vector<Whitened> systems,
     out.prior[u] = 0.5 / (unknown.sigma * unknown.sigma);
     out.pull[u] = out.prior[u] * (unknown.centre - value_of(model, unknown));
   }
-  for (std::size_t r = 0; r < segments_.size(); ++r)
-    out.columns.push_back(columns_of(plant_, model, segments_[r], r, out.systems[r], out.unknowns,
-                                     ratio(r, model), options.through_run, cache));
+  out.columns.resize(segments_.size());
+  of_all([&](std::size_t r) {
+    out.columns[r] = columns_of(plant_, model, segments_[r], r, out.systems[r], out.unknowns,
+                                ratio(r, model), options.through_run, of_record(caches, r));
+  });
   out.level = std::max(1.0, total_misfit(out.systems) / expected(model));
   out.prior *= out.level;
   out.pull *= out.level;
@@ -132,8 +142,8 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   const auto store = [&](const std::vector<Whitened>& systems) {
     store_misfit(systems, prior_cost(out.model), out);
   };
-  RunCache cache;
-  std::vector<Whitened> now = systems(out.model, motion, options.forcing, nullptr, &cache);
+  std::vector<RunCache> caches(plant_.is_large() ? 1 : segments_.size());
+  std::vector<Whitened> now = systems(out.model, motion, options.forcing, nullptr, &caches);
   if (now.empty()) return out;
   store(now);
   FitResult best = out;
@@ -144,15 +154,15 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
   bool own_weights = true;
   for (; out.steps < options.max_steps; ++out.steps) {
     if (!own_weights && total_misfit(now) < kNearNoise * expected(out.model)) {
-      now = reweighted(out.model, now);
+      now = reweighted(out.model, std::move(now));
       if (now.empty()) break;
       weighted = total_misfit(now);
       own_weights = true;
       store(now);
       best = out;
     }
-    const Linearised at = linearise(out.model, std::move(now), options, &cache);
-    NormalEquations equations = normal_equations(at);
+    const Linearised at = linearise(out.model, std::move(now), options, &caches);
+    NormalEquations equations = normal_equations(at, within_);
     // Within a step the weights stay those of `at`: a wrong model must not reduce its misfit by
     // weights that grow soft. Near the noise the change of the weights is part of the gradient.
     const double before = at.level * prior_cost(out.model) + total_misfit(at.systems);
@@ -168,15 +178,16 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
         continue;
       }
       const Model trial = moved(out.model, at.unknowns, step);
-      std::vector<Whitened> then = systems(trial, out.motion, options.forcing, &at.systems, &cache);
+      std::vector<Whitened> then =
+          systems(trial, out.motion, options.forcing, &at.systems, &caches);
       const bool falls =
           !then.empty() && total_misfit(then) + at.level * prior_cost(trial) < before;
       const bool near = at.level < kNearNoise;
       if (falls && plant_.is_large() && !near && total_misfit(then) > kNewWeights * weighted) {
-        now = then;
+        now = std::move(then);
         own_weights = false;
       } else if (falls || (!then.empty() && near)) {
-        now = reweighted(trial, then);
+        now = reweighted(trial, std::move(then));
         own_weights = true;
         if (!now.empty()) weighted = total_misfit(now);
       }
@@ -192,7 +203,8 @@ FitResult Fitter::fit(const Model& start, const std::vector<MatrixXcd>& motion,
     if (worse >= 2 || (worse == 1 && std::abs(gained) < options.tolerance)) break;
   }
   if (!own_weights) {
-    std::vector<Whitened> last = systems(best.model, best.motion, options.forcing, nullptr, &cache);
+    std::vector<Whitened> last =
+        systems(best.model, best.motion, options.forcing, nullptr, &caches);
     if (!last.empty()) {
       out.model = best.model;
       store(last);
@@ -222,14 +234,16 @@ Model Fitter::moved(const Model& model, const std::vector<Unknown>& unknowns,
   return out;
 }
 
-std::vector<Whitened> Fitter::reweighted(const Model& model,
-                                         const std::vector<Whitened>& systems) const {
-  std::vector<Whitened> out;
-  for (std::size_t r = 0; r < segments_.size(); ++r) {
-    out.push_back(whiten(plant_, model, segments_[r], r, systems[r].tracks, ratio(r, model)));
-    if (!out.back().good) return {};
-  }
-  return out;
+std::vector<Whitened> Fitter::reweighted(const Model& model, std::vector<Whitened> systems) const {
+  of_all([&](std::size_t r) {
+    systems[r] = with_own_weights(plant_, model, segments_[r], std::move(systems[r]));
+  });
+  return all_good(systems) ? std::move(systems) : std::vector<Whitened>();
+}
+
+void Fitter::of_all(const std::function<void(std::size_t)>& work) const {
+  run_all(plant_.is_large() ? Parallel() : within_, static_cast<int>(segments_.size()),
+          [&](int r) { work(static_cast<std::size_t>(r)); });
 }
 
 }  // namespace framewatch::estimator

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "estimator/diagnose/fit/linearised.h"
+#include "estimator/numeric/parallel.h"
 
 namespace framewatch::estimator {
 
@@ -40,20 +42,26 @@ struct FitResult {
 /// whitened equations.
 class Fitter {
  public:
+  /// within: called by fits, several at once: for small pieces of work that nobody counts.
   Fitter(const Plant& plant, const std::vector<RecordSegment>& segments,
-         const Tolerances& tolerances);
+         const Tolerances& tolerances, Parallel within = {});
+  /// The same of other segments, which must outlive it.
+  Fitter with(const std::vector<RecordSegment>& segments) const {
+    return Fitter(plant_, segments, tolerances_, within_);
+  }
 
   FitResult fit(const Model& start, const std::vector<Eigen::MatrixXcd>& motion,
                 const FitOptions& options) const;
   /// The whitened equations of every segment; empty when the model cannot be computed.
-  /// weights: systems whose weights are used; null: the model's own. cache: of one thread, here and
-  /// below; null: none.
+  /// weights: systems whose weights are used; null: the model's own. caches: of every segment, or
+  /// one for all of a large building, here and below; null: none.
   std::vector<Whitened> systems(const Model& model, const std::vector<Eigen::MatrixXcd>& motion,
                                 Forcing forcing, const std::vector<Whitened>* weights = nullptr,
-                                RunCache* cache = nullptr) const;
+                                std::vector<RunCache>* caches = nullptr) const;
   /// systems: those of systems() for the same model. options: which derivatives.
   Linearised linearise(const Model& model, std::vector<Whitened> systems,
-                       const FitOptions& options = {}, RunCache* cache = nullptr) const;
+                       const FitOptions& options = {},
+                       std::vector<RunCache>* caches = nullptr) const;
   double prior_cost(const Model& model) const;
   /// The model moved by a step of the unknowns, within their bounds; shortened so that no stiffness
   /// changes by more than half of its design.
@@ -65,17 +73,21 @@ class Fitter {
   const Plant& plant() const { return plant_; }
   const std::vector<RecordSegment>& segments() const { return segments_; }
   const Tolerances& tolerances() const { return tolerances_; }
+  const Parallel& within() const { return within_; }
   /// Steps per sample of a record: in which measured motion drives laws, and of a model's runs.
   int ratio(std::size_t record) const { return ratio_[record]; }
   int ratio(std::size_t record, const Model& model) const;
 
  private:
-  /// Systems of the model with its own weights and the law tracks of `systems`.
-  std::vector<Whitened> reweighted(const Model& model, const std::vector<Whitened>& systems) const;
+  /// Calls work(record) for every segment: those of a large building one after the other.
+  void of_all(const std::function<void(std::size_t)>& work) const;
+  /// systems() of the same model with its own weights.
+  std::vector<Whitened> reweighted(const Model& model, std::vector<Whitened> systems) const;
 
   const Plant& plant_;
   const std::vector<RecordSegment>& segments_;
   Tolerances tolerances_;
+  Parallel within_;
   std::vector<int> ratio_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "estimator/diagnose/fit/model_error.h"
@@ -31,7 +32,7 @@ struct Start {
 void fit_free_run(const Fitter& fitter, int steps, Start& at) {
   const std::vector<RecordSegment> segments =
       with_model_error(fitter.plant(), fitter.segments(), std::min(at.gap, kLargest));
-  const Fitter weighted(fitter.plant(), segments, fitter.tolerances());
+  const Fitter weighted = fitter.with(segments);
   const FitResult fit = weighted.fit(at.model, {}, thorough(at.model, steps));
   if (!fit.good) return;
   const double gap = rms_gap(fitter, fit.model);
@@ -111,11 +112,14 @@ Start with_free_ratios(const Fitter& fitter, int steps, const std::vector<Start>
 }  // namespace
 
 std::vector<Gap> gaps_of(const Fitter& fitter, const Model& model) {
+  std::vector<std::optional<Gap>> all(fitter.segments().size());
+  run_all(fitter.within(), static_cast<int>(all.size()), [&](int i) {
+    const auto r = static_cast<std::size_t>(i);
+    all[r] = free_run_gap(fitter.plant(), model, fitter.segments()[r], r, fitter.ratio(r, model));
+  });
   std::vector<Gap> out;
-  for (std::size_t r = 0; r < fitter.segments().size(); ++r)
-    if (auto gap =
-            free_run_gap(fitter.plant(), model, fitter.segments()[r], r, fitter.ratio(r, model)))
-      out.push_back(std::move(*gap));
+  for (std::optional<Gap>& gap : all)
+    if (gap) out.push_back(std::move(*gap));
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "estimator/diagnose/fit/bin_products.h"
 #include "estimator/diagnose/fit/sampled_bins.h"
+#include "estimator/numeric/kernels.h"
 #include "estimator/numeric/solve.h"
 
 namespace framewatch::estimator {
@@ -14,6 +15,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
+
+/// Of which add_square() adds to the upper triangle.
+RowMatrix empty_square(Index count) {
+  return RowMatrix::Zero(count, padded(static_cast<int>(count)));
+}
 
 /// Products of the columns of all unknowns with the rest.
 VectorXd gradient_of(const Linearised& at, std::size_t record) {
@@ -40,12 +46,12 @@ MatrixXd sampled_square_of(const Linearised& at, std::size_t record,
                            const std::vector<Index>& kept) {
   const auto count = static_cast<Index>(kept.size());
   BinProducts products(at, record, kept);
-  RowMatrix square = RowMatrix::Zero(count + 1, count + 1);
+  RowMatrix square = empty_square(count + 1);
   for (const SampledBin& sampled : sampled_bins(at, record)) {
     products.compute(sampled.bin);
     products.add_square(square, sampled.weight);
   }
-  MatrixXd out = square.selfadjointView<Eigen::Upper>();
+  MatrixXd out = square.leftCols(count + 1).selfadjointView<Eigen::Upper>();
   const VectorXd gradient = gradient_of(at, record)(kept);
   out.col(count).head(count) = gradient;
   out.row(count).head(count) = gradient.transpose();
@@ -60,7 +66,7 @@ MatrixXd square_of(const Linearised& at, std::size_t record, const std::vector<I
   const Weights& weights = *at.systems[record].weights;
   const Index own = static_cast<Index>(kept.size()) + 1, ends = weights.ends();
   BinProducts products(at, record, kept);
-  RowMatrix square = RowMatrix::Zero(own, own);
+  RowMatrix square = empty_square(own);
   RowMatrix along = RowMatrix::Zero(ends, products.at_equations().cols());
   for (Index b = 0; b < at.systems[record].bins(); ++b) {
     products.compute(b);
@@ -68,7 +74,7 @@ MatrixXd square_of(const Linearised& at, std::size_t record, const std::vector<I
     weights.add_shares(b, products.at_equations(), along);
   }
   MatrixXd out(own + ends, own + ends);
-  out.topLeftCorner(own, own) = square.selfadjointView<Eigen::Upper>();
+  out.topLeftCorner(own, own) = square.leftCols(own).selfadjointView<Eigen::Upper>();
   out.bottomLeftCorner(ends, own) = along.leftCols(own);
   out.topRightCorner(own, ends) = along.leftCols(own).transpose();
   out.bottomRightCorner(ends, ends) = weights.ends_square();
@@ -137,13 +143,17 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   return *this;
 }
 
-NormalEquations normal_equations(const Linearised& at) {
+NormalEquations normal_equations(const Linearised& at, const Parallel& within) {
   std::vector<Index> all(at.unknowns.size());
   std::iota(all.begin(), all.end(), Index{0});
   const auto count = static_cast<Index>(all.size());
   NormalEquations out{MatrixXd::Zero(count, count), VectorXd::Zero(count), 0};
-  for (std::size_t r = 0; r < at.systems.size(); ++r)
-    out += without_ends(square_of(at, r, all), ends_of(at, r));
+  std::vector<NormalEquations> parts(at.systems.size());
+  run_all(within, static_cast<int>(parts.size()), [&](int i) {
+    const auto r = static_cast<std::size_t>(i);
+    parts[r] = without_ends(square_of(at, r, all), ends_of(at, r));
+  });
+  for (const NormalEquations& part : parts) out += part;
   return out;
 }
 

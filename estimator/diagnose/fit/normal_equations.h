@@ -33,6 +33,6 @@ Eigen::Index ends_of(const Linearised& at, std::size_t record);
 /// square: as square_of() gives it; ends: how many end terms.
 NormalEquations without_ends(const Eigen::MatrixXd& square, Eigen::Index ends);
 /// Of all segments together.
-NormalEquations normal_equations(const Linearised& at);
+NormalEquations normal_equations(const Linearised& at, const Parallel& within = {});
 
 }  // namespace framewatch::estimator

@@ -93,6 +93,47 @@ void follow_unread(const Plant& plant, const MatrixXcd& forces, const Operations
   }
 }
 
+/// The model's own weights; null where it has none.
+std::shared_ptr<const Weights> weights_of(const Plant& plant, const Model& model,
+                                          const RecordSegment& segment, const MatrixXd& noise,
+                                          const Operations& operations) {
+  MatrixXd pushed;  // covariance of arbitrary forces
+  std::vector<HiddenOscillator> hidden;
+  for (const ModelEffect& e : model.effects) {
+    if (e.form == LawForm::resonator) hidden.push_back(hidden_oscillator(plant, e, segment.w));
+    if (e.form != LawForm::broadband) continue;
+    const VectorXd at = node_direction(plant, e.place.story, e.place.frame);
+    if (pushed.size() == 0) pushed = MatrixXd::Zero(plant.equations(), plant.equations());
+    pushed += at * at.transpose() / at.squaredNorm();
+  }
+  const auto operation = [&](Index b) { return operations[static_cast<std::size_t>(b)]; };
+  const bool all_read = plant.unread.cols() == 0;
+  std::vector<Whitener> own =
+      all_read ? whiteners(operation, noise, kArbitrary * pushed)
+               : whiteners(operation, noise, kArbitrary * pushed, {plant.read, plant.unread});
+  if (own.empty()) return nullptr;
+  return std::make_shared<const Weights>(std::move(own), segment.w, std::move(hidden),
+                                         all_read ? MatrixXd() : plant.read);
+}
+
+/// Sets what depends on the weights; those of the model where there are none.
+void weigh(const Plant& plant, const Model& model, const RecordSegment& segment,
+           std::shared_ptr<const Weights> weights, Whitened& out) {
+  const MatrixXd noise = noise_of(model, segment);
+  if (!weights) weights = weights_of(plant, model, segment, noise, out.operation);
+  if (!weights) return;
+  out.weights = std::move(weights);
+  out.residual = out.weights->whitened(out.operation.times(out.calibrated) + out.forces);
+  out.rest = out.weights->without_ends(out.residual);
+  out.misfit = out.rest.squaredNorm();
+  if (!std::isfinite(out.misfit)) return;
+  out.by_forces = out.weights->turned_back(out.rest);
+  out.by_readings = out.operation.adjoint_times(out.by_forces);
+  out.motion = shown_motion(plant, noise, out);
+  follow_unread(plant, out.forces, out.operation, out.motion);
+  out.good = true;
+}
+
 }  // namespace
 
 Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& segment,
@@ -111,9 +152,7 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   out.calibrated.topRows(plant.axis_count()) = calibrated(model, segment);
   out.tracks = std::move(tracks);
 
-  MatrixXcd forces = MatrixXcd::Zero(n, bins);
-  MatrixXd pushed;  // covariance of arbitrary forces
-  std::vector<HiddenOscillator> hidden;
+  out.forces = MatrixXcd::Zero(n, bins);
   std::vector<LinearOperation> additions;
   std::size_t law = 0;
   MatrixXd stiffness = MatrixXd::Zero(n, plant.building.axes()),
@@ -126,24 +165,19 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
     stiffness += linear.stiffness * shape;
     damping += linear.damping * shape;
     out.force.push_back(band_of(track.force, segment, ratio));
-    forces +=
+    out.forces +=
         active.port.act *
         beyond(linear, out.force.back(), band_of(track.d, segment, ratio), segment.w).transpose();
   }
   for (const ModelEffect& e : model.effects) {
-    if (e.element_law() || e.form == LawForm::modal_damping) continue;
-    if (e.form == LawForm::harmonic) {
-      // A force from outside is on the other side of the equation.
-      forces -= node_direction(plant, e.place.story, e.place.frame) *
-                harmonic_bins(e, segment, record).transpose();
-    } else if (e.form == LawForm::broadband) {
-      const VectorXd at = node_direction(plant, e.place.story, e.place.frame);
-      if (pushed.size() == 0) pushed = MatrixXd::Zero(n, n);
-      pushed += at * at.transpose() / at.squaredNorm();
-    } else {
+    if (e.element_law() || e.form == LawForm::modal_damping || e.form == LawForm::broadband)
+      continue;
+    // A force from outside is on the other side of the equation.
+    if (e.form == LawForm::harmonic)
+      out.forces -= node_direction(plant, e.place.story, e.place.frame) *
+                    harmonic_bins(e, segment, record).transpose();
+    else
       additions.emplace_back(plant, model, e);
-      if (e.form == LawForm::resonator) hidden.push_back(hidden_oscillator(plant, e, segment.w));
-    }
   }
 
   const MatrixXd& act = plant.building.act;
@@ -154,29 +188,16 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
   damping += act * model.theta.tail(elements).asDiagonal() * sense;
   if (has_modal_damping(model)) damping += modal_damping(plant, model) * relative_motion(plant);
   out.operation = Operations(mass, stiffness, damping, std::move(additions), segment.w);
-  const MatrixXd noise = noise_of(model, segment);
-  if (!weights) {
-    const auto operation = [&](Index b) { return out.operation[static_cast<std::size_t>(b)]; };
-    const bool all_read = plant.unread.cols() == 0;
-    std::vector<Whitener> own =
-        all_read ? whiteners(operation, noise, kArbitrary * pushed)
-                 : whiteners(operation, noise, kArbitrary * pushed, {plant.read, plant.unread});
-    if (own.empty()) return out;
-    weights = std::make_shared<const Weights>(std::move(own), segment.w, std::move(hidden),
-                                              all_read ? MatrixXd() : plant.read);
-  }
-  out.weights = std::move(weights);
-  follow_unread(plant, forces, out.operation, out.calibrated);
-  out.residual = out.weights->whitened(out.operation.times(out.calibrated) + forces);
-  out.rest = out.weights->without_ends(out.residual);
-  out.misfit = out.rest.squaredNorm();
-  if (!std::isfinite(out.misfit)) return out;
-  out.by_forces = out.weights->turned_back(out.rest);
-  out.by_readings = out.operation.adjoint_times(out.by_forces);
-  out.motion = shown_motion(plant, noise, out);
-  follow_unread(plant, forces, out.operation, out.motion);
-  out.good = true;
+  follow_unread(plant, out.forces, out.operation, out.calibrated);
+  weigh(plant, model, segment, std::move(weights), out);
   return out;
+}
+
+Whitened with_own_weights(const Plant& plant, const Model& model, const RecordSegment& segment,
+                          Whitened system) {
+  system.good = false;
+  weigh(plant, model, segment, nullptr, system);
+  return system;
 }
 
 }  // namespace framewatch::estimator

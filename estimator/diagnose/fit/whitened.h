@@ -30,9 +30,11 @@ struct Whitened {
   std::vector<LawTrack> tracks;         ///< of the element laws
   std::vector<Equivalent> linear;       ///< of the element laws
   std::vector<Eigen::VectorXcd> force;  ///< of the element laws: spectrum, N
-  Eigen::VectorXd residual;             ///< whitened rows, end terms still in them
-  Eigen::VectorXd rest;                 ///< residual with the end terms projected out
-  double misfit = 0;                    ///< sum of squares of `rest`
+  /// Equations x bins: what laws do beyond `linear`, less forces from outside.
+  Eigen::MatrixXcd forces;
+  Eigen::VectorXd residual;  ///< whitened rows, end terms still in them
+  Eigen::VectorXd rest;      ///< residual with the end terms projected out
+  double misfit = 0;         ///< sum of squares of `rest`
   /// Derivative of half the misfit by forces on the equations, equations x bins: whitener^H rest;
   /// and by the axes' readings, axes x bins: D^H of that.
   Eigen::MatrixXcd by_forces, by_readings;
@@ -47,6 +49,9 @@ Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& seg
 /// The same with the tracks of tracks_of(); not good when the free run diverges.
 Whitened whiten(const Plant& plant, const Model& model, const RecordSegment& segment,
                 std::size_t record, Forcing forcing, const Eigen::MatrixXcd& motion, int ratio);
+/// A system of the same model, whitened anew with the model's own weights.
+Whitened with_own_weights(const Plant& plant, const Model& model, const RecordSegment& segment,
+                          Whitened system);
 
 /// equations x bins of forces -> whitened rows.
 Eigen::VectorXd whiten_rows(const Whitened& system, const Eigen::MatrixXcd& forces);

@@ -74,6 +74,16 @@ std::vector<MatrixXd> without(const MatrixXd& square, const Linearised& at, std:
   return out;
 }
 
+/// square_of() of every segment.
+std::vector<MatrixXd> squares_of(const Fitter& fitter, const Linearised& at,
+                                 const std::vector<Index>& kept) {
+  std::vector<MatrixXd> out(at.systems.size());
+  run_all(fitter.within(), static_cast<int>(out.size()), [&](int r) {
+    out[static_cast<std::size_t>(r)] = square_of(at, static_cast<std::size_t>(r), kept);
+  });
+  return out;
+}
+
 struct Reduced {
   NormalEquations equations;
   double expected = 0;
@@ -161,8 +171,7 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
                                         const std::vector<std::vector<CandidatePlace>>& lists,
                                         const Parallel& parallel) {
   const std::vector<Index> kept = moving(at, false);
-  std::vector<MatrixXd> squares;
-  for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
+  const std::vector<MatrixXd> squares = squares_of(fitter, at, kept);
   const double prior = fitter.prior_cost(model);
   std::vector<Localisation> out(lists.size());
   // closer: of a large building.
@@ -253,8 +262,7 @@ Localisation localise(const Fitter& fitter, const Model& start,
     if (explains_everything(fitter, candidate_places))
       return everything(fitter, model, candidate_places, at.systems);
     const std::vector<Index> kept = moving(at, true);
-    std::vector<MatrixXd> squares;
-    for (std::size_t r = 0; r < at.systems.size(); ++r) squares.push_back(square_of(at, r, kept));
+    const std::vector<MatrixXd> squares = squares_of(fitter, at, kept);
     std::vector<CandidatePlace> current = candidate_places;
     update_directions(plant, model, current);
     const Reduced reduced =

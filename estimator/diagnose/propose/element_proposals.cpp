@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "estimator/diagnose/propose/law_starts.h"
@@ -25,14 +27,21 @@ class ElementProposals {
     }
   }
 
-  std::vector<Proposal> all() {
+  std::vector<Proposal> all() const {
     const double k = fitter_.plant().design[element_];
     const LawScale scale{k, peak_, rate_};
     const bool frame = fitter_.plant().table[element_].frame >= 0;
-    for (const LawStarts& family : plain_starts(scale)) best(family);
-    for (const LawStarts& family : hysteretic_starts(scale, frame)) best(family);
-    changing(k);
-    return std::move(out_);
+    std::vector<LawStarts> families = plain_starts(scale);
+    for (LawStarts& family : hysteretic_starts(scale, frame)) families.push_back(std::move(family));
+    std::vector<std::optional<Proposal>> found(families.size() + 2);
+    run_all(fitter_.within(), static_cast<int>(found.size()), [&](int i) {
+      const auto at = static_cast<std::size_t>(i);
+      found[at] = at < families.size() ? best(families[at]) : changing(k, at == families.size());
+    });
+    std::vector<Proposal> out;
+    for (std::optional<Proposal>& one : found)
+      if (one) out.push_back(std::move(*one));
+    return out;
   }
 
  private:
@@ -53,7 +62,7 @@ class ElementProposals {
     return out;
   }
 
-  void add(ModelEffect effect, EffectKind kind, const ScalarFit& fit) {
+  Proposal proposal(ModelEffect effect, EffectKind kind, const ScalarFit& fit) const {
     set_amplitude(effect, fit.coefficients[2]);
     Proposal p{place_.model, kind, effect.place, fit.misfit};
     const Index elements = fitter_.plant().element_count();
@@ -61,11 +70,11 @@ class ElementProposals {
     p.model.theta[element_] = std::max(place_.model.theta[element_] + fit.coefficients[0], least);
     p.model.theta[element_ + elements] += fit.coefficients[1];
     p.model.effects.push_back(std::move(effect));
-    out_.push_back(std::move(p));
+    return p;
   }
 
-  /// Adds the family with the best of its starts.
-  void best(const LawStarts& family) {
+  /// The family with the best of its starts; empty where none may be.
+  std::optional<Proposal> best(const LawStarts& family) const {
     ScalarFit least;
     ModelEffect chosen;
     for (const std::vector<LawParameter>& shape : family.shapes) {
@@ -77,16 +86,15 @@ class ElementProposals {
         chosen = effect;
       }
     }
-    if (least.misfit < 1e299) add(std::move(chosen), family.kind, least);
+    if (!(least.misfit < 1e299)) return std::nullopt;
+    return proposal(std::move(chosen), family.kind, least);
   }
 
-  void changing(double k) {
-    for (const bool sudden : {true, false}) {
-      const ModelEffect start = effect_of(LawForm::changing, {linear_parameter(1, 0.01 * k)});
-      const ModelEffect effect = timed_change(fitter_, needed_, start, sudden);
-      add(effect, sudden ? EffectKind::stiffness_drop : EffectKind::stiffness_drift,
-          fit_of(effect));
-    }
+  Proposal changing(double k, bool sudden) const {
+    const ModelEffect start = effect_of(LawForm::changing, {linear_parameter(1, 0.01 * k)});
+    const ModelEffect effect = timed_change(fitter_, needed_, start, sudden);
+    return proposal(effect, sudden ? EffectKind::stiffness_drop : EffectKind::stiffness_drift,
+                    fit_of(effect));
   }
 
   const Fitter& fitter_;
@@ -94,7 +102,6 @@ class ElementProposals {
   const std::vector<NeededSignal>& needed_;
   int element_;
   double peak_ = 0, rate_ = 0;
-  std::vector<Proposal> out_;
 };
 
 }  // namespace

@@ -29,6 +29,9 @@ bool follows_motion(LawKind kind);
 /// remembers where it stuck. So is amplitude dependence, which may be slip.
 bool is_of_kind(EffectKind law, LawKind kind);
 bool is_of_deformation(EffectKind law);  ///< alone: elastic, or an impact
+inline bool changes_with_time(EffectKind law) {
+  return is_of_kind(law, LawKind::time_varying);
+}
 
 /// The force that a place needs beyond a linear element, averaged over cells of deformation and
 /// rate: a picture of the law.

@@ -1,7 +1,7 @@
 #include "estimator/diagnose/spectra/fourier.h"
 
 #include <algorithm>
-#include <complex>
+#include <cstddef>
 #include <vector>
 
 #include <unsupported/Eigen/FFT>
@@ -12,24 +12,51 @@ using Eigen::Index;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
+namespace {
+
+constexpr std::size_t kMostSizes = 16;
+
+/// Transforms between a real signal and half of its spectrum. What is known of a size beforehand,
+/// which takes longer than a transform, is kept.
+class Transforms {
+ public:
+  Transforms() { transform_.SetFlag(Eigen::FFT<double>::HalfSpectrum); }
+
+  Eigen::FFT<double>& of(Index size) {
+    if (std::find(sizes_.begin(), sizes_.end(), size) != sizes_.end()) return transform_;
+    if (sizes_.size() == kMostSizes) {
+      transform_.impl().clear();
+      sizes_.clear();
+    }
+    sizes_.push_back(size);
+    return transform_;
+  }
+
+ private:
+  Eigen::FFT<double> transform_;
+  std::vector<Index> sizes_;
+};
+
+Eigen::FFT<double>& transform_of(Index size) {
+  static thread_local Transforms all;
+  return all.of(size);
+}
+
+}  // namespace
+
 VectorXcd forward_fourier(const VectorXd& signal) {
-  Eigen::FFT<double> transform;
-  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  const std::vector<double> in(signal.data(), signal.data() + signal.size());
-  std::vector<std::complex<double>> out;
-  transform.fwd(out, in);
-  return Eigen::Map<const VectorXcd>(out.data(), static_cast<Index>(out.size()));
+  VectorXcd out(signal.size() / 2 + 1);
+  transform_of(signal.size()).fwd(out.data(), signal.data(), signal.size());
+  return out;
 }
 
 VectorXd inverse_fourier(const VectorXcd& half, Index size) {
-  Eigen::FFT<double> transform;
-  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<std::complex<double>> in(static_cast<std::size_t>(size / 2 + 1));
-  for (Index i = 0; i < std::min<Index>(half.size(), size / 2 + 1); ++i)
-    in[static_cast<std::size_t>(i)] = half[i];
-  std::vector<double> out(static_cast<std::size_t>(size));
-  transform.inv(out, in, size);
-  return Eigen::Map<const VectorXd>(out.data(), size);
+  VectorXcd in = VectorXcd::Zero(size / 2 + 1);
+  const Index given = std::min(half.size(), in.size());
+  in.head(given) = half.head(given);
+  VectorXd out(size);
+  transform_of(size).inv(out.data(), in.data(), size);
+  return out;
 }
 
 Index smooth_size(Index size) {

@@ -59,7 +59,7 @@ Fewer without_needless(const Fitter& fitter, const std::vector<std::size_t>& rat
   std::vector<Whitened> systems = fitter.systems(now.model, now.motion, forcing_of(now.model));
   if (systems.empty()) return out;
   const Linearised at = fitter.linearise(now.model, std::move(systems), thorough(now.model, 0));
-  MatrixXd normal = normal_equations(at).normal;
+  MatrixXd normal = normal_equations(at, fitter.within()).normal;
   normal.diagonal() += at.prior;
   const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();

@@ -58,7 +58,8 @@ void fix_exponent(EffectKind kind, ModelEffect& effect) {
 
 Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segments,
                      const Model& fitted,
-                     const std::vector<const std::vector<FoundEffect>*>& effects) {
+                     const std::vector<const std::vector<FoundEffect>*>& effects,
+                     const Parallel& within) {
   Model out = fitted;
   for (const std::vector<FoundEffect>* list : effects)
     for (const FoundEffect& found : *list)
@@ -71,7 +72,7 @@ Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segme
       if (std::find(free.begin(), free.end(), static_cast<int>(a)) == free.end())
         (out.*errors)[a] = share * (fitted.*errors)[a] + (1 - share) * (none.*errors)[a];
   };
-  const Fitter exact(plant, segments, {0, 0, 0});
+  const Fitter exact(plant, segments, {0, 0, 0}, within);
   // Step by step: the fit of a stiff law may not converge when all errors are removed at once.
   for (const double share : {0.75, 0.5, 0.25, 0.0}) {
     shrink(&Model::mass_change, share, {});

@@ -11,6 +11,7 @@ namespace framewatch::estimator {
 /// that are effects) and with the exponents of the catalogue's laws.
 Model declared_model(const Plant& plant, const std::vector<RecordSegment>& segments,
                      const Model& fitted,
-                     const std::vector<const std::vector<FoundEffect>*>& effects);
+                     const std::vector<const std::vector<FoundEffect>*>& effects,
+                     const Parallel& within = {});
 
 }  // namespace framewatch::estimator

@@ -29,7 +29,7 @@ std::vector<LinearGain> gains_of(const TrialContext& c, std::span<const ModelEff
   std::vector<Whitened> systems = c.fitter.systems(model, c.now.motion, forcing_of(model));
   if (systems.empty()) return out;
   const Linearised at = c.fitter.linearise(model, std::move(systems));
-  NormalEquations equations = normal_equations(at);
+  NormalEquations equations = normal_equations(at, c.fitter.within());
   equations.normal.diagonal() += at.prior;
   const VectorXd right = at.pull - equations.gradient;
 

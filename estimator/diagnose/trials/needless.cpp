@@ -10,6 +10,9 @@ namespace {
 
 constexpr int kEndSteps = 6, kJudgedSteps = 6;
 constexpr double kNothing = 0.98;  ///< gap with an effect over the one without
+constexpr int kRoughSteps = 4;
+constexpr double kClearly =
+    0.5;  ///< the same after so many steps, that no further fit makes nothing
 
 /// Replaces `now` by the fit of a smaller model, started from it, unless that is worse; whether
 /// it did so.
@@ -41,12 +44,18 @@ bool removes_needless(const Fitter& fitter, const Model& before, FitResult& now)
 
 double gap_ratio(const Fitter& fitter, const Model& with, const Model& without,
                  const Parallel& parallel) {
-  const double gap = judged_fit(fitter, {with}, kJudgedSteps, parallel).gap;
-  return gap / judged_fit(fitter, {without}, kJudgedSteps, parallel).gap;
+  const Model* models[] = {&with, &without};
+  double gaps[2];
+  run_all(parallel, 2, [&](int i) {
+    gaps[i] = judged_fit(fitter, {*models[i]}, kJudgedSteps, fitter.within()).gap;
+  });
+  return gaps[0] / gaps[1];
 }
 
 bool takes_nothing(const Fitter& fitter, const Model& with, const Model& without,
                    const Parallel& parallel) {
+  const double first = free_run_fit(fitter, {without}, kRoughSteps, false).gap;
+  if (rms_gap(fitter, with) < kClearly * first) return false;
   return gap_ratio(fitter, with, without, parallel) > kNothing;
 }
 

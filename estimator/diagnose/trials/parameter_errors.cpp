@@ -19,7 +19,7 @@ void set_errors(const Fitter& fitter, const Model& model,
   std::vector<Whitened> systems = fitter.systems(model, motion, forcing_of(model));
   if (systems.empty()) return;
   const Linearised at = fitter.linearise(model, std::move(systems), thorough(model, 0));
-  MatrixXd normal = normal_equations(at).normal;
+  MatrixXd normal = normal_equations(at, fitter.within()).normal;
   normal.diagonal() += at.prior;
   const VectorXd scale = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   MatrixXd scaled = scale.asDiagonal() * normal * scale.asDiagonal();

@@ -59,6 +59,12 @@ bool is_element(const Localisation& place) {
   return place.candidate_places.front().kind == CandidatePlace::Kind::element;
 }
 
+bool leaves_less(const std::vector<Trial>& trials, double bound) {
+  return std::any_of(trials.begin(), trials.end(), [bound](const Trial& t) {
+    return t.outcome == TrialOutcome::fitted && t.cost < bound;
+  });
+}
+
 double bound_of(const Plant& plant, const Localisation& places) {
   const auto equations = static_cast<double>(plant.read_equations());
   double unseen = 0;
@@ -126,7 +132,7 @@ std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Loca
 }
 
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,
-                                   double& bound) {
+                                   double needed, double& bound) {
   context.progress("two places");
   const Localisation& best = located.places.front();
   const std::vector<Localisation> pairs =
@@ -137,6 +143,7 @@ std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& l
   bound = std::min(context.now.cost, bound_of(context.fitter.plant(), pairs.front()));
   for (std::size_t i = 0; i < std::min<std::size_t>(2, pairs.size()); ++i) {
     if (pairs[i].ratio > 2 * pairs.front().ratio) break;
+    if (leaves_less(out, bound_of(context.fitter.plant(), pairs[i]) - needed)) break;
     append(out, try_pair(context, pairs[i]));
   }
   return out;

@@ -33,7 +33,12 @@ std::vector<Trial> trials_of_whole_frame(const TrialContext& context, const Loca
                                          int frame);
 
 /// Fits two laws at two places, if two places explain what one does not; sets bound to theirs then.
+/// needed: a reduction of the cost that is more than chance.
 std::vector<Trial> trials_of_pairs(const TrialContext& context, const Located& located,
-                                   double& bound);
+                                   double needed, double& bound);
+
+/// Whether a trial leaves less than a bound: then no law at the places whose bound it is does as
+/// well, because none leaves less than a force that may be anything.
+bool leaves_less(const std::vector<Trial>& trials, double bound);
 
 }  // namespace framewatch::estimator

@@ -15,7 +15,8 @@ constexpr double kNearest = 0.8;       ///< the same of the nearest law
 constexpr double kSharp = 0.995;       ///< share above which a fit need not be sharpened
 constexpr double kBlunt = 0.4;         ///< share below which it is not worth it
 constexpr std::size_t kSharpened = 3;
-constexpr double kHopeless = 4;  ///< times the best cost: trials above it are not sharpened
+/// Times the best cost, or what it has beyond chance: trials above either are not sharpened.
+constexpr double kHopeless = 4;
 constexpr double kBehind = 2;    ///< reductions that are more than chance
 constexpr double kWorse = 1.02;  ///< misfit of a record, relative
 /// By how much an arbitrary force must be better than a law, of the misfit beyond noise.
@@ -25,13 +26,19 @@ bool is_arbitrary_force(const Trial& t) {
   return !t.model.effects.empty() && t.model.effects.back().form == LawForm::broadband;
 }
 
+double limit_of(const Trial& best, double enough) {
+  const double by_cost = kHopeless * best.cost;
+  if (is_arbitrary_force(best)) return by_cost;
+  return std::min(by_cost, enough + kHopeless * std::max(0.0, best.cost - enough));
+}
+
 /// Fits the leading trials on with everything free. enough: cost above which more than chance is
 /// left; needed: a reduction that is more than chance. Those far behind the best one are no rivals.
 void sharpen(const TrialContext& context, double enough, double needed,
              std::vector<Trial>& trials) {
   const Trial& best = trials.front();
   const bool done = best.cost <= enough && !is_arbitrary_force(best);
-  const double limit = done ? best.cost + kBehind * needed : kHopeless * best.cost;
+  const double limit = done ? best.cost + kBehind * needed : limit_of(best, enough);
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
     if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit) return;
@@ -43,8 +50,8 @@ void sharpen(const TrialContext& context, double enough, double needed,
 }
 
 /// Fits the leading trials again from a fit to the record with the weakest effect alone.
-void approach(const TrialContext& context, std::vector<Trial>& trials) {
-  const double limit = kHopeless * trials.front().cost;
+void approach(const TrialContext& context, double enough, std::vector<Trial>& trials) {
+  const double limit = limit_of(trials.front(), enough);
   run_all(context.parallel, static_cast<int>(std::min(kSharpened, trials.size())), [&](int i) {
     Trial& t = trials[static_cast<std::size_t>(i)];
     if (t.outcome != TrialOutcome::fitted || t.fraction <= kBlunt || t.cost > limit || t.approached)
@@ -115,7 +122,7 @@ bool select_trial(const TrialContext& context, double bound, double needed,
   sharpen(context, bound + needed, needed, trials);
   rank();
   if (trials.front().fraction < kExplains) {
-    approach(context, trials);
+    approach(context, bound + needed, trials);
     rank();
   }
   const Trial& best = trials.front();

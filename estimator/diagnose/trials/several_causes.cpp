@@ -113,7 +113,7 @@ class Selection {
         holdout_from_(std::min(holdout_from, context.fitter.segments().size())),
         seen_(context.fitter.segments().begin(),
               context.fitter.segments().begin() + static_cast<std::ptrdiff_t>(holdout_from_)),
-        train_(context.fitter.plant(), seen_, context.fitter.tolerances()) {}
+        train_(context.fitter.with(seen_)) {}
 
   SeveralCauses run() {
     if (tried_.empty() || holdout_from_ == context_.fitter.segments().size()) return {};

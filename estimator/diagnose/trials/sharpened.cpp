@@ -34,7 +34,7 @@ Model fitted_to_the_weakest(const TrialContext& c, const Model& model) {
   for (std::size_t r = 1; r < all.size(); ++r)
     if (strength(r) < strength(weakest)) weakest = r;
   const std::vector<RecordSegment> one{all[weakest]};
-  const Fitter alone(c.fitter.plant(), one, c.fitter.tolerances());
+  const Fitter alone = c.fitter.with(one);
   const FitResult run = alone.fit(model, {}, thorough(model, kWeakestSteps));
   return run.good ? run.model : model;
 }

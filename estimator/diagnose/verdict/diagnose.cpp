@@ -44,7 +44,7 @@ class Diagnoser {
         segments_(segments),
         progress_(options.progress, options.parallel),
         options_(options),
-        fitter_(plant, segments, options.tolerances),
+        fitter_(plant, segments, options.tolerances, options.within),
         search_(fitter_, segments, options_, progress_, out_) {
     options_.parallel = progress_.counted();
   }
@@ -141,17 +141,24 @@ class Diagnoser {
   void set_models(const Model& model) {
     out_.model = model;
     std::vector<RecordSegment> segments = segments_;
-    if (out_.ratio_before > kNearNoise)
-      out_.linear =
-          judged_fit(fitter_, linear_starts(plant_, out_.linear), kPolishSteps, options_.parallel)
-              .model;
-    if (out_.ratio_after > kNearNoise) {
-      const JudgedFit judged = judged_fit(fitter_, {out_.effects.empty() ? out_.linear : model},
-                                          kPolishSteps, options_.parallel);
+    const bool judges_linear = out_.ratio_before > kNearNoise,
+               judges = out_.ratio_after > kNearNoise;
+    const auto judged_of = [&](const std::vector<Model>& starts) {
+      return judged_fit(fitter_, starts, kPolishSteps, fitter_.within());
+    };
+    JudgedFit judged;
+    run_all(options_.parallel, 2, [&](int i) {
+      if (i == 0 && judges_linear)
+        out_.linear = judged_of(linear_starts(plant_, out_.linear)).model;
+      if (i == 1 && judges && !out_.effects.empty()) judged = judged_of({model});
+    });
+    if (judges) {
+      if (out_.effects.empty()) judged = judged_of({out_.linear});
       out_.model = judged.model;
       segments = with_model_error(plant_, segments_, std::min(judged.gap, 1.0));
     }
-    out_.declared = declared_model(plant_, segments, out_.model, {&out_.known, &out_.effects});
+    out_.declared = declared_model(plant_, segments, out_.model, {&out_.known, &out_.effects},
+                                   fitter_.within());
   }
 
   /// A law is none beside which more than noise is left and whose place needs another sort of

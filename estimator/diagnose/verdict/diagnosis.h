@@ -68,6 +68,7 @@ struct DiagnosisOptions {
   std::vector<Effect> known;        ///< effects that the building is known to have
   std::vector<EffectKind> without;  ///< excluded names
   Parallel parallel;                ///< the result does not depend on it
+  Parallel within;                  ///< the same within its pieces, and between its calls
   TellProgress progress;            ///< between the calls of `parallel`
 };
 

@@ -31,10 +31,6 @@ constexpr double kTogether = 0.97;    ///< of the misfit beyond noise, that two 
 constexpr double kMostOfRest = 0.8;   ///< of what is left beside the first, by the second
 constexpr double kColoured = 1.05, kMostColoured = 3;  ///< ratios of places beside which noise is
 
-bool changes_with_time(EffectKind kind) {
-  return is_of_kind(kind, LawKind::time_varying);
-}
-
 /// Reduction of the cost that is more than chance.
 double needed_of(const Fitter& fitter, const Model& model) {
   return std::max(kLeastGain, kSignificant * std::sqrt(fitter.expected(model)));
@@ -254,14 +250,18 @@ std::vector<Trial> EffectSearch::trials_of(const FitResult& now, const Located& 
   const TrialContext context = context_of(now);
   if (pairs) {
     progress_.begin("two places", shares.trials, shares.laws());
-    trials = trials_of_pairs(context, located, bound);
+    trials = trials_of_pairs(context, located, needed, bound);
   }
-  progress_.begin("laws", shares.trials, shares.end, {0.05, 0.2, 0.2, 0.2});
-  append(trials, trials_of_places(context, located, small));
-  found = holds(context, bound, needed, trials);
+  found = leaves_less(trials, bound_of(fitter_.plant(), place) - needed) &&
+          holds(context, bound, needed, trials);
+  if (!found) {
+    progress_.begin("laws", shares.trials, shares.end, {0.05, 0.2, 0.2, 0.2});
+    append(trials, trials_of_places(context, located, small));
+    found = holds(context, bound, needed, trials);
+  }
   // Several forces at one place may be those of two effects.
   if (!found && !pairs && place.candidate_places.front().size() > 1) {
-    append(trials, trials_of_pairs(context, located, bound));
+    append(trials, trials_of_pairs(context, located, needed, bound));
     found = holds(context, bound, needed, trials);
   }
   if (!found) {

@@ -32,7 +32,7 @@ bool fits_separately(const Fitter& fitter, const Model& linear, double ratio_bef
   double misfit = 0, noise = 0;
   for (const RecordSegment& s : fitter.segments()) {
     const std::vector<RecordSegment> one{s};
-    const Fitter alone(fitter.plant(), one, fitter.tolerances());
+    const Fitter alone = fitter.with(one);
     const FitResult fitted = alone.fit(linear, {}, {});
     if (!fitted.good) return false;
     misfit += fitted.total_misfit();
@@ -86,54 +86,67 @@ Model with_first(const Model& model, const std::vector<FoundEffect>& effects, st
   return out;
 }
 
+namespace {
+
+/// Starts of the model that has the first `count` of the effects.
+std::vector<Model> starts_with(const std::vector<Model>& found, const Diagnosis& diagnosis,
+                               std::size_t count, const Plant& plant) {
+  std::vector<Model> out;
+  for (const Model& model : found) {
+    out.push_back(with_first(model, diagnosis.effects, count, plant));
+    // Stiffnesses that make up for what is not there yet may be a long way off, and so may what
+    // its neighbours made of an effect.
+    out.push_back(out.back());
+    out.back().theta = diagnosis.linear.theta;
+    out.push_back(out.back());
+    for (std::size_t e = 0; e < count; ++e)
+      if (const int index = diagnosis.effects[e].index; index >= 0)
+        scale_amplitude(kLittle, out.back().effects[static_cast<std::size_t>(index)]);
+  }
+  return out;
+}
+
+}  // namespace
+
 void set_gaps(const Fitter& fitter, const DiagnosisOptions& options, Diagnosis& out) {
-  const std::size_t holdout_from = options.holdout_from;
+  const std::size_t holdout_from = options.holdout_from, count = out.effects.size();
   // Infinite where a run diverges.
   const auto held_out = [&](const std::vector<Gap>& gaps) {
     return gaps.size() < fitter.segments().size() ? std::numeric_limits<double>::infinity()
                                                   : mean_gap(gaps, holdout_from);
   };
   const std::vector<RecordSegment> seen = training(fitter, holdout_from);
-  const Fitter train(fitter.plant(), seen, fitter.tolerances());
-  const auto of_train = [&](const std::vector<Model>& starts) {
-    return gaps_of(fitter, judged_fit(train, starts, kTrainSteps, options.parallel).model);
-  };
-  out.before = of_train(linear_starts(fitter.plant(), out.linear));
-  if (out.effects.empty()) {
-    out.after = out.before;
-    return;
-  }
+  const Fitter train = fitter.with(seen);
   std::vector<Model> found{out.model};
   if (out.trained) found.push_back(*out.trained);
-  out.after = of_train(found);
+  // Without any effect, with the first of them, with the first two, ...
+  std::vector<std::vector<Gap>> gaps(count + 1);
+  run_all(options.parallel, static_cast<int>(gaps.size()), [&](int i) {
+    const auto with = static_cast<std::size_t>(i);
+    const bool ramp = with > 0 && !out.effects[with - 1].ramp_mps3.empty();
+    if (ramp && with < count) return;
+    const std::vector<Model> starts = with == 0 ? linear_starts(fitter.plant(), out.linear)
+                                      : with == count
+                                          ? found
+                                          : starts_with(found, out, with, fitter.plant());
+    gaps[with] = gaps_of(fitter, judged_fit(train, starts, kTrainSteps, fitter.within()).model);
+  });
+  out.before = gaps.front();
+  out.after = gaps.back();
+  if (count == 0) return;
   const std::vector<Gap> all = gaps_of(fitter, out.model);
   if (held_out(out.after) > kUndetermined * held_out(all)) {
     out.after = all;
     out.after_of_all = true;
   }
   double gap = mean_gap(out.before, holdout_from);
-  for (std::size_t i = 0; i < out.effects.size(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     FoundEffect& effect = out.effects[i];
     effect.before = gap;
-    if (i + 1 == out.effects.size()) {
+    if (i + 1 == count)
       gap = mean_gap(out.after, holdout_from);
-    } else if (effect.ramp_mps3.empty()) {
-      std::vector<Model> starts;
-      for (const Model& model : found) {
-        starts.push_back(with_first(model, out.effects, i + 1, fitter.plant()));
-        // Stiffnesses that make up for what is not there yet may be a long way off, and so may what
-        // its neighbours made of an effect.
-        starts.push_back(starts.back());
-        starts.back().theta = out.linear.theta;
-        starts.push_back(starts.back());
-        for (std::size_t e = 0; e <= i; ++e)
-          if (out.effects[e].index >= 0)
-            scale_amplitude(kLittle,
-                            starts.back().effects[static_cast<std::size_t>(out.effects[e].index)]);
-      }
-      const double with = held_out(of_train(starts));
-      if (std::isfinite(with)) gap = with;
-    }
+    else if (const double with = held_out(gaps[i + 1]); std::isfinite(with))
+      gap = with;
     effect.after = gap;
   }
 }
@@ -159,15 +172,21 @@ void set_leading(const Fitter& fitter, const DiagnosisOptions& options, Diagnosi
   const std::size_t holdout_from = options.holdout_from;
   if (!out.effects.empty() || out.ratio_after < kNearNoise) return;
   const std::vector<RecordSegment> seen = training(fitter, holdout_from);
-  const Fitter train(fitter.plant(), seen, fitter.tolerances());
-  std::size_t tried = 0;
-  for (const Trial& t : out.rejected) {
-    if (t.outcome != TrialOutcome::fitted || is_arbitrary(t.model)) continue;
-    if (tried++ == kLeading) break;
-    const std::vector<Gap> gaps =
-        gaps_of(fitter, judged_fit(train, {t.model}, kLeadingSteps, options.parallel).model);
-    if (!no_worse(out.before, gaps)) continue;
-    const LeadingLaw law{t, mean_gap(out.before, holdout_from), mean_gap(gaps, holdout_from)};
+  const Fitter train = fitter.with(seen);
+  std::vector<const Trial*> tried;
+  for (const Trial& t : out.rejected)
+    if (t.outcome == TrialOutcome::fitted && !is_arbitrary(t.model) && tried.size() < kLeading)
+      tried.push_back(&t);
+  std::vector<std::vector<Gap>> gaps(tried.size());
+  run_all(options.parallel, static_cast<int>(tried.size()), [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    const JudgedFit fit = judged_fit(train, {tried[at]->model}, kLeadingSteps, fitter.within());
+    gaps[at] = gaps_of(fitter, fit.model);
+  });
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    if (!no_worse(out.before, gaps[i])) continue;
+    const LeadingLaw law{*tried[i], mean_gap(out.before, holdout_from),
+                         mean_gap(gaps[i], holdout_from)};
     if (law.after < kLeads * law.before) out.leading.push_back(law);
   }
   std::stable_sort(out.leading.begin(), out.leading.end(),

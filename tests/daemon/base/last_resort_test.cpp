@@ -89,6 +89,31 @@ TEST(LastResort, WhatAWorkerThrowsIsThrownByAllOfThem) {
                std::runtime_error);
 }
 
+TEST(Workers, PiecesOfPiecesAreDoneOnceEach) {
+  constexpr int kPieces = 20, kParts = 7;
+  const Workers workers(3);
+  std::vector<std::vector<int>> done(kPieces, std::vector<int>(kParts, 0));
+  workers.run("", kPieces, [&](int i) {
+    workers.run_within(kParts, [&](int k) {
+      workers.run_within(2, [&](int half) {
+        if (half == 1) ++done[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
+      });
+    });
+  });
+  EXPECT_EQ(done, std::vector<std::vector<int>>(kPieces, std::vector<int>(kParts, 1)));
+}
+
+TEST(Workers, WhatAPieceOfAPieceThrowsIsThrown) {
+  const Workers workers(2);
+  EXPECT_THROW(workers.run("", 4,
+                           [&](int i) {
+                             workers.run_within(4, [&](int k) {
+                               if (i == 2 && k == 3) throw std::runtime_error("one of them");
+                             });
+                           }),
+               std::runtime_error);
+}
+
 TEST(Program, StandardOutputThatTakesNothingIsAFailure) {
   for (const std::string& command :
        {"check " + test::table_config(), "check --json " + test::table_config(),

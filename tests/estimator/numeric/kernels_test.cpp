@@ -279,6 +279,9 @@ std::vector<double> all_results(const kernels::Table& table) {
       auto product = random_values(static_cast<std::size_t>(front * columns), 38);
       table.multiply_add(rows.data(), stride, front, front, right.data(), product.data(), columns);
       keep(product);
+      table.add_two(0.7, right.data(), -1.3, right.data() + (front - 1) * columns, product.data(),
+                    columns);
+      keep(product);
     }
     const auto input = random_values(static_cast<std::size_t>(stride), 40);
     const auto beta = random_values(static_cast<std::size_t>(2 * stride), 41);

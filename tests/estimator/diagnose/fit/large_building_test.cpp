@@ -139,12 +139,12 @@ TEST(LargeBuilding, AStepThroughRunsComputesModesOnce) {
   place.story = kStory;
   const Model model = test::with_effects(initial_model(c.plant),
                                          {test::effect_of(LawForm::friction, place, {20e3, 1e-3})});
-  RunCache cache;
+  std::vector<RunCache> caches(1);
   const FitOptions options = thorough(model, 1);
   const Linearised at = c.fitter.linearise(
-      model, c.fitter.systems(model, {}, options.forcing, nullptr, &cache), options, &cache);
+      model, c.fitter.systems(model, {}, options.forcing, nullptr, &caches), options, &caches);
   ASSERT_EQ(at.systems.size(), 1U);
-  EXPECT_EQ(cache.computed(), 1);
+  EXPECT_EQ(caches.front().computed(), 1);
   const auto runs = std::count_if(at.unknowns.begin(), at.unknowns.end(),
                                   [&](const Unknown& u) { return moves_run(c.plant, model, u); });
   EXPECT_GT(runs, 3);   // the stiffnesses at the law and next to it, and the law's values
