@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/diagnosis/diagnose_verdict.h"
+#include "daemon/diagnosis/noise_beyond.h"
 #include "daemon/documents/json_values.h"
 #include "daemon/simulation/effect_json.h"
 #include "estimator/diagnose/trials/catalogue_form.h"
@@ -147,6 +148,11 @@ std::string diagnosis_json(const DiagnoseOutput& o) {
                 {"misfit_ratio_before", json_value(d.ratio_before)},
                 {"misfit_ratio_after", json_value(d.ratio_after)},
                 {"noise_corner_hz", json_value(d.noise_corner_hz)}};
+  out["noise_beyond_configured"] = Json::array();
+  for (const NoiseBeyond& n : noise_beyond_configured(o.plant, o.segments))
+    out["noise_beyond_configured"].push_back({{"channel", o.plant.axes[n.axis].name},
+                                              {"configured_mps2_per_rthz", n.configured},
+                                              {"read_mps2_per_rthz", n.read}});
   out["modal_damping"] = Json::array();
   for (const estimator::Effect& e : modal_damping_effects(d.model))
     out["modal_damping"].push_back(

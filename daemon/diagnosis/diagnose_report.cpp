@@ -7,6 +7,7 @@
 
 #include "daemon/diagnosis/diagnose_verdict.h"
 #include "daemon/diagnosis/kind_section.h"
+#include "daemon/diagnosis/noise_beyond.h"
 #include "daemon/diagnosis/where_map.h"
 #include "daemon/documents/html_page.h"
 #include "daemon/documents/svg_plot.h"
@@ -298,8 +299,8 @@ std::string diagnosis_report(const DiagnoseOutput& o) {
   const std::vector<LawMotion> motions = law_motions(o);
   std::string body = "<p class=\"verdict\">" + html_text(verdict_sentence(o)) + "</p>\n<p>" +
                      html_text(gap_sentence(o)) + "</p>\n";
-  if (const std::string text = damping_sentence(o); !text.empty())
-    body += "<p>" + html_text(text) + "</p>\n";
+  for (const std::string& text : {damping_sentence(o), noise_sentence(o)})
+    if (!text.empty()) body += "<p>" + html_text(text) + "</p>\n";
   std::string items;
   for (const estimator::FoundEffect& f : d.effects)
     items += "<li>" +

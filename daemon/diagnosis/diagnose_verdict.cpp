@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/diagnosis/kind_section.h"
+#include "daemon/diagnosis/noise_beyond.h"
 #include "estimator/diagnose/trials/damping_form.h"
 #include "estimator/diagnose/verdict/verdict.h"
 
@@ -182,6 +183,7 @@ std::string diagnosis_text(const DiagnoseOutput& o) {
   const estimator::Diagnosis& d = o.diagnosis;
   std::string out = verdict_sentence(o) + "\n  " + gap_sentence(o) + "\n";
   if (const std::string text = damping_sentence(o); !text.empty()) out += "  " + text + "\n";
+  if (const std::string text = noise_sentence(o); !text.empty()) out += "  " + text + "\n";
   for (const estimator::FoundEffect& f : d.effects)
     out += fmt::format("  {}, {}: {}; it takes {:.0f} % of the gap\n", grade_word(grade_of(f)),
                        effect_words(o, f), confidence_words(f),
