@@ -168,7 +168,7 @@ JudgedFit judged_fit(const Fitter& fitter, const std::vector<Model>& starts, int
   sort_starts(kSameGap, all);
   run_all(parallel, static_cast<int>(all.size()),
           [&](int i) { fit_free_run(fitter, kFirstSteps, all[static_cast<std::size_t>(i)]); });
-  sort_starts(kSameGap, all);
+  sort_starts(kSameEnd, all);
   keep_close(all);
   if (fitter.plant().is_large()) all.resize(1);
   run_all(parallel, static_cast<int>(all.size()),

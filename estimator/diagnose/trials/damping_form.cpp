@@ -137,12 +137,12 @@ FitResult with_free_damping(const Fitter& fitter, const FitResult& now) {
   for (const std::size_t e : ratios) out.model.effects[e].parameters[0].free = true;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kTimes; ++i) {
-    FitResult next = forcing_of(out.model) == Forcing::simulated
-                         ? fit_to_the_end(fitter, out.model, out.motion)
-                         : fitter.fit(out.model, out.motion, thorough(out.model, kStepsWith));
+    const bool runs = forcing_of(out.model) == Forcing::simulated;
+    FitResult next = runs ? fit_to_the_end(fitter, out.model, out.motion)
+                          : fitter.fit(out.model, out.motion, thorough(out.model, kStepsWith));
     if (!next.good) break;
     out = std::move(next);
-    if (out.cost > kStillFalls * before) break;
+    if (out.cost > kStillFalls * before || out.steps < (runs ? kEndSteps : kStepsWith)) break;
     before = out.cost;
   }
   return out;

@@ -8,11 +8,11 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kEndSteps = 6, kJudgedSteps = 6;
+constexpr int kJudgedSteps = 6;
 constexpr double kNothing = 0.98;  ///< gap with an effect over the one without
 constexpr int kRoughSteps = 4;
-constexpr double kClearly =
-    0.5;  ///< the same after so many steps, that no further fit makes nothing
+/// Gap with an effect over the one without after so many steps, below which it takes something.
+constexpr double kClearly = 0.75;
 
 /// Replaces `now` by the fit of a smaller model, started from it, unless that is worse; whether
 /// it did so.

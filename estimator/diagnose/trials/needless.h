@@ -13,8 +13,10 @@ namespace framewatch::estimator {
 /// Fall of the cost that is worth an effect.
 inline constexpr double kLeastGain = 50;
 
+inline constexpr int kEndSteps = 6;
+
 /// Until neither kind of derivative improves the fit: an unfinished fit would show up as one more
-/// effect.
+/// effect. Of kEndSteps each.
 FitResult fit_to_the_end(const Fitter& fitter, const Model& model,
                          const std::vector<Eigen::MatrixXcd>& motion);
 

@@ -16,6 +16,7 @@ using Eigen::VectorXd;
 
 void set_errors(const Fitter& fitter, const Model& model,
                 const std::vector<Eigen::MatrixXcd>& motion, std::vector<FoundEffect>& effects) {
+  if (effects.empty()) return;
   std::vector<Whitened> systems = fitter.systems(model, motion, forcing_of(model));
   if (systems.empty()) return;
   const Linearised at = fitter.linearise(model, std::move(systems), thorough(model, 0));

@@ -18,6 +18,8 @@ constexpr int kTrialSteps = 3;  ///< of a free run's fit, before the costs are c
 constexpr double kCostLimit = 4;
 /// Cost of the best trial over that without one, above which friction is begun anew.
 constexpr double kNothingFound = 0.3;
+/// Cost over that without a trial, above which it explains nothing.
+constexpr double kUseless = 0.9;
 constexpr int kFirstSteps = 5, kPairSteps = 6, kRunSteps = 8, kLinearSteps = 15;
 
 /// A start model and the names of its new effects.
@@ -55,7 +57,7 @@ Trial trial_of(const TrialContext& c, const Candidate& candidate, const FitResul
 }
 
 /// The candidates that get a free run: the best of each place, and as many whose names may be
-/// given. The others are added to `screened_out`.
+/// given, but for those that explain nothing where others do. The rest are added to `screened_out`.
 std::vector<Fitted> worth_a_free_run(const TrialContext& c, std::vector<Fitted> first,
                                      std::vector<Trial>& screened_out) {
   std::stable_sort(first.begin(), first.end(), [](const Fitted& a, const Fitted& b) {
@@ -63,13 +65,18 @@ std::vector<Fitted> worth_a_free_run(const TrialContext& c, std::vector<Fitted> 
                                                   : a.fit.cost < b.fit.cost;
   });
   std::vector<Fitted> out;
+  double least = c.now.cost;
+  for (const Fitted& f : first) least = std::min(least, f.fit.cost);
+  const bool found = least < kNothingFound * c.now.cost;
   std::size_t place = 0, of_place = 0, named_of_place = 0;
   for (Fitted& f : first) {
     if (f.candidate->from != place) of_place = named_of_place = 0;
     place = f.candidate->from;
     Trial driven = trial_of(c, *f.candidate, f.fit, TrialOutcome::screened_out);
     const bool named = may_be_named(c, driven);
-    if (!f.candidate->second && of_place >= kLawsRun && (!named || named_of_place >= kLawsRun)) {
+    const bool nothing = found && f.fit.cost > kUseless * c.now.cost;
+    if (nothing ||
+        (!f.candidate->second && of_place >= kLawsRun && (!named || named_of_place >= kLawsRun))) {
       screened_out.push_back(std::move(driven));
       continue;
     }
