@@ -11,6 +11,7 @@
 #include "estimator/diagnose/propose/name_of_fit.h"
 #include "estimator/diagnose/trials/sharpened.h"
 #include "estimator/diagnose/trials/trial_names.h"
+#include "estimator/diagnose/trials/trial_relations.h"
 #include "estimator/diagnose/trials/trials.h"
 
 namespace framewatch::estimator {
@@ -199,7 +200,8 @@ class Selection {
   bool joins(const Members& members, std::size_t cause) const {
     const Trial& t = *tried_[cause];
     return std::none_of(members.begin(), members.end(), [&](std::size_t i) {
-      return i == cause || (t.place == tried_[i]->place && has_law(t) && has_law(*tried_[i]));
+      return i == cause ||
+             (same_spot(t.place, tried_[i]->place) && has_law(t) && has_law(*tried_[i]));
     });
   }
 
