@@ -38,6 +38,11 @@ struct FitResult {
   double total_misfit() const;
 };
 
+/// Whether a fit is good, and of less cost than the other one or that is none.
+inline bool is_better(const FitResult& fit, const FitResult& other) {
+  return fit.good && (!other.good || fit.cost < other.cost);
+}
+
 /// Fits models of one plant to several segments by Gauss-Newton (Levenberg-Marquardt) on the
 /// whitened equations.
 class Fitter {

@@ -30,10 +30,6 @@ FitResult as_it_runs(const Fitter& fitter, const Model& model,
   return fitter.fit(model, motion, run);
 }
 
-bool is_better(const FitResult& a, const FitResult& b) {
-  return a.good && (!b.good || a.cost < b.cost);
-}
-
 /// Friction between the forces that were tried, and as smooth as comes nearest: from a force that
 /// is too large no step leads down, since it holds.
 FitResult closer(const Fitter& fitter, FitResult best) {

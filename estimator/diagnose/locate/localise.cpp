@@ -292,4 +292,15 @@ Localisation localise(const Fitter& fitter, const Model& start,
   return out;
 }
 
+std::optional<Localisation> localise_element(const Fitter& fitter, const FitResult& now,
+                                             const EffectPlace& element) {
+  constexpr int kSteps = 8;
+  std::vector<CandidatePlace> own = candidate_places_of(fitter.plant(), now.model);
+  std::erase_if(own, [&](const CandidatePlace& p) {
+    return p.kind != CandidatePlace::Kind::element || !(p.place == element);
+  });
+  if (own.empty()) return std::nullopt;
+  return localise(fitter, now.model, now.motion, own, kSteps);
+}
+
 }  // namespace framewatch::estimator

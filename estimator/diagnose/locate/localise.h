@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -32,5 +33,9 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
 Localisation localise(const Fitter& fitter, const Model& start,
                       const std::vector<Eigen::MatrixXcd>& motion,
                       const std::vector<CandidatePlace>& candidate_places, int steps);
+
+/// The same of one element, beside a fit; empty where the place is none.
+std::optional<Localisation> localise_element(const Fitter& fitter, const FitResult& now,
+                                             const EffectPlace& element);
 
 }  // namespace framewatch::estimator

@@ -104,8 +104,7 @@ void begin_friction_anew(const TrialContext& c, const std::vector<Candidate>& ca
       FitOptions options = full_fit(from.model);
       options.max_steps = kFromFarSteps;
       FitResult run = c.fitter.fit(from.model, from.motion, options);
-      if (run.good && (!anew[at].fit.good || run.cost < anew[at].fit.cost))
-        anew[at].fit = std::move(run);
+      if (is_better(run, anew[at].fit)) anew[at].fit = std::move(run);
     }
   });
   for (Fitted& f : anew) {
@@ -117,7 +116,7 @@ void begin_friction_anew(const TrialContext& c, const std::vector<Candidate>& ca
     if (same == kept.end()) {
       runs.push_back(f.fit);
       kept.push_back(std::move(f));
-    } else if (!runs[at].good || f.fit.cost < runs[at].cost) {
+    } else if (is_better(f.fit, runs[at])) {
       runs[at] = std::move(f.fit);
     }
   }
@@ -163,11 +162,11 @@ void begin_beside_laws(const TrialContext& c, const std::vector<Fitted>& kept,
     for (const double size : {1.0, 0.1}) {
       FitResult one =
           c.fitter.fit(with_new(c.now.model, kept[at].fit.model, size), c.now.motion, options);
-      if (one.good && (!from.good || one.cost < from.cost)) from = std::move(one);
+      if (is_better(one, from)) from = std::move(one);
     }
     if (!from.good || from.cost > kCostLimit * least) return;
     FitResult run = c.fitter.fit(from.model, from.motion, full_fit(from.model));
-    if (run.good && (!runs[at].good || run.cost < runs[at].cost)) runs[at] = std::move(run);
+    if (is_better(run, runs[at])) runs[at] = std::move(run);
   });
 }
 

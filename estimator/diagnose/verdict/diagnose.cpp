@@ -217,7 +217,7 @@ class Diagnoser {
       set_corner(corner_hz, segments_);
       return false;
     }
-    for (FoundEffect& e : out_.effects) e.confidence = kDoubtful;
+    search_.doubt_all();
     out_.trained.reset();
     now = std::move(with);
     return true;

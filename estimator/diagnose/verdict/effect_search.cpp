@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "estimator/diagnose/fit/noise_colour.h"
@@ -24,7 +25,7 @@ namespace {
 /// Fraction above which a second law at the place of the first does not call the first in question.
 constexpr double kOneLaw = 0.99;
 constexpr double kClearer = 0.7;  ///< excess of a place's misfit over that of another search
-constexpr int kStepsBack = 8, kPlaceSteps = 8;
+constexpr int kStepsBack = 8;
 constexpr std::size_t kLeadLaws = 3;  ///< laws beside which another is looked for
 constexpr double kLeadTakes = 0.3;    ///< of the misfit that a free place takes
 constexpr double kTogether = 0.97;    ///< of the misfit beyond noise, that two explain
@@ -141,18 +142,13 @@ bool EffectSearch::explains_beside(const Trial& lead, FitResult& now) {
 
 /// What changes with time beside a law of the motion, or the other way round, at the same place.
 bool EffectSearch::find_beside_at(const Trial& lead, FitResult& now) {
-  std::vector<CandidatePlace> own = candidate_places_of(fitter_.plant(), now.model);
-  std::erase_if(own, [&](const CandidatePlace& p) {
-    return p.kind != CandidatePlace::Kind::element || !(p.place == lead.place);
-  });
-  if (own.empty()) return false;
-  const Localisation here = localise(fitter_, now.model, now.motion, own, kPlaceSteps);
-  if (here.ratio > kOnePlace) return false;
+  const std::optional<Localisation> here = localise_element(fitter_, now, lead.place);
+  if (!here || here->ratio > kOnePlace) return false;
   const TrialContext context = context_of(now);
-  std::vector<Trial> trials = try_places(context, {here}, [&](EffectKind kind) {
+  std::vector<Trial> trials = try_places(context, {*here}, [&](EffectKind kind) {
     return changes_with_time(kind) != changes_with_time(lead.kind);
   });
-  const double bound = std::min(now.cost, bound_of(fitter_.plant(), here));
+  const double bound = std::min(now.cost, bound_of(fitter_.plant(), *here));
   return holds(context, bound, needed_of(fitter_, now.model), trials) && adopt_held(trials, now);
 }
 

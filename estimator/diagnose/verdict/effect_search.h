@@ -33,6 +33,10 @@ class EffectSearch {
     out_.linear = now.model;
     out_.ratio_before = ratio(now);
   }
+  /// Leaves no effect surer than a doubt.
+  void doubt_all() {
+    for (FoundEffect& e : out_.effects) e.confidence = std::min(e.confidence, kDoubtful);
+  }
   double ratio(const FitResult& now) const;  ///< misfit over its expectation
   TrialContext context_of(const FitResult& now) const;
   /// Localisation::ratio of the likeliest place, in the last round.
@@ -42,9 +46,6 @@ class EffectSearch {
   void search_with_free_damping(FitResult& now);
   void look_ahead(FitResult& now);
   void choose_laws_again(FitResult& now);
-  void doubt_all() {
-    for (FoundEffect& e : out_.effects) e.confidence = std::min(e.confidence, kDoubtful);
-  }
   void colour_by_place(FitResult& now, Located& located);
   void fit_with_corner(double corner_hz, FitResult& now);
   bool holds(const TrialContext& context, double bound, double needed, std::vector<Trial>& trials);

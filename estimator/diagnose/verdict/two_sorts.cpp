@@ -1,6 +1,7 @@
 #include "estimator/diagnose/verdict/two_sorts.h"
 
 #include <cstddef>
+#include <optional>
 
 #include "estimator/diagnose/propose/law_kind.h"
 #include "estimator/diagnose/propose/propose.h"
@@ -12,7 +13,6 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr std::size_t kOfDeformation = 4, kDissipative = 2;
-constexpr int kSteps = 8;
 
 bool is_dissipative(EffectKind law) {
   return is_of_kind(law, LawKind::dissipative);
@@ -28,16 +28,13 @@ std::vector<Proposal> of_sort(const TrialContext& c, std::vector<Proposal> all,
 }  // namespace
 
 std::vector<Trial> trials_of_two_sorts(const TrialContext& c, const EffectPlace& element) {
-  std::vector<CandidatePlace> own = candidate_places_of(c.fitter.plant(), c.now.model);
-  std::erase_if(own, [&](const CandidatePlace& p) {
-    return p.kind != CandidatePlace::Kind::element || !(p.place == element);
-  });
-  if (own.empty()) return {};
-  const Localisation here = localise(c.fitter, c.now.model, c.now.motion, own, kSteps);
-  const std::vector<Proposal> all = propose(c.fitter, here, 0);
-  std::vector<Trial> out = try_together(c, here, of_sort(c, all, is_of_deformation, kOfDeformation),
-                                        of_sort(c, all, is_dissipative, kDissipative));
-  select_trial(c, here.misfit, 0, out);
+  const std::optional<Localisation> here = localise_element(c.fitter, c.now, element);
+  if (!here) return {};
+  const std::vector<Proposal> all = propose(c.fitter, *here, 0);
+  std::vector<Trial> out =
+      try_together(c, *here, of_sort(c, all, is_of_deformation, kOfDeformation),
+                   of_sort(c, all, is_dissipative, kDissipative));
+  select_trial(c, here->misfit, 0, out);
   std::erase_if(out, [](const Trial& t) { return t.outcome != TrialOutcome::fitted; });
   return out;
 }
