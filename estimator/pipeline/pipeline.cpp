@@ -42,10 +42,18 @@ class Pipeline::Implementation {
   void estimate(const SampleSet& set) {
     ++sets_;
     if (instants_) instants_(set);
+    for (int missing = estimator_.missing_before(set); missing > 0; --missing) {
+      estimator_.push_missing();
+      give_others();
+    }
     if (const WindowEstimate* estimate = estimator_.push(set)) {
       ++windows_;
       sink_(*estimate);
     }
+    give_others();
+  }
+
+  void give_others() {
     if (const WindowEstimate* other = estimator_.other(); other != nullptr && others_)
       others_(*other);
     if (const ModelFit* fit = estimator_.model_fit(); fit != nullptr && models_) models_(*fit);

@@ -30,6 +30,12 @@ class SlidingWindowEstimator {
 
   /// One instant. Returns the estimate of the window that ends there, or null between hops.
   const WindowEstimate* push(const SampleSet& set);
+  /// Before push(): instants between the last one and `set` that are missing, and that push_missing()
+  /// is to be called for. 0 when there is none, and when so many are missing, or the clock has gone
+  /// back, that push() begins anew.
+  int missing_before(const SampleSet& set) const;
+  /// An instant without any sample: rows from before it stay in the windows. No window ends there.
+  void push_missing();
   /// The estimate of another window that the last push completed, or null.
   const WindowEstimate* other() const { return other_; }
   /// The look at the model that the last push completed, or null.
@@ -62,6 +68,7 @@ class SlidingWindowEstimator {
     a.each_within(seen_axes_, 0, 1);
     a.within(axes_steady_rows_, 0, a.kMostCount);
     a.within(expected_index_, -1, a.kMostCount);
+    a(last_time_);
     a.within(since_hop_, 0, hop_rows_);
     a.within(interruptions_, 0, a.kMostCount);
     if (active_->next() != ring_.end()) a.refuse();
@@ -89,6 +96,9 @@ class SlidingWindowEstimator {
     }
   }
   void restart();
+  /// Steps of the common grid from the last instant to `time`, whole.
+  double steps_to(Time time) const;
+  void advance(const std::vector<double>& accel, Time time);
   /// Something has got into the filters that no motion makes of them: everything begins anew.
   void recover();
   void advance_errors(Time window_end);
@@ -114,7 +124,7 @@ class SlidingWindowEstimator {
   std::unique_ptr<MotionSource> motion_source_;
   DerivativeTriple triple_;
   HighPass high_pass_;
-  int blocks_, block_rows_, hop_rows_, settle_rows_;
+  int blocks_, block_rows_, hop_rows_;
   std::vector<int> other_blocks_;
   DriftControlledIntegrator integrator_;
   AxisNoise noise_;
@@ -136,6 +146,9 @@ class SlidingWindowEstimator {
   const ModelFit* model_fit_ = nullptr;
   bool errors_new_ = false;  ///< of the last push
   std::int64_t expected_index_ = -1, since_hop_ = 0, interruptions_ = 0;
+  Time last_time_{};             ///< of the last instant
+  std::vector<double> nothing_;  ///< no sample of any axis
+  bool due_ = false;             ///< the last advance() was a hop
   std::vector<std::uint8_t> seen_axes_;        ///< of the last instants, of groups
   std::vector<std::uint8_t> identified_from_;  ///< of follow_axes()
   int axes_steady_rows_ = 0;                   ///< instants for which they have been these
