@@ -47,8 +47,7 @@ class UnknownPast {
     if constexpr (Archive::kReading)
       if (equation_.size() < static_cast<std::size_t>(equations_))
         equation_.resize(static_cast<std::size_t>(equations_));
-    for (std::size_t i = 0; i < static_cast<std::size_t>(equations_); ++i)
-      archive(a, equation_[i]);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(equations_); ++i) archive(a, equation_[i]);
   }
 
  private:

@@ -99,7 +99,9 @@ void BatchMeans::assemble(int floor) {
 
 /// Whether rows of a block know the floor's own unknowns: its own rows or those of the floor below.
 bool BatchMeans::has_rows(int floor, int block) const {
-  const auto holds = [&](int f) { return holds_[static_cast<std::size_t>(f * kBlocks + block)] != 0; };
+  const auto holds = [&](int f) {
+    return holds_[static_cast<std::size_t>(f * kBlocks + block)] != 0;
+  };
   return holds(floor) || (floor > 0 && layout_.shared() > 0 && holds(floor - 1));
 }
 

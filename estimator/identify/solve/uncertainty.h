@@ -111,8 +111,8 @@ class BatchMeans {
   double noise_level_ = 0;
   int next_step_;
   const GramShape* shape_ = nullptr;
-  std::vector<const double*> block_;  ///< null: before the start
-  std::vector<std::uint8_t> holds_;   ///< floors x blocks: the floor has rows in it
+  std::vector<const double*> block_;    ///< null: before the start
+  std::vector<std::uint8_t> holds_;     ///< floors x blocks: the floor has rows in it
   std::vector<double> columns_values_;  ///< unknowns x (blocks, then perturbations)
   PerturbedDesigns perturbed_;
   std::vector<double> solution_, score_scale_, prior_, prior_doubt_, x_, score_, inverse_diagonal_;

@@ -99,11 +99,9 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
                                   longest_window(block_rows_, other_blocks_) + triple_.length())),
       drift_(config_, table_, layout_, block_rows_,
              longest_window(block_rows_, other_blocks_) / block_rows_),
-      main_(config_.structure, layout_, table_, options_, kCompensatedShare, kWarm),
-      others_(config_.structure, layout_, table_, options_, other_blocks_, block_rows_),
+      series_(config_.structure, layout_, table_, options_, kWarm, other_blocks_, block_rows_),
       estimate_(static_cast<std::size_t>(table_.size())),
       nothing_(config_.axes.size(), kNaN) {
-  steps_per_instant_ = (main_.error_steps() + block_rows_ - 2) / (block_rows_ - 1);
   boxplots_.reserve(estimate_.value.size());  // copies would not keep what they reserve
   for (std::size_t p = 0; p < estimate_.value.size(); ++p)
     boxplots_.emplace_back(options_.boxplot_windows);
@@ -118,6 +116,10 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
     self_tuning_ =
         std::make_unique<SelfTuning>(layout_, table_, make_regression(active_->tuning().copy()),
                                      kBlocks, triple_.length(), noise_.configured());
+  if (self_tuning_)
+    late_ = std::make_unique<LateWindows>(
+        config_, table_, layout_, kWarm, other_blocks_, block_rows_,
+        longest_window(block_rows_, other_blocks_) / block_rows_, hop_rows_);
   if (options_.long_window_s > 0)
     long_ = std::make_unique<LongWindow>(config_.structure, layout_, table_, options_, block_rows_,
                                          static_cast<int>(other_blocks_.size()) + 1,
@@ -167,8 +169,8 @@ void SlidingWindowEstimator::restart() {
   drift_.restart();
   active_->start(0);
   if (self_tuning_) self_tuning_->restart();
-  main_.restart();
-  others_.restart();
+  series_.restart();
+  if (late_) late_->end();
   if (check_) check_->restart();
   since_hop_ = 0;
 }
@@ -220,18 +222,27 @@ void SlidingWindowEstimator::advance(const std::vector<double>& accel, Time time
   motion_source_->compute(integrator_, ring_.push());
   drift_.push(ring_.at(ring_.end() - 1));
   if (layout_.grouped()) follow_axes(ring_.at(ring_.end() - 1).known);
-  active_->advance(ring_);
-  ++since_hop_;
-  due_ = since_hop_ >= hop_rows_;
-  if (active_->suffices() && (due_ || active_->closes_block()))
-    main_.solve(active_->sums().window(), active_->rows(), trust(), active_->closes_block());
-  const Time window_end = time - duration_of(triple_.delay, options_.rate_hz);
-  advance_errors(window_end);
+  due_ = ++since_hop_ >= hop_rows_;
   if (due_) since_hop_ = 0;
-  model_fit_ = check_ && ring_.end() > triple_.length()
-                   ? check_->advance({&main_, &ring_, trust(), tuned(), errors_new_, window_end})
-                   : nullptr;
-  if (self_tuning_ && self_tuning_->step(active_, ring_)) regression_exchanged();
+  const Time window_end = time - duration_of(triple_.delay, options_.rate_hz);
+  const WindowSeries::Done done =
+      series_.advance(*active_, {&ring_, trust(), tuned(), due_, &drift_, window_end});
+  other_ = done.other;
+  errors_new_ = done.errors_new;
+  if (done.block) sane_ = active_->sums().sane();
+  if (done.closed)
+    block_closed(window_end);
+  else
+    go_on();
+  model_fit_ =
+      check_ && ring_.end() > triple_.length()
+          ? check_->advance({&series_.main(), &ring_, trust(), tuned(), errors_new_, window_end})
+          : nullptr;
+  if (!self_tuning_) return;
+  const bool was_tuned = tuned();
+  if (self_tuning_->step(active_, ring_)) regression_exchanged();
+  if (!was_tuned && tuned()) look_back();
+  late_budget_ = self_tuning_->work_per_instant();
 }
 
 void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known) {
@@ -251,26 +262,51 @@ void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known)
   self_tuning_->begin_axes(*active_, identified_from_);
 }
 
-void SlidingWindowEstimator::advance_errors(Time window_end) {
-  errors_new_ = false;
-  const bool closed = active_->finish(ring_);
-  if (closed) sane_ = active_->sums().sane();
-  if (closed && active_->suffices()) {
-    main_.begin_errors(active_->sums(), main_);
-    others_.block_closed(active_->sums(), window_end);
-    const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
-    if (long_) long_->block_closed(active_->sums(), known, window_end);
-    if (bending_) bending_->block_closed(active_->sums(), known, window_end);
-    return;
-  }
-  errors_new_ = main_.advance_errors(steps_per_instant_);
+void SlidingWindowEstimator::block_closed(Time window_end) {
+  const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
+  if (long_) long_->block_closed(active_->sums(), known, window_end);
+  if (bending_) bending_->block_closed(active_->sums(), known, window_end);
+}
+
+/// What is worked on between the ends of two blocks.
+void SlidingWindowEstimator::go_on() {
   if (errors_new_) check_tuning();
-  other_ = others_.advance(
-      {active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned(), &drift_});
   if (long_ && other_ == nullptr) advance_long();
   if (bending_ &&
       bending_->advance({active_.get(), &ring_.at(ring_.end() - 1).known, trust(), tuned()}))
     hold_bending();
+}
+
+void SlidingWindowEstimator::look_back() {
+  late_until_ = ring_.end();
+  self_tuning_->lend(*active_);
+}
+
+const WindowEstimate* SlidingWindowEstimator::late() {
+  if (late_other_ != nullptr) return std::exchange(late_other_, nullptr);
+  TunedRegression* const regression = self_tuning_ ? self_tuning_->lent() : nullptr;
+  if (regression == nullptr) return nullptr;
+  if (!late_->running()) {
+    // Rows that leave are formed again: they must still be held when they are.
+    const int until_then = regression->sums().lag() / self_tuning_->work_per_instant() + 2;
+    late_->begin(*regression, ring_.begin_after(until_then), late_until_);
+  }
+  for (; late_budget_ > 0; --late_budget_) {
+    if (late_->complete(*regression)) {
+      late_->end();
+      self_tuning_->give_back();
+      return nullptr;
+    }
+    const auto ago = static_cast<double>(ring_.end() - 1 - regression->next());
+    const Time end = last_time_ - duration_of(ago + triple_.delay, options_.rate_hz);
+    const LateWindows::Given given = late_->advance(*regression, ring_, trust(), end);
+    if (given.main == nullptr && given.other == nullptr) continue;
+    --late_budget_;
+    if (given.main == nullptr) return given.other;
+    late_other_ = given.other;
+    return given.main;
+  }
+  return nullptr;
 }
 
 void SlidingWindowEstimator::advance_long() {
@@ -287,27 +323,28 @@ void SlidingWindowEstimator::advance_long() {
 void SlidingWindowEstimator::hold_bending() {
   for (const HeldBending::Held& held : bending_->held()) {
     const double ratio = held.value / theta0()[held.parameter];
-    main_.hold(held.unknown, ratio, held.std_error);
-    others_.hold(held.unknown, ratio, held.std_error);
+    series_.hold(held.unknown, ratio, held.std_error);
+    if (late_) late_->hold(held.unknown, ratio, held.std_error);
     if (check_) check_->hold(held.unknown, ratio, held.std_error);
   }
 }
 
 void SlidingWindowEstimator::check_tuning() {
   if (!self_tuning_ || !self_tuning_->due()) return;
-  for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = main_.shown(static_cast<int>(u));
-  self_tuning_->begin_check(*active_, main_.solver().solution(), main_.std_error(), shown_, noise_);
+  for (std::size_t u = 0; u < shown_.size(); ++u)
+    shown_[u] = series_.main().shown(static_cast<int>(u));
+  self_tuning_->begin_check(*active_, series_.main().solver().solution(),
+                            series_.main().std_error(), shown_, noise_);
 }
 
 void SlidingWindowEstimator::regression_exchanged() {
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const int p = layout_.parameter(u / layout_.own(), u % layout_.own());
     const double before = self_tuning_->before().tuning().theta0()[p];
-    main_.rescale(u, before / theta0()[p]);
+    series_.main().rescale(u, before / theta0()[p]);
     retuned_by_[static_cast<std::size_t>(u)] = theta0()[p] / before;
   }
-  main_.retuned();
-  others_.retuned();
+  series_.retuned();
   if (long_) long_->retuned();
   if (bending_) {
     bending_->retuned(retuned_by_);
@@ -321,7 +358,7 @@ void SlidingWindowEstimator::fill_estimate(Time end) {
   estimate_.rows = active_->suffices() ? active_->sums().rows() : 0;
   estimate_.start = end - duration_of(std::max(estimate_.rows - 1, 0), options_.rate_hz);
   ++estimate_.sequence;
-  main_.fill({&theta0(), &ring_.at(ring_.end() - 1).known, tuned()}, estimate_);
+  series_.main().fill({&theta0(), &ring_.at(ring_.end() - 1).known, tuned()}, estimate_);
   for (int p = 0; p < table_.elements(); ++p)
     estimate_.amplitude[static_cast<std::size_t>(p)] = drift_.rms(p, blocks_);
   for (std::size_t p = 0; p < boxplots_.size(); ++p) {

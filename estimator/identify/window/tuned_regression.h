@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -26,6 +27,10 @@ class MotionRing {
   /// First instant still held, and one past the newest.
   std::int64_t begin() const { return next_ > capacity() ? next_ - capacity() : 0; }
   std::int64_t end() const { return next_; }
+  /// begin() once `more` instants have been pushed.
+  std::int64_t begin_after(std::int64_t more) const {
+    return std::max<std::int64_t>(next_ + more - capacity(), 0);
+  }
   std::int64_t capacity() const { return static_cast<std::int64_t>(sets_.size()); }
 
   template <typename Archive>

@@ -108,6 +108,36 @@ TEST(Pipeline, WindowTimesAreThoseOfItsSamples) {
   }
 }
 
+/// WHEN the design is far off, windows are held back until the filters are tuned, and come late
+/// then: every window of the motion is given once, at its time or late.
+TEST(Pipeline, WindowsHeldBackWhileTuningComeLate) {
+  PipelineConfig config = small_config();
+  config.design *= 0.3;
+  std::vector<WindowEstimate> given, late;
+  Pipeline pipeline(config, [&](const WindowEstimate& e) { given.push_back(e); });
+  pipeline.on_late([&](const WindowEstimate& e) {
+    if (e.window == 0) late.push_back(e);
+  });
+  for (int t = 0; t < small_accel().rows(); ++t)
+    for (int a = 0; a < small_accel().cols(); ++a)
+      pipeline.push(test::sample_at(small_accel(), 100, t, a));
+  pipeline.finish();
+  const auto first = std::find_if(given.begin(), given.end(), any_value);
+  ASSERT_NE(first, given.end());
+  ASSERT_FALSE(late.empty());
+  EXPECT_LE(late.front().end - given.front().end, std::chrono::milliseconds(10 * kWarmUp + 100));
+  EXPECT_GE(late.back().end, first->end - std::chrono::milliseconds(100));
+  for (std::size_t i = 0; i < late.size(); ++i) {
+    EXPECT_TRUE(late[i].late);
+    if (i > 0) {
+      ASSERT_EQ(late[i].end - late[i - 1].end, std::chrono::milliseconds(10)) << i;
+    }
+    if (i > kWarmUp) {
+      ASSERT_LT(worst_frame_error(small(), late[i], small_theta()), 0.05) << i;
+    }
+  }
+}
+
 TEST(Pipeline, TwoRunsAreByteIdentical) {
   const PipelineRun a = run_pipeline(small_config(), small_accel());
   const PipelineRun b = run_pipeline(small_config(), small_accel());
