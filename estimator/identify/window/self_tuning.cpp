@@ -43,7 +43,8 @@ bool SelfTuning::due() {
 
 void SelfTuning::begin_check(const TunedRegression& active, const std::vector<double>& ratio,
                              const std::vector<double>& std_error,
-                             const std::vector<std::uint8_t>& shown, const AxisNoise& noise) {
+                             const std::vector<std::uint8_t>& shown, const AxisNoise& noise,
+                             bool rough) {
   if (std::none_of(shown.begin(), shown.end(), [](auto s) { return s != 0; })) return;
   retuned_design(layout_, table_, active.tuning().theta0(), ratio, std_error, shown, work_,
                  next_theta0_);
@@ -53,6 +54,7 @@ void SelfTuning::begin_check(const TunedRegression& active, const std::vector<do
   phase_ = Phase::checking;
   next_part_ = 0;
   detuning_ = 0;
+  rough_ = rough;
 }
 
 void SelfTuning::begin_axes(const TunedRegression& active,
@@ -100,12 +102,13 @@ void SelfTuning::check_floors(TunedRegression& active) {
     detuning_ = std::max(detuning_, active.tuning().detuning(next_part_++, next_theta0_));
   if (next_part_ < layout_.floors()) return;
   phase_ = Phase::idle;
-  if ((detuning_ <= kDetuned && !noise_differs_) || passes_ >= kMostPasses) {
+  if (rough_ && detuning_ <= kDetuned) return;
+  if (!rough_ && ((detuning_ <= kDetuned && !noise_differs_) || passes_ >= kMostPasses)) {
     tuned_ = true;
     passes_ = 0;
     return;
   }
-  if (!tuned_) ++passes_;
+  if (!tuned_ && !rough_) ++passes_;
   phase_ = Phase::tuning;
   next_part_ = 0;
   if (standby_->tuning().axes() != active.tuning().axes())

@@ -37,10 +37,12 @@ class SelfTuning {
   bool due();
   /// Begins a check. ratio, std_error: of the window's solution, internal order, relative to
   /// theta0; shown: whether the window shows the unknown. noise: when rows are weighted by another
-  /// one, they are formed anew.
+  /// one, they are formed anew. rough: a step toward better filters that no value could be
+  /// published from: it does not say that they are right, nor is it one of the passes that end in
+  /// that.
   void begin_check(const TunedRegression& active, const std::vector<double>& ratio,
                    const std::vector<double>& std_error, const std::vector<std::uint8_t>& shown,
-                   const AxisNoise& noise);
+                   const AxisNoise& noise, bool rough = false);
   /// Begins a tuning to other axes, with the parameters as they are.
   void begin_axes(const TunedRegression& active, const std::vector<std::uint8_t>& present);
   /// Tunes the standby as the active regression is, and lends it: until give_back() it is not used
@@ -66,7 +68,7 @@ class SelfTuning {
   template <typename Archive>
   void archive(Archive& a) {
     a(*standby_, tuned_, noise_known_, noise_measured_, noise_differs_);
-    a(lending_);
+    a(lending_, rough_);
     a.within(phase_, 0, static_cast<double>(Phase::lent));
     for (int* number : {&next_part_, &passes_, &since_check_}) a.within(*number, 0, a.kMostCount);
     a.within(retunes_, 0, a.kMostCount);
@@ -85,6 +87,7 @@ class SelfTuning {
   int blocks_, fill_, parts_per_instant_, catch_up_per_instant_;
   Phase phase_ = Phase::idle;
   bool tuned_ = false;
+  bool rough_ = false;    ///< the check under way
   bool lending_ = false;  ///< what is being tuned is to be lent
   int next_part_ = 0, passes_ = 0, since_check_ = 0;
   double detuning_ = 0;

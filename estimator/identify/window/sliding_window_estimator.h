@@ -110,6 +110,7 @@ class SlidingWindowEstimator {
   /// The filters have just been found right: windows that have been held back are looked at again.
   void look_back();
   void check_tuning();
+  void take_what_moves();
   void advance_long();
   void hold_bending();
   /// Of groups: a channel that is gone makes its floor an inner one, one that is back a measured
