@@ -20,6 +20,7 @@ class Pipeline::Implementation {
         instants_(std::move(instants)),
         models_(std::move(models)) {}
 
+  void start_tuned(const Tuning& tuning) { estimator_.start_tuned(tuning); }
   void push(const AccelSample& raw) { acquisition_.push(raw); }
   void finish() { acquisition_.finish(); }
 
@@ -65,6 +66,12 @@ Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others, Instant
     : implementation_(std::make_unique<Implementation>(config, std::move(sink), std::move(others),
                                                        std::move(instants), std::move(models))) {}
 Pipeline::~Pipeline() = default;
+void Pipeline::start_tuned(const Tuning& tuning) {
+  implementation_->start_tuned(tuning);
+}
+std::optional<Tuning> Pipeline::tuning() const {
+  return implementation_->estimator().tuning();
+}
 void Pipeline::push(const AccelSample& sample) {
   implementation_->push(sample);
 }
