@@ -35,6 +35,9 @@ class Estimation {
   /// `config` must outlive this. `observer`, if any, sees every estimate before it is published.
   Estimation(const Config& config, MessageSink sink, Observer observer = {});
 
+  /// See Pipeline; to be called before the first sample.
+  void start_tuned(const estimator::Tuning& tuning) { pipeline_.start_tuned(tuning); }
+
   /// One LCM message, whatever it is. received_us: see AccelIntake::message().
   drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size,
                                 const drivers::LcmSender& sender = {},

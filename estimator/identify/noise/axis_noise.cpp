@@ -31,16 +31,6 @@ bool AxisNoise::densities(std::vector<double>& out) const {
   return true;
 }
 
-double AxisNoise::level(const std::vector<double>& used) const {
-  double highest = 0;
-  for (std::size_t a = 0; a < given_.size(); ++a) {
-    const double now = given_[a] > 0 ? given_[a] : meter_.density(static_cast<int>(a));
-    if (!(now > 0)) return 0;
-    highest = std::max(highest, now / used[a]);
-  }
-  return highest * highest;
-}
-
 bool AxisNoise::differs(const std::vector<double>& now, const std::vector<double>& used) const {
   double lowest = std::numeric_limits<double>::infinity(), highest = 0;
   for (std::size_t a = 0; a < given_.size(); ++a) {

@@ -21,9 +21,6 @@ class AxisNoise {
   /// m/s^2/sqrt(Hz) of every axis, into a vector of their number; false, and nothing written, while
   /// one is not known.
   bool densities(std::vector<double>& out) const;
-  /// Largest variance of the configured or measured noise over that of `used`; 0 while one is not
-  /// known.
-  double level(const std::vector<double>& used) const;
   /// Whether the ratios of the axes without configured noise have changed since `used` so much that
   /// the rows should be weighted anew.
   bool differs(const std::vector<double>& now, const std::vector<double>& used) const;

@@ -9,6 +9,7 @@
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/tuned_regression.h"
+#include "estimator/setup/tuning.h"
 
 namespace framewatch::estimator {
 
@@ -22,6 +23,10 @@ class SelfTuning {
   /// noise_known: see below, of the active regression.
   SelfTuning(const FloorLayout& layout, const ParameterTable& table,
              std::unique_ptr<TunedRegression> standby, int blocks, int fill, bool noise_known);
+
+  /// Exchanges `active` for a regression that is tuned to this; before() is then the former one. To
+  /// be called before the first instant.
+  void start_tuned(std::unique_ptr<TunedRegression>& active, const Tuning& tuning);
 
   /// Instants the ring must hold for a regression that needs `warm_up` of them.
   static int ring_rows(int warm_up) { return 2 * warm_up + 2; }
@@ -37,12 +42,10 @@ class SelfTuning {
   bool due();
   /// Begins a check. ratio, std_error: of the window's solution, internal order, relative to
   /// theta0; shown: whether the window shows the unknown. noise: when rows are weighted by another
-  /// one, they are formed anew. rough: a step toward better filters that no value could be
-  /// published from: it does not say that they are right, nor is it one of the passes that end in
-  /// that.
+  /// one, they are formed anew.
   void begin_check(const TunedRegression& active, const std::vector<double>& ratio,
                    const std::vector<double>& std_error, const std::vector<std::uint8_t>& shown,
-                   const AxisNoise& noise, bool rough = false);
+                   const AxisNoise& noise);
   /// Begins a tuning to other axes, with the parameters as they are.
   void begin_axes(const TunedRegression& active, const std::vector<std::uint8_t>& present);
   /// Tunes the standby as the active regression is, and lends it: until give_back() it is not used
@@ -68,7 +71,7 @@ class SelfTuning {
   template <typename Archive>
   void archive(Archive& a) {
     a(*standby_, tuned_, noise_known_, noise_measured_, noise_differs_);
-    a(lending_, rough_);
+    a(lending_);
     a.within(phase_, 0, static_cast<double>(Phase::lent));
     for (int* number : {&next_part_, &passes_, &since_check_}) a.within(*number, 0, a.kMostCount);
     a.within(retunes_, 0, a.kMostCount);

@@ -155,6 +155,17 @@ std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
                                            other_blocks_);
 }
 
+void SlidingWindowEstimator::start_tuned(const Tuning& tuning) {
+  if (!self_tuning_) return;
+  self_tuning_->start_tuned(active_, tuning);
+  regression_exchanged();
+}
+
+std::optional<Tuning> SlidingWindowEstimator::tuning() const {
+  if (!self_tuning_ || !noise_known()) return std::nullopt;
+  return Tuning{theta0(), noise_density(), tuned()};
+}
+
 std::vector<int> SlidingWindowEstimator::other_window_rows() const {
   std::vector<int> rows;
   for (const int blocks : other_blocks_) rows.push_back(blocks * block_rows_);
@@ -333,23 +344,8 @@ void SlidingWindowEstimator::check_tuning() {
   if (!self_tuning_ || !self_tuning_->due()) return;
   for (std::size_t u = 0; u < shown_.size(); ++u)
     shown_[u] = series_.main().shown(static_cast<int>(u));
-  const bool none = std::none_of(shown_.begin(), shown_.end(), [](auto s) { return s != 0; });
-  const bool rough = none && layout_.grouped() && !tuned();
-  if (rough) take_what_moves();
   self_tuning_->begin_check(*active_, series_.main().solver().solution(),
-                            series_.main().std_error(), shown_, noise_, rough);
-}
-
-/// Rows of groups are linear about what they are tuned to alone. While that is far off, they leave
-/// much of the motion, and what they leave is no noise: a motion that stands out of the measured
-/// noise shows the way to better filters, step by step, although no value could be published.
-void SlidingWindowEstimator::take_what_moves() {
-  const WindowSolution& main = series_.main();
-  const double noise = noise_.level(active_->tuning().noise_density());
-  if (!(noise > 0)) return;
-  for (std::size_t u = 0; u < shown_.size(); ++u)
-    if (main.solver().solution()[u] > 0 && main.stands_out(static_cast<int>(u), noise))
-      shown_[u] = 1;
+                            series_.main().std_error(), shown_, noise_);
 }
 
 void SlidingWindowEstimator::regression_exchanged() {

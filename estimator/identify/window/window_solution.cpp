@@ -120,7 +120,7 @@ double WindowSolution::misfit_error(int unknown) const {
 bool WindowSolution::shown(int unknown) const {
   const auto u = static_cast<std::size_t>(unknown);
   return !overcompensated_ && solver_.usable(unknown) && solver_.solution()[u] > 0 &&
-         stands_out(unknown, gate_level());
+         solver_.information()[u] > options_.min_snr * noise_.energy()[u] * gate_level();
 }
 
 double WindowSolution::gate_level() const {

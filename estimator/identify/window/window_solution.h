@@ -71,11 +71,6 @@ class WindowSolution {
   StorySolver& solver() { return solver_; }
   /// Whether the window's motion shows the unknown above the sensors' noise.
   bool shown(int unknown) const;
-  /// Whether the window's motion stands out of noise of this level, over what the tuning assumes.
-  bool stands_out(int unknown, double level) const {
-    const auto u = static_cast<std::size_t>(unknown);
-    return solver_.information()[u] > options_.min_snr * noise_.energy()[u] * level;
-  }
   /// Whether the floor's rows fill enough of the window.
   bool warm(int floor) const { return warm_[static_cast<std::size_t>(floor)] == kWarm; }
 
