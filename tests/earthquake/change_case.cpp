@@ -13,14 +13,16 @@ namespace {
 constexpr double kMassOff = 0.02, kProfileOff = 0.05;  // standard deviations
 constexpr double kDesignOff = 0.15;                    // at most
 constexpr double kLeastLoss = 0.05, kMostLoss = 0.40, kUniformLoss = 0.05;
-constexpr double kLeastSoftening = 0.05, kMostSoftening = 0.20;
+// Of the slow softening. Slip scatters from window to window: more than this and no baseline is
+// learned within kLearned_s.
+constexpr double kLeastSoftening = 0.05, kMostSoftening = 0.20, kSlipOfThat = 0.4;
 constexpr double kTwoElements = 1.0 / 3, kApart = 0.5;  // shares of cases
 constexpr double kLeastApart_s = 2, kMostApart_s = 8;
 constexpr double kLoud = 2.5;
 // Levels of the ground's motion and until when they last, s.
 constexpr double kAmbient = 0.02, kCoda = 0.5;
-constexpr double kLearn[][2] = {{15, 0.6}, {30, 0.2}, {45, 1.0}};
-constexpr double kQuake_s = 55, kPause_s = 70, kAgain_s = 80, kOver_s = 85, kOverAgain_s = 95;
+constexpr double kLearn[][2] = {{20, 0.6}, {40, 0.2}, {60, 1.0}, {80, 0.4}, {100, 0.8}};
+constexpr double kQuake_s = 105, kPause_s = 120, kAgain_s = 130, kOver_s = 135, kOverAgain_s = 145;
 
 double between_of(estimator::Random& random, double least, double most) {
   return least + (most - least) * random.uniform();
@@ -88,6 +90,7 @@ ChangeCase change_case(ChangeKind kind, std::uint64_t seed, int number) {
   const double u = random.uniform();
   out.softening = u < 0.5 ? Softening::none : u < 0.75 ? Softening::slow : Softening::slipping;
   out.amount = between_of(random, kLeastSoftening, kMostSoftening);
+  if (out.softening == Softening::slipping) out.amount *= kSlipOfThat;
   out.between = random.uniform() < 0.5;
   out.loud = random.uniform() < 0.5;
   draw_errors(random, out);

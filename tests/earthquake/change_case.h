@@ -26,8 +26,8 @@ struct Loss {
 
 /// A building, what happens to it, and what the estimator is told. Drawn by seed.
 struct ChangeCase {
-  static constexpr double kLearned_s = 45;  ///< the baseline is learned by then
-  static constexpr double kEnd_s = 145;
+  static constexpr double kLearned_s = 100;  ///< the baseline is learned by then
+  static constexpr double kEnd_s = 200;
 
   ChangeKind kind = ChangeKind::loss;
   std::uint64_t seed = 1;

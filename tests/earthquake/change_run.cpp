@@ -38,7 +38,7 @@ ChangeRun run_change(const ChangeCase& of, const ChangeRunOptions& options) {
     for (int p = 0; p < parameters; ++p) {
       if (!announcer.watched(p)) continue;
       out.watched[static_cast<std::size_t>(p)] = announcer.knows(p);
-      out.unlearned += announcer.knows(p) ? 0 : 1;
+      if (!announcer.knows(p)) out.without_baseline.push_back(announcer.table()[p].name);
     }
   }
   announcer.finish();

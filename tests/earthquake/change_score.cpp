@@ -100,7 +100,7 @@ class Judge {
 
 CaseScore score_change(const ChangeCase& of, const ChangeRun& run) {
   CaseScore out;
-  out.unlearned = run.unlearned;
+  out.unlearned = static_cast<int>(run.without_baseline.size());
   const double from_s = of.losses.empty() ? ElementScore::kNever : of.losses.front().at_s;
   const std::vector<double> truth = of.truth(ChangeCase::kEnd_s);
   std::set<int> early, gains;

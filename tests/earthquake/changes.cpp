@@ -46,6 +46,7 @@ std::vector<Numbered> numbered(int losses) {
 void print_case(const ChangeCase& of, const ChangeRun& run) {
   constexpr const char* kStates[] = {"cleared", "raised", "changed"};
   fmt::print("{}\n", of.text());
+  for (const std::string& name : run.without_baseline) fmt::print("without a baseline: {}\n", name);
   for (const Announcement& a : run.said) {
     const bool named = a.parameter >= 0;
     fmt::print("{:8.2f} s  {:>3} {:8} {:14} ", a.at_s, a.id, kStates[static_cast<int>(a.state)],

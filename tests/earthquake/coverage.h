@@ -20,7 +20,7 @@ class Coverage {
  public:
   /// Adds `count` values of a case, of which `held` lie within their interval. square_sum: of their
   /// errors over their stated standard errors.
-  void add(int of_case, double count, double held, double square_sum) {
+  void add_values(int of_case, double count, double held, double square_sum) {
     Cluster& c = clusters_[of_case];
     c.count += count, c.held += held;
     count_ += count, held_ += held, squares_ += square_sum;
@@ -28,7 +28,7 @@ class Coverage {
   /// Adds one value with its standard error; both share the unit of `truth`.
   void add(int of_case, double value, double std_error, double truth) {
     const double z = (value - truth) / std_error;
-    add(of_case, 1, covers(value, std_error, truth) ? 1 : 0, z * z);
+    add_values(of_case, 1, covers(value, std_error, truth) ? 1 : 0, z * z);
   }
   void add(const Coverage& other) {
     for (const auto& [of_case, c] : other.clusters_)

@@ -65,13 +65,13 @@ TEST(ChangeCase, DrawsTheSameAgain) {
             change_case(ChangeKind::loss, kSeed + 1, 0).text());
 }
 
-/// A case of three stories of which the first one loses 20 % at 60 s.
+/// A case of three stories of which the first one loses 20 % at 110 s.
 ChangeCase plain_case() {
   ChangeCase of;
   of.told = three_stories();
   of.truly = of.told.config.structure;
   of.theta = of.told.config.design;
-  of.losses = {{60, 0, 0.2}};
+  of.losses = {{110, 0, 0.2}};
   return of;
 }
 
@@ -83,13 +83,13 @@ TEST(ChangeScore, JudgesWhatIsSaid) {
                        double error) {
     run.said.push_back({at_s, 1, state, parameter, error > 0, ratio, error});
   };
-  say(50, AnnouncementState::raised, 2, -0.05, 0.01);     // nothing has changed yet
-  say(62, AnnouncementState::raised, 0, 0, 0);            // without a size
-  say(63, AnnouncementState::raised, 1, 0.02, 0.01);      // a neighbour that gains
-  say(63.5, AnnouncementState::changed, 0, -0.25, 0.02);  // 2.5 errors off
-  say(66, AnnouncementState::changed, 0, -0.20, 0.01);    // right, 2.5 errors from before
-  say(70, AnnouncementState::cleared, 1, 0, 0);
-  say(140, AnnouncementState::changed, 0, -0.19, 0.02);  // its error grew
+  say(100, AnnouncementState::raised, 2, -0.05, 0.01);     // nothing has changed yet
+  say(112, AnnouncementState::raised, 0, 0, 0);            // without a size
+  say(113, AnnouncementState::raised, 1, 0.02, 0.01);      // a neighbour that gains
+  say(113.5, AnnouncementState::changed, 0, -0.25, 0.02);  // 2.5 errors off
+  say(116, AnnouncementState::changed, 0, -0.20, 0.01);    // right, 2.5 errors from before
+  say(120, AnnouncementState::cleared, 1, 0, 0);
+  say(190, AnnouncementState::changed, 0, -0.19, 0.02);  // its error grew
   const CaseScore score = score_change(of, run);
   ASSERT_EQ(score.changed.size(), 1U);
   const ElementScore& e = score.changed[0];
@@ -119,7 +119,7 @@ TEST(ChangeScore, IsContentWithHonestSizes) {
     ChangeRun run;
     run.watched = {true, true, true, false, false, false};
     run.said.push_back(
-        {61, 1, AnnouncementState::raised, 0, true, -0.2 + 0.01 * random.normal(), 0.01});
+        {111, 1, AnnouncementState::raised, 0, true, -0.2 + 0.01 * random.normal(), 0.01});
     const CaseScore score = score_change(of, run);
     cases.push_back({std::move(of), score});
   }
@@ -133,7 +133,7 @@ TEST(Changes, FindAPlainLossAndItsSize) {
   options.noise_ratio = 1e-3;
   options.hop_s = 0.1;
   const ChangeRun run = run_change(of, options);
-  EXPECT_EQ(run.unlearned, 0);
+  EXPECT_TRUE(run.without_baseline.empty());
   const CaseScore score = score_change(of, run);
   ASSERT_EQ(score.changed.size(), 1U);
   EXPECT_LT(score.changed[0].delay_s, 6);
@@ -147,7 +147,7 @@ TEST(Interruptions, HaveExactValuesWhereNothingIsWrong) {
   constexpr double kMostError = 1e-3;  // of the sampled motion, without noise
   const InterruptionResult r = run_interruption({0, false, Interruption::none, 0, kSeed, 1e-6});
   for (const std::size_t window : {0U, 1U}) {
-    EXPECT_LT(r.first[window].all_s, 0.02);
+    EXPECT_LE(r.first[window].all_s, 0.2);  // 1-s windows are 0.2 s apart
     for (std::size_t t = 0; t < kErrorAt_s.size(); ++t) {
       ASSERT_EQ(r.error[window][t][stiffnesses].size(), 3U);
       for (const double e : r.error[window][t][stiffnesses]) EXPECT_LT(e, kMostError);

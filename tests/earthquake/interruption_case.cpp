@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -25,12 +26,13 @@ constexpr double kWatched_s = 10.05;  // after the instant
 constexpr int kAway = 5;              // seconds that a channel is away when it comes and goes
 constexpr int kEvery = 10;            // hops between values that are counted
 constexpr double kErrorWithin_s = 0.2;
+constexpr double kRounding_s = 1e-6;  // of instants
 constexpr std::array<double, 5> kLengths_s{0.05, 0.5, 2, 10, 60};
 
 /// What the channels measure, and which samples the pipeline gets.
 struct Record {
-  Eigen::MatrixXd accel;                       ///< instants x axes, m/s^2
-  double zero_s = 0;                           ///< the instant that times are counted from
+  Eigen::MatrixXd accel;          ///< instants x axes, m/s^2
+  double from_s = 0, zero_s = 0;  ///< of the interruption: times are counted from its end
   std::function<bool(double, int)> delivered;  ///< (time, axis)
 };
 
@@ -56,7 +58,7 @@ Record make_record(const InterruptionCase& of, estimator::PipelineConfig& config
   const double rest_s = at_rest ? std::round(rest * kRate_hz) / kRate_hz : 0;
   const double from_s = at_rest ? rest_s : std::round(start_s * kRate_hz) / kRate_hz;
   const double length_s = of.kind == Interruption::comes_and_goes ? 2 * kAway - 1 : of.length_s;
-  out.zero_s = from_s + length_s;
+  out.from_s = from_s, out.zero_s = from_s + length_s;
   const double half_s = 0.5 / kRate_hz;  // instants are compared between samples
   const auto inside = [=](double t) { return t > from_s - half_s && t < out.zero_s - half_s; };
   switch (of.kind) {
@@ -110,8 +112,8 @@ ParameterGroup group_of(estimator::ParameterKind kind) {
 /// Collects what the pipeline publishes.
 class Collector {
  public:
-  Collector(const estimator::ParameterTable& table, Eigen::VectorXd truth, double zero_s)
-      : table_(table), truth_(std::move(truth)), zero_s_(zero_s) {
+  Collector(const estimator::ParameterTable& table, Eigen::VectorXd truth, const Record& record)
+      : table_(table), truth_(std::move(truth)), from_s_(record.from_s), zero_s_(record.zero_s) {
     for (int p = 0; p < table_.size(); ++p) ++out_.wanted[group(p)];
   }
 
@@ -129,7 +131,7 @@ class Collector {
 
   const estimator::ParameterTable& table_;
   Eigen::VectorXd truth_;
-  double zero_s_, now_s_ = 0;
+  double from_s_, zero_s_, now_s_ = 0;
   InterruptionResult out_;
   std::array<std::array<bool, kErrorAt_s.size()>, 2> measured_{};
 };
@@ -137,22 +139,26 @@ class Collector {
 void Collector::take(const estimator::WindowEstimate& e) {
   if (e.status != estimator::WindowStatus::valid) return;
   const double at_s = 1e-6 * static_cast<double>(to_microseconds(e.end)) - zero_s_;
-  if (at_s > kUntil_s.back()) return;
+  if (at_s > kUntil_s.back() || at_s + zero_s_ < from_s_ - kRounding_s) return;
   const int stiffness_count = out_.wanted[stiffnesses];
   int seen = 0;
   for (int p = 0; p < table_.size(); ++p) seen += group(p) == stiffnesses && shown(e, p) ? 1 : 0;
-  constexpr double kRounding_s = 1e-6;
   if (at_s > -kRounding_s) {
     FirstWindow& first = out_.first[static_cast<std::size_t>(e.window)];
-    if (seen > 0 && at_s < first.any_s) first.any_s = at_s, first.published_s = now_s_ - zero_s_;
-    if (seen == stiffness_count) first.all_s = std::min(first.all_s, at_s);
+    const double end_s = std::max(0.0, at_s);
+    if (seen > 0 && end_s < first.any_s) first.any_s = end_s, first.published_s = now_s_ - zero_s_;
+    if (seen == stiffness_count) first.all_s = std::min(first.all_s, end_s);
+    const auto slot = static_cast<long>(std::floor((at_s - kSlotsFrom_s) / kSlot_s));
+    if (seen > 0 && slot >= 0 && slot < kSlots)
+      out_.shown[static_cast<std::size_t>(e.window)][static_cast<std::size_t>(slot)] = true;
     measure(e, at_s);
   }
-  if (std::lround(at_s * kRate_hz) % kEvery == 0) count(e, at_s);
+  if (e.window != kMain || std::lround(at_s * kRate_hz) % kEvery == 0) count(e, at_s);
 }
 
 void Collector::count(const estimator::WindowEstimate& e, double at_s) {
-  const auto bin = std::lower_bound(kUntil_s.begin(), kUntil_s.end() - 1, at_s) - kUntil_s.begin();
+  const auto bin =
+      std::lower_bound(kUntil_s.begin(), kUntil_s.end() - 1, at_s - kRounding_s) - kUntil_s.begin();
   auto& tallies = out_.tally[static_cast<std::size_t>(e.window)][static_cast<std::size_t>(bin)];
   for (int p = 0; p < table_.size(); ++p) {
     if (!shown(e, p)) continue;
@@ -169,7 +175,7 @@ void Collector::measure(const estimator::WindowEstimate& e, double at_s) {
   const std::size_t of = e.window == kMain ? 0 : 1;
   for (std::size_t t = 0; t < kErrorAt_s.size(); ++t) {
     const double since = at_s - kErrorAt_s[t];
-    if (measured_[of][t] || since < -1e-6 || since > kErrorWithin_s) continue;
+    if (measured_[of][t] || since < -kRounding_s || since > kErrorWithin_s) continue;
     measured_[of][t] = true;
     for (int p = 0; p < table_.size(); ++p)
       if (shown(e, p))
@@ -234,7 +240,7 @@ InterruptionResult run_interruption(const InterruptionCase& of) {
                                     ? group_parameters(config.structure, table, {config.design, {}})
                                     : config.design;
   if (of.design_off) config.design = design_off(config, kDesignOff, of.seed);
-  Collector collector(table, truth, record.zero_s);
+  Collector collector(table, truth, record);
   const auto take = [&](const estimator::WindowEstimate& e) { collector.take(e); };
   estimator::Pipeline pipeline(config, take, take);
   for (Eigen::Index i = 0; i < record.accel.rows(); ++i) {

@@ -57,13 +57,20 @@ struct FirstWindow {
   double published_s = kNever;  ///< newest sample when that of any_s was published
 };
 
+/// Quarters of a second from 1.2 s to 8 s in which a window may end.
+inline constexpr int kSlots = 27;
+inline constexpr double kSlot_s = 0.25, kSlotsFrom_s = 1.2;
+
 struct Tally {
-  double count = 0, held = 0, square_sum = 0;  ///< as Coverage::add
+  double count = 0, held = 0, square_sum = 0;  ///< as Coverage::add_values
 };
 
 struct InterruptionResult {
   std::array<FirstWindow, kWindowLengths> first;
-  /// Values published every tenth of a second, by window length, time and kind of parameter.
+  /// Whether a window with a value of a stiffness ends in a quarter of a second.
+  std::array<std::array<bool, kSlots>, kWindowLengths> shown{};
+  /// Published values by window length, time and kind of parameter; of the main window those that
+  /// end a tenth of a second apart.
   std::array<std::array<std::array<Tally, kParameterGroups>, kUntil_s.size()>, kWindowLengths>
       tally;
   /// Relative errors, absolute, of the first window that ends within 0.2 s from each of kErrorAt_s:

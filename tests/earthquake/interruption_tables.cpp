@@ -79,12 +79,22 @@ struct Run {
     for (std::size_t i = 0; i < cases.size(); ++i)
       if (chosen(cases[i])) function(static_cast<int>(i), results[i]);
   }
+  bool has(const Chosen& chosen) const { return std::any_of(cases.begin(), cases.end(), chosen); }
   std::vector<double> firsts(const Chosen& chosen, int window, double FirstWindow::*what) const {
     std::vector<double> out;
     each(chosen, [&](int, const InterruptionResult& r) {
       out.push_back(r.first[static_cast<std::size_t>(window)].*what);
     });
     return out;
+  }
+  /// Share of the time from 1.2 s to 8 s in which windows with a value of a stiffness end.
+  std::string shown(const Chosen& chosen, int window) const {
+    int count = 0, all = 0;
+    each(chosen, [&](int, const InterruptionResult& r) {
+      for (const bool slot : r.shown[static_cast<std::size_t>(window)]) count += slot ? 1 : 0;
+      all += kSlots;
+    });
+    return all > 0 ? fmt::format("{:.0f} %", 100.0 * count / all) : "-";
   }
   /// All bins after the interruption, or one.
   Coverage coverage(const Chosen& chosen, int window, int bin, int group) const {
@@ -95,7 +105,7 @@ struct Run {
         for (std::size_t g = 0; g < kParameterGroups; ++g)
           if ((bin < 0 ? b > 0 : static_cast<int>(b) == bin) &&
               (group < 0 || static_cast<int>(g) == group) && bins[b][g].count > 0)
-            out.add(i, bins[b][g].count, bins[b][g].held, bins[b][g].square_sum);
+            out.add_values(i, bins[b][g].count, bins[b][g].held, bins[b][g].square_sum);
     });
     return out;
   }
@@ -103,19 +113,20 @@ struct Run {
 
 std::string first_table(const Run& run, const std::vector<Line>& lines) {
   std::string out =
-      "| | cases | 1 s: any k | all k | 90 % | latest | published | 5 s: any k | all k | 90 % |\n"
-      "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
+      "| | cases | 1 s: any k | all k | 90 % | latest | published | shown | 5 s: any k | all k | "
+      "90 % "
+      "| shown |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n";
   for (const Line& line : lines) {
     const auto at = [&](int window, double FirstWindow::*what, double share) {
       return seconds(quantile(run.firsts(line.chosen, window, what), share));
     };
-    out +=
-        fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", line.title,
-                    run.firsts(line.chosen, kShort, &FirstWindow::any_s).size(),
-                    at(kShort, &FirstWindow::any_s, 0.5), at(kShort, &FirstWindow::all_s, 0.5),
-                    at(kShort, &FirstWindow::any_s, 0.9), at(kShort, &FirstWindow::any_s, 1),
-                    at(kShort, &FirstWindow::published_s, 0.5), at(kMain, &FirstWindow::any_s, 0.5),
-                    at(kMain, &FirstWindow::all_s, 0.5), at(kMain, &FirstWindow::any_s, 0.9));
+    out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
+                       line.title, run.firsts(line.chosen, kShort, &FirstWindow::any_s).size(),
+                       at(kShort, &FirstWindow::any_s, 0.5), at(kShort, &FirstWindow::all_s, 0.5),
+                       at(kShort, &FirstWindow::any_s, 0.9), at(kShort, &FirstWindow::any_s, 1),
+                       at(kShort, &FirstWindow::published_s, 0.5), run.shown(line.chosen, kShort),
+                       at(kMain, &FirstWindow::any_s, 0.5), at(kMain, &FirstWindow::all_s, 0.5),
+                       at(kMain, &FirstWindow::any_s, 0.9), run.shown(line.chosen, kMain));
   }
   return out;
 }
@@ -128,6 +139,7 @@ std::string error_table(const Run& run, const std::vector<Line>& lines) {
   for (std::size_t i = 0; i < 2 * kErrorAt_s.size(); ++i) out += " --- |";
   out += "\n";
   for (const Line& line : lines) {
+    if (!run.has(line.chosen)) continue;
     out += "| " + line.title + " |";
     for (const std::size_t of : {1U, 0U})
       for (std::size_t t = 0; t < kErrorAt_s.size(); ++t) {
@@ -157,6 +169,7 @@ std::string coverage_table(const Run& run, const std::vector<Line>& lines, int w
   for (std::size_t b = 0; b < kUntil_s.size() + 2; ++b) out += " --- |";
   out += "\n";
   for (const Line& line : lines) {
+    if (!run.has(line.chosen)) continue;
     out += "| " + line.title + " |";
     for (int b = 0; b < static_cast<int>(kUntil_s.size()); ++b)
       out += " " + with_error(run.coverage(line.chosen, window, b, -1)) + " |";
@@ -192,7 +205,9 @@ std::string interruption_tables(const std::vector<InterruptionCase>& cases,
   const std::vector<Line> kinds = lines_by_kind(cases), buildings = lines_by_building();
   std::string out =
       "Seconds to the end of the first window with a value of any and of all frame stiffnesses: "
-      "median, 90 % and latest of the cases.\n\n" +
+      "median, 90 % and latest of the cases; *published*: median of when that was. *Shown*: share "
+      "of "
+      "the time from 1.2 s to 8 s in which such windows end.\n\n" +
       first_table(run, kinds) + "\n" + first_table(run, buildings);
   out +=
       "\nMedian of |relative error| of published k, c; in brackets the share of k that is "
