@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/earthquake/demand.h"
+#include "tests/earthquake/interruption_case.h"
+
+namespace framewatch::earthquake {
+
+/// The tables of docs/accuracy.md, Markdown. Results are in the order of the cases.
+std::string interruption_tables(const std::vector<InterruptionCase>& cases,
+                                const std::vector<InterruptionResult>& results);
+
+/// What must be reached.
+std::vector<Demand> interruption_demands(const std::vector<InterruptionCase>& cases,
+                                         const std::vector<InterruptionResult>& results);
+
+}  // namespace framewatch::earthquake
