@@ -28,7 +28,7 @@ struct EstimatorOptions {
   double lateness_s = 0.5;         ///< an instant is closed this long after its time
   bool fill_single_losses = true;  ///< repair a single lost sample by the 4-point cubic
   double min_snr = 10;             ///< gate: a value needs at least this regressor energy ratio
-  double max_error_k = 0.035;      ///< gate: largest relative standard error, frame stiffness
+  double max_error_k = 0.10;       ///< gate: largest relative standard error, frame stiffness
   double max_error_g = 0.20;       ///< floor-panel stiffness
   double max_error_c = 0.20;       ///< damping of frames and panels
 };

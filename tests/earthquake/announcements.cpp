@@ -47,7 +47,8 @@ bool Announcer::knows(int parameter) const {
 }
 
 /// Today's event: one element in `place`, its change in per cent. Several elements would be
-/// separated by commas; an event without a standard error has no size yet.
+/// separated by commas. A place that is no element is the whole building; an event without a
+/// standard error has no size yet.
 void Announcer::event(const event_t& e) {
   if (e.kind != kKind) return;
   Announcement out;
@@ -56,7 +57,7 @@ void Announcer::event(const event_t& e) {
   out.state = static_cast<AnnouncementState>(e.state);
   out.ratio = 0.01 * e.value, out.std_error = 0.01 * e.std_error;
   out.sized = out.std_error > 0;  // false for NaN
-  std::istringstream places(e.place);
+  std::istringstream places(e.place.empty() ? "building" : e.place);
   for (std::string place; std::getline(places, place, ',');) {
     place.erase(0, place.find_first_not_of(' '));
     out.parameter = table_.find(place).value_or(-1);

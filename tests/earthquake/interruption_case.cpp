@@ -22,11 +22,11 @@ constexpr double kDesignOff = 0.3;
 constexpr double kBuildUp_s = 0.2;               // the motion is strong at once
 constexpr double kEarliest_s = 8, kOver_s = 10;  // of strong motion before the instant
 constexpr double kLeastRest_s = 3, kMostRest_s = 5;
-constexpr double kWatched_s = 10.05;  // after the instant
-constexpr int kAway = 5;              // seconds that a channel is away when it comes and goes
-constexpr int kEvery = 10;            // hops between values that are counted
-constexpr double kErrorWithin_s = 0.2;
-constexpr double kRounding_s = 1e-6;  // of instants
+constexpr double kWatched_s = 10.05;     // after the instant
+constexpr int kAway = 5;                 // seconds that a channel is away when it comes and goes
+constexpr int kEvery = 10;               // hops between values that are counted
+constexpr double kErrorWithin_s = 0.26;  // 1-s windows are a quarter of a second apart
+constexpr double kRounding_s = 1e-6;     // of instants
 constexpr std::array<double, 5> kLengths_s{0.05, 0.5, 2, 10, 60};
 
 /// What the channels measure, and which samples the pipeline gets.

@@ -73,8 +73,8 @@ struct InterruptionResult {
   /// end a tenth of a second apart.
   std::array<std::array<std::array<Tally, kParameterGroups>, kUntil_s.size()>, kWindowLengths>
       tally;
-  /// Relative errors, absolute, of the first window that ends within 0.2 s from each of kErrorAt_s:
-  /// published values of the 5-s (0) and the 1-s window (1).
+  /// Relative errors, absolute, of the first window that ends within 0.26 s from each of
+  /// kErrorAt_s: published values of the 5-s (0) and the 1-s window (1).
   std::array<std::array<std::array<std::vector<double>, kParameterGroups>, kErrorAt_s.size()>, 2>
       error;
   /// Parameters that could have been published there.
