@@ -122,10 +122,10 @@ TEST_F(StateFile, DamagedCutOffAndForeignOnesAreRefusedWithTheReason) {
   ASSERT_EQ(run({log()}, "", "", "good"), 0);
   const std::string good = read_file(path("good"));
   ASSERT_GT(good.size(), 10000u);
-  for (const auto& [at, problem] : std::map<std::size_t, std::string>{
-           {good.size() / 3, "section window is damaged"},
-           {good.size() - 1, "section window is damaged"},
-           {100, "the digest of its head is another"}}) {
+  for (const auto& [at, problem] :
+       std::map<std::size_t, std::string>{{good.size() / 3, "section window is damaged"},
+                                          {good.size() - 1, "section window is damaged"},
+                                          {100, "the digest of its head is another"}}) {
     std::string bad = good;
     bad[at] ^= 1;
     write_file(path("state"), bad);
