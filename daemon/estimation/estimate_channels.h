@@ -11,4 +11,7 @@ namespace framewatch::daemon {
 /// and, if it is configured, the long one.
 std::vector<std::string> estimate_channels(const Config& config);
 
+/// Behind the name of a channel: its estimates that come after their time (WindowEstimate::late).
+inline constexpr const char* kLate = "_LATE";
+
 }  // namespace framewatch::daemon

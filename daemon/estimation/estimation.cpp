@@ -47,6 +47,7 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
       can_events_(config.can),
       absurd_events_(config.pipeline.axes),
       channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s) {
+  pipeline_.on_late([this](const estimator::WindowEstimate& estimate) { late_window(estimate); });
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   begin_watch();
@@ -95,6 +96,12 @@ void Estimation::main_window(const estimator::WindowEstimate& estimate) {
   ++windows_;
   watch(estimate);
   if (gap_) gap_->learn(estimate, pipeline_.theta0());
+  if (shaking_) shaking_->push(estimate);
+}
+
+/// Not for the gap monitor, which learns from the newest windows.
+void Estimation::late_window(const estimator::WindowEstimate& estimate) {
+  publisher_.late(estimate);
   if (shaking_) shaking_->push(estimate);
 }
 

@@ -103,6 +103,7 @@ class Estimation {
   void publish_state();
   drivers::IntakeResult temperature(const void* data, std::size_t size);
   void main_window(const estimator::WindowEstimate& estimate);
+  void late_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
   void look_for_gap(const estimator::SampleSet& instant);
   void look_for_shaking(const estimator::SampleSet& instant);

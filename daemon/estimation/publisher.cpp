@@ -89,7 +89,7 @@ void Publisher::fill_values(const estimator::WindowEstimate& e) {
   for (auto* column : {&m.q1, &m.median, &m.q3, &m.whisker_low, &m.whisker_high}) column->clear();
   m.outliers.clear();
   m.boxplot_count.clear();
-  for (std::size_t p = 0; p < e.reason.size() && e.window == 0; ++p) {
+  for (std::size_t p = 0; p < e.reason.size() && e.window == 0 && !e.late; ++p) {
     if (e.reason[p] == estimator::Observability::observable || std::isnan(e.last_value[p]))
       continue;
     m.held_index.push_back(static_cast<std::int32_t>(p));
@@ -126,6 +126,14 @@ void Publisher::estimate(const estimator::WindowEstimate& e) {
     }
   }
   send(m.window_end_us, estimate_channel_, m);
+}
+
+void Publisher::late(const estimator::WindowEstimate& e) {
+  if (!sink_) return;
+  fill_values(e);
+  const std::string& channel =
+      e.window == 0 ? estimate_channel_ : other_channels_[static_cast<std::size_t>(e.window - 1)];
+  send(estimate_.window_end_us, channel + kLate, estimate_);
 }
 
 void Publisher::event(const event_t& event) {

@@ -49,6 +49,9 @@ class Publisher {
   void estimate(const estimator::WindowEstimate& estimate);
   /// An estimate of one of the other windows, on its own channel.
   void other(const estimator::WindowEstimate& estimate);
+  /// An estimate that comes after its time (WindowEstimate::late), on its window's channel with _LATE
+  /// behind it: whoever reads the other one gets windows in order.
+  void late(const estimator::WindowEstimate& estimate);
   void event(const event_t& event);
   /// The baselines that changes are judged against.
   void watch(std::int64_t time_us, const estimator::Watch& watch);

@@ -11,13 +11,14 @@ using Rows = std::vector<const AccuracyRow*>;
 
 constexpr const char kIntroduction[] = R"(# Accuracy
 
-Made by `framewatch reproduce --seeds {} --out DIR`; do not edit. What the estimator reaches, what nobody can
-reach, and how to measure it again. Buildings: the paper's Table 1 (5 stories, 1x1 bay, 50 parameters) and
-Table 2 (2 stories, 3x3 bays, 68 parameters) with flexible (2b), basic (2c) and stiff (2d) floors. Seed i is
-one artificial ground motion (Kanai-Tajimi, 15 s, 45 degrees), one draw of noise and one design, off by up to
-10 % in k and 30 % in G and c. Motion is the exact response (first-order hold at 1 ms, band-limited, decimated
-to 100 Hz), not the estimator's own scheme. Noise is white on every accelerometer, in per cent of that
-channel's rms. Windows are 5 s long and end at 10, 11, .. 15 s.
+Made by `framewatch reproduce --seeds {} --out DIR`, but for [In the earthquake itself](accuracy.md#in-the-earthquake-itself);
+do not edit. What the estimator reaches, what nobody can reach, and how to measure it again. Buildings: the
+paper's Table 1 (5 stories, 1x1 bay, 50 parameters) and Table 2 (2 stories, 3x3 bays, 68 parameters) with
+flexible (2b), basic (2c) and stiff (2d) floors. Seed i is one artificial ground motion (Kanai-Tajimi, 15 s,
+45 degrees), one draw of noise and one design, off by up to 10 % in k and 30 % in G and c. Motion is the
+exact response (first-order hold at 1 ms, band-limited, decimated to 100 Hz), not the estimator's own
+scheme. Noise is white on every accelerometer, in per cent of that channel's rms. Windows are 5 s long and
+end at 10, 11, .. 15 s.
 
 )";
 

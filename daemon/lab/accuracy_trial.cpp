@@ -54,15 +54,19 @@ std::vector<CheckedWindow> run_checked_windows(const estimator::PipelineConfig& 
   std::vector<CheckedWindow> kept;
   estimator::ModelFit newest(static_cast<std::size_t>(config.parameters().size()));
   std::int64_t next_us = std::llround(1e6 * from_s);
+  int pipeline_rows = 0;
   estimator::Pipeline pipeline(
       config,
       [&](const estimator::WindowEstimate& estimate) {
         const std::int64_t end_us = to_microseconds(estimate.end);
-        if (estimate.status == estimator::WindowStatus::warming_up || end_us < next_us) return;
+        const bool whole = estimate.rows == pipeline_rows;
+        if (!whole || estimate.status == estimator::WindowStatus::warming_up || end_us < next_us)
+          return;
         kept.push_back({estimate, newest});
         next_us = end_us + std::llround(1e6 * every_s);
       },
       {}, {}, [&](const estimator::ModelFit& fit) { newest = fit; });
+  pipeline_rows = pipeline.window_rows();
   for (Eigen::Index i = 0; i < accel.rows(); ++i) {
     const estimator::Time time = estimator::from_microseconds(
         std::llround(static_cast<double>(i) * 1e6 / config.options.rate_hz));

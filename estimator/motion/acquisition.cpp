@@ -87,6 +87,7 @@ std::vector<AxisCounters> Acquisition::counters() const {
   for (std::size_t a = 0; a < out.size(); ++a) {
     out[a].repaired = filler_.repaired()[a];
     out[a].stuck = guard_.stuck()[a];
+    out[a].missing += guard_.missing()[a];
     out[a].clipped = guard_.clipped()[a];
     out[a].rejected += guard_.absurd()[a];
     out[a].absurd += guard_.absurd()[a];

@@ -8,10 +8,13 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kMemory_s = 1;       // of the mean step
+constexpr double kMemory_s = 1;        // of the mean step
+constexpr double kRatioMemory_s = 10;  // of an axis' motion over its neighbours'
+constexpr double kStrongestMemory_s = 120;
+constexpr double kStrong = 1.0 / 3;   // of the strongest motion: a recorder's record ends below
 constexpr double kLongRun_s = 0.5;    // equal samples that are stuck when the others move
-constexpr double kMovingFast = 50;    // smallest steps per sample: equal samples are no accident
-constexpr double kOthersMove = 10;    // the same of the other axes of the direction
+constexpr double kMovingFast = 50;    // times the resolution per sample: equal ones are no accident
+constexpr double kOthersMove = 10;    // times the resolution per sample, as the others predict
 constexpr double kFullScale = 0.999;  // of the configured range
 constexpr int kClippedRun = 3;
 constexpr double kFarFiner = 16;  // times smaller than the smallest step
@@ -21,18 +24,27 @@ constexpr int kFinerRun = 300;    // such changes that are believed
 
 AxisGuard::AxisGuard(const std::vector<Axis>& axes, double rate_hz, bool lone_spikes)
     : forget_(std::min(1.0, 1 / (kMemory_s * rate_hz))),
+      keep_strongest_(1 - std::min(1.0, 1 / (kStrongestMemory_s * rate_hz))),
+      forget_ratio_(std::min(1.0, kSlots / (kRatioMemory_s * rate_hz))),
       long_run_(std::max(kLookAhead + 1, static_cast<int>(std::lround(kLongRun_s * rate_hz)))),
       lone_spikes_(lone_spikes),
       state_(axes.size()),
       spikes_(static_cast<int>(axes.size()), rate_hz),
       ring_(kSlots) {
   for (std::size_t a = 0; a < axes.size(); ++a) state_[a].axis = axes[a];
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    alone_.push_back(1);
+    for (std::size_t b = 0; b < axes.size(); ++b)
+      if (b != a && axes[b].judged && axes[b].direction == axes[a].direction) alone_[a] = 0;
+  }
   for (SampleSet& set : ring_) set.accel.resize(axes.size());
   out_.accel.resize(axes.size());
   sorted_.reserve(axes.size());
   stuck_.assign(axes.size(), 0);
   clipped_.assign(axes.size(), 0);
   absurd_.assign(axes.size(), 0);
+  missing_.assign(axes.size(), 0);
+  for (std::vector<double>* of : {&change_, &way_, &moving_}) of->assign(axes.size(), 0.0);
 }
 
 const SampleSet* AxisGuard::push(const SampleSet& set) {
@@ -47,7 +59,9 @@ const SampleSet* AxisGuard::push(const SampleSet& set) {
     if (interrupted) state_[a].run = 0;
     spikes_.see(static_cast<int>(a), set.accel[a], state_[a].smallest_step);
   }
+  watch_changes();
   for (std::size_t a = 0; a < state_.size(); ++a) decide(a);
+  if (newest_ == 0) learn_ratios();
   return waiting_ > kLookAhead ? give() : nullptr;
 }
 
@@ -81,7 +95,8 @@ void AxisGuard::watch_step(State& s, double value) const {
     if (s.smallest_step == 0 || (change < s.smallest_step && (!far_finer || s.finer > kFinerRun)))
       s.smallest_step = change;
   }
-  s.still = false;
+  s.still = s.paused = false;
+  s.predicted = 0;
   s.run = 1;
   s.last = value;
   s.seen = true;
@@ -112,35 +127,91 @@ void AxisGuard::judge(std::size_t a, double value, int age) {
     s.after_clip = false;
   }
 
-  if (s.still) {
-    remove(a, age, stuck_);
-    return;
-  }
-  const bool sudden = moving_fast && s.run == kLookAhead + 1;
-  const bool lasting = s.run >= long_run_ && s.run % long_run_ == 0 &&
-                       others_moving(a) > kOthersMove * s.smallest_step;
-  if (!sudden && !lasting) return;
-  s.still = true;
-  for (int back = 0; back <= kLookAhead; ++back) remove(a, age + back, stuck_);
+  judge_still(a, age);
 }
 
-/// Median over the other axes of the direction of their mean step: 0 when they stand still or the
-/// axis is alone.
-double AxisGuard::others_moving(std::size_t a) {
-  sorted_.clear();
-  double finest = std::numeric_limits<double>::infinity();
-  for (std::size_t b = 0; b < state_.size(); ++b) {
-    const State& other = state_[b];
-    if (b == a || other.axis.direction != state_[a].axis.direction || !other.axis.judged) continue;
-    const bool stands = other.run >= long_run_ || other.smallest_step == 0;
-    sorted_.push_back(stands ? 0 : other.step);
-    if (!stands) finest = std::min(finest, other.smallest_step);
+/// Of an axis whose newest sample may be one of several equal ones.
+void AxisGuard::judge_still(std::size_t a, int age) {
+  State& s = state_[a];
+  if (s.run <= 1 && !s.still) return;
+  if (s.paused && s.run >= long_run_) s.paused = false;
+  if (s.still || s.paused) {
+    remove(a, age, s.still ? stuck_ : missing_);
+    return;
   }
+  const double ratio = s.others > 0 ? s.own / s.others : 1;
+  const double resolution = std::max(s.smallest_step, kFinest);
+  const bool moved = s.smallest_step > 0 && s.step > kMovingFast * resolution;
+  if (moved && age == 0 && s.run < long_run_) s.predicted += ratio * others(a, change_);
+  const bool sudden = moved && s.run > kLookAhead && s.run < long_run_ &&
+                      s.predicted > kMovingFast * kLookAhead * resolution;
+  const bool lasting =
+      s.run >= long_run_ && s.run % long_run_ == 0 && others_predict(a, ratio, resolution);
+  s.still = sudden || lasting;
+  s.paused = !s.still && moved && s.run == kLookAhead + 1 && age == 0 &&
+             s.motion > kStrong * s.strongest && all_stopped(a);
+  if (!s.still && !s.paused) return;
+  for (int back = 0; back <= kLookAhead; ++back) remove(a, age + back, s.still ? stuck_ : missing_);
+}
+
+/// Whether the neighbours' motion of the last second says that the axis should move.
+bool AxisGuard::others_predict(std::size_t a, double ratio, double resolution) {
+  if (state_[a].smallest_step > 0) return ratio * others(a, moving_) > kOthersMove * resolution;
+  // An axis that never changed has no step of its own to compare with.
+  double finest = std::numeric_limits<double>::infinity();
+  for (std::size_t b = 0; b < state_.size(); ++b)
+    if (neighbours(a, b) && moving_[b] > 0) finest = std::min(finest, state_[b].smallest_step);
+  return others(a, moving_) > kOthersMove * std::max(finest, kFinest);
+}
+
+/// Called before any sample of this instant is taken out.
+void AxisGuard::watch_changes() {
+  const int ages = std::min(waiting_, kSlots) - 1;
+  for (std::size_t a = 0; a < state_.size(); ++a) {
+    change_[a] = way_[a] = 0;
+    for (int age = ages - 1; age >= 0; --age) {
+      const double change = std::abs(held(age).accel[a] - held(age + 1).accel[a]);
+      change_[a] = std::isnan(change) ? 0 : change;
+      way_[a] += change_[a];
+    }
+    State& s = state_[a];
+    s.motion += forget_ * (change_[a] - s.motion);
+    s.strongest = std::max(keep_strongest_ * s.strongest, s.motion);
+    moving_[a] = s.run >= long_run_ / 2 || s.smallest_step == 0 ? 0 : s.motion;
+  }
+}
+
+/// How far an axis moves beside its neighbours, while it moves.
+void AxisGuard::learn_ratios() {
+  for (std::size_t a = 0; a < state_.size(); ++a) {
+    State& s = state_[a];
+    if (!s.axis.judged || moving_[a] == 0 || s.run > kLookAhead) continue;
+    s.own += forget_ratio_ * (s.motion - s.own);
+    s.others += forget_ratio_ * (others(a, moving_) - s.others);
+  }
+}
+
+bool AxisGuard::neighbours(std::size_t a, std::size_t b) const {
+  return b != a && state_[b].axis.judged &&
+         (alone_[a] != 0 || state_[b].axis.direction == state_[a].axis.direction);
+}
+
+/// Median over the neighbours; 0 without any.
+double AxisGuard::others(std::size_t a, const std::vector<double>& of) {
+  sorted_.clear();
+  for (std::size_t b = 0; b < state_.size(); ++b)
+    if (neighbours(a, b)) sorted_.push_back(of[b]);
   if (sorted_.empty()) return 0;
   const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
   std::nth_element(sorted_.begin(), middle, sorted_.end());
-  // An axis that never changed has no step of its own to compare with.
-  return state_[a].smallest_step > 0 || *middle > kOthersMove * finest ? *middle : 0;
+  return *middle;
+}
+
+/// Whether no neighbour has moved during the last kLookAhead changes.
+bool AxisGuard::all_stopped(std::size_t a) const {
+  for (std::size_t b = 0; b < state_.size(); ++b)
+    if (neighbours(a, b) && way_[b] > 0) return false;
+  return true;
 }
 
 void AxisGuard::remove(std::size_t a, int age, std::vector<std::int64_t>& counter) {

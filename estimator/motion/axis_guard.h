@@ -10,15 +10,27 @@
 namespace framewatch::estimator {
 
 /// Removes the samples of a failing sensor: those that no structure makes (absurd, SpikeGuard),
-/// those at the end of its range (clipped), and a value that does not change while the building
-/// moves (stuck). Works on scaled, otherwise uncorrected values, m/s^2.
+/// those at the end of its range (clipped), and a value that does not change although the motion of
+/// the other axes says that it should (stuck). Works on scaled, otherwise uncorrected values,
+/// m/s^2.
 ///
-/// Stuck: five equal samples of an axis that was moving by 50 of its smallest steps per sample, or
-/// half a second of equal samples while the other axes of its direction move by ten such steps. An
-/// axis that is quiet because the building is, is not stuck. Clipped: at the configured range, or
-/// three equal samples at the largest or smallest value so far of a moving axis; that value then
-/// counts as the end of the range until a sample goes beyond it. The neighbours of a clipped peak
-/// are removed too, so that it is not interpolated across.
+/// An axis' neighbours are the other axes of its direction, or all others if it is alone there.
+/// They predict how far it moves: their motion now, times its own mean step over theirs while it
+/// last moved (1 before it ever moved). Its resolution is its smallest step, kFinest at least. It
+/// is stuck when it was moving by 50 times its resolution per sample, has had five or more equal
+/// samples since, and its neighbours meanwhile predict 200 times its resolution; or when it has
+/// stood still for half a second and they predict ten times its resolution per sample. So an axis
+/// that is quiet because the building is, is not stuck, nor is one whose resolution is coarser than
+/// the motion, nor one of a record that begins or ends with zeros on every channel.
+///
+/// When an axis and all its neighbours stop at the same sample, no sensor is stuck. From a third of
+/// the strongest motion of the last minutes no structure stops like this either: the recorder gave
+/// no samples. The first half second of that is taken out as missing; after it the values count as
+/// rest. From weaker motion they count at once: a record that was cut off in its tail.
+///
+/// Clipped: at the configured range, or three equal samples at the largest or smallest value so far
+/// of a moving axis; that value then counts as the end of the range until a sample goes beyond it.
+/// The neighbours of a clipped peak are removed too, so that it is not interpolated across.
 class AxisGuard {
  public:
   struct Axis {
@@ -38,15 +50,17 @@ class AxisGuard {
   const std::vector<std::int64_t>& stuck() const { return stuck_; }
   const std::vector<std::int64_t>& clipped() const { return clipped_; }
   const std::vector<std::int64_t>& absurd() const { return absurd_; }
+  const std::vector<std::int64_t>& missing() const { return missing_; }
 
   static constexpr int kLookAhead = SpikeGuard::kLookAhead;
+  static constexpr double kFinest = 1e-6;  ///< m/s^2: no accelerometer resolves less
 
   template <typename Archive>
   void archive(Archive& a) {
     a(state_, spikes_, ring_);
     a.within(newest_, 0, kSlots - 1);
     a.within(waiting_, 0, kSlots);
-    a(stuck_, clipped_, absurd_);
+    a(stuck_, clipped_, absurd_, missing_);
   }
 
  private:
@@ -55,7 +69,11 @@ class AxisGuard {
     double last = 0;
     bool seen = false;
     int run = 0;                     ///< equal samples so far
-    double step = 0;                 ///< mean change per sample while it moved
+    double step = 0;                 ///< mean change per sample, of those that changed
+    double motion = 0;               ///< mean change per sample, of all
+    double strongest = 0;            ///< of these, forgotten in minutes
+    double own = 0, others = 0;      ///< mean motion while it moved, and its neighbours' then
+    double predicted = 0;            ///< change since the run began
     double smallest_step = 0;        ///< smallest change ever seen; 0 = it never changed
     int finer = 0;                   ///< changes lately that are far smaller than that
     double lowest = 0, highest = 0;  ///< values so far
@@ -63,14 +81,17 @@ class AxisGuard {
     double clips_at = std::numeric_limits<double>::infinity();
     double clips_below = -std::numeric_limits<double>::infinity();
     bool still = false;       ///< judged stuck, until it moves
+    bool paused = false;      ///< everything stopped at once, half a second ago at most
     bool after_clip = false;  ///< the sample after a clipped one goes too
 
     template <typename Archive>
     void archive(Archive& a) {
       a.finite(last, step, smallest_step, lowest, highest);
+      for (double* mean : {&motion, &strongest, &own, &others, &predicted})
+        a.within(*mean, 0, a.kMost);
       a.within(run, 0, a.kMostCount);
       a.within(finer, 0, a.kMostCount);
-      a(seen, clips_at, clips_below, still, after_clip);
+      a(seen, clips_at, clips_below, still, paused, after_clip);
     }
   };
   SampleSet& held(int age) {
@@ -79,22 +100,34 @@ class AxisGuard {
   void decide(std::size_t a);
   void take_out_absurd(std::size_t a, unsigned ages);
   void judge(std::size_t a, double value, int age);
+  void judge_still(std::size_t a, int age);
   void watch_step(State& s, double value) const;
+  void watch_changes();
+  void learn_ratios();
   void remove(std::size_t a, int age, std::vector<std::int64_t>& counter);
-  double others_moving(std::size_t a);
+  bool neighbours(std::size_t a, std::size_t b) const;
+  double others(std::size_t a, const std::vector<double>& of);
+  bool others_predict(std::size_t a, double ratio, double resolution);
+  bool all_stopped(std::size_t a) const;
   const SampleSet* give();
 
   static constexpr int kSlots = kLookAhead + 1;
-  double forget_;  ///< of the mean step, per sample
+  double forget_;          ///< of the mean step, per sample
+  double keep_strongest_;  ///< of the strongest motion, per sample
+  double forget_ratio_;    ///< of the motions that are compared, per kSlots samples
   int long_run_;
   bool lone_spikes_;
   std::vector<State> state_;
   SpikeGuard spikes_;
   std::vector<SampleSet> ring_;
+  std::vector<std::uint8_t> alone_;  ///< in its direction
+  /// Of every axis: the newest change, and the way of the last kLookAhead changes; not kept.
+  std::vector<double> change_, way_;
+  std::vector<double> moving_;  ///< State::motion, 0 of an axis that stands; not kept
   std::vector<double> sorted_;
   int newest_ = 0, waiting_ = 0;
   SampleSet out_;
-  std::vector<std::int64_t> stuck_, clipped_, absurd_;
+  std::vector<std::int64_t> stuck_, clipped_, absurd_, missing_;
 };
 
 }  // namespace framewatch::estimator

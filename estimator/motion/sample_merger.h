@@ -10,7 +10,7 @@ namespace framewatch::estimator {
 /// Counts of what happened to the samples of one axis.
 struct AxisCounters {
   std::int64_t received = 0;
-  std::int64_t missing = 0;   ///< instants closed without a value
+  std::int64_t missing = 0;   ///< instants closed without a value, or while all values stopped
   std::int64_t late = 0;      ///< came after their instant was closed
   std::int64_t repaired = 0;  ///< single losses filled by interpolation
   std::int64_t stuck = 0;     ///< taken out: the value stood still while the building moved

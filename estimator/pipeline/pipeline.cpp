@@ -28,6 +28,8 @@ class Pipeline::Implementation {
             acquisition_.counters()};
   }
 
+  void on_late(Sink late) { late_ = std::move(late); }
+
   template <typename Archive>
   void archive(Archive& a) {
     a(acquisition_, estimator_);
@@ -42,19 +44,29 @@ class Pipeline::Implementation {
   void estimate(const SampleSet& set) {
     ++sets_;
     if (instants_) instants_(set);
+    for (int missing = estimator_.missing_before(set); missing > 0; --missing) {
+      estimator_.push_missing();
+      give_others();
+    }
     if (const WindowEstimate* estimate = estimator_.push(set)) {
       ++windows_;
       sink_(*estimate);
     }
+    give_others();
+  }
+
+  void give_others() {
     if (const WindowEstimate* other = estimator_.other(); other != nullptr && others_)
       others_(*other);
     if (const ModelFit* fit = estimator_.model_fit(); fit != nullptr && models_) models_(*fit);
+    while (const WindowEstimate* late = estimator_.late())
+      if (late_) late_(*late);
   }
 
   ParameterTable table_;
   Acquisition acquisition_;
   SlidingWindowEstimator estimator_;
-  Sink sink_, others_;
+  Sink sink_, others_, late_;
   InstantSink instants_;
   ModelSink models_;
   std::int64_t sets_ = 0, windows_ = 0;
@@ -65,6 +77,9 @@ Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others, Instant
     : implementation_(std::make_unique<Implementation>(config, std::move(sink), std::move(others),
                                                        std::move(instants), std::move(models))) {}
 Pipeline::~Pipeline() = default;
+void Pipeline::on_late(Sink late) {
+  implementation_->on_late(std::move(late));
+}
 void Pipeline::push(const AccelSample& sample) {
   implementation_->push(sample);
 }

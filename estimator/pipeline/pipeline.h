@@ -40,6 +40,8 @@ class Pipeline {
   /// models: how far the model may be wrong, once per window's length.
   Pipeline(const PipelineConfig& config, Sink sink, Sink others = {}, InstantSink instants = {},
            ModelSink models = {});
+  /// Gets windows that were held back while the filters were not tuned to the building (late).
+  void on_late(Sink late);
   ~Pipeline();
 
   /// One axis at one instant. Any order within options.lateness_s.

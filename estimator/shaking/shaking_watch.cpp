@@ -70,6 +70,7 @@ ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& o
       first_(kEnds, elements_),
       final_(kEnds, elements_),
       after_(kEnds, elements_),
+      late_(kEnds, elements_),
       during_(any_windows(2 * elements_)) {
   for (std::size_t a = 0; a < config.axes.size(); ++a)
     if (config.axes[a].story == 0 && config.axes[a].horizontal()) trigger_axes_.push_back(a);
@@ -103,12 +104,13 @@ void ShakingWatch::begin(Time now) {
   active_ = began_ = true;
   start_ = last_ = now;
   peak_ = PeakResponse(peak_.accel_mps2.size(), peak_.drift_m.size());
-  first_.count = final_.count = after_.count = 0;
+  first_.count = final_.count = after_.count = late_.count = 0;
   during_ = any_windows(2 * elements_);
   gap_ = kNaN;
 }
 
 void ShakingWatch::push(const WindowEstimate& e) {
+  if (e.late) return push_late(e);
   response_.follow(e);
   if (e.window != 0 || e.status != WindowStatus::valid) return;
   if (!active_) {
@@ -126,6 +128,19 @@ void ShakingWatch::push(const WindowEstimate& e) {
   }
 }
 
+/// The motion's first windows, where the filters were tuned to the building only later.
+void ShakingWatch::push_late(const WindowEstimate& e) {
+  if (!active_ || e.window != 0 || e.status != WindowStatus::valid || e.start < start_) return;
+  if (late_.count == kEnds || late_.overlaps(e)) return;
+  if (first_.count > 0 && e.end > first_.start.front()) return;
+  late_.put(e, elements_);
+}
+
+WindowMean ShakingWatch::first_mean(std::size_t p) const {
+  const WindowMean late = late_.mean(p, elements_);
+  return late.count > 0 ? late : first_.mean(p, elements_);
+}
+
 void ShakingWatch::gap(double nrmse) {
   if (active_ && std::isfinite(nrmse) && !(nrmse <= gap_)) gap_ = nrmse;
 }
@@ -141,7 +156,7 @@ void ShakingWatch::finish(Time now, const Baseline* baseline) {
     } else if (const WindowMean m = before_.mean(p, elements_); m.count > 0) {
       s.before = m;
       s.before_from = BeforeFrom::windows_before;
-    } else if (const WindowMean f = first_.mean(p, elements_); f.count > 0) {
+    } else if (const WindowMean f = first_mean(p); f.count > 0) {
       s.before = f;
       s.before_from = BeforeFrom::first_windows;
     }

@@ -19,7 +19,7 @@ class ShakingWatch {
 
   /// One calibrated instant. True once a strong motion has ended; it is in ended() then.
   bool push(const SampleSet& set, const Baseline* baseline);
-  /// An estimate of the main window.
+  /// An estimate of the main window, late ones too.
   void push(const WindowEstimate& estimate);
   /// The gap of simulation and measurement.
   void gap(double nrmse);
@@ -29,7 +29,7 @@ class ShakingWatch {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(active_, start_, last_, response_, peak_, before_, first_, final_, after_, during_, gap_);
+    a(active_, start_, last_, response_, peak_, before_, first_, final_, after_, late_, during_, gap_);
   }
 
  private:
@@ -51,6 +51,8 @@ class ShakingWatch {
     }
   };
   void begin(Time now);
+  void push_late(const WindowEstimate& estimate);
+  WindowMean first_mean(std::size_t parameter) const;
   void finish(Time now, const Baseline* baseline);
 
   std::size_t elements_;
@@ -62,6 +64,7 @@ class ShakingWatch {
   Time start_{}, last_{};
   double gap_ = 0;
   Windows before_, first_, final_, after_;
+  Windows late_;  ///< those before first_ that came late
   BaselineLearner during_;
   Shaking ended_;
 };

@@ -44,6 +44,8 @@ struct WindowEstimate {
   WindowEstimate() = default;
   explicit WindowEstimate(std::size_t parameters);
 
+  /// Given after its time: when it ended, the filters had not been tuned to the building yet.
+  bool late = false;
   int window = 0;  ///< 0 = the main window, i = EstimatorOptions::other_windows_s[i - 1]
   Time start;
   Time end;

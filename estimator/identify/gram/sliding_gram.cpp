@@ -73,7 +73,8 @@ int SlidingGram::rows() const {
 }
 
 const double* SlidingGram::block(int age) const {
-  const std::int64_t newest = pushed_ / block_rows_ - 1;
+  const std::int64_t newest = closed() - 1;
+  if (age > newest) return nullptr;
   return &blocks_ring_[static_cast<std::size_t>((newest - age) % held_blocks_) * shape_.size];
 }
 

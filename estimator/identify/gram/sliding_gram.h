@@ -82,8 +82,16 @@ class SlidingGram {
   int spans() const { return static_cast<int>(spans_.size()); }
   int blocks() const { return blocks_; }
   int block_rows() const { return block_rows_; }
-  /// Completed block, age 0 = the newest; valid after maintain().
+  /// Blocks completed since the start.
+  std::int64_t closed() const { return pushed_ / block_rows_; }
+  /// Completed block, age 0 = the newest; valid after maintain(); null: before the start.
   const double* block(int age) const;
+  /// Whether a floor has rows in that block.
+  bool holds(int age, int floor) const {
+    const std::int64_t block = closed() - 1 - age;
+    return block >= 0 &&
+           counts_[static_cast<std::size_t>(block % (held_blocks_ + 1) * floors_ + floor)] > 0;
+  }
 
   /// Whether the newest completed block can be sums of squares of rows; after maintain().
   bool sane() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <utility>
 
@@ -43,6 +44,22 @@ std::vector<int> not_zero_rows(const Eigen::MatrixXd& m) {
   std::vector<int> out;
   for (Eigen::Index i = 0; i < m.rows(); ++i)
     if (!m.row(i).isZero(0)) out.push_back(static_cast<int>(i));
+  return out;
+}
+
+/// Of exponents per step: conjugate ones together, real ones two by two.
+std::vector<PolePair> pole_pairs(const std::vector<std::complex<double>>& exponents) {
+  std::vector<PolePair> out;
+  std::vector<double> real;
+  for (const std::complex<double>& e : exponents) {
+    if (e.imag() > 0)
+      out.push_back({-2 * std::exp(e.real()) * std::cos(e.imag()), std::exp(2 * e.real())});
+    else if (e.imag() == 0)
+      real.push_back(std::exp(e.real()));
+  }
+  if (real.size() % 2 != 0) real.push_back(0);
+  for (std::size_t i = 0; i + 1 < real.size(); i += 2)
+    out.push_back({-(real[i] + real[i + 1]), real[i] * real[i + 1]});
   return out;
 }
 
@@ -205,9 +222,11 @@ class Builder {
     a.block(0, m, m, m).diagonal().setConstant(scale * step);
     a.block(m, 0, m, m).diagonal() = -w2 * step / scale;
     a.block(m, m, m, m) = -damping * step;
+    const auto values = general_eigenvalues(a.topLeftCorner(2 * m, 2 * m));
     out.slowest_radps = std::numeric_limits<double>::infinity();
-    for (const auto& value : general_eigenvalues(a.topLeftCorner(2 * m, 2 * m)))
+    for (const auto& value : values)
       out.slowest_radps = std::min(out.slowest_radps, -value.real() / step);
+    out.poles = pole_pairs({values.begin(), values.end()});
     a.block(m, 2 * m, m, m).diagonal().setConstant(step);
     a.block(2 * m, 3 * m, m, m).setIdentity();
     const Eigen::MatrixXd e = matrix_exponential(a);

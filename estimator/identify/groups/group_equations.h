@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "estimator/identify/groups/reduced_building.h"
+#include "estimator/identify/regressors/floor_rows.h"
 
 namespace framewatch::estimator {
 
@@ -43,8 +44,9 @@ struct InnerChain {
   std::vector<double> friction;                 ///< rows by modal rates, by columns
   std::vector<double> read_out;  ///< rows x 3 modes, row-major: of [state; forces] of a derivative
   std::vector<InnerForce> forces;
-  Eigen::MatrixXd frames;    ///< motion of the frames by the modes, ReducedBuilding::frames
-  double slowest_radps = 0;  ///< least decay of its modes
+  Eigen::MatrixXd frames;       ///< motion of the frames by the modes, ReducedBuilding::frames
+  double slowest_radps = 0;     ///< least decay of its modes
+  std::vector<PolePair> poles;  ///< of the recursion: its natural responses
 };
 
 /// The equations of motion of the measured floors for parameters x times the design: residual rows

@@ -69,6 +69,7 @@ GroupTuning::GroupTuning(const PipelineConfig& config, const EstimatorOptions& o
     : config_(&config),
       options_(&options),
       layout_(&layout),
+      high_pass_poles_{high_pass.a1, high_pass.a2},
       table_(table),
       design_(design),
       designed_(group_parameters(config.structure, table, design)),
@@ -230,13 +231,26 @@ std::unique_ptr<RowFilter> GroupTuning::make_filter(int settle) {
 }
 
 GroupFilter::GroupFilter(GroupTuning& tuning, int settle)
-    : RowFilter(tuning.layout()), tuning_(&tuning), settle_(settle) {
+    : RowFilter(tuning.layout()),
+      tuning_(&tuning),
+      settle_(settle),
+      past_(padded(tuning.layout().front(0)), tuning.layout().most_rows(), 0) {
   reset(settle);
 }
 
 void GroupFilter::start() {
   chain_.start(tuning_->equations(), tuning_->layout().own());
   motion_.assign(count_of(tuning_->building().measured) * AxisMotion::kSignals, 0.0);
+  const FloorRows& rows = tuning_->rows(0);
+  past_.begin(rows.rows);
+  starting_ = rows.rows > 0;
+  for (int r = 0; r < rows.rows; ++r) {
+    past_.add(r, tuning_->high_pass_poles());
+    past_.add(r, {rows.a1[count_of(r)], rows.a2[count_of(r)]});
+  }
+  for (const InnerChain& chain : tuning_->equations().chains)
+    for (const int row : chain.rows)
+      for (const PolePair& poles : chain.poles) past_.add(row, poles);
 }
 
 void GroupFilter::reset(int settle) {
@@ -268,6 +282,7 @@ void GroupFilter::push(const DeformationSet& set) {
     }
   }
   chain_.step(motion_.data(), tuning_->rows(0), rows_.data());
+  starting_ = !past_.remove(rows_.data());
 }
 
 }  // namespace framewatch::estimator

@@ -13,6 +13,7 @@
 #include "estimator/identify/groups/group_equations.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/row_tuning.h"
+#include "estimator/identify/regressors/unknown_past.h"
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/drift_controlled_integrator.h"
 #include "estimator/setup/pipeline_config.h"
@@ -55,6 +56,7 @@ class GroupTuning : public RowTuning {
   static constexpr double kLongestSettle_s = 20;
 
   const FloorLayout& layout() const { return *layout_; }
+  const PolePair& high_pass_poles() const { return high_pass_poles_; }
   const ReducedBuilding& building() const { return building_; }
   const GroupEquations& equations() const { return equations_; }
 
@@ -79,6 +81,7 @@ class GroupTuning : public RowTuning {
   const PipelineConfig* config_;
   const EstimatorOptions* options_;
   const FloorLayout* layout_;
+  PolePair high_pass_poles_;
   ParameterTable table_;
   GroupDesign design_;
   Eigen::VectorXd designed_, theta0_;
@@ -105,7 +108,7 @@ class GroupFilter : public RowFilter {
 
   void reset(int settle) override;
   void push(const DeformationSet& set) override;
-  int count(int) const override { return settling_ > 0 ? 0 : tuning_->rows(0).rows; }
+  int count(int) const override { return settling_ > 0 || starting_ ? 0 : tuning_->rows(0).rows; }
   const FloorRows& floor_rows(int) const override { return tuning_->rows(0); }
   std::uint8_t origin_of(int, const FloorRows* rows) const override { return rows != nullptr; }
   const FloorRows* floor_rows_from(int, std::uint8_t origin) const override {
@@ -121,13 +124,15 @@ class GroupFilter : public RowFilter {
     a.within(settling_, 0, a.kMostCount);
     a.finite(rows_);
     if constexpr (Archive::kReading) start();
-    a(chain_);
+    a(chain_, past_, starting_);
   }
   void start();
 
   GroupTuning* tuning_;
   int settle_, settling_ = 0;
   GroupChain chain_;
+  UnknownPast past_;
+  bool starting_ = false;  ///< too few rows since the start to know the past from
   std::vector<double> motion_;
 };
 

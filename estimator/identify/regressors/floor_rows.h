@@ -20,6 +20,11 @@ struct FloorRows;
 void pack_compensation(const FloorLayout& layout, int floor, const FloorRows& rows, double share,
                        std::vector<double>& out);
 
+/// Two poles of a filter: its natural responses follow s[t] = -a1 s[t-1] - a2 s[t-2].
+struct PolePair {
+  double a1 = 0, a2 = 0;
+};
+
 /// One floor's projected equations: each row r is sum_f phi_rf (equation f), filtered by its
 /// oscillator section and scaled by the root of its weight.
 struct FloorRows {

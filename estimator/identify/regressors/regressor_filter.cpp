@@ -5,16 +5,20 @@
 #include "estimator/numeric/kernels.h"
 
 namespace framewatch::estimator {
+namespace {
+
+constexpr int kShapes = 4;  // of a row: two of the high-pass, two of its oscillator section
+
+}  // namespace
 
 RegressorFilter::RegressorFilter(RegressorTuning& tuning, const FloorLayout& layout, int settle)
     : RowFilter(layout), tuning_(&tuning), layout_(&layout), settle_(settle) {
-  floor_.resize(static_cast<std::size_t>(layout.floors()));
+  floor_.reserve(static_cast<std::size_t>(layout.floors()));
   for (int floor = 0; floor < layout.floors(); ++floor) {
-    const auto size = static_cast<std::size_t>(layout.frames() * padded(layout.front(floor)));
-    Floor& f = floor_[static_cast<std::size_t>(floor)];
-    f.some_known = tuning.rows(floor);
-    f.s1.resize(size);
-    f.s2.resize(size);
+    const int stride = padded(layout.front(floor));
+    const auto size = static_cast<std::size_t>(layout.frames() * stride);
+    floor_.push_back({nullptr, tuning.rows(floor), std::vector<double>(size),
+                      std::vector<double>(size), UnknownPast(stride, layout.frames(), kShapes)});
   }
   signal_.assign(static_cast<std::size_t>(padded(layout.own() + 2 * layout.frames() + 1)), 0.0);
   response_.assign(static_cast<std::size_t>(layout.frames()), 0.0);
@@ -40,6 +44,15 @@ void RegressorFilter::rebuild(int floor) {
   std::fill(f.s1.begin(), f.s1.end(), 0.0);
   std::fill(f.s2.begin(), f.s2.end(), 0.0);
   f.settling = settle_ + 1;
+  f.past.end();
+  f.starting = tuning_->removes_past();
+  if (!f.starting) return;
+  f.past.begin(f.rows->rows);
+  for (int r = 0; r < f.rows->rows; ++r) {
+    const auto row = static_cast<std::size_t>(r);
+    f.past.add(r, tuning_->high_pass_poles());
+    f.past.add(r, {f.rows->a1[row], f.rows->a2[row]});
+  }
 }
 
 bool RegressorFilter::all_known_around(int floor) const {
@@ -85,6 +98,7 @@ void RegressorFilter::push(const DeformationSet& set) {
     kernels::in_use->filter_rows(signal_.data(), response_.data(), own + next, f.rows->gain.data(),
                                  f.rows->a1.data(), f.rows->a2.data(), f.s1.data(), f.s2.data(),
                                  f.rows->beta.data(), &rows_[offset(floor)], f.rows->rows, stride);
+    f.starting = !f.past.remove(&rows_[offset(floor)]);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "estimator/identify/regressors/regressor_tuning.h"
 #include "estimator/identify/regressors/row_filter.h"
+#include "estimator/identify/regressors/unknown_past.h"
 
 namespace framewatch::estimator {
 
@@ -22,7 +23,7 @@ class RegressorFilter : public RowFilter {
 
   int count(int floor) const override {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
-    return f.settling > 0 ? 0 : f.rows->rows;
+    return f.settling > 0 || f.starting ? 0 : f.rows->rows;
   }
   const FloorRows& floor_rows(int floor) const override {
     return *floor_[static_cast<std::size_t>(floor)].rows;
@@ -52,6 +53,7 @@ class RegressorFilter : public RowFilter {
       a(origin, f.some_known);
       if (!f.some_known.fits(*layout_, floor)) a.refuse();
       a.finite(f.s1, f.s2);
+      a(f.past, f.starting);
       a.within(f.settling, 0, a.kMostCount);
       f.rows = floor_rows_from(floor, origin == 2 ? 2 : 1);
     }
@@ -61,6 +63,8 @@ class RegressorFilter : public RowFilter {
     const FloorRows* rows = nullptr;  ///< the tuning's, or those below
     FloorRows some_known;
     std::vector<double> s1, s2;
+    UnknownPast past;
+    bool starting = false;  ///< too few rows since the start to know the past from
     int settling = 0;
   };
   void rebuild(int floor);

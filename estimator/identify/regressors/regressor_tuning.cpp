@@ -21,6 +21,7 @@ RegressorTuning::RegressorTuning(const Structure& structure, const FloorLayout& 
                                  const Eigen::VectorXd& theta0, std::vector<double> noise_density)
     : layout_(&layout),
       options_(&options),
+      high_pass_poles_{high_pass.a1, high_pass.a2},
       noise_filter_(triple, high_pass,
                     static_cast<std::size_t>(kDecay * options.rate_hz / options.high_pass_hz)),
       theta0_(theta0),
@@ -250,6 +251,12 @@ int RegressorTuning::settle_rows(int least) const {
     for (const double hz : floor.frequency_hz) slowest_hz = std::min(slowest_hz, hz);
   const double settle_s = 3 / (damping() * 2 * M_PI * slowest_hz);
   return std::max(least, static_cast<int>(std::ceil(settle_s * options_->rate_hz)));
+}
+
+int RegressorTuning::start_rows() const {
+  return removes_past()
+             ? 0
+             : settle_rows(static_cast<int>(std::lround(options_->settle_s * options_->rate_hz)));
 }
 
 double RegressorTuning::detuning(int floor, const Eigen::VectorXd& theta) {

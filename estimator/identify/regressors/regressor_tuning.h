@@ -51,6 +51,10 @@ class RegressorTuning : public RowTuning {
   const std::vector<double>& noise_density() const override { return noise_density_; }
   /// 3 / (zeta w) of the slowest section.
   int settle_rows(int least) const override;
+  /// The paper's variant: its filters settle.
+  int start_rows() const override;
+  bool removes_past() const { return options_->variant != Variant::paper; }
+  const PolePair& high_pass_poles() const { return high_pass_poles_; }
   /// Largest relative change of the corners of a floor's sections.
   double detuning(int floor, const Eigen::VectorXd& theta) override;
   std::unique_ptr<RowTuning> copy() const override {
@@ -86,6 +90,7 @@ class RegressorTuning : public RowTuning {
 
   const FloorLayout* layout_;
   const EstimatorOptions* options_;
+  PolePair high_pass_poles_;
   NoiseFilter noise_filter_;
   Eigen::VectorXd theta0_;
   std::vector<double> noise_density_;

@@ -30,6 +30,9 @@ class RowTuning {
   virtual const std::vector<double>& noise_density() const = 0;
   /// Instants the slowest filter needs to forget its start, and at least `least`.
   virtual int settle_rows(int least) const = 0;
+  /// Instants after a start before rows count: none, where what the filters do not know of the
+  /// motion before is removed from the rows (UnknownPast).
+  virtual int start_rows() const { return 0; }
   /// How far the filters of a floor are from what they would be at `theta`, relative.
   virtual double detuning(int floor, const Eigen::VectorXd& theta) = 0;
   /// Flags of the axes that rows are formed of, where another set of them asks for another tuning;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
@@ -20,10 +21,11 @@ namespace framewatch::estimator {
 /// by their count, so that no instant is late. Results are those of the last completed pass. The
 /// scores are those of the newest kBlocks blocks about a solution that fits them, whatever the
 /// window's length: a short window has too few blocks, so it takes these, scaled to its own
-/// information.
+/// information. While fewer blocks have rows, the spread is taken from those, as Student's
+/// distribution widens it; from fewer than kFewest nothing is known, and the error is infinite.
 class BatchMeans {
  public:
-  static constexpr int kBlocks = 20;
+  static constexpr int kBlocks = 20, kFewest = 4;
 
   /// compensation: share of the noise, see NoiseCompensation.
   explicit BatchMeans(const FloorLayout& layout, double compensation = kCompensatedShare);
@@ -42,7 +44,11 @@ class BatchMeans {
   void begin(const Sums& sums, StorySolver& solver, const Fit& fit,
              const std::vector<double>& prior, const std::vector<double>& prior_doubt,
              const NoiseCompensation& noise, double noise_level) {
-    for (int b = 0; b < kBlocks; ++b) block_[static_cast<std::size_t>(b)] = sums.block(b);
+    for (int b = 0; b < kBlocks; ++b) {
+      block_[static_cast<std::size_t>(b)] = sums.block(b);
+      for (int f = 0; f < layout_.floors(); ++f)
+        holds_[static_cast<std::size_t>(f * kBlocks + b)] = sums.holds(b, f) ? 1 : 0;
+    }
     begin(sums.shape(), solver, fit, prior, prior_doubt, noise, noise_level);
   }
   /// Of a whole pass.
@@ -80,8 +86,9 @@ class BatchMeans {
       std::int64_t number = running() ? sums.number_of(block) : -1;
       a(number);
       block = sums.block_of(number);
-      if (running() && (block == nullptr || !noise_.known())) a.refuse();
     }
+    a.each_within(holds_, 0, 1);
+    if (running() && !noise_.known()) a.refuse();
   }
 
  private:
@@ -92,6 +99,8 @@ class BatchMeans {
   void add_block_scores(int floor);
   void add_bias_columns(int floor);
   void finish(int floor);
+  bool has_rows(int floor, int block) const;
+  int blocks_with_rows(int floor) const;
   double* columns(int unknown) { return columns_values_.data() + unknown * columns_; }
 
   FloorLayout layout_;
@@ -102,7 +111,8 @@ class BatchMeans {
   double noise_level_ = 0;
   int next_step_;
   const GramShape* shape_ = nullptr;
-  std::vector<const double*> block_;
+  std::vector<const double*> block_;    ///< null: before the start
+  std::vector<std::uint8_t> holds_;     ///< floors x blocks: the floor has rows in it
   std::vector<double> columns_values_;  ///< unknowns x (blocks, then perturbations)
   PerturbedDesigns perturbed_;
   std::vector<double> solution_, score_scale_, prior_, prior_doubt_, x_, score_, inverse_diagonal_;

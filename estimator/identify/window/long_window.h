@@ -58,6 +58,10 @@ class LongWindow {
   // Completed pieces as SlidingGram has blocks.
   const GramShape& shape() const { return shape_; }
   const double* block(int age) const;
+  bool holds(int age, int floor) const {
+    return ring_instants_[static_cast<std::size_t>((pieces_ - 1 - age) % kPieces * floors_ +
+                                                   floor)] > 0;
+  }
   std::int64_t number_of(const double* block) const {
     return block == nullptr ? -1 : (block - ring_.data()) / std::ptrdiff_t(shape_.size);
   }

@@ -19,6 +19,9 @@ class OtherWindows {
                const EstimatorOptions& options, const std::vector<int>& blocks, int block_rows);
 
   void restart();
+  void mark_late() {
+    for (Window& window : windows_) window.estimate.late = true;
+  }
   /// WindowSolution::hold() of every window.
   void hold(int unknown, double ratio, double std_error);
   /// The tuning has changed: a solution under way is abandoned.

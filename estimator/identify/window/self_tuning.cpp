@@ -64,9 +64,19 @@ void SelfTuning::begin_axes(const TunedRegression& active,
   next_part_ = 0;
 }
 
+void SelfTuning::lend(const TunedRegression& active) {
+  if (standby_->tuning().axes() != active.tuning().axes())
+    standby_->tuning().set_axes(active.tuning().axes());
+  standby_->tuning().set_theta0(active.tuning().theta0(), active.tuning().noise_density());
+  lending_ = true;
+  phase_ = Phase::tuning;
+  next_part_ = 0;
+}
+
 bool SelfTuning::step(std::unique_ptr<TunedRegression>& active, const MotionRing& ring) {
   switch (phase_) {
     case Phase::idle:
+    case Phase::lent:
       break;
     case Phase::checking:
       check_floors(*active);
@@ -108,6 +118,10 @@ void SelfTuning::tune_parts(const MotionRing& ring) {
   for (int i = 0; i < parts_per_instant_ && next_part_ < standby_->tuning().parts(); ++i)
     standby_->tuning().tune(next_part_++);
   if (next_part_ < standby_->tuning().parts()) return;
+  if (lending_) {
+    phase_ = Phase::lent;
+    return;
+  }
   const std::int64_t back = standby_->warm_up() + fill_;
   standby_->start(std::max(ring.begin(), ring.end() - back));
   phase_ = Phase::catching_up;

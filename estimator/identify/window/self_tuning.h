@@ -27,7 +27,10 @@ class SelfTuning {
   static int ring_rows(int warm_up) { return 2 * warm_up + 2; }
 
   /// The input was interrupted: a re-tuning under way is abandoned.
-  void restart() { phase_ = Phase::idle; }
+  void restart() {
+    phase_ = Phase::idle;
+    lending_ = false;
+  }
   bool idle() const { return phase_ == Phase::idle; }
   /// Once per completed pass of batch means: whether the filters should be checked now. Every time
   /// until they were found right, then once a window.
@@ -40,10 +43,19 @@ class SelfTuning {
                    const AxisNoise& noise);
   /// Begins a tuning to other axes, with the parameters as they are.
   void begin_axes(const TunedRegression& active, const std::vector<std::uint8_t>& present);
+  /// Tunes the standby as the active regression is, and lends it: until give_back() it is not used
+  /// for tuning.
+  void lend(const TunedRegression& active);
+  /// The standby while it is lent and tuned, otherwise null.
+  TunedRegression* lent() { return phase_ == Phase::lent ? standby_.get() : nullptr; }
+  void give_back() { restart(); }
+  /// Instants a regression can take in per instant of input.
+  int work_per_instant() const { return catch_up_per_instant_; }
   /// One instant's share of the work. True when `active` was exchanged for the newly tuned
   /// regression; before() is then the former one.
   bool step(std::unique_ptr<TunedRegression>& active, const MotionRing& ring);
   const TunedRegression& before() const { return *standby_; }
+  TunedRegression& standby() { return *standby_; }
 
   /// The noise by which the active regression weights its rows is known, of every axis.
   bool noise_known() const { return noise_known_; }
@@ -54,14 +66,15 @@ class SelfTuning {
   template <typename Archive>
   void archive(Archive& a) {
     a(*standby_, tuned_, noise_known_, noise_measured_, noise_differs_);
-    a.within(phase_, 0, static_cast<double>(Phase::catching_up));
+    a(lending_);
+    a.within(phase_, 0, static_cast<double>(Phase::lent));
     for (int* number : {&next_part_, &passes_, &since_check_}) a.within(*number, 0, a.kMostCount);
     a.within(retunes_, 0, a.kMostCount);
     a.finite(detuning_, noise_, next_theta0_);
   }
 
  private:
-  enum class Phase { idle, checking, tuning, catching_up };
+  enum class Phase { idle, checking, tuning, catching_up, lent };
   void check_floors(TunedRegression& active);
   void tune_parts(const MotionRing& ring);
   bool catch_up(const TunedRegression& active, const MotionRing& ring);
@@ -72,6 +85,7 @@ class SelfTuning {
   int blocks_, fill_, parts_per_instant_, catch_up_per_instant_;
   Phase phase_ = Phase::idle;
   bool tuned_ = false;
+  bool lending_ = false;  ///< what is being tuned is to be lent
   int next_part_ = 0, passes_ = 0, since_check_ = 0;
   double detuning_ = 0;
   bool noise_known_;

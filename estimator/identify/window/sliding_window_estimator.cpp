@@ -10,14 +10,15 @@
 #include "estimator/identify/groups/group_tuning.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/regressor_tuning.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr int kBlocks = BatchMeans::kBlocks;  // per window
 constexpr int kFewestBlocks = 4;              // of another window
-/// Of the main window: blocks without rows would make standard errors too small.
-constexpr double kWarm = 0.9;
+/// Of the main window: rows enough for standard errors, but for the first of a start.
+constexpr double kWarm = 0.75 * BatchMeans::kFewest / BatchMeans::kBlocks;
 /// A channel that is away for less is waited for; for longer, its floor becomes an inner one.
 constexpr double kAxesSteady_s = 2;
 
@@ -50,8 +51,9 @@ std::vector<int> blocks_of(const std::vector<double>& windows_s, double rate_hz,
   return blocks;
 }
 
-/// Instants that the slowest possible row filter needs to settle: no corner is below the high-pass.
-int longest_settle(const EstimatorOptions& o, bool grouped) {
+/// Instants of motion that are kept beside the longest window: what the slowest possible row filter
+/// of the paper's variant needs to settle; of the others, what windows are looked at again from.
+int kept_beside(const EstimatorOptions& o, bool grouped) {
   const double slowest_s = grouped
                                ? GroupTuning::kLongestSettle_s
                                : 3 / (std::min(o.filter_damping, 0.7) * 2 * M_PI * o.high_pass_hz);
@@ -89,19 +91,17 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       blocks_(kBlocks),
       block_rows_(std::max(2, rows_of(options_.window_s / kBlocks, options_.rate_hz))),
       hop_rows_(rows_of(options_.hop_s, options_.rate_hz)),
-      settle_rows_(rows_of(options_.settle_s, options_.rate_hz)),
       other_blocks_(blocks_of(options_.other_windows_s, options_.rate_hz, block_rows_)),
       integrator_(triples_of(options_, layout_.grouped(), config_.axes), high_pass_),
       noise_(config_.axes, options_.rate_hz),
       ring_(*motion_source_,
-            SelfTuning::ring_rows(longest_settle(options_, layout_.grouped()) +
+            SelfTuning::ring_rows(kept_beside(options_, layout_.grouped()) +
                                   longest_window(block_rows_, other_blocks_) + triple_.length())),
       drift_(config_, table_, layout_, block_rows_,
              longest_window(block_rows_, other_blocks_) / block_rows_),
-      main_(config_.structure, layout_, table_, options_, kCompensatedShare, kWarm),
-      others_(config_.structure, layout_, table_, options_, other_blocks_, block_rows_),
-      estimate_(static_cast<std::size_t>(table_.size())) {
-  steps_per_instant_ = (main_.error_steps() + block_rows_ - 2) / (block_rows_ - 1);
+      series_(config_.structure, layout_, table_, options_, kWarm, other_blocks_, block_rows_),
+      estimate_(static_cast<std::size_t>(table_.size())),
+      nothing_(config_.axes.size(), kNaN) {
   boxplots_.reserve(estimate_.value.size());  // copies would not keep what they reserve
   for (std::size_t p = 0; p < estimate_.value.size(); ++p)
     boxplots_.emplace_back(options_.boxplot_windows);
@@ -116,6 +116,10 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
     self_tuning_ =
         std::make_unique<SelfTuning>(layout_, table_, make_regression(active_->tuning().copy()),
                                      kBlocks, triple_.length(), noise_.configured());
+  if (self_tuning_)
+    late_ = std::make_unique<LateWindows>(
+        config_, table_, layout_, kWarm, other_blocks_, block_rows_,
+        longest_window(block_rows_, other_blocks_) / block_rows_, hop_rows_);
   if (options_.long_window_s > 0)
     long_ = std::make_unique<LongWindow>(config_.structure, layout_, table_, options_, block_rows_,
                                          static_cast<int>(other_blocks_.size()) + 1,
@@ -148,7 +152,7 @@ std::unique_ptr<RowTuning> SlidingWindowEstimator::make_tuning(
 std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
     std::unique_ptr<RowTuning> tuning) const {
   return std::make_unique<TunedRegression>(std::move(tuning), layout_, blocks_, block_rows_,
-                                           other_blocks_, settle_rows_);
+                                           other_blocks_);
 }
 
 std::vector<int> SlidingWindowEstimator::other_window_rows() const {
@@ -159,13 +163,14 @@ std::vector<int> SlidingWindowEstimator::other_window_rows() const {
 }
 
 void SlidingWindowEstimator::restart() {
+  sane_ = true;
   integrator_.reset();
   ring_.reset();
   drift_.restart();
   active_->start(0);
   if (self_tuning_) self_tuning_->restart();
-  main_.restart();
-  others_.restart();
+  series_.restart();
+  if (late_) late_->end();
   if (check_) check_->restart();
   since_hop_ = 0;
 }
@@ -182,34 +187,62 @@ const WindowEstimate* SlidingWindowEstimator::push(const SampleSet& set) {
   other_ = nullptr;
   if (set.index != expected_index_) {
     if (expected_index_ >= 0) ++interruptions_;
-    restart();
-  } else if (!sane_) {
-    recover();
+    if (expected_index_ < 0 || steps_to(set.time) != 1) restart();
   }
-  sane_ = true;
   expected_index_ = set.index + 1;
+  advance(set.accel, set.time);
+  // The first sets only fill the filters: a window cannot end before the first sample.
+  const bool given = due_ && ring_.end() > triple_.length();
+  if (given) fill_estimate(set.time - duration_of(triple_.delay, options_.rate_hz));
+  return given ? &estimate_ : nullptr;
+}
 
-  integrator_.push(set.accel);
-  noise_.push(set.accel);
+int SlidingWindowEstimator::missing_before(const SampleSet& set) const {
+  if (expected_index_ < 0 || set.index == expected_index_) return 0;
+  const double missing = steps_to(set.time) - 1;
+  const int longest = active_->sums().longest_rows();
+  return missing >= 0 && missing <= longest ? static_cast<int>(missing) : 0;
+}
+
+double SlidingWindowEstimator::steps_to(Time time) const {
+  const auto us = static_cast<double>((time - last_time_).count());
+  return std::round(us * 1e-6 * options_.rate_hz);
+}
+
+void SlidingWindowEstimator::push_missing() {
+  advance(nothing_, last_time_ + duration_of(1, options_.rate_hz));
+}
+
+void SlidingWindowEstimator::advance(const std::vector<double>& accel, Time time) {
+  other_ = nullptr;
+  if (!sane_) recover();
+  last_time_ = time;
+  integrator_.push(accel);
+  noise_.push(accel);
   motion_source_->compute(integrator_, ring_.push());
   drift_.push(ring_.at(ring_.end() - 1));
   if (layout_.grouped()) follow_axes(ring_.at(ring_.end() - 1).known);
-  active_->advance(ring_);
-  ++since_hop_;
-  const bool due = since_hop_ >= hop_rows_;
-  if (active_->full() && (due || active_->closes_block()))
-    main_.solve(active_->sums().window(), active_->rows(), trust(), active_->closes_block());
-  const Time window_end = set.time - duration_of(triple_.delay, options_.rate_hz);
-  advance_errors(window_end);
-  // The first sets only fill the filters: a window cannot end before the first sample.
-  const bool given = due && ring_.end() > triple_.length();
-  if (due) since_hop_ = 0;
-  if (given) fill_estimate(window_end);
-  model_fit_ = check_ && ring_.end() > triple_.length()
-                   ? check_->advance({&main_, &ring_, trust(), tuned(), errors_new_, window_end})
-                   : nullptr;
-  if (self_tuning_ && self_tuning_->step(active_, ring_)) regression_exchanged();
-  return given ? &estimate_ : nullptr;
+  due_ = ++since_hop_ >= hop_rows_;
+  if (due_) since_hop_ = 0;
+  const Time window_end = time - duration_of(triple_.delay, options_.rate_hz);
+  const WindowSeries::Done done =
+      series_.advance(*active_, {&ring_, trust(), tuned(), due_, &drift_, window_end});
+  other_ = done.other;
+  errors_new_ = done.errors_new;
+  if (done.block) sane_ = active_->sums().sane();
+  if (done.closed)
+    block_closed(window_end);
+  else
+    go_on();
+  model_fit_ =
+      check_ && ring_.end() > triple_.length()
+          ? check_->advance({&series_.main(), &ring_, trust(), tuned(), errors_new_, window_end})
+          : nullptr;
+  if (!self_tuning_) return;
+  const bool was_tuned = tuned();
+  if (self_tuning_->step(active_, ring_)) regression_exchanged();
+  if (!was_tuned && tuned()) look_back();
+  late_budget_ = self_tuning_->work_per_instant();
 }
 
 void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known) {
@@ -229,26 +262,51 @@ void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known)
   self_tuning_->begin_axes(*active_, identified_from_);
 }
 
-void SlidingWindowEstimator::advance_errors(Time window_end) {
-  errors_new_ = false;
-  const bool closed = active_->finish(ring_);
-  if (closed) sane_ = active_->sums().sane();
-  if (closed && active_->full()) {
-    main_.begin_errors(active_->sums(), main_);
-    others_.block_closed(active_->sums(), window_end);
-    const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
-    if (long_) long_->block_closed(active_->sums(), known, window_end);
-    if (bending_) bending_->block_closed(active_->sums(), known, window_end);
-    return;
-  }
-  errors_new_ = main_.advance_errors(steps_per_instant_);
+void SlidingWindowEstimator::block_closed(Time window_end) {
+  const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
+  if (long_) long_->block_closed(active_->sums(), known, window_end);
+  if (bending_) bending_->block_closed(active_->sums(), known, window_end);
+}
+
+/// What is worked on between the ends of two blocks.
+void SlidingWindowEstimator::go_on() {
   if (errors_new_) check_tuning();
-  other_ = others_.advance(
-      {active_.get(), &main_, &ring_.at(ring_.end() - 1).known, trust(), tuned(), &drift_});
   if (long_ && other_ == nullptr) advance_long();
   if (bending_ &&
       bending_->advance({active_.get(), &ring_.at(ring_.end() - 1).known, trust(), tuned()}))
     hold_bending();
+}
+
+void SlidingWindowEstimator::look_back() {
+  late_until_ = ring_.end();
+  self_tuning_->lend(*active_);
+}
+
+const WindowEstimate* SlidingWindowEstimator::late() {
+  if (late_other_ != nullptr) return std::exchange(late_other_, nullptr);
+  TunedRegression* const regression = self_tuning_ ? self_tuning_->lent() : nullptr;
+  if (regression == nullptr) return nullptr;
+  if (!late_->running()) {
+    // Rows that leave are formed again: they must still be held when they are.
+    const int until_then = regression->sums().lag() / self_tuning_->work_per_instant() + 2;
+    late_->begin(*regression, ring_.begin_after(until_then), late_until_);
+  }
+  for (; late_budget_ > 0; --late_budget_) {
+    if (late_->complete(*regression)) {
+      late_->end();
+      self_tuning_->give_back();
+      return nullptr;
+    }
+    const auto ago = static_cast<double>(ring_.end() - 1 - regression->next());
+    const Time end = last_time_ - duration_of(ago + triple_.delay, options_.rate_hz);
+    const LateWindows::Given given = late_->advance(*regression, ring_, trust(), end);
+    if (given.main == nullptr && given.other == nullptr) continue;
+    --late_budget_;
+    if (given.main == nullptr) return given.other;
+    late_other_ = given.other;
+    return given.main;
+  }
+  return nullptr;
 }
 
 void SlidingWindowEstimator::advance_long() {
@@ -265,27 +323,28 @@ void SlidingWindowEstimator::advance_long() {
 void SlidingWindowEstimator::hold_bending() {
   for (const HeldBending::Held& held : bending_->held()) {
     const double ratio = held.value / theta0()[held.parameter];
-    main_.hold(held.unknown, ratio, held.std_error);
-    others_.hold(held.unknown, ratio, held.std_error);
+    series_.hold(held.unknown, ratio, held.std_error);
+    if (late_) late_->hold(held.unknown, ratio, held.std_error);
     if (check_) check_->hold(held.unknown, ratio, held.std_error);
   }
 }
 
 void SlidingWindowEstimator::check_tuning() {
   if (!self_tuning_ || !self_tuning_->due()) return;
-  for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = main_.shown(static_cast<int>(u));
-  self_tuning_->begin_check(*active_, main_.solver().solution(), main_.std_error(), shown_, noise_);
+  for (std::size_t u = 0; u < shown_.size(); ++u)
+    shown_[u] = series_.main().shown(static_cast<int>(u));
+  self_tuning_->begin_check(*active_, series_.main().solver().solution(),
+                            series_.main().std_error(), shown_, noise_);
 }
 
 void SlidingWindowEstimator::regression_exchanged() {
   for (int u = 0; u < layout_.unknowns(); ++u) {
     const int p = layout_.parameter(u / layout_.own(), u % layout_.own());
     const double before = self_tuning_->before().tuning().theta0()[p];
-    main_.rescale(u, before / theta0()[p]);
+    series_.main().rescale(u, before / theta0()[p]);
     retuned_by_[static_cast<std::size_t>(u)] = theta0()[p] / before;
   }
-  main_.retuned();
-  others_.retuned();
+  series_.retuned();
   if (long_) long_->retuned();
   if (bending_) {
     bending_->retuned(retuned_by_);
@@ -296,10 +355,10 @@ void SlidingWindowEstimator::regression_exchanged() {
 
 void SlidingWindowEstimator::fill_estimate(Time end) {
   estimate_.end = end;
-  estimate_.rows = active_->full() ? window_rows() : 0;
+  estimate_.rows = active_->suffices() ? active_->sums().rows() : 0;
   estimate_.start = end - duration_of(std::max(estimate_.rows - 1, 0), options_.rate_hz);
   ++estimate_.sequence;
-  main_.fill({&theta0(), &ring_.at(ring_.end() - 1).known, tuned()}, estimate_);
+  series_.main().fill({&theta0(), &ring_.at(ring_.end() - 1).known, tuned()}, estimate_);
   for (int p = 0; p < table_.elements(); ++p)
     estimate_.amplitude[static_cast<std::size_t>(p)] = drift_.rms(p, blocks_);
   for (std::size_t p = 0; p < boxplots_.size(); ++p) {

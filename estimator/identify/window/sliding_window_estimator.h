@@ -9,12 +9,12 @@
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/element_drift.h"
 #include "estimator/identify/window/held_bending.h"
+#include "estimator/identify/window/late_windows.h"
 #include "estimator/identify/window/long_window.h"
 #include "estimator/identify/window/model_check.h"
-#include "estimator/identify/window/other_windows.h"
 #include "estimator/identify/window/self_tuning.h"
 #include "estimator/identify/window/tuned_regression.h"
-#include "estimator/identify/window/window_solution.h"
+#include "estimator/identify/window/window_series.h"
 #include "estimator/setup/pipeline_config.h"
 #include "estimator/state/archive.h"
 
@@ -30,8 +30,17 @@ class SlidingWindowEstimator {
 
   /// One instant. Returns the estimate of the window that ends there, or null between hops.
   const WindowEstimate* push(const SampleSet& set);
+  /// Before push(): instants between the last one and `set` that are missing, and that
+  /// push_missing() is to be called for. 0 when there is none, and when so many are missing, or the
+  /// clock has gone back, that push() begins anew.
+  int missing_before(const SampleSet& set) const;
+  /// An instant without any sample: rows from before it stay in the windows. No window ends there.
+  void push_missing();
   /// The estimate of another window that the last push completed, or null.
   const WindowEstimate* other() const { return other_; }
+  /// A window that was held back while the filters were not tuned (LateWindows), after a push: to
+  /// be called until it is null. Ends in the past; the main window or another one.
+  const WindowEstimate* late();
   /// The look at the model that the last push completed, or null.
   const ModelFit* model_fit() const { return model_fit_; }
 
@@ -53,8 +62,9 @@ class SlidingWindowEstimator {
   void archive(Archive& a) {
     a(integrator_, noise_, ring_, drift_, *active_);
     if (self_tuning_) a(*self_tuning_);
-    main_.archive(a, active_->rows(), active_->sums());
-    others_.archive(a, *active_);
+    series_.archive(a, *active_);
+    a.within(late_until_, 0, a.kMostCount);
+    if (late_) late_->archive(a, self_tuning_->standby());
     archive_long(a);
     if (bending_) bending_->archive(a, *active_);
     if (check_) a(*check_);
@@ -62,6 +72,7 @@ class SlidingWindowEstimator {
     a.each_within(seen_axes_, 0, 1);
     a.within(axes_steady_rows_, 0, a.kMostCount);
     a.within(expected_index_, -1, a.kMostCount);
+    a(last_time_);
     a.within(since_hop_, 0, hop_rows_);
     a.within(interruptions_, 0, a.kMostCount);
     if (active_->next() != ring_.end()) a.refuse();
@@ -89,9 +100,15 @@ class SlidingWindowEstimator {
     }
   }
   void restart();
+  /// Steps of the common grid from the last instant to `time`, whole.
+  double steps_to(Time time) const;
+  void advance(const std::vector<double>& accel, Time time);
   /// Something has got into the filters that no motion makes of them: everything begins anew.
   void recover();
-  void advance_errors(Time window_end);
+  void block_closed(Time window_end);
+  void go_on();
+  /// The filters have just been found right: windows that have been held back are looked at again.
+  void look_back();
   void check_tuning();
   void advance_long();
   void hold_bending();
@@ -114,7 +131,7 @@ class SlidingWindowEstimator {
   std::unique_ptr<MotionSource> motion_source_;
   DerivativeTriple triple_;
   HighPass high_pass_;
-  int blocks_, block_rows_, hop_rows_, settle_rows_;
+  int blocks_, block_rows_, hop_rows_;
   std::vector<int> other_blocks_;
   DriftControlledIntegrator integrator_;
   AxisNoise noise_;
@@ -122,20 +139,25 @@ class SlidingWindowEstimator {
   ElementDrift drift_;
   std::unique_ptr<TunedRegression> active_;
   std::unique_ptr<SelfTuning> self_tuning_;  ///< null when switched off
-  WindowSolution main_;
-  OtherWindows others_;
+  WindowSeries series_;
+  std::unique_ptr<LateWindows> late_;     ///< null without self-tuning
   std::unique_ptr<LongWindow> long_;      ///< null: none
   std::unique_ptr<HeldBending> bending_;  ///< null where frames do not bend
   std::unique_ptr<ModelCheck> check_;     ///< null of the paper's variant
-  int steps_per_instant_ = 1;             ///< of BatchMeans: done before the next block closes
   std::vector<std::uint8_t> shown_;       ///< of check_tuning()
   std::vector<double> retuned_by_;        ///< of regression_exchanged()
   std::vector<BoxplotWindow> boxplots_;
   WindowEstimate estimate_;
   const WindowEstimate* other_ = nullptr;
+  const WindowEstimate* late_other_ = nullptr;  ///< to be given by the next late()
+  std::int64_t late_until_ = 0;                 ///< instant of the ring
+  int late_budget_ = 0;                         ///< instants that late() may still go through
   const ModelFit* model_fit_ = nullptr;
   bool errors_new_ = false;  ///< of the last push
   std::int64_t expected_index_ = -1, since_hop_ = 0, interruptions_ = 0;
+  Time last_time_{};                           ///< of the last instant
+  std::vector<double> nothing_;                ///< no sample of any axis
+  bool due_ = false;                           ///< the last advance() was a hop
   std::vector<std::uint8_t> seen_axes_;        ///< of the last instants, of groups
   std::vector<std::uint8_t> identified_from_;  ///< of follow_axes()
   int axes_steady_rows_ = 0;                   ///< instants for which they have been these

@@ -9,21 +9,19 @@ MotionRing::MotionRing(const MotionSource& source, int capacity)
     : sets_(static_cast<std::size_t>(capacity), source.make_set()) {}
 
 TunedRegression::TunedRegression(std::unique_ptr<RowTuning> tuning, const FloorLayout& layout,
-                                 int blocks, int block_rows, const std::vector<int>& spans,
-                                 int least_settle)
+                                 int blocks, int block_rows, const std::vector<int>& spans)
     : tuning_(std::move(tuning)),
       layout_(layout),
-      least_settle_(least_settle),
-      entering_(tuning_->make_filter(tuning_->settle_rows(least_settle))),
-      delayed_(tuning_->make_filter(tuning_->settle_rows(least_settle))),
+      entering_(tuning_->make_filter(tuning_->start_rows())),
+      delayed_(tuning_->make_filter(tuning_->start_rows())),
       sums_(layout_, blocks, block_rows, spans) {}
 
 void TunedRegression::start(std::int64_t instant) {
   next_ = delayed_next_ = instant;
   counting_ = false;
-  const int settle = tuning_->settle_rows(least_settle_);
-  entering_->reset(settle);
-  delayed_->reset(settle);
+  const int start = tuning_->start_rows();
+  entering_->reset(start);
+  delayed_->reset(start);
   sums_.reset();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -26,6 +27,10 @@ class MotionRing {
   /// First instant still held, and one past the newest.
   std::int64_t begin() const { return next_ > capacity() ? next_ - capacity() : 0; }
   std::int64_t end() const { return next_; }
+  /// begin() once `more` instants have been pushed.
+  std::int64_t begin_after(std::int64_t more) const {
+    return std::max<std::int64_t>(next_ + more - capacity(), 0);
+  }
   std::int64_t capacity() const { return static_cast<std::int64_t>(sets_.size()); }
 
   template <typename Archive>
@@ -46,15 +51,15 @@ class MotionRing {
 /// after.
 class TunedRegression {
  public:
-  /// blocks, block_rows, spans: see SlidingGram. least_settle: see RowTuning::settle_rows.
+  /// blocks, block_rows, spans: see SlidingGram.
   TunedRegression(std::unique_ptr<RowTuning> tuning, const FloorLayout& layout, int blocks,
-                  int block_rows, const std::vector<int>& spans, int least_settle);
+                  int block_rows, const std::vector<int>& spans);
 
   /// Starts anew at an instant of the ring, with the tuning as it is now.
   void start(std::int64_t instant);
   std::int64_t next() const { return next_; }
   /// Instants from the start to the first full window of every length.
-  int warm_up() const { return tuning_->settle_rows(least_settle_) + sums_.longest_rows(); }
+  int warm_up() const { return tuning_->start_rows() + sums_.longest_rows(); }
 
   /// Adds instant next(); the window's sum is ready for the solver until finish().
   void advance(const MotionRing& ring);
@@ -64,6 +69,8 @@ class TunedRegression {
   bool finish(const MotionRing& ring);
 
   bool full() const { return counting_ && sums_.full(); }
+  /// Blocks have closed that are enough for standard errors.
+  bool suffices() const { return counting_ && sums_.closed() >= BatchMeans::kFewest; }
   const RowTuning& tuning() const { return *tuning_; }
   /// After other parameters every part must be tuned, and start() called, before the regression is
   /// used again.
@@ -81,7 +88,6 @@ class TunedRegression {
  private:
   std::unique_ptr<RowTuning> tuning_;
   FloorLayout layout_;
-  int least_settle_;
   std::unique_ptr<RowFilter> entering_, delayed_;
   SlidingGram sums_;
   std::int64_t next_ = 0, delayed_next_ = 0, counted_from_ = 0;

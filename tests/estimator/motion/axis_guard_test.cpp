@@ -21,8 +21,9 @@ double moving(int t, int axis) {
 
 struct Guarded {
   std::vector<std::vector<bool>> taken_out;  ///< instants x axes
-  std::vector<std::int64_t> stuck, clipped;
+  std::vector<std::int64_t> stuck, clipped, missing;
 };
+const std::vector<std::int64_t> kNone = {0, 0, 0};
 
 Guarded run(const std::vector<AxisGuard::Axis>& axes,
             const std::function<double(int, int)>& value) {
@@ -43,6 +44,7 @@ Guarded run(const std::vector<AxisGuard::Axis>& axes,
   EXPECT_EQ(out.taken_out.size(), static_cast<std::size_t>(kInstants));
   out.stuck = guard.stuck();
   out.clipped = guard.clipped();
+  out.missing = guard.missing();
   return out;
 }
 
@@ -83,6 +85,80 @@ TEST(AxisGuard, ADirectionWithoutMotionIsNotStuck) {
   const std::vector<AxisGuard::Axis> axes = {{0, 0}, {0, 0}, {0, 1}, {0, 1}};
   const Guarded r = run(axes, [](int t, int a) { return a >= 2 ? 0 : moving(t, a); });
   EXPECT_EQ(r.stuck, (std::vector<std::int64_t>{0, 0, 0, 0}));
+}
+
+/// Motion in the middle of a record that is zero before and after, with numbers as fine as a
+/// double.
+double processed(int t, int axis, int from, int to) {
+  if (t < from || t >= to) return 0;
+  const double rise = std::sin(M_PI * (t - from) / (to - from));
+  return 0.3 * (1 + axis) * std::pow(rise, 6) * std::sin(0.31 * t + axis);
+}
+
+TEST(AxisGuard, ZerosBeforeAndAfterAProcessedRecordAreNotStuck) {
+  const Guarded together = run(std::vector<AxisGuard::Axis>(kAxes),
+                               [](int t, int a) { return processed(t, a, 300, 800); });
+  EXPECT_EQ(together.stuck, kNone);
+  EXPECT_EQ(together.missing, kNone);
+  const Guarded one_by_one = run(std::vector<AxisGuard::Axis>(kAxes), [](int t, int a) {
+    return processed(t, a, 300 + 4 * a, 800 - 4 * a);
+  });
+  EXPECT_EQ(one_by_one.stuck, kNone);
+}
+
+TEST(AxisGuard, ARecordThatStopsInItsMotionHasNoSamplesForHalfASecond) {
+  const int end = 700, half_second = 50;
+  const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes),
+                        [](int t, int a) { return t < end ? moving(t, a) : 0; });
+  EXPECT_EQ(r.stuck, kNone);
+  for (int a = 0; a < kAxes; ++a) {
+    EXPECT_NEAR(static_cast<double>(r.missing[static_cast<std::size_t>(a)]), half_second, 2);
+    EXPECT_FALSE(r.taken_out[kInstants - 1][static_cast<std::size_t>(a)]);
+  }
+}
+
+TEST(AxisGuard, ZerosOfOneAxisInStrongMotionAreStuck) {
+  const int from = 450, to = 650;
+  const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes), [](int t, int a) {
+    return a == 2 && t >= from && t < to ? 0 : processed(t, a, 100, 900);
+  });
+  EXPECT_EQ(r.stuck, (std::vector<std::int64_t>{0, 0, to - from}));
+  EXPECT_EQ(r.missing, kNone);
+}
+
+TEST(AxisGuard, ASensorCoarserThanTheQuietMotionIsNotStuck) {
+  // Strong motion until 600, then what moves the fine sensors by 3 of their steps, the coarse one
+  // by a fiftieth of its own.
+  const double coarse = 0.05;
+  const auto value = [](int t, int a) {
+    const double amplitude = t < 600 ? 1.0 : 0.008;
+    return amplitude * (1 + 0.5 * a) * std::sin(0.41 * t + a);
+  };
+  const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes), [&](int t, int a) {
+    const double step = a == 1 ? coarse : kStep;
+    return std::round(value(t, a) / step) * step;
+  });
+  EXPECT_EQ(r.stuck, kNone);
+  EXPECT_EQ(r.missing, kNone);
+}
+
+TEST(AxisGuard, ASensorThatSticksBeforeTheShakingIsFoundWithinASecondOfIt) {
+  const int onset = 500;
+  const Guarded r = run(std::vector<AxisGuard::Axis>(kAxes), [](int t, int a) {
+    const double amplitude = t < onset ? 0.004 : 2.0;
+    if (a == 1 && t > 300) return 0.003;  // it moved before, while the building was quiet
+    return std::round(amplitude * std::sin(0.13 * t + a) / kStep) * kStep;
+  });
+  EXPECT_EQ(r.stuck[0] + r.stuck[2], 0);
+  EXPECT_GE(r.stuck[1], kInstants - onset - 100);
+  EXPECT_FALSE(r.taken_out[onset - 10][1]);
+}
+
+TEST(AxisGuard, AnAxisAloneInItsDirectionHasTheOthersForNeighbours) {
+  const std::vector<AxisGuard::Axis> axes = {{0, 0}, {0, 0}, {0, 1}};
+  const Guarded r =
+      run(axes, [](int t, int a) { return a == 2 && t >= 400 && t < 700 ? 0.5 : moving(t, a); });
+  EXPECT_EQ(r.stuck, (std::vector<std::int64_t>{0, 0, 300}));
 }
 
 TEST(AxisGuard, TakesOutWhatTouchesTheConfiguredRangeAndItsNeighbours) {

@@ -134,7 +134,7 @@ TEST_F(LongWindows, OneStrongMomentDoesNotStandForAllOfIt) {
 
 TEST_F(LongWindows, ASpikeOfASensorIsNoMotion) {
   spike_at_ = 14'000;
-  const DeliveryResult run = this->run(24'000);
+  const DeliveryResult run = this->run(25'000);
   ASSERT_FALSE(run.given.empty());
   const std::vector<double> off = deviations(run.given.back());
   ASSERT_GE(off.size(), frames_ * 3 / 4);  // errors are larger, and near the limit

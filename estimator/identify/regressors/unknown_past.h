@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "estimator/identify/regressors/floor_rows.h"
+#include "estimator/state/archive.h"
+
+namespace framewatch::estimator {
+
+/// Removes from the rows of a regression what their filters owe to the motion before the first
+/// sample, which nobody measured.
+///
+/// A row [h, z] of a filter that starts at rest in full motion differs from the row of a filter
+/// that has always run by a combination of the filter's natural responses: two known shapes of time
+/// for each pair of poles, s_1(t), s_2(t), ..., with unknown factors. They are nuisance unknowns of
+/// that equation. Every row is replaced by its recursive residual: what is left of it when the
+/// shapes have been fitted to this and all earlier rows since the start. The sum of squares of
+/// recursive residuals is the sum of squares with the shapes projected out (Brown, Durbin and
+/// Evans, J. R. Stat. Soc. B 37 (1975), 149), so the window's sums of H^T H need to know nothing of
+/// starts, and a start costs each equation as many rows as it has shapes. docs/equations.md,
+/// starting in motion.
+///
+/// A Givens rotation for each shape; numbers do not depend on libraries of mathematics.
+class UnknownPast {
+ public:
+  /// stride: doubles of a row. Allocates for so many equations with so many shapes; begin() and
+  /// add() do when there are more.
+  UnknownPast(int stride, int most_rows, int most_shapes);
+
+  /// Begins anew: the filters of `rows` equations start with the next instant.
+  void begin(int rows);
+  /// Two shapes of an equation: s[t] = -a1 s[t-1] - a2 s[t-2].
+  void add(int row, const PolePair& poles);
+  /// Nothing is removed (any more).
+  void end() { equations_ = 0; }
+
+  /// One instant: replaces the rows, rows x stride. False while the equations do not yet have as
+  /// many rows as shapes: then nothing is left of them.
+  bool remove(double* rows);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a.within(equations_, 0, kMostEquations);
+    a.within(instants_, 0, a.kMostCount);
+    if (!(equations_ >= 0 && equations_ <= kMostEquations)) equations_ = 0;
+    if constexpr (Archive::kReading)
+      if (equation_.size() < static_cast<std::size_t>(equations_))
+        equation_.resize(static_cast<std::size_t>(equations_));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(equations_); ++i) archive(a, equation_[i]);
+  }
+
+ private:
+  static constexpr int kMostEquations = 512;  ///< of a floor: beyond any building
+  static constexpr int kMostPoles = 128;      ///< pairs of an equation, likewise
+  struct Equation {
+    std::vector<PolePair> poles;
+    std::vector<double> now, before;  ///< the shapes at this instant and the one before
+    std::vector<double> factor;       ///< shapes x shapes, upper: R of S = Q R
+    std::vector<double> fitted;       ///< shapes x stride: Q^T of the rows
+    std::vector<double> shape;        ///< of one call
+  };
+  template <typename Archive>
+  void archive(Archive& a, Equation& e) {
+    auto poles = static_cast<int>(e.poles.size());
+    a.within(poles, 0, kMostPoles);
+    if constexpr (Archive::kReading) {
+      if (!a.good()) return;
+      e.poles.resize(static_cast<std::size_t>(poles >= 0 && poles <= kMostPoles ? poles : 0));
+      resize(e);
+    }
+    for (PolePair& pair : e.poles) a.finite(pair.a1, pair.a2);
+    a.finite(e.now, e.before, e.factor, e.fitted);
+  }
+  void resize(Equation& equation) const;
+  static bool step(Equation& equation);
+  void rotate(Equation& equation, double* row) const;
+
+  std::size_t stride_;
+  int equations_ = 0;  ///< 0: nothing is removed
+  int instants_ = 0;   ///< since the start
+  std::vector<Equation> equation_;
+};
+
+}  // namespace framewatch::estimator
