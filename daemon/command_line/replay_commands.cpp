@@ -46,6 +46,10 @@ void add_replay(CommandList& commands) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--to", arguments.span.to_s, "leave out what is later, likewise")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--one-pass", arguments.one_pass,
+                    "estimate as the samples come, as the daemon does; otherwise the filters are\n"
+                    "tuned on the input first, and no window is lost to that. --save-state and\n"
+                    "--load-state do so, too");
   command
       ->add_option("--speed", arguments.speed,
                    "times real time, by the events' times; pauses of over 10 s are\n"

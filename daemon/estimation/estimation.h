@@ -36,6 +36,9 @@ class Estimation {
   /// `config` must outlive this. `observer`, if any, sees every estimate before it is published.
   Estimation(const Config& config, MessageSink sink, Observer observer = {});
 
+  /// See Pipeline; to be called before the first sample.
+  void start_tuned(const estimator::Tuning& tuning) { pipeline_.start_tuned(tuning); }
+
   /// One LCM message, whatever it is. received_us: see AccelIntake::message().
   drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size,
                                 const drivers::LcmSender& sender = {},
@@ -126,8 +129,9 @@ class Estimation {
   std::optional<estimator::ShakingWatch> shaking_;
   std::vector<estimator::AxisCounters> counted_before_;  ///< when the strong motion began
   std::vector<event_t> findings_;                        ///< since then
-  std::vector<event_t> to_withdraw_;                     ///< went_without(), until the next status
-  std::vector<double> noise_density_;                    ///< as of the last second
+  std::optional<estimator::Tuning> tuning_;  ///< of the state that was loaded or saved last
+  std::vector<event_t> to_withdraw_;         ///< went_without(), until the next status
+  std::vector<double> noise_density_;        ///< as of the last second
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   CanEvents can_events_;

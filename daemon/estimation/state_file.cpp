@@ -129,8 +129,10 @@ ReadState read_state(const std::string& path) {
             {},
             {}};
   head.archive_rest(reader);
-  std::size_t at = reader.at();
-  const std::vector<std::uint8_t> own(bytes.begin(), bytes.begin() + std::ptrdiff_t(at));
+  estimator::StateWriter again;
+  if (reader.good()) head.archive_identity(again), head.archive_rest(again);
+  const std::vector<std::uint8_t>& own = again.bytes();
+  std::size_t at = own.size();
   if (!reader.good() || text->substr(at, kDigestBytes) != digest_of(own))
     return {"is damaged or cut off: the digest of its head is another", {}, {}};
   at += kDigestBytes;
@@ -200,7 +202,7 @@ std::vector<std::uint8_t> head_bytes(const SavedState& state) {
   estimator::StateWriter writer;
   head.archive_identity(writer);
   head.archive_rest(writer);
-  std::vector<std::uint8_t> bytes = writer.take();
+  std::vector<std::uint8_t> bytes = writer.bytes();
   const std::string digest = digest_of(bytes);
   bytes.insert(bytes.end(), digest.begin(), digest.end());
   return bytes;

@@ -12,15 +12,14 @@ struct Description {
 };
 
 /// In the order of the file.
-const std::array<Description, 9>& descriptions() {
-  static const std::array<Description, 9> all{{
+const std::array<Description, 10>& descriptions() {
+  static const std::array<Description, 10> all{{
       {"counts", "counters of windows begin at 0", {}},
       {"events", "raised findings and their acknowledgements are forgotten", {}},
       {"lcm", "nodes are heard as for the first time", {"channel", "lcm"}},
       {"can", "CAN buses are heard as for the first time", {"channel", "can", "estimator"}},
-      {"window",
-       "the window and the tuning of its filters begin anew",
-       {"structure", "channel", "estimator", "long window"}},
+      {"tuning", "filters are tuned anew", {"structure", "channel", "parameters"}},
+      {"window", "the window begins anew", {"structure", "channel", "estimator", "long window"}},
       {"baseline",
        "baselines and their dependence on amplitude and temperature are learned anew",
        {"structure", "parameters"}},

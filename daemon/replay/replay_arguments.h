@@ -17,6 +17,7 @@ struct ReplayArguments {
   bool boxplot = false;             ///< boxplot statistics in .csv and .mat
   RecordFileArguments record = {};  ///< what record files do not say themselves
   ReplaySpan span = {};
+  bool one_pass = false;            ///< not tuned on the input first
   double speed = 0;                 ///< times real time; 0: as fast as possible
   bool lcm = false;                 ///< publish too
   std::string lcm_url = {};         ///< empty: the configuration's

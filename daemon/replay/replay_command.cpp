@@ -20,6 +20,7 @@
 #include "daemon/estimation/state_file.h"
 #include "daemon/event_report/event_report_files.h"
 #include "daemon/replay/expectation_check.h"
+#include "daemon/replay/first_passes.h"
 #include "daemon/replay/floors_output.h"
 #include "daemon/replay/history_output.h"
 #include "daemon/replay/replay_arguments.h"
@@ -98,6 +99,7 @@ class ReplayRun {
       events_before_ = state.events_before;
       survey_.goes_on();
     }
+    tune_first();
     if (!open_outputs()) return kBadInput;
     // At a pace the person should not learn after an hour that the end of the log is damaged.
     if (a_.speed > 0 && !sound_beforehand()) return kBadInput;
@@ -160,6 +162,18 @@ class ReplayRun {
     for (const std::string& path : a_.inputs) survey.add(path);
     survey.finish();
     return judge(survey);
+  }
+
+  /// Where the input is a whole: what goes on elsewhere, or has begun there, is estimated as it
+  /// comes, so that its parts together are the same as the uncut input with --one-pass.
+  void tune_first() {
+    if (a_.one_pass || !a_.load_state.empty() || !a_.save_state.empty() || !can_be_tuned(config_))
+      return;
+    Progress progress("replay: tuning", bytes_of(a_.inputs), "MB", 1e6, a_.quiet);
+    const FirstPasses first(config_, {a_.inputs, a_.record, a_.salvage, a_.span},
+                            [&](std::int64_t bytes) { progress(bytes); });
+    if (first.tuning()) estimation_.start_tuned(*first.tuning());
+    if (!a_.quiet) fmt::print(stderr, "{}\n", first.note());
   }
 
   void read_everything() {

@@ -56,7 +56,7 @@ void ReplaySurvey::declare(const RecordFileArguments& arguments) {
 }
 
 void ReplaySurvey::add(const std::string& path) {
-  if (misdeclared_) return;
+  if (misdeclared_ || ended_()) return;
   if (const std::string why = drivers::why_no_file(path); !why.empty()) {
     problems_.push_back(fmt::format("{}: {}", path, why));
     return;
@@ -119,6 +119,7 @@ void ReplaySurvey::give_record(const ReplayInput& input) {
   for (std::size_t i = 0; i < record.time_s.size(); ++i) {
     const std::int64_t time_us = std::llround(record.time_s[i] * 1e6);
     if (outside(time_us)) continue;
+    if (ended_()) return;
     if (step_) step_(bytes_, time_us);
     for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
       if (input.axis_of_column[c] >= 0)
@@ -172,6 +173,7 @@ void ReplaySurvey::add_log(const std::string& path) {
       problems_.push_back(fmt::format("{}: byte {}: {}", path, reader.position(), reader.error()));
       return;
     }
+    if (ended_()) return;
     if (read == drivers::LogRead::event) {
       if (step_)
         step_(bytes_ + reader.position() * packed_bytes / reader.size(), event.timestamp_us);
@@ -219,7 +221,7 @@ void ReplaySurvey::add_candump(const std::string& path) {
           ++(at == others.end() ? others[std::string(interface)] : at->second);
           return;
         }
-        if (outside(frame.stamp_us)) return;
+        if (outside(frame.stamp_us) || ended_()) return;
         first_us = std::min(first_us, frame.stamp_us);
         last_us = std::max(last_us, frame.stamp_us);
         if (step_) step_(bytes_ + line_bytes, frame.stamp_us);

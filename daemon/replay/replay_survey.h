@@ -55,6 +55,10 @@ class ReplaySurvey {
   using Step = std::function<void(std::int64_t bytes, std::int64_t time_us)>;
   void at_each(Step step) { step_ = std::move(step); }
 
+  /// The rest of the input is not read once this is true; it is asked before every event or
+  /// instant.
+  void end_when(std::function<bool()> ended) { ended_ = std::move(ended); }
+
   void add(const std::string& path);
   /// To be called after the last add(): problems of the whole.
   void finish();
@@ -123,6 +127,7 @@ class ReplaySurvey {
   std::string ignored_;  ///< channels of the last raw log that no axis is named as
   Estimation* estimation_ = nullptr;
   Step step_;
+  std::function<bool()> ended_ = [] { return false; };
   std::string last_path_;
   std::vector<ReplayInput> inputs_;
   std::vector<std::string> problems_, notes_;

@@ -53,9 +53,11 @@ void NoiseMeter::push(const std::vector<double>& accel) {
     Axis& axis = axis_[a];
     double* ring = &ring_[a * 2 * kTaps];
     const bool valid = std::isfinite(accel[a]);
+    const bool same = valid && axis.filled > 0 && accel[a] == ring[newest_ + 1];
+    axis.still = same ? std::min(axis.still + 1, kTaps) : 0;
     ring[newest_] = ring[newest_ + kTaps] = valid ? accel[a] : 0;
     axis.filled = valid ? std::min(axis.filled + 1, kTaps) : 0;
-    if (since_output_ != 0 || axis.filled < kTaps) continue;
+    if (since_output_ != 0 || axis.filled < kTaps || axis.still >= kTaps - 1) continue;
     double sum = 0;
     for (std::size_t i = 0; i < kTaps; ++i) sum += taps_[i] * ring[newest_ + i];
     if (axis.measured >= least_ && sum * sum > kBeyond * kBeyond * axis.power)

@@ -6,7 +6,9 @@ namespace framewatch::estimator {
 
 /// Measures the noise of the axes in a band where a building hardly moves, 0.29 to 0.45 of the
 /// sampling rate, over the last 5 s. What is kBeyond times as large is no noise, and neither is
-/// what has it in its filter, unless it lasts for kLasts_s. docs/equations.md, measured noise.
+/// what has it in its filter, unless it lasts for kLasts_s. A filter full of equal values tells
+/// nothing of the noise: zeros about a record, or a resolution coarser than the noise.
+/// docs/equations.md, measured noise.
 class NoiseMeter {
  public:
   static constexpr double kBeyond = 6, kLasts_s = 2;
@@ -31,6 +33,7 @@ class NoiseMeter {
  private:
   struct Axis {
     int filled = 0;
+    int still = 0;  ///< equal values in the filter, after the first of them
     long measured = 0;
     long beyond = 0;  ///< outputs in a row that were left out
     int tainted = 0;  ///< outputs to come that have something beyond in their filter
@@ -39,7 +42,7 @@ class NoiseMeter {
     template <typename Archive>
     void archive(Archive& a) {
       for (long* number : {&measured, &beyond}) a.within(*number, 0, a.kMostCount);
-      a.within(filled, 0, 1000);
+      for (int* number : {&filled, &still}) a.within(*number, 0, 1000);
       a.within(tainted, 0, 1000);
       a.within(power, 0, a.kMost);
     }

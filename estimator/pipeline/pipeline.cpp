@@ -20,6 +20,7 @@ class Pipeline::Implementation {
         instants_(std::move(instants)),
         models_(std::move(models)) {}
 
+  void start_tuned(const Tuning& tuning) { estimator_.start_tuned(tuning); }
   void push(const AccelSample& raw) { acquisition_.push(raw); }
   void finish() { acquisition_.finish(); }
 
@@ -79,6 +80,12 @@ Pipeline::Pipeline(const PipelineConfig& config, Sink sink, Sink others, Instant
 Pipeline::~Pipeline() = default;
 void Pipeline::on_late(Sink late) {
   implementation_->on_late(std::move(late));
+}
+void Pipeline::start_tuned(const Tuning& tuning) {
+  implementation_->start_tuned(tuning);
+}
+std::optional<Tuning> Pipeline::tuning() const {
+  return implementation_->estimator().tuning();
 }
 void Pipeline::push(const AccelSample& sample) {
   implementation_->push(sample);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "estimator/motion/sample.h"
 #include "estimator/motion/sample_merger.h"
 #include "estimator/setup/pipeline_config.h"
+#include "estimator/setup/tuning.h"
 #include "estimator/state/archive.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
@@ -43,6 +45,14 @@ class Pipeline {
   /// Gets windows that were held back while the filters were not tuned to the building (late).
   void on_late(Sink late);
   ~Pipeline();
+
+  /// The row filters are tuned to this from the first sample on, as after a pass over the same
+  /// record. To be called before the first sample. Precondition: the tuning is of a pipeline with
+  /// the same structure and axes. Of no effect where options.self_tune is false.
+  void start_tuned(const Tuning& tuning);
+  /// What the row filters are tuned to; empty while the noise of an axis is not known, and where
+  /// options.self_tune is false.
+  std::optional<Tuning> tuning() const;
 
   /// One axis at one instant. Any order within options.lateness_s.
   void push(const AccelSample& sample);

@@ -9,7 +9,6 @@
 #include <deque>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -144,7 +143,6 @@ class StateWriter : public StateArchive<StateWriter> {
  public:
   static constexpr bool kReading = false;
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
-  std::vector<std::uint8_t> take() { return std::move(bytes_); }
 
   template <PlainState T>
   void plain(const T& value) {
@@ -183,7 +181,6 @@ class StateReader : public StateArchive<StateReader> {
   explicit StateReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
   bool good() const { return good_; }
-  std::size_t at() const { return at_; }  ///< bytes read so far
   /// Everything was read and no byte remains.
   bool whole() const { return good_ && at_ == bytes_.size(); }
 

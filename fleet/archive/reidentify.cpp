@@ -6,6 +6,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/estimation/estimation.h"
+#include "daemon/replay/first_passes.h"
 #include "daemon/replay/history_output.h"
 #include "daemon/replay/replay_survey.h"
 
@@ -42,6 +43,10 @@ Reidentified reidentify(const daemon::Config& config, const ArchiveTask& task,
                                             const std::vector<std::uint8_t>& bytes) {
     taken = taken && history.put(time_us, channel, bytes);
   });
+  const daemon::FirstPasses first(config, {task.logs, {}, true, span_of(task)});
+  if (first.tuning()) estimation.start_tuned(*first.tuning());
+  out.passes = first.passes() + 1;
+  fmt::print(stderr, "task {}: {}\n", task.number, first.note());
   daemon::ReplaySurvey survey(config, true, span_of(task));
   survey.feed(estimation);
   for (const std::string& log : task.logs)

@@ -13,6 +13,7 @@ namespace framewatch::fleet {
 struct Reidentified {
   std::string problem;             ///< why there is no output; empty: there is
   std::vector<std::string> notes;  ///< damage and what else the reader should know
+  int passes = 1;                  ///< over the logs: tuned on first, then estimated
   std::int64_t windows = 0;        ///< that were published, those of the warm-up too
   std::int64_t instants = 0;       ///< of the common grid
   std::int64_t damaged_bytes = 0;

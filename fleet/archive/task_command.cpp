@@ -88,6 +88,7 @@ class Tasks {
     line["cpu_s"] = daemon::process_usage().cpu_s - cpu_s;
     line["logs"] = task.logs.size();
     line["measured_s"] = made.measured_s;
+    line["passes"] = made.passes;
     line["instants"] = made.instants;
     line["windows"] = made.windows;
     line["damaged_bytes"] = made.damaged_bytes;

@@ -34,6 +34,15 @@ SelfTuning::SelfTuning(const FloorLayout& layout, const ParameterTable& table,
       kCatchUpWork / (layout.floors() * front * front), kLeastCatchUp, kMostCatchUp));
 }
 
+void SelfTuning::start_tuned(std::unique_ptr<TunedRegression>& active, const Tuning& tuning) {
+  standby_->tuning().set_theta0(tuning.theta0, tuning.noise_density);
+  for (int part = 0; part < standby_->tuning().parts(); ++part) standby_->tuning().tune(part);
+  standby_->start(0);
+  active.swap(standby_);
+  noise_known_ = true;
+  tuned_ = tuning.found_right;
+}
+
 bool SelfTuning::due() {
   if (phase_ != Phase::idle) return false;
   if (tuned_ && ++since_check_ < blocks_) return false;
@@ -44,10 +53,14 @@ bool SelfTuning::due() {
 void SelfTuning::begin_check(const TunedRegression& active, const std::vector<double>& ratio,
                              const std::vector<double>& std_error,
                              const std::vector<std::uint8_t>& shown, const AxisNoise& noise) {
-  if (std::none_of(shown.begin(), shown.end(), [](auto s) { return s != 0; })) return;
+  const bool any = std::any_of(shown.begin(), shown.end(), [](auto s) { return s != 0; });
+  // Groups whose design is far off show nothing until the noise is known: what the filters leave
+  // over is taken for noise.
+  if (!any && (noise_known_ || !layout_.grouped())) return;
   retuned_design(layout_, table_, active.tuning().theta0(), ratio, std_error, shown, work_,
                  next_theta0_);
   noise_measured_ = noise.densities(noise_);
+  if (!any && !noise_measured_) return;
   noise_differs_ =
       noise_measured_ && (!noise_known_ || noise.differs(noise_, active.tuning().noise_density()));
   phase_ = Phase::checking;
@@ -87,7 +100,7 @@ bool SelfTuning::step(std::unique_ptr<TunedRegression>& active, const MotionRing
     case Phase::catching_up:
       if (!catch_up(*active, ring)) break;
       active.swap(standby_);
-      noise_known_ = noise_measured_;
+      noise_known_ = noise_known_ || noise_measured_;  // measured anew: until then as before
       phase_ = Phase::idle;
       ++retunes_;
       return true;

@@ -9,6 +9,7 @@
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/tuned_regression.h"
+#include "estimator/setup/tuning.h"
 
 namespace framewatch::estimator {
 
@@ -22,6 +23,10 @@ class SelfTuning {
   /// noise_known: see below, of the active regression.
   SelfTuning(const FloorLayout& layout, const ParameterTable& table,
              std::unique_ptr<TunedRegression> standby, int blocks, int fill, bool noise_known);
+
+  /// Exchanges `active` for a regression that is tuned to this; before() is then the former one. To
+  /// be called before the first instant.
+  void start_tuned(std::unique_ptr<TunedRegression>& active, const Tuning& tuning);
 
   /// Instants the ring must hold for a regression that needs `warm_up` of them.
   static int ring_rows(int warm_up) { return 2 * warm_up + 2; }

@@ -155,6 +155,17 @@ std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
                                            other_blocks_);
 }
 
+void SlidingWindowEstimator::start_tuned(const Tuning& tuning) {
+  if (!self_tuning_) return;
+  self_tuning_->start_tuned(active_, tuning);
+  regression_exchanged();
+}
+
+std::optional<Tuning> SlidingWindowEstimator::tuning() const {
+  if (!self_tuning_ || !noise_known()) return std::nullopt;
+  return Tuning{theta0(), noise_density(), tuned()};
+}
+
 std::vector<int> SlidingWindowEstimator::other_window_rows() const {
   std::vector<int> rows;
   for (const int blocks : other_blocks_) rows.push_back(blocks * block_rows_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "estimator/identify/elements/motion_source.h"
@@ -27,6 +28,12 @@ namespace framewatch::estimator {
 class SlidingWindowEstimator {
  public:
   SlidingWindowEstimator(const PipelineConfig& config, const ParameterTable& table);
+
+  /// The filters are tuned to this from the first instant on, which is still to come. Of no effect
+  /// when self-tuning is switched off.
+  void start_tuned(const Tuning& tuning);
+  /// What the filters are tuned to; empty while the noise of an axis is not known.
+  std::optional<Tuning> tuning() const;
 
   /// One instant. Returns the estimate of the window that ends there, or null between hops.
   const WindowEstimate* push(const SampleSet& set);
