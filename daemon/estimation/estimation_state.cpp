@@ -132,59 +132,60 @@ void Estimation::went_without(const std::vector<std::string>& lost) {
   if (is_lost("window")) {
     if (tuning_ && !is_lost("tuning")) pipeline_.start_tuned(*tuning_);
     std::fill(counted_before_.begin(), counted_before_.end(), estimator::AxisCounters{});
-    for (const std::string& section : lost)
-      for (const std::string& kind : kinds_of(section)) {
-        std::vector<event_t> gone = raised_.take(kind);
-        std::move(gone.begin(), gone.end(), std::back_inserter(to_withdraw_));
-      }
   }
+  for (const std::string& section : lost)
+    for (const std::string& kind : kinds_of(section)) {
+      std::vector<event_t> gone = raised_.take(kind);
+      std::move(gone.begin(), gone.end(), std::back_inserter(to_withdraw_));
+    }
+}
 
-  void Estimation::take_over(Estimation & before, bool keep_window) {
-    // Both have the same structure, so only settings can keep a part from fitting.
-    const auto copy = [](auto& from, auto& to) {
-      estimator::StateWriter writer;
-      writer(from);
-      estimator::StateReader reader(writer.bytes());
-      reader(to);
-      return reader.whole();
-    };
-    copy(before.seconds_, seconds_);
-    copy(before.intake_, intake_);
-    copy(before.can_, can_);
-    copy(before.can_events_, can_events_);
-    copy(before.absurd_events_, absurd_events_);
-    copy(before.channel_events_, channel_events_);
-    copy(before.raised_, raised_);
-    windows_ = before.windows_;
-    absurd_temperatures_ = before.absurd_temperatures_;
-    live_ = before.live_;
-    if (keep_window) {
-      estimator::StateWriter writer;
-      before.pipeline_.save(writer);
-      estimator::StateReader reader(writer.bytes());
-      (void)pipeline_.load(reader);
-      noise_density_ = before.noise_density_;
-    }
-    const estimator::Baseline* given = baseline();
-    const bool same_baseline =
-        given == nullptr || (before.baseline() != nullptr && before.baseline()->holds(*given));
-    const bool watch_goes_on =
-        watch_ && before.watch_ && same_baseline && copy(*before.watch_, *watch_);
-    if (!watch_goes_on) {
-      begin_watch();
-      withdraw("stiffness_change");
-    } else if (!keep_window && config_.watch->options.amplitude) {
-      watch_->forget_quiet();  // amplitudes are over the noise, which is another one
-    }
-    if (shaking_ && before.shaking_ && copy(*before.shaking_, *shaking_)) {
-      counted_before_ = before.counted_before_;
-      findings_ = before.findings_;
-    }
-    const bool gap_goes_on = gap_ && before.gap_ && copy(*before.gap_, *gap_);
-    if (!gap_goes_on) {
-      begin_gap();
-      withdraw("gap");
-    }
+void Estimation::take_over(Estimation& before, bool keep_window) {
+  // Both have the same structure, so only settings can keep a part from fitting.
+  const auto copy = [](auto& from, auto& to) {
+    estimator::StateWriter writer;
+    writer(from);
+    estimator::StateReader reader(writer.bytes());
+    reader(to);
+    return reader.whole();
+  };
+  copy(before.seconds_, seconds_);
+  copy(before.intake_, intake_);
+  copy(before.can_, can_);
+  copy(before.can_events_, can_events_);
+  copy(before.absurd_events_, absurd_events_);
+  copy(before.channel_events_, channel_events_);
+  copy(before.raised_, raised_);
+  windows_ = before.windows_;
+  absurd_temperatures_ = before.absurd_temperatures_;
+  live_ = before.live_;
+  if (keep_window) {
+    estimator::StateWriter writer;
+    before.pipeline_.save(writer);
+    estimator::StateReader reader(writer.bytes());
+    (void)pipeline_.load(reader);
+    noise_density_ = before.noise_density_;
   }
+  const estimator::Baseline* given = baseline();
+  const bool same_baseline =
+      given == nullptr || (before.baseline() != nullptr && before.baseline()->holds(*given));
+  const bool watch_goes_on =
+      watch_ && before.watch_ && same_baseline && copy(*before.watch_, *watch_);
+  if (!watch_goes_on) {
+    begin_watch();
+    withdraw("stiffness_change");
+  } else if (!keep_window && config_.watch->options.amplitude) {
+    watch_->forget_quiet();  // amplitudes are over the noise, which is another one
+  }
+  if (shaking_ && before.shaking_ && copy(*before.shaking_, *shaking_)) {
+    counted_before_ = before.counted_before_;
+    findings_ = before.findings_;
+  }
+  const bool gap_goes_on = gap_ && before.gap_ && copy(*before.gap_, *gap_);
+  if (!gap_goes_on) {
+    begin_gap();
+    withdraw("gap");
+  }
+}
 
 }  // namespace framewatch::daemon

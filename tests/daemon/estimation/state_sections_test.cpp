@@ -21,8 +21,9 @@ namespace state_sections_test {
 
 const std::string kSettings =
     "\n[watch]\nlearn_s = 1\n[gap]\n[event_report]\ndirectory = \"reports\"\n";
-const std::vector<std::string> kEverySection = {
-    "counts", "events", "lcm", "can", "window", "baseline", "watch", "gap", "event_report"};
+const std::vector<std::string> kEverySection = {"counts", "events",      "lcm",      "can",
+                                                "tuning", "window",      "baseline", "watch",
+                                                "gap",    "event_report"};
 
 class StateSections : public testing::Test {
  protected:
@@ -206,10 +207,9 @@ TEST_F(StateSections, AnotherConfigurationCostsWhatRestsOnTheDifference) {
   EXPECT_EQ(lost(replaced("hop_s = 0.01", "hop_s = 0.02")),
             (Names{"can", "window", "watch", "gap", "event_report"}));
   EXPECT_EQ(lost(replaced("node_mass_kg = 20.0", "node_mass_kg = 21.0")),
-            (Names{"window", "baseline", "watch", "gap", "event_report"}));
-  // Without a floor's sensors other parameters are identified, by other sums.
+            (Names{"tuning", "window", "baseline", "watch", "gap", "event_report"}));
   EXPECT_EQ(lost(replaced("noise_mps2_per_rthz = 5e-4", "noise_mps2_per_rthz = 6e-4")),
-            (Names{"lcm", "can", "window", "gap", "event_report"}));
+            (Names{"lcm", "can", "tuning", "window", "gap", "event_report"}));
   EXPECT_EQ(lost(replaced("[gap]\n", "")), Names{});
 }
 
