@@ -134,9 +134,9 @@ std::string scenario_text(Random& random, const std::vector<int>& floors) {
 /// What happens to the messages on their way: silence of all, a node that comes and goes every
 /// second, messages that come twice or in another order.
 std::vector<drivers::LogEvent> on_their_way(Random& random, std::vector<drivers::LogEvent> events) {
-  const std::int64_t start_us = events.front().time_us;
+  const std::int64_t start_us = events.front().timestamp_us;
   const auto second_of = [&](const drivers::LogEvent& e) {
-    return 1e-6 * static_cast<double>(e.time_us - start_us);
+    return 1e-6 * static_cast<double>(e.timestamp_us - start_us);
   };
   if (chance(random, 0.5)) {
     const double from = between(random, 2, 25), to = from + between(random, 0.05, 4);
@@ -231,8 +231,8 @@ void expect_to_go_on(const Case& c, const std::vector<std::string>& uncut, const
   for (std::size_t s = 0; s < again.sections.size(); ++s)
     EXPECT_TRUE(again.sections[s].bytes == cut.state.sections[s].bytes) << again.sections[s].name;
   const std::int64_t until_us =
-      c.events[cut.event].time_us + static_cast<std::int64_t>(1e6 * kCompared_s);
-  for (std::size_t e = cut.event; e < c.events.size() && c.events[e].time_us < until_us; ++e)
+      c.events[cut.event].timestamp_us + static_cast<std::int64_t>(1e6 * kCompared_s);
+  for (std::size_t e = cut.event; e < c.events.size() && c.events[e].timestamp_us < until_us; ++e)
     resumed.hear(c.events[e]);
   for (std::size_t i = 0; i < resumed.said.size(); ++i)
     ASSERT_TRUE(resumed.said[i] == uncut.at(cut.said + i))

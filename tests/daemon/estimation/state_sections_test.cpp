@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/estimation/state_file.h"
+#include "daemon/events/event_words.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/support/recorded_table_test.h"
