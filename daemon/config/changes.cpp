@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/file_digest.h"
 #include "daemon/keys/fields.h"
 #include "daemon/keys/section_table.h"
 
@@ -117,9 +118,20 @@ std::vector<ConfigChange> changes_between(const TomlValue& before, const TomlVal
   return out;
 }
 
+std::map<std::string, std::string> section_digests(const TomlValue& document) {
+  Leaves leaves;
+  collect("", document, leaves);
+  std::map<std::string, std::string> out;
+  for (const auto& [key, leaf] : leaves)
+    out[key.substr(0, key.find_first_of(".["))] += key + " = " + leaf.text + "\n";
+  for (auto& [section, text] : out) text = sha256(text);
+  return out;
+}
+
 Config reloaded(const Config& running, const Config& fresh) {
   Config out = running;
   out.sha256 = fresh.sha256;
+  out.section_sha256 = fresh.section_sha256;
   take_reloadable("estimator", fresh.pipeline.options, out.pipeline.options);
   out.pipeline.options.long_window_s = fresh.pipeline.options.long_window_s;  // [watch] has it
   for (std::size_t a = 0; a < out.pipeline.axes.size(); ++a)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct ConfigChange {
 /// Every value that differs between two configuration files, in the order of their keys. Layout,
 /// comments and order of keys do not count.
 std::vector<ConfigChange> changes_between(const TomlValue& before, const TomlValue& after);
+
+/// SHA-256 of the values of each section of a file, by its name: "estimator", "channel". Layout,
+/// comments and order of keys do not count.
+std::map<std::string, std::string> section_digests(const TomlValue& document);
 
 /// A new configuration: the running one with everything of the fresh one that may change while an
 /// estimation runs. `fresh` differs from `running` in nothing that takes a restart.

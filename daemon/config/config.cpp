@@ -33,6 +33,7 @@ std::optional<Config> parse_config(const std::string& path, const std::string& t
   config.sha256 = sha256(text);
   std::vector<TextProblem> found;
   const std::optional<TomlValue> document = parse_toml(text, found);
+  if (document) config.section_sha256 = section_digests(*document);
   if (document && read_config(*document, config, found))
     config.doubts = with_file(
         path, doubted_values(*document, config.pipeline.structure, config.pipeline.design));

@@ -183,81 +183,6 @@ void Estimation::finish() {
   publish_state();
 }
 
-template <typename Archive>
-void Estimation::archive(Archive& a) {
-  a(seconds_);
-  for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMostCount);
-  a(intake_, can_, can_events_, absurd_events_, channel_events_, raised_);
-  if (watch_) a(*watch_);
-  if (shaking_) {
-    a(*shaking_, counted_before_);
-    findings_.resize(a.count(findings_.size()));
-    for (event_t& e : findings_) archive_event(a, e);
-  }
-  if (!gap_) return;
-  a(*gap_);
-  a.any_size(noise_density_);
-  if (!noise_density_.empty() && noise_density_.size() != config_.pipeline.axes.size()) a.refuse();
-}
-
-void Estimation::save(estimator::StateWriter& state) {
-  archive(state);
-  pipeline_.save(state);
-}
-
-bool Estimation::load(estimator::StateReader& state) {
-  archive(state);
-  return state.good() && pipeline_.load(state);
-}
-
-void Estimation::take_over(Estimation& before, bool keep_window) {
-  // Both have the same structure, so only settings can keep a part from fitting.
-  const auto copy = [](auto& from, auto& to) {
-    estimator::StateWriter writer;
-    writer(from);
-    estimator::StateReader reader(writer.bytes());
-    reader(to);
-    return reader.whole();
-  };
-  copy(before.seconds_, seconds_);
-  copy(before.intake_, intake_);
-  copy(before.can_, can_);
-  copy(before.can_events_, can_events_);
-  copy(before.absurd_events_, absurd_events_);
-  copy(before.channel_events_, channel_events_);
-  copy(before.raised_, raised_);
-  windows_ = before.windows_;
-  absurd_temperatures_ = before.absurd_temperatures_;
-  live_ = before.live_;
-  if (keep_window) {
-    estimator::StateWriter writer;
-    before.pipeline_.save(writer);
-    estimator::StateReader reader(writer.bytes());
-    (void)pipeline_.load(reader);
-    noise_density_ = before.noise_density_;
-  }
-  const estimator::Baseline* given = baseline();
-  const bool same_baseline =
-      given == nullptr || (before.baseline() != nullptr && before.baseline()->holds(*given));
-  const bool watch_goes_on =
-      watch_ && before.watch_ && same_baseline && copy(*before.watch_, *watch_);
-  if (!watch_goes_on) {
-    begin_watch();
-    withdraw("stiffness_change");
-  } else if (!keep_window && config_.watch->options.amplitude) {
-    watch_->forget_quiet();  // amplitudes are over the noise, which is another one
-  }
-  if (shaking_ && before.shaking_ && copy(*before.shaking_, *shaking_)) {
-    counted_before_ = before.counted_before_;
-    findings_ = before.findings_;
-  }
-  const bool gap_goes_on = gap_ && before.gap_ && copy(*before.gap_, *gap_);
-  if (!gap_goes_on) {
-    begin_gap();
-    withdraw("gap");
-  }
-}
-
 std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
   std::vector<estimator::AxisCounters> out = pipeline_.counters().axes;
   for (std::size_t a = 0; a < out.size(); ++a) {
@@ -268,6 +193,7 @@ std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
 }
 
 void Estimation::publish_state() {
+  for (const event_t& event : std::exchange(to_withdraw_, {})) announce(withdrawn(event));
   const std::vector<estimator::AxisCounters> axes = axis_counters();
   for (const event_t& event : absurd_events_.look(axes, seconds_.newest_us())) announce(event);
   for (const event_t& event : channel_events_.look(axes, seconds_.newest_us())) announce(event);

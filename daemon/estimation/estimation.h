@@ -16,6 +16,7 @@
 #include "daemon/estimation/channel_events.h"
 #include "daemon/estimation/publisher.h"
 #include "daemon/estimation/sensor_seconds.h"
+#include "daemon/estimation/state_section.h"
 #include "daemon/estimation/wanted_axes.h"
 #include "daemon/event_report/event_report.h"
 #include "daemon/events/raised_events.h"
@@ -86,14 +87,22 @@ class Estimation {
   /// settings start anew: a gap window of another length, changes against another baseline.
   void take_over(Estimation& before, bool keep_window);
 
-  /// The whole state, and back; see Pipeline.
-  void save(estimator::StateWriter& state);
-  [[nodiscard]] bool load(estimator::StateReader& state);
+  /// The whole state, section by section.
+  std::vector<StateSection> save();
+  /// Names of the sections that save() gives.
+  std::vector<std::string> section_names();
+  /// Takes over the sections it is given, before the first sample. Empty on success; else the name
+  /// of the section that does not fit, and this must not be used any more. With all sections of an
+  /// estimation of the same configuration it continues as that one would, to the bit. "watch" needs
+  /// "baseline".
+  [[nodiscard]] std::string load(const std::vector<StateSection>& sections);
+  /// After load(): these sections were not among those it was given. Findings that they alone could
+  /// clear are withdrawn with the next status.
+  void went_without(const std::vector<std::string>& lost);
 
  private:
-  /// But the pipeline's.
-  template <typename Archive>
-  void archive(Archive& a);
+  template <typename Visit>
+  void each_section(const Visit& visit);
   void publish_state();
   drivers::IntakeResult temperature(const void* data, std::size_t size);
   void main_window(const estimator::WindowEstimate& estimate);
@@ -120,7 +129,9 @@ class Estimation {
   std::optional<estimator::ShakingWatch> shaking_;
   std::vector<estimator::AxisCounters> counted_before_;  ///< when the strong motion began
   std::vector<event_t> findings_;                        ///< since then
-  std::vector<double> noise_density_;                    ///< as of the last second
+  std::optional<estimator::Tuning> tuning_;  ///< of the state that was loaded or saved last
+  std::vector<event_t> to_withdraw_;         ///< went_without(), until the next status
+  std::vector<double> noise_density_;        ///< as of the last second
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   CanEvents can_events_;

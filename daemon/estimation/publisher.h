@@ -49,8 +49,8 @@ class Publisher {
   void estimate(const estimator::WindowEstimate& estimate);
   /// An estimate of one of the other windows, on its own channel.
   void other(const estimator::WindowEstimate& estimate);
-  /// An estimate that comes after its time (WindowEstimate::late), on its window's channel with _LATE
-  /// behind it: whoever reads the other one gets windows in order.
+  /// An estimate that comes after its time (WindowEstimate::late), on its window's channel with
+  /// _LATE behind it: whoever reads the other one gets windows in order.
   void late(const estimator::WindowEstimate& estimate);
   void event(const event_t& event);
   /// The baselines that changes are judged against.

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -32,18 +33,36 @@ namespace {
 
 constexpr int kPoll_ms = 100;
 
-/// Resumes from the state file, if there is one. One that does not fit is renamed, and the log says
-/// why. Whether the run was resumed.
+/// Says which sections of a state were not taken, why, and what that costs. Keeps a copy of the
+/// file.
+void log_lost(const std::string& path, const std::vector<LostSection>& lost) {
+  if (lost.empty()) return;
+  for (const LostSection& l : lost)
+    log(LogLevel::warning,
+        fmt::format("{}: section {} {}: {}", path, l.name, l.why, without_section(l.name)));
+  const std::string aside = path + ".refused";
+  std::error_code none;
+  std::filesystem::copy_file(path, aside, std::filesystem::copy_options::overwrite_existing, none);
+  log(LogLevel::notice, none ? fmt::format("cannot copy {} to {}: {}", path, aside, none.message())
+                             : fmt::format("a copy of the file is {}", aside));
+}
+
+/// Resumes from the state file, if there is one, with every section of it that fits. A file of
+/// which nothing fits is renamed, and the log says why. Whether the window was resumed.
 bool resume(const std::string& path, const Config& config, drivers::LcmProvider& lcm,
             drivers::CanLogWriter* can_log, std::optional<LiveEstimation>& live) {
   std::error_code none;
   if (drivers::is_absent(path)) return false;
-  bool touched = false;
-  const LoadedState state = load_state(path, config, live->estimation(), touched);
+  const auto anew = [&]() -> Estimation& {
+    return live.emplace(config, lcm, can_log).estimation();
+  };
+  const LoadedState state = load_what_fits(path, config, live->estimation(), anew);
   if (state.problem.empty()) {
     log(LogLevel::notice,
         fmt::format("goes on from {}: {} windows so far", path, live->estimation().windows()));
-    return true;
+    log_lost(path, state.lost);
+    return std::none_of(state.lost.begin(), state.lost.end(),
+                        [](const LostSection& l) { return l.name == "window"; });
   }
   const std::string aside = path + ".refused";
   std::filesystem::rename(path, aside, none);
@@ -51,7 +70,6 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
       none ? fmt::format("{}: {}; starts anew, and cannot be put aside as {}: {}", path,
                          state.problem, aside, none.message())
            : fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
-  if (touched) live.emplace(config, lcm, can_log);
   return false;
 }
 

@@ -14,10 +14,9 @@
 namespace framewatch::daemon {
 namespace {
 
-std::string written_or_why(const std::string& path, std::vector<std::uint8_t> bytes) {
+std::string written_or_why(const std::string& path, const SavedState& state) {
   std::string problem;
-  const std::string thrown =
-      drivers::caught([&] { problem = write_state(path, std::move(bytes)); });
+  const std::string thrown = drivers::caught([&] { problem = write_state(path, state); });
   return thrown.empty() ? problem : thrown;
 }
 
@@ -37,8 +36,8 @@ void StateKeeper::look(const Config& config, Estimation& estimation, std::int64_
   next_us_ = now_us + every_us_;
   const std::string thrown = drivers::caught([&] {
     writing_ = std::async(std::launch::async,
-                          [path = path_, bytes = state_bytes(config, estimation, 0)]() mutable {
-                            return written_or_why(path, std::move(bytes));
+                          [path = path_, state = saved_state(config, estimation, 0)]() {
+                            return written_or_why(path, state);
                           });
   });
   if (!thrown.empty()) report("no thread to write it: " + thrown);
@@ -48,7 +47,7 @@ void StateKeeper::keep(const Config& config, Estimation& estimation) {
   if (writing_.valid()) report(writing_.get());
   std::string problem;
   const std::string thrown =
-      drivers::caught([&] { problem = write_state(path_, state_bytes(config, estimation, 0)); });
+      drivers::caught([&] { problem = write_state(path_, saved_state(config, estimation, 0)); });
   report(thrown.empty() ? problem : thrown);
 }
 

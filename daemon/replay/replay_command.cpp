@@ -112,7 +112,7 @@ class ReplayRun {
     if (!failed_.empty()) return refuse("replay", failed_);
     if (!a_.save_state.empty()) {
       const std::string problem =
-          write_state(a_.save_state, state_bytes(config_, estimation_, events));
+          write_state(a_.save_state, saved_state(config_, estimation_, events));
       if (!problem.empty()) return refuse("replay", a_.save_state + ": " + problem);
     }
     return conclude();

@@ -79,7 +79,11 @@ class StationXmlReader {
   };
 
   std::int64_t line() const {
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9  // which deprecates the other one
+    return static_cast<std::int64_t>(XML_GetCurrentLineNumber64(parser_.get()));
+#else
     return static_cast<std::int64_t>(XML_GetCurrentLineNumber(parser_.get()));
+#endif
   }
 
   void stop(const std::string& why) {

@@ -48,10 +48,11 @@ double DependenceLearner::log_amplitude(const WindowEstimate& e, std::size_t p) 
 bool DependenceLearner::push(const WindowEstimate& e, double degc) {
   if (complete() || (options_.temperature && std::isnan(degc)) || !windows_.take(e)) return false;
   for (std::size_t p = 0; p < sums_.size(); ++p) {
-    if (e.reason[p] != Observability::observable) continue;
+    if (e.reason[p] != Observability::observable || !(e.std_error[p] > 0)) continue;
     Sum& sum = sums_[p];
     const double t = options_.temperature ? degc : 0;
     const double a = options_.amplitude ? log_amplitude(e, p) : 0;
+    if (!std::isfinite(a)) continue;  // noise that is not known, or none
     if (sum.count++ == 0) {
       sum.first = e.value[p];
       sum.first_degc = t;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "estimator/structure/parameter_table.h"
@@ -84,8 +85,16 @@ class Watch {
   /// Of every detector's sums: false alarms come at most as often as the options ask for.
   double threshold() const { return threshold_; }
 
+  /// The whole state, which is two parts: what was learned, and then what was seen of changes
+  /// since. A watch that has read the first may do without the second. resumed() ends reading.
   template <typename Archive>
   void archive(Archive& a) {
+    archive_learned(a);
+    archive_detection(a);
+    if constexpr (Archive::kReading) resumed();
+  }
+  template <typename Archive>
+  void archive_learned(Archive& a) {
     bool temperature = options_.temperature, amplitude = options_.amplitude;
     a(temperature, amplitude, learner_, baseline_);
     a(quiet_known_, quiet_learner_, quiet_baseline_, dependence_);
@@ -96,12 +105,19 @@ class Watch {
       if (!fits) return a.refuse();
       begin();
       if (quiet_known_) begin_quiet();
+      other_conditions_ = temperature != options_.temperature || amplitude != options_.amplitude;
     }
+  }
+  template <typename Archive>
+  void archive_detection(Archive& a) {
     a(temperature_, detectors_, states_, recent_, usual_);
     a.within(last_id_, 0, a.kMostCount);
     for (const State& state : states_)
       if (state.detector >= detectors_.size()) a.refuse();
-    if (temperature != options_.temperature || amplitude != options_.amplitude) forget_quiet();
+  }
+  /// Forgets what was learned under other conditions than these options correct for.
+  void resumed() {
+    if (std::exchange(other_conditions_, false)) forget_quiet();
   }
 
  private:
@@ -185,6 +201,7 @@ class Watch {
   std::vector<State> states_;
   std::vector<Alarm> news_;
   std::int64_t last_id_ = 0;
+  bool other_conditions_ = false;  ///< what archive_learned() read was corrected for others
 };
 
 }  // namespace framewatch::estimator

@@ -15,7 +15,7 @@ struct Watched {
   /// Whether a window has a value that is learned from and judged. The bias of prior and noise is
   /// the same in all windows alike, so that no mean removes it.
   bool counts(const WindowEstimate& e, std::size_t p) const {
-    return e.reason[p] == Observability::observable &&
+    return e.reason[p] == Observability::observable && e.std_error[p] > 0 &&
            e.prior_share[p] + e.noise_share[p] <= most_bias;
   }
 };

@@ -1,5 +1,7 @@
-// A state file that somebody changed and signed again: refused, or an estimation that goes on.
-#include "daemon/base/file_digest.h"
+// A state file a section of which somebody changed and signed again: the section is refused, or the
+// estimation goes on with it.
+#include <optional>
+
 #include "daemon/estimation/state_file.h"
 #include "tests/fuzz/example_building.h"
 #include "tests/fuzz/shaken.h"
@@ -19,40 +21,43 @@ void shake(Estimation& estimation, ShakenNodes& nodes, int instants) {
 }
 
 /// Of an estimation that has seen the motion so far.
-const std::vector<std::uint8_t>& good_state() {
-  static const std::vector<std::uint8_t> state = [] {
+const daemon::SavedState& good_state() {
+  static const daemon::SavedState state = [] {
     Estimation estimation(example_building(), {});
     ShakenNodes nodes;
     shake(estimation, nodes, kInstantsBefore);
-    return daemon::state_bytes(example_building(), estimation, 0);
+    return daemon::saved_state(example_building(), estimation, 0);
   }();
   return state;
 }
 
 void load_changed(Bytes input) {
   Pieces pieces(input);
-  std::vector<std::uint8_t> state = changed(good_state(), pieces);
-  const std::string digest = daemon::sha256({state.begin(), state.end()});
-  state.insert(state.end(), digest.begin(), digest.end());
-  const InputFile file(state);
-  Estimation estimation(example_building(), [](auto...) {});
-  bool touched = false;
-  const daemon::LoadedState loaded =
-      daemon::load_state(file.path(), example_building(), estimation, touched);
-  if (!loaded.problem.empty() && touched) return;
+  daemon::SavedState state = good_state();
+  std::vector<std::uint8_t>& section =
+      state.sections[pieces.take<std::uint8_t>() % state.sections.size()].bytes;
+  section = changed(section, pieces);
+  const InputFile file(daemon::state_bytes(state));
+  const auto ignore = [](auto...) {};
+  std::optional<Estimation> estimation(std::in_place, example_building(), ignore);
+  const daemon::LoadedState loaded = daemon::load_what_fits(
+      file.path(), example_building(), *estimation,
+      [&]() -> Estimation& { return estimation.emplace(example_building(), ignore); });
+  require(loaded.problem.empty(), "a file with a sound head is read");
   ShakenNodes nodes;
   nodes.shake(kInstantsBefore, [](const auto&) {});
-  shake(estimation, nodes, kInstantsAfter);
-  estimation.finish();
+  shake(*estimation, nodes, kInstantsAfter);
+  estimation->finish();
 }
 
 std::vector<std::string> state_seeds() {
   std::vector<std::string> out{""};
-  for (std::uint32_t at = 100; at < good_state().size(); at += 997) {
-    PiecesWriter seed;
-    const std::uint8_t bytes8 = 5 * 3;
-    out.push_back(seed.put(bytes8).put(at).put(1e300).text());
-  }
+  for (std::size_t s = 0; s < good_state().sections.size(); ++s)
+    for (std::uint32_t at = 8; at < good_state().sections[s].bytes.size(); at += 997) {
+      PiecesWriter seed;
+      const std::uint8_t bytes8 = 5 * 3;
+      out.push_back(seed.put(static_cast<std::uint8_t>(s)).put(bytes8).put(at).put(1e300).text());
+    }
   return out;
 }
 

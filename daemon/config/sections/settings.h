@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct UnusedChannel {
 struct Config {
   std::string path;
   std::string sha256;
+  /// SHA-256 of the values of each section of the file, by its name ("channel": of all channels).
+  std::map<std::string, std::string> section_sha256;
   estimator::PipelineConfig pipeline;
   std::vector<AxisSource> sources;  ///< parallel to pipeline.axes
   std::vector<UnusedChannel> unused;

@@ -43,9 +43,12 @@ class WindowSolution {
   void solve(const WindowParts& sums, const RowFilter& rows, const Trust& trust, bool closes_block);
 
   /// A pass of standard errors, spread over instants (BatchMeans). fit: the solution that fits
-  /// BatchMeans::kBlocks blocks, this one or another.
+  /// BatchMeans::kBlocks blocks, this one or another. Begins nothing before both have solved these
+  /// rows: the block that fills a window for the first time closes before that, and errors would be
+  /// zero.
   template <typename Sums>
   void begin_errors(const Sums& all, const WindowSolution& fit) {
+    if (fresh_ || fit.fresh_) return;
     const BatchMeans::Fit of{&fit.solver_.solution(), &fit.solver_.information()};
     errors_.begin(all, solver_, of, prior_, doubt_, noise_, noise_scale_);
   }

@@ -6,6 +6,8 @@
 
 #include <csignal>
 #include <filesystem>
+#include <map>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -120,16 +122,19 @@ TEST_F(StateFile, DamagedCutOffAndForeignOnesAreRefusedWithTheReason) {
   ASSERT_EQ(run({log()}, "", "", "good"), 0);
   const std::string good = read_file(path("good"));
   ASSERT_GT(good.size(), 10000u);
-  for (const std::size_t at : {good.size() / 3, good.size() - 1, std::size_t{40}}) {
+  for (const auto& [at, problem] :
+       std::map<std::size_t, std::string>{{good.size() / 3, "section window is damaged"},
+                                          {good.size() - 1, "section window is damaged"},
+                                          {100, "the digest of its head is another"}}) {
     std::string bad = good;
     bad[at] ^= 1;
     write_file(path("state"), bad);
     const auto [code, said] = refused();
     EXPECT_EQ(code, 2);
-    EXPECT_NE(said.find("is damaged or cut off"), std::string::npos) << said;
+    EXPECT_NE(said.find(problem), std::string::npos) << said;
   }
   write_file(path("state"), good.substr(0, good.size() / 2));
-  EXPECT_NE(refused().second.find("is damaged or cut off"), std::string::npos);
+  EXPECT_NE(refused().second.find("section window is cut off"), std::string::npos);
   write_file(path("state"), "something else");
   EXPECT_NE(refused().second.find("is no state of framewatch"), std::string::npos);
   std::filesystem::remove(path("state"));
@@ -163,7 +168,7 @@ std::int64_t live(const Config& config, const std::string& log, int from, int to
     EXPECT_TRUE(estimation.poll(0));
   }
   if (!state_out.empty()) {
-    EXPECT_EQ(write_state(state_out, state_bytes(config, estimation.estimation(), 0)), "");
+    EXPECT_EQ(write_state(state_out, saved_state(config, estimation.estimation(), 0)), "");
   }
   return estimation.estimation().windows();
 }

@@ -240,11 +240,8 @@ TEST(TwoSenders, WhatIsRaisedIsClearedAndGoesOnOverARestart) {
     if (i > 100) send(run, i, kStranger);
   }
   ASSERT_EQ(run.events.size(), 1u);
-  estimator::StateWriter state;
-  run.estimation.save(state);
   Played after(config);
-  estimator::StateReader reader(state.bytes());
-  ASSERT_TRUE(after.estimation.load(reader));
+  ASSERT_EQ(after.estimation.load(run.estimation.save()), "");
   EXPECT_FALSE(after.well());
   for (std::int64_t i = 500; i < 5000; ++i) send(after, i, kSensors);
   std::erase_if(after.events, [](const event_t& e) { return e.kind == "channel_silent"; });
