@@ -10,7 +10,6 @@
 #include "daemon/keys/command_options.h"
 #include "daemon/keys/event_report_options.h"
 #include "daemon/keys/fleet_options.h"
-#include "daemon/keys/fragility_options.h"
 #include "daemon/keys/gap_options.h"
 #include "daemon/keys/history_options.h"
 #include "daemon/keys/lcm_options.h"

@@ -1,5 +1,5 @@
 // How often the stated 95 % intervals of peak drifts hold the truth. FRAMEWATCH_DRIFT_RUNS=24 runs
-// more earthquakes of every layout and prints the table of docs/accuracy.md.
+// more earthquakes of every layout and prints the table of docs/equations.md.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -183,10 +183,6 @@ void run(const Layout& layout, std::uint64_t seed, Tally& tally) {
   pipeline.finish();
   ASSERT_EQ(drifts.size(), static_cast<std::size_t>(truly.stories)) << layout.name;
   for (const StoryDrift& d : drifts) {
-    if (std::getenv("FRAMEWATCH_DRIFT_EACH") != nullptr &&
-        (d.gap_at_peak() || !std::isfinite(d.std_error)))
-      std::printf("story %d unseen %g ratio %g error %g noise %g slow %g model %g\n", d.story,
-                  d.unseen_share, d.ratio, d.std_error, d.noise_error, d.slow_error, d.model_error);
     if (d.gap_at_peak()) {
       ++tally.gaps;
       continue;
@@ -206,13 +202,6 @@ void run(const Layout& layout, std::uint64_t seed, Tally& tally) {
     tally.squares += off * off;
     tally.bias += off;
     tally.relative_error += error;
-    if (std::getenv("FRAMEWATCH_DRIFT_EACH") != nullptr)
-      std::printf(
-          "%s seed %d story %d ratio %.5f off %+.4f error %.4f noise %.4f slow %.4f (%.3f) model "
-          "%.4f\n",
-          layout.name, static_cast<int>(seed), d.story, d.ratio, off, error,
-          d.noise_error / d.ratio, d.slow_error / d.ratio, d.slow_ratio / d.ratio,
-          d.model_error / d.ratio);
   }
 }
 

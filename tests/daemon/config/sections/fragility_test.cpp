@@ -1,5 +1,6 @@
 // [fragility]: HAZUS' limits, medians of one's own, and every way to write it wrong.
 #include <algorithm>
+#include <utility>
 
 #include <gtest/gtest.h>
 
