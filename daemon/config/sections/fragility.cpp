@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -38,6 +39,13 @@ std::optional<std::array<double, kDamageStates>> type_limits(const FragilitySett
                                 "\"low\" and \"pre\"",
                                 name, kLevels[static_cast<std::size_t>(settings.design_level)]));
   return limits;
+}
+
+/// A key's value or default of every story; empty after a problem.
+std::vector<double> of_stories(ConfigSection& section, const char* key, int stories) {
+  if (section.given(key)) return section.grid(key, {stories});
+  const std::vector<double> all = section.list(key);
+  return all.empty() ? all : std::vector<double>(static_cast<std::size_t>(stories), all.front());
 }
 
 /// Medians of every story ascend from slight to complete.
@@ -79,7 +87,7 @@ std::optional<FragilitySettings> read_fragility(const TomlValue& document, int s
   out.by_story.resize(static_cast<std::size_t>(stories));
   bool whole = true, own = false;
   for (std::size_t state = 0; state < kDamageStates; ++state) {
-    std::vector<double> median, dispersion = section.grid(kDispersions[state], {stories});
+    std::vector<double> median, dispersion = of_stories(section, kDispersions[state], stories);
     if (section.given(kMedians[state])) {
       median = section.grid(kMedians[state], {stories});
       own = true;

@@ -6,6 +6,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/config/sections/hazus_limits.h"
+#include "daemon/keys/option_table.h"
 #include "tests/support/config_fixture.h"
 
 namespace framewatch::daemon {
