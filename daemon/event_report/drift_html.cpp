@@ -15,6 +15,14 @@ std::string part(double error, const estimator::StoryDrift& drift) {
                                                  : "-";
 }
 
+/// Short: "35 %", "< 1 %".
+std::string in_table(double probability) {
+  if (!std::isfinite(probability)) return "-";
+  return probability < 0.01   ? "&lt; 1 %"
+         : probability > 0.99 ? "&gt; 99 %"
+                              : fmt::format("{:.0f} %", 100 * probability);
+}
+
 }  // namespace
 
 std::string placard_section(const DriftReport& r) {
@@ -48,11 +56,11 @@ std::string drift_table_section(const DriftReport& r, const Config& config) {
       row.insert(row.end(), {"-", "-"});
     }
     row.push_back(std::string(d.measured ? "measured" : "computed") +
-                  (d.known() && d.gap_at_peak() ? ", gap at the peak" : ""));
+                  (d.known() && d.gap_at_peak() ? "; gap" : ""));
     row.insert(row.end(), {part(d.noise_error, d), part(d.slow_error, d),
                            d.measured ? "-" : part(d.model_error, d)});
     if (r.placard)
-      for (const double p : r.damage[i]) row.push_back(probability_words(p));
+      for (const double p : r.damage[i]) row.push_back(in_table(p));
     rows.push_back(std::move(row));
   }
   std::string out = "<h2>Drift and damage of every story</h2>\n" + html_table(head, rows) +

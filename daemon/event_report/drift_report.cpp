@@ -39,13 +39,27 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
   }
 }
 
+/// "story 2", "stories 1 to 6", "stories 1, 3, 5 and 4 more"; ascending.
 std::string stories_words(const std::vector<int>& stories) {
   constexpr std::size_t kMostNamed = 8;
-  std::string out;
+  if (stories.size() == 1) return fmt::format("story {}", stories.front());
+  const bool row = stories.back() - stories.front() + 1 == static_cast<int>(stories.size());
+  if (row && stories.size() > 2)
+    return fmt::format("stories {} to {}", stories.front(), stories.back());
+  std::string out = "stories ";
   for (std::size_t i = 0; i < std::min(stories.size(), kMostNamed); ++i)
     out += fmt::format("{}{}", i == 0 ? "" : ", ", stories[i]);
   if (stories.size() > kMostNamed) out += fmt::format(" and {} more", stories.size() - kMostNamed);
-  return (stories.size() == 1 ? "story " : "stories ") + out;
+  return out;
+}
+
+/// Why the first of the stories that are not judged could not be.
+std::string why_not(const std::vector<int>& stories, const std::vector<StoryDrift>& drifts) {
+  const StoryDrift& first = drifts[static_cast<std::size_t>(stories.front() - 1)];
+  return open_reason(!first.known()        ? PlacardReason::drift_unknown
+                     : first.gap_at_peak() ? PlacardReason::gap
+                                           : PlacardReason::error_unknown,
+                     first);
 }
 
 std::string reason_words(const PlacardChoice& choice, const std::vector<StoryDrift>& drifts) {
@@ -61,7 +75,8 @@ std::string reason_words(const PlacardChoice& choice, const std::vector<StoryDri
     out = "Not judged: " + open_reason(choice.reason, drift);
   if (choice.reason == PlacardReason::no_damage) out += ", and no other story is more likely to be";
   if (!choice.judged && choice.reason == PlacardReason::damage)
-    out += fmt::format("; {} could not be judged", stories_words(choice.not_judged));
+    out += fmt::format(". It may be worse: {} could not be judged, because {}",
+                       stories_words(choice.not_judged), why_not(choice.not_judged, drifts));
   return out + ".";
 }
 
