@@ -132,6 +132,11 @@ void add_report(CommandList& commands) {
                    "JSON file for the peaks of every floor and the errors of measured floors left\n"
                    "out in turn (channels on some floors only)")
       ->type_name("FILE");
+  command
+      ->add_option("--drifts", arguments.drifts,
+                   "JSON file for the peak drift of every story with its error, what it may have\n"
+                   "done by [fragility], and the placard")
+      ->type_name("FILE");
   command->add_option("--title", arguments.title, "of the page");
   command->add_option("--test", arguments.test, "name of the test");
   command->add_option("--operator", arguments.operator_name, "who made it");

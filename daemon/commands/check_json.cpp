@@ -76,6 +76,16 @@ std::string to_json(const std::string& path, const std::optional<CheckReport>& r
                        {"weakest_story", layout.weakest_story},
                        {"advice", advice}};
     }
+    out["fragility"] = nullptr;
+    if (const auto& f = report->config.fragility) {
+      out["fragility"] = {{"source", f->source},
+                          {"restricted_probability", f->rules.restricted},
+                          {"unsafe_probability", f->rules.unsafe},
+                          {"stories", Json::array()}};
+      for (const estimator::Fragility& one : f->by_story)
+        out["fragility"]["stories"].push_back(
+            {{"median_drift_ratio", one.median}, {"dispersion", one.dispersion}});
+    }
     out["unused_channels"] = Json::array();
     for (const UnusedChannel& unused : report->config.unused)
       out["unused_channels"].push_back({{"name", unused.name}, {"reason", unused.reason}});

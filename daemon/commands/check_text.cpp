@@ -9,6 +9,31 @@
 namespace framewatch::daemon {
 namespace {
 
+/// The drifts at which damage begins, of the stories that differ from the one below.
+std::string fragility_text(const Config& config) {
+  if (!config.fragility)
+    return "fragility   none configured: drifts are told, damage is not judged ([fragility] "
+           "type)\n";
+  const FragilitySettings& f = *config.fragility;
+  std::string out = fmt::format("fragility   {}\n", f.source);
+  for (std::size_t i = 0; i < f.by_story.size(); ++i) {
+    const estimator::Fragility& one = f.by_story[i];
+    if (i > 0 && one.median == f.by_story[i - 1].median &&
+        one.dispersion == f.by_story[i - 1].dispersion)
+      continue;
+    out += fmt::format(
+        "            {}slight {:g} %, moderate {:g} %, extensive {:g} %, complete "
+        "{:g} % of the height; dispersion {:g}, {:g}, {:g}, {:g}\n",
+        i == 0 ? "" : fmt::format("from story {}: ", i + 1), 100 * one.median[0],
+        100 * one.median[1], 100 * one.median[2], 100 * one.median[3], one.dispersion[0],
+        one.dispersion[1], one.dispersion[2], one.dispersion[3]);
+  }
+  return out + fmt::format(
+                   "placard     restricted use from {:g} % for moderate damage, unsafe from {:g} % "
+                   "for extensive damage, of any story\n",
+                   100 * f.rules.restricted, 100 * f.rules.unsafe);
+}
+
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
   for (const std::string& word : words) out += (out.empty() ? "" : ", ") + word;
@@ -105,6 +130,7 @@ std::string to_text(const CheckReport& r) {
   for (std::size_t i = 0; i < r.config.sources.size(); ++i)
     out +=
         channel_text(r.config.pipeline.structure, r.config.pipeline.axes[i], r.config.sources[i]);
+  out += fragility_text(r.config);
   out += r.layout ? layout_text(*r.layout, r.config.pipeline.structure) : identifiable_text(r);
   return out;
 }

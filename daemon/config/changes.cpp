@@ -141,6 +141,7 @@ Config reloaded(const Config& running, const Config& fresh) {
   take_section("gap", fresh.gap, out.gap);
   take_section("history", fresh.history, out.history);
   take_section("event_report", fresh.event_report, out.event_report);
+  take_section("fragility", fresh.fragility, out.fragility);
   take_section("actions", fresh.actions, out.actions);
   take_section("fleet", fresh.fleet, out.fleet);
   return out;

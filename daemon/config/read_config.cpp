@@ -69,6 +69,8 @@ bool read_config(const TomlValue& document, Config& config, std::vector<TextProb
   config.gap = read_gap(document, problems);
   config.history = read_history(document, problems);
   config.event_report = read_event_report(document, problems);
+  config.fragility =
+      read_fragility(document, structure.stories_known ? structure.structure.stories : 0, problems);
   config.actions = read_actions(document, problems);
   config.fleet = read_fleet(document, config.history.has_value(), problems);
   if (problems.size() == before)

@@ -85,6 +85,7 @@ void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
   }
   if (!ended) return;
   EventReport report{shaking_->ended(), axis_counters(), findings_};
+  report.shaking.known.noise_density = pipeline_.noise_density();
   for (std::size_t a = 0; a < report.axes.size(); ++a) subtract(counted_before_[a], report.axes[a]);
   announce(event_of(report, config_));
   if (taps_.shaken) taps_.shaken(report);

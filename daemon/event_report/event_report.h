@@ -7,6 +7,7 @@
 #include <framewatch/event_t.hpp>
 
 #include "daemon/config/config.h"
+#include "daemon/event_report/drift_report.h"
 #include "estimator/motion/sample_merger.h"
 #include "estimator/shaking/shaking.h"
 
@@ -27,10 +28,13 @@ const char* color_word(EventColor color);
 struct EventVerdict {
   EventColor color = EventColor::green;
   std::vector<std::string> reasons;
+  std::string loss;              ///< the gravest lasting loss of stiffness, in words; empty: none
   int worst_story = 0;           ///< 0: no drift is known
   double worst_drift_ratio = 0;  ///< of its height
 };
 EventVerdict judge(const EventReport& report, const Config& config);
+/// Drift and damage of every story.
+DriftReport drift_report(const EventReport& report, const Config& config);
 
 /// "event-20261124T004628Z", by the time it began; .html and .json of it are written.
 std::string event_report_name(const EventReport& report);

@@ -50,9 +50,14 @@ std::optional<EventReportSummary> event_report_summary(const std::string& folder
     const auto color = color_of_word(json.at("verdict").get<std::string>());
     const Json& reasons = json.at("reasons");
     if (!color || reasons.empty()) return std::nullopt;
-    return EventReportSummary{name, *color, reasons.at(0).get<std::string>(),
-                              json.at("start_us").get<std::int64_t>(),
-                              json.at("end_us").get<std::int64_t>()};
+    EventReportSummary out{name, *color, reasons.at(0).get<std::string>(),
+                           json.at("start_us").get<std::int64_t>(),
+                           json.at("end_us").get<std::int64_t>()};
+    if (json.contains("placard") && json.at("placard").is_object()) {
+      out.placard = json.at("placard").at("words").get<std::string>();
+      out.placard_reason = json.at("placard").at("reason").get<std::string>();
+    }
+    return out;
   } catch (const Json::exception&) {
     return std::nullopt;
   }

@@ -13,8 +13,9 @@ namespace framewatch::daemon {
 struct EventReportSummary {
   std::string name;  ///< of its files, without their ending
   EventColor color = EventColor::green;
-  std::string reason;                     ///< the gravest
-  std::int64_t start_us = 0, end_us = 0;  ///< of the strong motion, sensor time
+  std::string reason;                             ///< the gravest
+  std::int64_t start_us = 0, end_us = 0;          ///< of the strong motion, sensor time
+  std::string placard = {}, placard_reason = {};  ///< in words; empty: none was given
 };
 
 /// Whether a text is as event_report_name() makes them: nothing that leads elsewhere.

@@ -32,7 +32,8 @@ const char* advice(EventColor color) {
   return "Nothing needs to be done.";
 }
 
-std::string verdict_text(const EventReport& r, const Config& config, const EventVerdict& verdict) {
+std::string verdict_text(const EventReport& r, const Config& config, const EventVerdict& verdict,
+                         const DriftReport& drifts) {
   std::string word = color_word(verdict.color);
   word[0] = static_cast<char>(word[0] - 'a' + 'A');
   std::string out =
@@ -41,7 +42,7 @@ std::string verdict_text(const EventReport& r, const Config& config, const Event
   for (std::size_t i = 1; i < verdict.reasons.size(); ++i)
     rest += "<li>" + html_text(verdict.reasons[i]) + "</li>\n";
   if (!rest.empty()) out += "<ul>\n" + rest + "</ul>\n";
-  out += "<p>" + std::string(advice(verdict.color)) + "</p>\n";
+  out += "<p>" + std::string(advice(verdict.color)) + "</p>\n" + placard_section(drifts);
   const double length =
       1e-6 * static_cast<double>(to_microseconds(r.shaking.end) - to_microseconds(r.shaking.start));
   return out + fmt::format("<h1>{}: strong motion of {}</h1>\n<p>{:.1f} s above {:g} m/s^2.</p>\n",
@@ -50,56 +51,34 @@ std::string verdict_text(const EventReport& r, const Config& config, const Event
                            config.event_report->options.trigger_mps2);
 }
 
-double drift_ratio(const EventReport& r, const Config& config, int story) {
-  return peak_drift(r.shaking.peak, config.pipeline.structure, story).ratio;
-}
-
-bool any_computed(const Config& config) {
-  for (int story = 1; story <= config.pipeline.structure.stories; ++story)
-    if (!drift_is_measured(config.pipeline, story)) return true;
-  return false;
-}
-
-std::string drift_section(const EventReport& r, const Config& config) {
+std::string drift_section(const EventReport& r, const Config& config, const DriftReport& drifts) {
   const EventReportSettings& s = *config.event_report;
   SvgAxis stories{""};
   SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
-  std::vector<std::vector<std::string>> rows;
-  std::vector<std::string> columns{"", "peak acceleration, m/s^2",
-                                   "peak drift of the story below, % of its height"};
-  const bool computed = any_computed(config);
-  if (computed) columns.push_back("that drift is");
-  for (int story = config.pipeline.structure.stories; story >= 0; --story) {
-    const double peak = peak_accel_mps2(r.shaking.peak, config.pipeline.axes, story);
-    const double drift = story > 0 ? drift_ratio(r, config, story) : NAN;
-    rows.push_back({story > 0 ? fmt::format("floor {}", story) : "base", number(peak, "{:.3f}"),
-                    number(100 * drift, "{:.3f}")});
-    if (computed)
-      rows.back().push_back(story == 0                                  ? ""
-                            : drift_is_measured(config.pipeline, story) ? "measured"
-                                                                        : "computed");
-  }
-  for (int story = 1; story <= config.pipeline.structure.stories; ++story) {
+  for (const estimator::StoryDrift& drift : drifts.drifts) {
     if (stories.categories.size() == kMostBars) break;
-    stories.categories.push_back(fmt::format("story {}", story));
+    stories.categories.push_back(fmt::format("story {}", drift.story));
     bars.x.push_back(static_cast<double>(stories.categories.size()));
-    bars.y.push_back(100 * drift_ratio(r, config, story));
+    bars.y.push_back(100 * drift.ratio);
+    bars.error.push_back(std::isfinite(drift.std_error) ? 100 * drift.std_error : 0);
   }
+  std::vector<std::vector<std::string>> rows;
+  for (int story = config.pipeline.structure.stories; story >= 0; --story)
+    rows.push_back(
+        {story > 0 ? fmt::format("floor {}", story) : "base",
+         number(peak_accel_mps2(r.shaking.peak, config.pipeline.axes, story), "{:.3f}")});
   SvgPlot plot("peak drift ratio", stories, {"% of the story height", 0}, 980, 240);
   plot.add(bars);
   plot.add_rule(100 * s.yellow_drift_ratio);
   plot.add_rule(100 * s.red_drift_ratio);
   return html_figure({plot.svg()},
-                     fmt::format("Of the frames of each story the one that drifted most; dotted: "
-                                 "yellow from {:g} %, red from {:g} %.",
+                     fmt::format("Of the frames of each story the one that drifted most, with one "
+                                 "standard error; dotted: yellow from {:g} %, red from {:g} %.",
                                  100 * s.yellow_drift_ratio, 100 * s.red_drift_ratio)) +
-         "<p>Peak base shear: " + base_shear_words(r.shaking.peak, config.pipeline.structure) +
-         ".</p>\n" + html_table(columns, rows) +
-         (computed ? "<p>Computed: the floor, or the one below, has no channel; its motion follows "
-                     "from the measured floors by what was identified of the stories between them, "
-                     "each with its share of the design. A loss inside such a group shows in its "
-                     "own story's drift only as far as the group's stiffness shows it.</p>\n"
-                   : "");
+         drift_table_section(drifts, config) +
+         "<h2>Force and acceleration</h2>\n<p>Peak base shear: " +
+         base_shear_words(r.shaking.peak, config.pipeline.structure) + ".</p>\n" +
+         html_table({"", "peak acceleration, m/s^2"}, rows);
 }
 
 std::string stiffness_section(const EventReport& r, const Config& config) {
@@ -181,10 +160,11 @@ std::string sensors_section(const EventReport& r, const Config& config) {
 
 std::string event_report_html(const EventReport& r, const Config& config) {
   const EventVerdict verdict = judge(r, config);
+  const DriftReport drifts = drift_report(r, config);
   return html_page(
       fmt::format("{}: {}", config.pipeline.structure.name, color_word(verdict.color)),
-      verdict_text(r, config, verdict) + drift_section(r, config) + stiffness_section(r, config) +
-          findings_section(r) + sensors_section(r, config) +
+      verdict_text(r, config, verdict, drifts) + drift_section(r, config, drifts) +
+          stiffness_section(r, config) + findings_section(r) + sensors_section(r, config) +
           fmt::format("<p>framewatch " FRAMEWATCH_VERSION ", configuration <code>{}</code>. Not a "
                       "substitute for an engineer's judgement.</p>\n",
                       html_text(config.sha256)));

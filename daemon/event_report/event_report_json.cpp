@@ -84,13 +84,7 @@ std::string event_report_json(const EventReport& r, const Config& config) {
              {"red_drift_ratio", s.red_drift_ratio},
              {"yellow_loss_ratio", s.yellow_loss_ratio},
              {"red_loss_ratio", s.red_loss_ratio}}}};
-  out["stories"] = Json::array();
-  for (int story = 1; story <= config.pipeline.structure.stories; ++story)
-    out["stories"].push_back(
-        {{"story", story},
-         {"peak_drift_ratio",
-          json_value(peak_drift(r.shaking.peak, config.pipeline.structure, story).ratio)},
-         {"drift_is", drift_is_measured(config.pipeline, story) ? "measured" : "computed"}});
+  add_drifts(drift_report(r, config), config, out);
   out["base_shear_n"] = {{"x", json_value(r.shaking.peak.base_shear_n[0])},
                          {"y", json_value(r.shaking.peak.base_shear_n[1])}};
   out["stiffness"] = stiffness_json(r, config);

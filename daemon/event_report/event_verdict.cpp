@@ -51,10 +51,12 @@ void judge_drifts(const EventReport& r, const Config& config, EventVerdict& out,
 }
 
 /// Number of stiffnesses that could be compared.
-int judge_losses(const EventReport& r, const Config& config, std::vector<Reason>& reasons) {
+int judge_losses(const EventReport& r, const Config& config, EventVerdict& out,
+                 std::vector<Reason>& reasons) {
   const EventReportSettings& s = *config.event_report;
   const estimator::ParameterTable table = config.pipeline.parameters();
   int known = 0;
+  double gravest = 0;
   for (int p = 0; p < table.elements(); ++p) {
     const estimator::ShakenStiffness& k = r.shaking.stiffness[static_cast<std::size_t>(p)];
     if (!k.known()) continue;
@@ -68,6 +70,8 @@ int judge_losses(const EventReport& r, const Config& config, std::vector<Reason>
          fmt::format("{} ({}) lost {:.1f} % (+-{:.1f} %) of its stiffness (limit {:g} %)",
                      element_words(table[p].name), table[p].name, 100 * loss,
                      std::max(0.1, 100 * k.std_error()), 100 * limit)});
+    if (loss > gravest) out.loss = reasons.back().text;
+    gravest = std::max(gravest, loss);
   }
   return known;
 }
@@ -82,7 +86,7 @@ EventVerdict judge(const EventReport& r, const Config& config) {
   EventVerdict out;
   std::vector<Reason> reasons;
   judge_drifts(r, config, out, reasons);
-  const int known = judge_losses(r, config, reasons);
+  const int known = judge_losses(r, config, out, reasons);
   std::stable_sort(reasons.begin(), reasons.end(), [](const Reason& a, const Reason& b) {
     return a.color != b.color ? a.color > b.color : a.size > b.size;
   });
@@ -100,6 +104,11 @@ EventVerdict judge(const EventReport& r, const Config& config) {
     out.reasons.push_back(fmt::format("none of {} stiffnesses (of {}) lost {:g} % or more", known,
                                       all, 100 * config.event_report->yellow_loss_ratio));
   return out;
+}
+
+DriftReport drift_report(const EventReport& r, const Config& config) {
+  return drift_report(config, config.pipeline, r.shaking.peak, r.shaking.known,
+                      judge(r, config).loss);
 }
 
 std::string event_report_name(const EventReport& r) {
@@ -122,8 +131,13 @@ event_t event_of(const EventReport& r, const Config& config) {
   m.std_error = estimator::kNaN;
   m.unit = "%";
   m.segment = event_report_name(r) + ".html";
-  m.message = fmt::format("after strong motion: {}, {}; report {}", color_word(verdict.color),
-                          verdict.reasons.front(), m.segment);
+  const DriftReport drifts = drift_report(r, config);
+  if (verdict.worst_story > 0)
+    m.std_error = 100 * drifts.drifts[static_cast<std::size_t>(verdict.worst_story - 1)].std_error;
+  m.message = fmt::format("after strong motion: {}, {}; {}report {}", color_word(verdict.color),
+                          verdict.reasons.front(),
+                          drifts.placard ? "placard: " + placard_words(*drifts.placard) + "; " : "",
+                          m.segment);
   return m;
 }
 

@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include "daemon/event_report/drift_report.h"
 #include "daemon/event_report/response_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/service/health.h"
@@ -141,8 +142,21 @@ std::string story_words(const Shake& shake, const estimator::Structure& s, int s
                      s.frame_name(peak.frame));
 }
 
+/// "Story 3: 0.42 % ± 0.01 % (12.60 mm) in frame y1", by the drifts where they are known.
+std::string drift_line(const Known& k, const estimator::Structure& s, int story) {
+  const auto i = static_cast<std::size_t>(story - 1);
+  if (i >= k.drifts.size()) return story_words(*k.newest, s, story);
+  const estimator::StoryDrift& d = k.drifts[i];
+  if (!d.known()) return fmt::format("Story {}: not known", story);
+  return fmt::format("Story {}: {} ({:.2f} mm) in frame {}{}{}", story, drift_with_error(d),
+                     1e3 * d.ratio * s.story_height[i], s.frame_name(d.frame),
+                     d.measured ? "" : ", computed",
+                     d.gap_at_peak() ? "; the record has a gap at the peak" : "");
+}
+
 /// Every story, downward; of a tall building those that swayed most.
-void add_stories(const Shake& shake, const estimator::Structure& s, Answer& out) {
+void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
+  const Shake& shake = *k.newest;
   std::vector<int> stories(static_cast<std::size_t>(s.stories));
   std::iota(stories.rbegin(), stories.rend(), 1);
   if (s.stories > kAllStories) {
@@ -154,7 +168,7 @@ void add_stories(const Shake& shake, const estimator::Structure& s, Answer& out)
                      [&](int a, int b) { return swayed(a) > swayed(b); });
     stories.resize(kMostSwayed);
   }
-  for (const int story : stories) out.more.push_back({story_words(shake, s, story), 0, 0});
+  for (const int story : stories) out.more.push_back({drift_line(k, s, story), 0, 0});
   if (s.stories > kAllStories)
     out.more.push_back(
         {fmt::format("The other {} stories swayed less.", s.stories - kMostSwayed), 0, 0});
@@ -189,6 +203,13 @@ void name_report(const Known& k, Answer& out) {
   if (same && r.color != EventColor::green && out.state != AnswerState::bad)
     out.state = r.color == EventColor::red ? AnswerState::bad : AnswerState::look;
   out.more.insert(out.more.begin(), std::move(line));
+  if (r.placard.empty()) return;
+  const AnswerLine placard{
+      fmt::format("Placard: {}. {} {}", r.placard, r.placard_reason, placard_caution()), 0, 0};
+  out.more.insert(out.more.begin(), placard);
+  if (same && r.placard == "unsafe") out.state = AnswerState::bad;
+  if (same && r.placard != "inspected" && out.state == AnswerState::good)
+    out.state = AnswerState::look;
 }
 
 Answer went_through(const Known& k, const Config& config) {
@@ -215,7 +236,7 @@ Answer went_through(const Known& k, const Config& config) {
                   over ? "A shake" : "It is shaking", swayed, base_shear_words(shake.peak, s)),
       shake.from_us, over ? shake.to_us : 0};
   out.state = over ? AnswerState::good : AnswerState::look;
-  add_stories(shake, s, out);
+  add_stories(k, s, out);
   out.more.push_back({accel_words(shake, config), 0, 0});
   if (k.strongest != nullptr && largest_drift_ratio(k.strongest->peak, s) > kStronger * drift)
     out.more.push_back({fmt::format("The strongest so far: {} of a story's height, {}.",

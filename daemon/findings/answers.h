@@ -10,6 +10,7 @@
 #include "daemon/event_report/event_report_folder.h"
 #include "daemon/findings/finding.h"
 #include "daemon/findings/shaking.h"
+#include "estimator/shaking/story_drift.h"
 
 namespace framewatch::daemon {
 
@@ -26,6 +27,8 @@ struct Known {
   bool same_config = true;         ///< the estimator's configuration is the page's
   std::optional<double> residual;  ///< of the model
   const Shake* newest = nullptr;
+  /// Of the newest shake, with their errors; empty: not computed.
+  std::vector<estimator::StoryDrift> drifts = {};
   const Shake* strongest = nullptr;
   std::int64_t followed_since_us = 0;        ///< sensor time since which shakes are noticed
   std::optional<EventReportSummary> report;  ///< the newest of [event_report]

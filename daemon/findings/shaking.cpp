@@ -46,6 +46,14 @@ bool Shaking::moves() const {
                      [this](double of) { return std::abs(of) > threshold_mps2_; });
 }
 
+const std::vector<estimator::StoryDrift>& Shaking::drifts() const {
+  if (newest_ && newest_->to_us != drifts_until_us_) {
+    drifts_ = story_drifts(config_, newest_->peak, response_.knowledge());
+    drifts_until_us_ = newest_->to_us;
+  }
+  return drifts_;
+}
+
 double Shaking::drift_ratio(const Shake& shake) const {
   return estimator::largest_drift_ratio(shake.peak, config_.structure);
 }

@@ -5,6 +5,7 @@
 
 #include "estimator/motion/sample_merger.h"
 #include "estimator/setup/pipeline_config.h"
+#include "estimator/shaking/story_drift.h"
 #include "estimator/shaking/story_response.h"
 
 namespace framewatch::daemon {
@@ -33,6 +34,9 @@ class Shaking {
 
   /// The motion at the last instant.
   const estimator::StoryResponse& response() const { return response_; }
+  /// Of the newest shake, with their errors; empty while there was none. Computed anew only when
+  /// the shake has gone on since the last call.
+  const std::vector<estimator::StoryDrift>& drifts() const;
   /// Null while there was none.
   const Shake* newest() const { return newest_ ? &*newest_ : nullptr; }
   /// By drift ratio, the newest one included.
@@ -48,6 +52,8 @@ class Shaking {
   estimator::StoryResponse response_;
   std::int64_t first_us_ = 0;
   std::optional<Shake> newest_, strongest_;
+  mutable std::vector<estimator::StoryDrift> drifts_;
+  mutable std::int64_t drifts_until_us_ = 0;  ///< Shake::to_us that drifts_ are of
 };
 
 }  // namespace framewatch::daemon

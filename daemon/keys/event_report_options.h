@@ -1,7 +1,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "estimator/shaking/fragility.h"
+#include "estimator/shaking/placard.h"
 #include "estimator/shaking/shaking.h"
 
 namespace framewatch::daemon {
@@ -14,6 +17,23 @@ struct EventReportSettings {
   double yellow_drift_ratio = 0.005, red_drift_ratio = 0.015;
   double yellow_loss_ratio = 0.05, red_loss_ratio = 0.2;
   int most_reports = 500;  ///< older ones are removed
+};
+
+enum class DesignLevel { high, moderate, low, pre };
+
+/// story: limits of a single story's drift. height: HAZUS' lower limits for the average drift of
+/// mid-rise and high-rise buildings, by the number of stories.
+enum class DriftLimits { story, height };
+
+/// [fragility]: what a peak drift may have done to a story, docs/operate.md.
+struct FragilitySettings {
+  std::string type;  ///< HAZUS' building type, "C1" or "C1M"; empty: every median is given
+  DesignLevel design_level = DesignLevel::moderate;
+  DriftLimits drift_limits = DriftLimits::story;
+  estimator::PlacardRules rules;
+  /// What follows from all keys: of every story, and where it is from, in words.
+  std::vector<estimator::Fragility> by_story = {};
+  std::string source = {};
 };
 
 }  // namespace framewatch::daemon

@@ -20,7 +20,8 @@ std::span<const Option> options() {
     for (const auto table :
          {structure_options, channel_options, estimator_options, lcm_options, command_options,
           can_options, watch_options, gap_options, history_options, event_report_options,
-          action_options, fleet_options, scenario_options, effect_options, expectation_options}) {
+          fragility_options, action_options, fleet_options, scenario_options, effect_options,
+          expectation_options}) {
       const std::span<const Option> some = table();
       all.insert(all.end(), some.begin(), some.end());
     }

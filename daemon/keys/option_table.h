@@ -52,6 +52,7 @@ std::span<const Option> watch_options();  ///< and the baseline file's
 std::span<const Option> gap_options();
 std::span<const Option> history_options();
 std::span<const Option> event_report_options();
+std::span<const Option> fragility_options();
 std::span<const Option> action_options();
 std::span<const Option> fleet_options();
 std::span<const Option> scenario_options();

@@ -46,6 +46,11 @@ const SectionDescription kSections[] = {
      "through "
      "([after an earthquake](operate.md#after-an-earthquake)).",
      Reach::restart},
+    {"fragility", "[fragility]",
+     "Optional: at which drift stories are damaged, for the placard after strong motion "
+     "([what it says](operate.md#drift-damage-and-placard)). Without it drifts are told and damage "
+     "is not judged: no type is assumed.",
+     Reach::restart},
     {"actions", "[actions]",
      "Optional: `framewatch run` tells people of events, by a command and a webhook "
      "([telling people](actions.md)).",

@@ -33,10 +33,13 @@ bool fits(const Config& config, const SessionEstimates& estimates) {
 
 std::string write_report(SessionReport r,
                          const std::vector<std::pair<std::string, std::string>>& files,
-                         const std::string& path, const std::string& floors_path) {
+                         const std::string& path, const std::string& floors_path,
+                         const std::string& drifts_path) {
   for (const auto& [use, file] : files) r.files.push_back({use, file, sha256_of_file(file)});
   evaluate(r);
-  const std::string problem = drivers::write_text_file(path, session_report_html(r));
+  std::string problem = drivers::write_text_file(path, session_report_html(r));
+  if (problem.empty() && !drifts_path.empty())
+    problem = drivers::write_text_file(drifts_path, drifts_json(*r.drifts, *r.config));
   if (!problem.empty() || floors_path.empty()) return problem;
   return drivers::write_text_file(floors_path, floors_json(*r.floors, *r.config, *r.motion));
 }
@@ -46,13 +49,16 @@ int report(const ReportArguments& a) {
     return refuse("report", "--raw needs --config, which says what the channels are");
   if (!a.floors.empty() && a.raw.empty())
     return refuse("report", "--floors needs --config and --raw: it is computed from the samples");
+  if (!a.drifts.empty() && a.raw.empty())
+    return refuse("report",
+                  "--drifts needs --config and --raw: they are computed from the samples");
   if (a.raw.empty() && a.record.any())
     return refuse("report", "--unit, --step and the like are for the record files of --raw");
   const std::string path = out_path(a);
   std::vector<std::string> inputs = a.raw;
   inputs.insert(inputs.end(), {a.estimates, a.config});
   for (const std::string& input : inputs) {
-    for (const std::string& out : {path, a.floors}) {
+    for (const std::string& out : {path, a.floors, a.drifts}) {
       std::error_code error;
       if (!out.empty() && (input == out || std::filesystem::equivalent(input, out, error)))
         return refuse("report", out + ": is input and output");
@@ -100,9 +106,10 @@ int report(const ReportArguments& a) {
   if (!a.config.empty()) files.push_back({"configuration", a.config});
   for (const std::string& raw : a.raw) files.push_back({"raw samples", raw});
   progress("making the page", 0);
-  const std::string problem = write_report(std::move(r), files, path, a.floors);
+  const std::string problem = write_report(std::move(r), files, path, a.floors, a.drifts);
   if (!problem.empty()) return refuse("report", problem);
   if (!a.quiet && !a.floors.empty()) fmt::print(stderr, "{}\n", a.floors);
+  if (!a.quiet && !a.drifts.empty()) fmt::print(stderr, "{}\n", a.drifts);
   if (!a.quiet && path != drivers::kStandardOutput) fmt::print("{}\n", path);
   return 0;
 }

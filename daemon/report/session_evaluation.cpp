@@ -126,6 +126,7 @@ void evaluate(SessionReport& r) {
                                       r.config->pipeline.options.high_pass_hz, kLoop_s, from, to)});
   }
   add_dynamic_references(r);
+  r.drifts = session_drifts(*r.config, m, r.estimates, r.changes);
   if (grouped) r.floors = session_floors(*r.config, m, r.estimates);
 }
 

@@ -27,30 +27,6 @@ int direction_of(const estimator::Structure& s, const estimator::SensorAxis& axi
              : 1;
 }
 
-/// Rows between which most of the highest measured floor's motion is.
-std::pair<Index, Index> strong_rows(const SessionMotion& m) {
-  int top = 0;
-  for (const estimator::SensorAxis& axis : m.axes)
-    if (!axis.is_force) top = std::max(top, axis.story);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(m.accel.rows());
-  for (std::size_t a = 0; a < m.axes.size(); ++a) {
-    if (m.axes[a].story != top || m.axes[a].is_force) continue;
-    const auto column = m.accel.col(static_cast<Index>(a)).array();
-    const auto known = column.isFinite();
-    const double mean =
-        known.select(column, 0).sum() / static_cast<double>(std::max<Index>(known.count(), 1));
-    sum += known.select(column - mean, 0).square().matrix();
-  }
-  for (Index i = 1; i < sum.size(); ++i) sum[i] += sum[i - 1];
-  const auto row = [&](double share) {
-    return static_cast<Index>(
-        std::lower_bound(sum.begin(), sum.end(), share * sum[sum.size() - 1]) - sum.begin());
-  };
-  const Index first = row(kBegins);
-  return {first, std::clamp<Index>(row(kEnds), first + 1,
-                                   first + static_cast<Index>(kLongestStrong_s * m.rate_hz))};
-}
-
 void take(double value, std::size_t p, SessionFloors& out) {
   if (!(value > 0)) return;
   out.theta[p] = value;
@@ -121,6 +97,29 @@ void find_peaks(const Config& config, const SessionMotion& m, SessionFloors& out
 }
 
 }  // namespace
+
+std::pair<Index, Index> strong_rows(const SessionMotion& m) {
+  int top = 0;
+  for (const estimator::SensorAxis& axis : m.axes)
+    if (!axis.is_force) top = std::max(top, axis.story);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(m.accel.rows());
+  for (std::size_t a = 0; a < m.axes.size(); ++a) {
+    if (m.axes[a].story != top || m.axes[a].is_force) continue;
+    const auto column = m.accel.col(static_cast<Index>(a)).array();
+    const auto known = column.isFinite();
+    const double mean =
+        known.select(column, 0).sum() / static_cast<double>(std::max<Index>(known.count(), 1));
+    sum += known.select(column - mean, 0).square().matrix();
+  }
+  for (Index i = 1; i < sum.size(); ++i) sum[i] += sum[i - 1];
+  const auto row = [&](double share) {
+    return static_cast<Index>(
+        std::lower_bound(sum.begin(), sum.end(), share * sum[sum.size() - 1]) - sum.begin());
+  };
+  const Index first = row(kBegins);
+  return {first, std::clamp<Index>(row(kEnds), first + 1,
+                                   first + static_cast<Index>(kLongestStrong_s * m.rate_hz))};
+}
 
 SessionFloors session_floors(const Config& config, const SessionMotion& m,
                              const SessionEstimates& estimates) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/config/config.h"
@@ -28,6 +29,9 @@ struct SessionFloors {
   std::vector<std::array<bool, 2>> measured;  ///< likewise: has a channel
   std::vector<estimator::LeftOutFloor> left_out;
 };
+
+/// Rows between which the highest measured floor has 5 to 95 % of its Arias intensity.
+std::pair<Eigen::Index, Eigen::Index> strong_rows(const SessionMotion& motion);
 
 /// config: of groups of stories. Memory and time as a replay of the motion.
 SessionFloors session_floors(const Config& config, const SessionMotion& motion,

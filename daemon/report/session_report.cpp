@@ -65,10 +65,15 @@ std::string provenance(const SessionReport& r) {
 
 }  // namespace
 
+std::string drifts_section(const SessionReport& r) {
+  return r.drifts ? drift_table_section(*r.drifts, *r.config) : "";
+}
+
 std::string session_report_html(const SessionReport& r) {
   const std::string title = r.title.empty() ? "Session of " + r.estimates.table.structure : r.title;
-  return html_page(title, verdict_section(r) + "<h1>" + html_text(title) + "</h1>\n" +
-                              events_section(r) + session_section(r) + figure_10_section(r) +
+  return html_page(title, verdict_section(r) + (r.drifts ? placard_section(*r.drifts) : "") +
+                              "<h1>" + html_text(title) + "</h1>\n" + events_section(r) +
+                              session_section(r) + figure_10_section(r) + drifts_section(r) +
                               floors_section(r) + loops_section(r) + transfer_section(r) +
                               histories_section(r) + parameter_section(r) + check_section(r) +
                               health_section(r) + provenance(r));

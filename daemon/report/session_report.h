@@ -9,6 +9,7 @@
 #include "daemon/estimates/session_estimates.h"
 #include "daemon/report/frame_loops.h"
 #include "daemon/report/session_changes.h"
+#include "daemon/report/session_drifts.h"
 #include "daemon/report/session_file.h"
 #include "daemon/report/session_floors.h"
 #include "daemon/report/session_motion.h"
@@ -55,6 +56,7 @@ struct SessionReport {
   std::vector<TransferFunction> transfer;        ///< of the longest forced stage before a change
   std::vector<TransferFunction> transfer_after;  ///< and after it; empty without one
   std::vector<StageLoops> loops;
+  std::optional<DriftReport> drifts;    ///< with motion
   std::optional<SessionFloors> floors;  ///< of a building of groups, with motion
   std::vector<ReportFile> files;
 };
@@ -81,6 +83,7 @@ std::string stages_section(const SessionReport& report);
 std::string histories_section(const SessionReport& report);
 std::string transfer_section(const SessionReport& report);
 std::string loops_section(const SessionReport& report);
+std::string drifts_section(const SessionReport& report);
 std::string floors_section(const SessionReport& report);
 std::string health_section(const SessionReport& report);
 std::string check_section(const SessionReport& report);

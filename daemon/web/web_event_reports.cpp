@@ -24,6 +24,7 @@ std::string event_reports_json(const std::string& folder) {
       out.push_back({{"name", s->name},
                      {"verdict", color_word(s->color)},
                      {"reason", s->reason},
+                     {"placard", s->placard},
                      {"start_us", s->start_us},
                      {"end_us", s->end_us}});
   return json_line(out);

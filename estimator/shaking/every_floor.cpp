@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 
-EveryFloor::EveryFloor(const PipelineConfig& config)
+EveryFloor::EveryFloor(const PipelineConfig& config, std::int64_t settling)
     : motion_(config),
+      coming_(motion_),
+      settling_(settling),
       elements_(static_cast<std::size_t>(config.parameters().elements())),
       used_(identifying(config.axes)),
       away_rows_(kAway_s * config.options.rate_hz),
@@ -25,12 +28,27 @@ bool EveryFloor::follow_channels(const SampleSet& set) {
     changed = changed || is != present[a];
     present[a] = is;
   }
-  if (changed) motion_.tune(Eigen::VectorXd(motion_.theta()), present);
-  return changed;
+  if (!changed) return false;
+  motion_.tune(Eigen::VectorXd(coming_in_ > 0 ? coming_.theta() : motion_.theta()), present);
+  coming_in_ = 0;
+  return true;
+}
+
+void EveryFloor::push_coming(const SampleSet& set) {
+  began_ = coming_in_ == coming_unsettled_ + settling_;
+  swapped_ = coming_in_ == 1;
+  if (swapped_) std::swap(motion_, coming_);
+  if (--coming_in_ == 0) return;
+  coming_accel_ = coming_.push(set);
+  if (coming_unsettled_ == 0) return;
+  --coming_unsettled_;
+  coming_accel_.setConstant(coming_accel_.size(), kNaN);
 }
 
 const Eigen::VectorXd& EveryFloor::push(const SampleSet& set) {
+  began_ = swapped_ = false;
   if (follow_channels(set)) unsettled_ = motion_.settle_rows();
+  if (coming_in_ > 0) push_coming(set);
   const Eigen::VectorXd& accel = motion_.push(set);
   if (unsettled_ == 0) return accel;
   --unsettled_;
@@ -39,7 +57,7 @@ const Eigen::VectorXd& EveryFloor::push(const SampleSet& set) {
 }
 
 void EveryFloor::follow(const WindowEstimate& e) {
-  if (e.window != 0 || e.status != WindowStatus::valid) return;
+  if (e.window != 0 || e.status != WindowStatus::valid || coming_in_ > 0) return;
   Eigen::VectorXd theta = motion_.theta();
   bool far = false;
   for (std::size_t p = 0; p < e.value.size(); ++p) {
@@ -50,8 +68,9 @@ void EveryFloor::follow(const WindowEstimate& e) {
     used = e.value[p];
   }
   if (!far) return;
-  motion_.tune(theta, std::vector<std::uint8_t>(motion_.present()));
-  unsettled_ = motion_.settle_rows();
+  coming_.tune(theta, std::vector<std::uint8_t>(motion_.present()));
+  coming_unsettled_ = coming_.settle_rows();
+  coming_in_ = coming_unsettled_ + settling_;
 }
 
 }  // namespace framewatch::estimator

@@ -35,6 +35,7 @@ struct Shaking {
   PeakResponse peak;
   std::vector<ShakenStiffness> stiffness;  ///< of the stiffness half of theta
   double gap_nrmse = 0;                    ///< the largest meanwhile; NaN: not simulated
+  DriftKnowledge known = {};               ///< at the end
 };
 
 }  // namespace framewatch::estimator

@@ -146,7 +146,7 @@ void ShakingWatch::gap(double nrmse) {
 }
 
 void ShakingWatch::finish(Time now, const Baseline* baseline) {
-  ended_ = {start_, last_, now, peak_, {}, gap_};
+  ended_ = {start_, last_, now, peak_, {}, gap_, response_.knowledge()};
   const Baseline during = during_.so_far();
   for (std::size_t p = 0; p < elements_; ++p) {
     ShakenStiffness s;

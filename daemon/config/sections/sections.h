@@ -2,7 +2,7 @@
 
 // The sections of a configuration, each read by a source of its own: structure.cpp, design.cpp,
 // channels.cpp, estimator.cpp, lcm.cpp, commands.cpp, watch.cpp, gap.cpp, history.cpp,
-// event_report.cpp, actions.cpp, fleet.cpp.
+// event_report.cpp, fragility.cpp, actions.cpp, fleet.cpp.
 
 #include <optional>
 #include <string>
@@ -53,6 +53,9 @@ std::optional<HistorySettings> read_history(const TomlValue& document,
                                             std::vector<TextProblem>& problems);
 std::optional<EventReportSettings> read_event_report(const TomlValue& document,
                                                      std::vector<TextProblem>& problems);
+/// stories: of the structure; 0: not known.
+std::optional<FragilitySettings> read_fragility(const TomlValue& document, int stories,
+                                                std::vector<TextProblem>& problems);
 std::optional<ActionSettings> read_actions(const TomlValue& document,
                                            std::vector<TextProblem>& problems);
 /// has_history: whether there is a section [history], without which nothing can wait for the hub.

@@ -43,6 +43,7 @@ struct Config {
   std::optional<GapSettings> gap;          ///< none: nothing is simulated beside the measurement
   std::optional<HistorySettings> history;  ///< none: nothing is kept
   std::optional<EventReportSettings> event_report;  ///< none: nothing is written after shaking
+  std::optional<FragilitySettings> fragility;       ///< none: drifts are told, damage is not judged
   std::optional<ActionSettings> actions;            ///< none: nobody is notified
   std::vector<estimator::Effect> effects;  ///< that the building has beyond the linear model
   std::vector<ConfigProblem> doubts;       ///< allowed, and hardly meant; the person is told

@@ -56,12 +56,12 @@ async function loadEventReports() {
   table.replaceChildren();
   $('no-event-reports').hidden = list === null || list.length > 0;
   if (!list || !list.length) return;
-  heads(table, ['strong motion from', 'to', 'judged', 'because', '']);
+  heads(table, ['strong motion from', 'to', 'judged', 'placard', 'because', '']);
   const body = table.createTBody();
   for (const r of list) {
     const row = body.insertRow();
     cell(row, when(r.start_us)); cell(row, when(r.end_us)); cell(row, r.verdict, 'verdict ' + r.verdict);
-    cell(row, r.reason, 'text');
+    cell(row, r.placard || '-', 'text'); cell(row, r.reason, 'text');
     row.insertCell().append(reportLink(r.name, 'report'));
   }
 }

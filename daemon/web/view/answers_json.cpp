@@ -2,6 +2,7 @@
 
 #include "daemon/documents/json_values.h"
 #include "daemon/web/view/page_json.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -43,7 +44,11 @@ std::string answers_json(const Known& known, const Config& config) {
   const estimator::Structure& s = config.pipeline.structure;
   for (int story = 1; known.newest != nullptr && story <= s.stories; ++story) {
     const estimator::PeakDrift peak = peak_drift(known.newest->peak, s, story);
-    drift.push_back({{"ratio", json_value(peak.ratio)}, {"frame", peak.frame}});
+    const auto i = static_cast<std::size_t>(story - 1);
+    drift.push_back({{"ratio", json_value(peak.ratio)},
+                     {"frame", peak.frame},
+                     {"std_error", json_value(i < known.drifts.size() ? known.drifts[i].std_error
+                                                                      : estimator::kNaN)}});
   }
   return json_line({{"answers", questions}, {"findings", findings}, {"drift", drift}});
 }

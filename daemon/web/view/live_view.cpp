@@ -258,6 +258,7 @@ Known LiveView::known() const {
   out.same_config = same_config_;
   out.residual = fit_.residual();
   out.newest = shaking_.newest();
+  out.drifts = shaking_.drifts();
   out.strongest = shaking_.strongest();
   out.followed_since_us = shaking_.first_us();
   out.report = reports_.newest();
