@@ -66,8 +66,7 @@ class FleetTask : public testing::Test {
   }
 
   void plan(const std::string& building) {
-    test::write_file(config_,
-                     building + "\n[history]\ndirectory = \"h\"\nsummary_s = [1, 2, 4]\n");
+    test::write_file(config_, building + "\n[history]\ndirectory = \"h\"\nsummary_s = [1, 2, 4]\n");
     std::vector<std::string> problems;
     std::vector<daemon::ConfigProblem> wrong;
     const auto config = daemon::load_config(config_, wrong);
