@@ -7,6 +7,25 @@
 #include "daemon/replay/replay_command.h"
 
 namespace framewatch::daemon {
+namespace {
+
+/// What is replayed in parts, or as the daemon would take it.
+void add_parts(CLI::App* command, ReplayArguments& arguments) {
+  command->add_flag("--one-pass", arguments.one_pass,
+                    "estimate as the samples come, as the daemon does; otherwise the filters are\n"
+                    "tuned on the input first, and no window is lost to that. --save-state and\n"
+                    "--load-state do so, too");
+  command
+      ->add_option("--save-state", arguments.save_state,
+                   "file to go on from with --load-state: the input goes on elsewhere")
+      ->type_name("FILE");
+  command
+      ->add_option("--load-state", arguments.load_state,
+                   "go on where an earlier replay, or the daemon, stopped")
+      ->type_name("FILE");
+}
+
+}  // namespace
 
 void add_replay(CommandList& commands) {
   ReplayArguments& arguments = commands.arguments<ReplayArguments>();
@@ -46,10 +65,6 @@ void add_replay(CommandList& commands) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--to", arguments.span.to_s, "leave out what is later, likewise")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--one-pass", arguments.one_pass,
-                    "estimate as the samples come, as the daemon does; otherwise the filters are\n"
-                    "tuned on the input first, and no window is lost to that. --save-state and\n"
-                    "--load-state do so, too");
   command
       ->add_option("--speed", arguments.speed,
                    "times real time, by the events' times; pauses of over 10 s are\n"
@@ -58,14 +73,7 @@ void add_replay(CommandList& commands) {
   CLI::Option* lcm = command->add_option("--lcm", arguments.lcm_url,
                                          "publish too, on this URL or the configuration's");
   lcm->expected(0, 1)->type_name("[URL]");
-  command
-      ->add_option("--save-state", arguments.save_state,
-                   "file to go on from with --load-state: the input goes on elsewhere")
-      ->type_name("FILE");
-  command
-      ->add_option("--load-state", arguments.load_state,
-                   "go on where an earlier replay, or the daemon, stopped")
-      ->type_name("FILE");
+  add_parts(command, arguments);
   command->add_option("--expect", arguments.expect, "file that says what must come out (TOML)")
       ->type_name("FILE");
   command

@@ -56,7 +56,12 @@ class Pass {
     return true;
   }
 
-  std::optional<estimator::Tuning> tuning() const { return estimation_.pipeline().tuning(); }
+  /// Empty when the record says nothing of it.
+  std::optional<estimator::Tuning> tuning() const {
+    std::optional<estimator::Tuning> out = estimation_.pipeline().tuning();
+    if (out && !out->found_right && out->theta0 == began_) out.reset();
+    return out;
+  }
   bool settled() const { return windows_ >= FirstPasses::kHolds || same_as(began_); }
 
  private:

@@ -55,6 +55,7 @@ class StateFile : public testing::Test {
                                    const std::string& load, const std::string& save) {
     ReplayArguments a{
         test::table_config(), std::move(logs), out.empty() ? "" : path(out), false, true, false};
+    a.one_pass = true;  // as parts are estimated
     if (!load.empty()) a.load_state = path(load);
     if (!save.empty()) a.save_state = path(save);
     return a;

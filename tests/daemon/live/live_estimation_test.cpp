@@ -61,18 +61,17 @@ Collected run_live(const Config& config, const std::string& log) {
   return collected;
 }
 
-TEST(LiveEstimation, GivesTheBytesThatReplayGives) {
+TEST(LiveEstimation, GivesTheBytesThatReplayInOnePassGives) {
   const test::TemporaryDirectory directory;
   test::record_table_test(directory.path("rec.lcmlog"), 8);
   const Config config = table();
   const Collected live = run_live(config, directory.path("rec.lcmlog"));
-  ASSERT_EQ(replay({test::table_config(),
-                    {directory.path("rec.lcmlog")},
-                    directory.path("est.lcmlog"),
-                    false,
-                    true,
-                    false}),
-            0);
+  ReplayArguments as_it_comes;
+  as_it_comes.config = test::table_config();
+  as_it_comes.inputs = {directory.path("rec.lcmlog")};
+  as_it_comes.out = directory.path("est.lcmlog");
+  as_it_comes.quiet = as_it_comes.one_pass = true;
+  ASSERT_EQ(replay(as_it_comes), 0);
   Payloads replayed;
   LcmLogReader reader;
   ASSERT_TRUE(reader.open(directory.path("est.lcmlog")));
