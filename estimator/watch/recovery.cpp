@@ -250,7 +250,8 @@ RecoveryLaw Recovery::law() const {
       break;
     }
   const double later = std::log10(out.later_s);
-  out.later_loss = std::max(fit.loss(later), 0.0);
+  // The law's slope is of recovery: a loss does not grow by it.
+  out.later_loss = std::clamp(fit.loss(later), 0.0, std::max(out.loss, 0.0));
   out.later_error = fit.error(later);
   out.later_low = std::max(out.later_loss - kErrors * out.later_error, 0.0);
   out.later_high = out.later_loss + kErrors * out.later_error;
