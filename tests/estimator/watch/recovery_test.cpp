@@ -3,6 +3,7 @@
 #include "estimator/watch/recovery.h"
 
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <vector>
 
@@ -182,6 +183,34 @@ TEST(Recovery, WithoutAnAmplitudeCurveTheSofteningIsNoLoss) {
     const Count c = count(s, until_s);
     EXPECT_EQ(c.of(RecoveryVerdict::lasting) + c.of(RecoveryVerdict::recovering), 0) << until_s;
   }
+}
+
+/// The table of docs/equations.md, recovery.
+TEST(Recovery, IntervalsHoldAndNoVerdictIsWrong) {
+  struct Case {
+    const char* name;
+    double (*loss)(double);
+    bool curve;
+    std::vector<double> until_s;
+    RecoveryVerdict wrong;
+  };
+  const auto none = [](double) { return 0.0; };
+  for (const Case& c :
+       {Case{"recovers", recovers, true, {60, 600, kDay_s}, RecoveryVerdict::lasting},
+        {"stays", stays, true, {60, 600, kDay_s}, RecoveryVerdict::recovered},
+        {"both", both, true, {3600, kDay_s}, RecoveryVerdict::recovered},
+        {"none", none, true, {60, kDay_s}, RecoveryVerdict::lasting},
+        {"stays, no curve", stays, false, {600, 3600}, RecoveryVerdict::recovered}})
+    for (const double until_s : c.until_s) {
+      const Count n = count({c.loss, 0, kPerLog, c.curve, kNoise}, until_s);
+      std::printf(
+          "%-16s after %6.0f s: not known %3d, recovering %3d, lasting %3d, recovered %3d, "
+          "loss outside %2d\n",
+          c.name, until_s, n.of(RecoveryVerdict::not_known), n.of(RecoveryVerdict::recovering),
+          n.of(RecoveryVerdict::lasting), n.of(RecoveryVerdict::recovered), n.loss_outside);
+      EXPECT_LE(n.loss_outside, kMostOutside) << c.name << ' ' << until_s;
+      EXPECT_EQ(n.of(c.wrong), kMostWrong) << c.name << ' ' << until_s;
+    }
 }
 
 TEST(Recovery, ALossIsFoundBesideTheSoftening) {
