@@ -1,5 +1,6 @@
 #include "daemon/estimation/estimation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -35,18 +36,21 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
             watch(estimate);
           },
           [this](const estimator::SampleSet& instant) {
+            if (watch_) strong_.push(instant);
             look_for_gap(instant);
             look_for_shaking(instant);
             if (taps_.instant) taps_.instant(instant);
           },
           [this](const estimator::ModelFit& fit) { publisher_.model(fit); }),
+      strong_(pipeline_.axes(), config.pipeline.options.rate_hz),
       intake_(
           wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
           intake_settings(config)),
       can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
       can_events_(config.can),
       absurd_events_(config.pipeline.axes),
-      channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s) {
+      channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s),
+      newest_us_(config.pipeline.axes.size(), INT64_MIN) {
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
   begin_watch();
@@ -56,9 +60,11 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
 
 void Estimation::begin_watch() {
   watch_.reset();
+  recovery_.reset();
   if (!config_.watch) return;
   watch_.emplace(pipeline_.parameters(), config_.watch->options,
                  window_lengths_s(config_.pipeline.options), config_.watch->baseline);
+  recovery_.emplace(*watch_, config_.watch->options);
 }
 
 void Estimation::begin_gap() {
@@ -117,7 +123,24 @@ void Estimation::adopt(const estimator::GapModel& model) {
 void Estimation::watch(const estimator::WindowEstimate& estimate) {
   if (!watch_) return;
   for (const estimator::Alarm& alarm : watch_->push(estimate))
-    announce(stiffness_event(alarm, pipeline_.parameters()));
+    announce(with_recovery(stiffness_event(alarm, pipeline_.parameters()), alarm.parameter));
+  follow_recovery(estimate);
+}
+
+void Estimation::follow_recovery(const estimator::WindowEstimate& estimate) {
+  const bool of_weak_motion = static_cast<std::size_t>(estimate.window) ==
+                              window_lengths_s(config_.pipeline.options).size();
+  recovery_->push(estimate, of_weak_motion, *watch_, strong_);
+  const estimator::ParameterTable table = pipeline_.parameters();
+  for (const int p : recovery_->due()) {
+    const event_t* const raised = raised_.find("stiffness_change", table[p].name);
+    if (raised != nullptr) announce(with_recovery(renewed(*raised, estimate.end), p));
+  }
+}
+
+event_t Estimation::with_recovery(event_t event, int parameter) const {
+  const estimator::Recovery* recovery = recovery_->of(parameter);
+  return recovery == nullptr ? event : recovering(std::move(event), recovery->law());
 }
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
@@ -167,7 +190,15 @@ void Estimation::sample(const estimator::AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
   if (taps_.sample) taps_.sample(sample);
   channel_events_.sample(sample);
+  if (const auto axis = static_cast<std::size_t>(sample.axis); axis < newest_us_.size())
+    newest_us_[axis] = to_microseconds(sample.time);
   pipeline_.push(sample);
+}
+
+void Estimation::came_up(bool raw) {
+  if (!shaking_) return;
+  const std::int64_t newest_us = *std::max_element(newest_us_.begin(), newest_us_.end());
+  shaking_->came_up(estimator::from_microseconds(newest_us), raw);
 }
 
 void Estimation::finish() {
@@ -180,8 +211,8 @@ template <typename Archive>
 void Estimation::archive(Archive& a) {
   a(seconds_);
   for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMostCount);
-  a(intake_, can_, can_events_, absurd_events_, channel_events_, raised_);
-  if (watch_) a(*watch_);
+  a(intake_, can_, can_events_, absurd_events_, channel_events_, raised_, newest_us_);
+  if (watch_) a(*watch_, strong_, *recovery_);
   if (shaking_) {
     a(*shaking_, counted_before_);
     findings_.resize(a.count(findings_.size()));
@@ -221,6 +252,7 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   copy(before.raised_, raised_);
   windows_ = before.windows_;
   absurd_temperatures_ = before.absurd_temperatures_;
+  newest_us_ = before.newest_us_;
   live_ = before.live_;
   if (keep_window) {
     estimator::StateWriter writer;
@@ -232,8 +264,9 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   const estimator::Baseline* given = baseline();
   const bool same_baseline =
       given == nullptr || (before.baseline() != nullptr && before.baseline()->holds(*given));
-  const bool watch_goes_on =
-      watch_ && before.watch_ && same_baseline && copy(*before.watch_, *watch_);
+  const bool watch_goes_on = watch_ && before.watch_ && same_baseline &&
+                             copy(*before.watch_, *watch_) && copy(before.strong_, strong_) &&
+                             copy(*before.recovery_, *recovery_);
   if (!watch_goes_on) {
     begin_watch();
     withdraw("stiffness_change");

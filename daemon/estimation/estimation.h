@@ -23,6 +23,8 @@
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/gap/gap_monitor.h"
 #include "estimator/shaking/shaking_watch.h"
+#include "estimator/watch/recovery_watch.h"
+#include "estimator/watch/strong_motion.h"
 
 namespace framewatch::daemon {
 
@@ -83,6 +85,13 @@ class Estimation {
   /// settings start anew: a gap window of another length, changes against another baseline.
   void take_over(Estimation& before, bool keep_window);
 
+  /// Sensor time of the newest sample of every axis that was taken; INT64_MIN: none was.
+  const std::vector<std::int64_t>& newest_us() const { return newest_us_; }
+  /// The process began with the samples up to newest_us(), by a state or from a history, and
+  /// listens from now on: a report of strong motion says what lies between. raw: it read the raw
+  /// samples that the process before had stored last.
+  void came_up(bool raw);
+
   /// The whole state, and back; see Pipeline.
   void save(estimator::StateWriter& state);
   [[nodiscard]] bool load(estimator::StateReader& state);
@@ -95,6 +104,8 @@ class Estimation {
   drivers::IntakeResult temperature(const void* data, std::size_t size);
   void main_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
+  void follow_recovery(const estimator::WindowEstimate& estimate);
+  event_t with_recovery(event_t event, int parameter) const;
   void look_for_gap(const estimator::SampleSet& instant);
   void look_for_shaking(const estimator::SampleSet& instant);
   void begin_shaking();
@@ -112,6 +123,8 @@ class Estimation {
   RaisedEvents raised_;
   estimator::Pipeline pipeline_;
   std::optional<estimator::Watch> watch_;
+  estimator::StrongMotion strong_;
+  std::optional<estimator::RecoveryWatch> recovery_;  ///< with watch_
   std::optional<estimator::GapMonitor> gap_;
   std::optional<estimator::ShakingWatch> shaking_;
   std::vector<estimator::AxisCounters> counted_before_;  ///< when the strong motion began
@@ -123,6 +136,7 @@ class Estimation {
   AbsurdEvents absurd_events_;
   ChannelEvents channel_events_;
   SensorSeconds seconds_;
+  std::vector<std::int64_t> newest_us_;
   LiveState live_;
   std::int64_t windows_ = 0;
   std::int64_t absurd_temperatures_ = 0;

@@ -10,6 +10,7 @@
 #include "daemon/config/gap_model.h"
 #include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
+#include "daemon/events/recovery_words.h"
 
 namespace framewatch::daemon {
 
@@ -34,6 +35,21 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
                                                 alarm.change.std_error),
                                 sensor_time_text(m.since_us));
   return m;
+}
+
+event_t recovering(event_t event, const estimator::RecoveryLaw& law) {
+  const bool early = law.verdict == estimator::RecoveryVerdict::not_known &&
+                     law.time_s < estimator::Recovery::kRenew_s[0];
+  if (event.state == event_state::cleared || early) return event;
+  event.message += kAfterStrongMotion + recovery_words(law);
+  return event;
+}
+
+event_t renewed(event_t raised, estimator::Time now) {
+  raised.time_us = to_microseconds(now);
+  raised.state = event_state::changed;
+  raised.message = raised.message.substr(0, raised.message.find(kAfterStrongMotion));
+  return raised;
 }
 
 event_t gap_event(const estimator::GapNews& news, const Config& config) {

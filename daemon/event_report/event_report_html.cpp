@@ -9,6 +9,7 @@
 #include "daemon/documents/svg_plot.h"
 #include "daemon/event_report/event_report.h"
 #include "daemon/event_report/response_words.h"
+#include "daemon/event_report/unheard_words.h"
 #include "daemon/events/event_words.h"
 
 namespace framewatch::daemon {
@@ -35,11 +36,16 @@ const char* advice(EventColor color) {
 std::string verdict_text(const EventReport& r, const Config& config, const EventVerdict& verdict) {
   std::string word = color_word(verdict.color);
   word[0] = static_cast<char>(word[0] - 'a' + 'A');
-  std::string out =
-      "<p class=\"verdict\">" + word + ": " + html_text(verdict.reasons.front()) + ".</p>\n";
+  std::string out;
+  const std::vector<std::string> unheard = unheard_sentences(r.shaking);
+  for (const std::string& one : unheard)
+    if (one != verdict.reasons.front())
+      out += "<p class=\"unheard\"><strong>" + html_text(one) + ".</strong></p>\n";
+  out += "<p class=\"verdict\">" + word + ": " + html_text(verdict.reasons.front()) + ".</p>\n";
   std::string rest;
   for (std::size_t i = 1; i < verdict.reasons.size(); ++i)
-    rest += "<li>" + html_text(verdict.reasons[i]) + "</li>\n";
+    if (std::find(unheard.begin(), unheard.end(), verdict.reasons[i]) == unheard.end())
+      rest += "<li>" + html_text(verdict.reasons[i]) + "</li>\n";
   if (!rest.empty()) out += "<ul>\n" + rest + "</ul>\n";
   out += "<p>" + std::string(advice(verdict.color)) + "</p>\n";
   const double length =
@@ -65,8 +71,11 @@ std::string drift_section(const EventReport& r, const Config& config) {
   SvgAxis stories{""};
   SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
   std::vector<std::vector<std::string>> rows;
+  const bool incomplete = !r.shaking.unheard.empty();
   std::vector<std::string> columns{"", "peak acceleration, m/s^2",
-                                   "peak drift of the story below, % of its height"};
+                                   incomplete
+                                       ? "peak drift of the story below, at least, % of its height"
+                                       : "peak drift of the story below, % of its height"};
   const bool computed = any_computed(config);
   if (computed) columns.push_back("that drift is");
   for (int story = config.pipeline.structure.stories; story >= 0; --story) {
@@ -93,8 +102,9 @@ std::string drift_section(const EventReport& r, const Config& config) {
                      fmt::format("Of the frames of each story the one that drifted most; dotted: "
                                  "yellow from {:g} %, red from {:g} %.",
                                  100 * s.yellow_drift_ratio, 100 * s.red_drift_ratio)) +
-         "<p>Peak base shear: " + base_shear_words(r.shaking.peak, config.pipeline.structure) +
-         ".</p>\n" + html_table(columns, rows) +
+         "<p>Peak base shear: " + (incomplete ? "at least " : "") +
+         base_shear_words(r.shaking.peak, config.pipeline.structure) + ".</p>\n" +
+         html_table(columns, rows) +
          (computed ? "<p>Computed: the floor, or the one below, has no channel; its motion follows "
                      "from the measured floors by what was identified of the stories between them, "
                      "each with its share of the design. A loss inside such a group shows in its "

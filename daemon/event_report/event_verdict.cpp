@@ -5,6 +5,7 @@
 
 #include "daemon/base/utc_time.h"
 #include "daemon/event_report/event_report.h"
+#include "daemon/event_report/unheard_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/events/place_words.h"
 #include "estimator/numeric/nan.h"
@@ -44,8 +45,9 @@ void judge_drifts(const EventReport& r, const Config& config, EventVerdict& out,
     if (color != EventColor::green)
       reasons.push_back(
           {color, ratio / limit,
-           fmt::format("story {} drifted by {:.2f} % of its height ({}limit {:g} %)", story,
-                       100 * ratio, drift_is_measured(config.pipeline, story) ? "" : "computed, ",
+           fmt::format("story {} drifted by {}{:.2f} % of its height ({}limit {:g} %)", story,
+                       r.shaking.unheard.empty() ? "" : "at least ", 100 * ratio,
+                       drift_is_measured(config.pipeline, story) ? "" : "computed, ",
                        100 * limit)});
   }
 }
@@ -83,6 +85,9 @@ EventVerdict judge(const EventReport& r, const Config& config) {
   std::vector<Reason> reasons;
   judge_drifts(r, config, out, reasons);
   const int known = judge_losses(r, config, reasons);
+  // Nobody knows the peaks of the time that was not heard, so it is not green.
+  for (const std::string& unheard : unheard_sentences(r.shaking))
+    reasons.push_back({EventColor::yellow, 0, unheard});
   std::stable_sort(reasons.begin(), reasons.end(), [](const Reason& a, const Reason& b) {
     return a.color != b.color ? a.color > b.color : a.size > b.size;
   });
@@ -122,8 +127,10 @@ event_t event_of(const EventReport& r, const Config& config) {
   m.std_error = estimator::kNaN;
   m.unit = "%";
   m.segment = event_report_name(r) + ".html";
-  m.message = fmt::format("after strong motion: {}, {}; report {}", color_word(verdict.color),
-                          verdict.reasons.front(), m.segment);
+  const std::string unheard = unheard_words(r.shaking);
+  m.message =
+      fmt::format("after strong motion: {}{}, {}; report {}", unheard.empty() ? "" : unheard + "; ",
+                  color_word(verdict.color), verdict.reasons.front(), m.segment);
   return m;
 }
 

@@ -9,6 +9,7 @@
 #include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/events/place_words.h"
+#include "daemon/events/recovery_words.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
@@ -33,7 +34,12 @@ void describe_change(Finding& f, const Config& config) {
       "the finding.",
       at ? place_words(f.place) : f.place);
   if (!at || !std::isfinite(f.change_ratio) || !(f.std_error > 0)) return;  // its message says it
-  f.text = change_sentence(table[*at], f.change_ratio, f.std_error) + ".";
+  const std::size_t recovery = f.text.find(kAfterStrongMotion);
+  const std::string more =
+      recovery == std::string::npos
+          ? ""
+          : " After strong motion: " + f.text.substr(recovery + kAfterStrongMotion.size()) + ".";
+  f.text = change_sentence(table[*at], f.change_ratio, f.std_error) + "." + more;
 }
 
 void describe_strong_motion(Finding& f) {

@@ -28,6 +28,26 @@ struct ShakenStiffness {
   double std_error() const;  ///< of ratio()
 };
 
+/// Why nothing is known of a time.
+enum class UnheardWhy {
+  no_samples,     ///< the program ran and no sample came
+  restart,        ///< it was started anew; what it had heard before is known from raw samples
+  restart_no_raw  ///< it was started anew, and no raw samples of before were there to read
+};
+
+/// A time of which no sample is known.
+struct Unheard {
+  Time from{}, to{};        ///< the last instant before it, the first one behind it
+  bool from_known = false;  ///< false: nothing was heard before `to`
+  UnheardWhy why = UnheardWhy::no_samples;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(from, to, from_known);
+    a.within(why, 0, static_cast<double>(UnheardWhy::restart_no_raw));
+  }
+};
+
 /// One strong motion, as the sensors and the windows showed it.
 struct Shaking {
   Time start{}, end{};  ///< first and last instant above the trigger
@@ -35,6 +55,10 @@ struct Shaking {
   PeakResponse peak;
   std::vector<ShakenStiffness> stiffness;  ///< of the stiffness half of theta
   double gap_nrmse = 0;                    ///< the largest meanwhile; NaN: not simulated
+  /// In order of time: those within it, and those that ended less than ShakingOptions::quiet_s
+  /// before `start`, because it may have begun in them. Its peaks are those of the rest.
+  std::vector<Unheard> unheard = {};
+  double drift_settles_s = 0;  ///< drifts are not known for so long after each of them
 };
 
 }  // namespace framewatch::estimator

@@ -14,7 +14,7 @@ namespace {
 
 /// Unknowns of the fit: level at the reference time, slope, then those that errors have in common:
 /// of the amplitude curve and of the two baselines.
-constexpr int kLevel = 0, kSlope = 1, kCurve = 2, kBaseline = 3, kUnknowns = 5;
+constexpr int kOfLevel = 0, kOfSlope = 1, kOfCurve = 2, kOfBaseline = 3, kLawUnknowns = 5;
 /// The slope is drawn to 0 by this, per decade of time: softened concrete and rock recover by up to
 /// some per cent of their stiffness per decade, hardly ever by more than 5 %.
 constexpr double kUsualSlope = 0.05;
@@ -28,7 +28,7 @@ constexpr double kMisfit = 3;
 /// A part of the record that is fitted alone has this many points at least.
 constexpr std::size_t kLeastPoints = 4;
 
-double seconds(Time from, Time to) {
+double seconds_from_to(Time from, Time to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
@@ -61,24 +61,25 @@ RecoveryWindow recovery_window(Time start, Time end, double value, double std_er
 
 /// The law and the covariance of its unknowns.
 struct Recovery::Fit {
-  Eigen::Matrix<double, kUnknowns, 1> x = Eigen::Matrix<double, kUnknowns, 1>::Zero();
-  Eigen::Matrix<double, kUnknowns, kUnknowns> covariance;
-  Eigen::Matrix<double, kUnknowns, 1> noise_only;  ///< variances, were baseline and curve exact
-  double reference = 0;                            ///< log10 of the time of `level`
+  Eigen::Matrix<double, kLawUnknowns, 1> x = Eigen::Matrix<double, kLawUnknowns, 1>::Zero();
+  Eigen::Matrix<double, kLawUnknowns, kLawUnknowns> covariance;
+  Eigen::Matrix<double, kLawUnknowns, 1> noise_only;  ///< variances, were baseline and curve exact
+  double reference = 0;                               ///< log10 of the time of `level`
   double first = 0, last = 0;
   double misfit = 0;  ///< of the means about the law, weighted
   int freedom = 0, windows = 0;
 
   /// Of the loss at a logarithm of time; beyond `last` with what the law may be off there.
-  double loss(double log) const { return -(x[kLevel] + x[kSlope] * (log - reference)); }
+  double loss(double log) const { return -(x[kOfLevel] + x[kOfSlope] * (log - reference)); }
   double error(double log) const {
     const double d = log - reference, beyond = std::max(log - last, 0.0);
-    const double variance = covariance(kLevel, kLevel) + 2 * d * covariance(kLevel, kSlope) +
-                            d * d * covariance(kSlope, kSlope);
+    const double variance = covariance(kOfLevel, kOfLevel) +
+                            2 * d * covariance(kOfLevel, kOfSlope) +
+                            d * d * covariance(kOfSlope, kOfSlope);
     return std::hypot(std::sqrt(std::max(variance, 0.0)),
-                      kBendPerDecade * std::abs(x[kSlope]) * beyond * beyond / 2);
+                      kBendPerDecade * std::abs(x[kOfSlope]) * beyond * beyond / 2);
   }
-  double slope_error() const { return std::sqrt(covariance(kSlope, kSlope)); }
+  double slope_error() const { return std::sqrt(covariance(kOfSlope, kOfSlope)); }
 };
 
 void Recovery::begin(Time end_of_motion) {
@@ -94,8 +95,8 @@ void Recovery::push(const RecoveryWindow& w) {
   if (!active_ || w.source >= kSources || !(w.std_error > 0) || !std::isfinite(w.off)) return;
   if (w.start < last_end_[w.source]) return;
   last_end_[w.source] = w.end;
-  newest_s_ = std::max(newest_s_, seconds(began_, w.end));
-  const double log = mean_log(seconds(began_, w.start), seconds(began_, w.end));
+  newest_s_ = std::max(newest_s_, seconds_from_to(began_, w.end));
+  const double log = mean_log(seconds_from_to(began_, w.start), seconds_from_to(began_, w.end));
   const auto place = std::clamp(kBinsPerDecade * log, 0.0, static_cast<double>(kBins) - 0.5);
   Bin& bin = bins_[w.source * kBins + static_cast<std::size_t>(place)];
   const double weight = 1 / (w.std_error * w.std_error);
@@ -108,6 +109,12 @@ void Recovery::push(const RecoveryWindow& w) {
   bin.log_square += weight * log * log;
   bin.log_off += weight * log * w.off;
   bin.off_square += weight * w.off * w.off;
+}
+
+int Recovery::windows() const {
+  int out = 0;
+  for (const Bin& b : bins_) out += b.count;
+  return out;
 }
 
 /// In order of time.
@@ -137,16 +144,16 @@ Recovery::Fit Recovery::fit(const std::vector<Point>& points, std::size_t from, 
     out.windows += points[i].count;
   }
   out.reference /= weight;
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kUnknowns, kUnknowns);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(kLawUnknowns, kLawUnknowns);
   information.diagonal() << 1 / (kUsualLevel * kUsualLevel), 1 / (kUsualSlope * kUsualSlope), 1, 1,
       1;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(kUnknowns);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(kLawUnknowns);
   const auto row_of = [&](const Point& p) {
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(kUnknowns);
-    row[kLevel] = 1;
-    row[kSlope] = p.log - out.reference;
-    row[kCurve] = p.amplitude;
-    row[kBaseline + static_cast<int>(p.source)] = p.baseline;
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(kLawUnknowns);
+    row[kOfLevel] = 1;
+    row[kOfSlope] = p.log - out.reference;
+    row[kOfCurve] = p.amplitude;
+    row[kOfBaseline + static_cast<int>(p.source)] = p.baseline;
     return row;
   };
   for (std::size_t i = from; i < points.size(); ++i) {
@@ -171,7 +178,7 @@ Recovery::Fit Recovery::fit(const std::vector<Point>& points, std::size_t from, 
 
 /// What windows scatter about the law within their bins, over what their errors say.
 double Recovery::excess(const std::vector<Point>& points, const Fit& fit) {
-  const double slope = fit.x[kSlope];
+  const double slope = fit.x[kOfSlope];
   double square = 0;
   int freedom = -1;
   for (const Point& p : points) {
@@ -236,7 +243,7 @@ RecoveryLaw Recovery::law() const {
   const double now = std::log10(std::max(newest_s_, kFirst_s));
   out.loss = fit.loss(now);
   out.std_error = fit.error(now);
-  out.slope = fit.x[kSlope];
+  out.slope = fit.x[kOfSlope];
   out.slope_error = fit.slope_error();
   out.first_s = std::pow(10, all.front().log);
   const Loss first = loss_at(out.first_s);
@@ -283,23 +290,23 @@ void Recovery::judge(const Fit& fit, RecoveryLaw& law) const {
     return is(RecoveryVerdict::recovering, RecoveryReason::none);
   // The largest part of the variance of the slope, or of the loss where that is what is not known.
   const bool of_slope = law.loss > kErrors * law.std_error;
-  const int which = of_slope ? kSlope : kLevel;
+  const int which = of_slope ? kOfSlope : kOfLevel;
   const double variance = fit.covariance(which, which);
   if (fit.noise_only[which] > 0.5 * variance)
     return is(RecoveryVerdict::not_known, RecoveryReason::inexact);
   double baseline = 0;
   for (std::size_t s = 0; s < kSources; ++s) {
-    const int b = kBaseline + static_cast<int>(s);
+    const int b = kOfBaseline + static_cast<int>(s);
     baseline += fit.covariance(which, b) * fit.covariance(which, b);
   }
-  const double curve = fit.covariance(which, kCurve) * fit.covariance(which, kCurve);
+  const double curve = fit.covariance(which, kOfCurve) * fit.covariance(which, kOfCurve);
   is(RecoveryVerdict::not_known,
      baseline > curve ? RecoveryReason::baseline : RecoveryReason::amplitude);
 }
 
 bool Recovery::renewal_due(Time now) {
   if (!active_ || renewed_ >= kRenew_s.size()) return false;
-  const double since_s = seconds(began_, now);
+  const double since_s = seconds_from_to(began_, now);
   if (since_s < kRenew_s[renewed_] || newest_s_ <= (renewed_ > 0 ? kRenew_s[renewed_ - 1] : 0))
     return false;
   while (renewed_ < kRenew_s.size() && since_s >= kRenew_s[renewed_]) ++renewed_;

@@ -90,6 +90,8 @@ class Recovery {
   void begin(Time end_of_motion);
   bool active() const { return active_; }
   Time began() const { return began_; }
+  /// Windows that the law is made of.
+  int windows() const;
   /// Windows that begin before the end of the strong motion, or overlap the last one of their
   /// source, are left out.
   void push(const RecoveryWindow& window);
