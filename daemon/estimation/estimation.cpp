@@ -134,13 +134,19 @@ void Estimation::follow_recovery(const estimator::WindowEstimate& estimate) {
   const estimator::ParameterTable table = pipeline_.parameters();
   for (const int p : recovery_->due()) {
     const event_t* const raised = raised_.find("stiffness_change", table[p].name);
-    if (raised != nullptr) announce(with_recovery(renewed(*raised, estimate.end), p));
+    if (raised != nullptr && is_recovering(*raised, p))
+      announce(with_recovery(renewed(*raised, estimate.end), p));
   }
 }
 
-event_t Estimation::with_recovery(event_t event, int parameter) const {
+bool Estimation::is_recovering(const event_t& event, int parameter) const {
   const estimator::Recovery* recovery = recovery_->of(parameter);
-  return recovery == nullptr ? event : recovering(std::move(event), recovery->law());
+  return recovery != nullptr && recovery->is_of(estimator::from_microseconds(event.since_us));
+}
+
+event_t Estimation::with_recovery(event_t event, int parameter) const {
+  if (!is_recovering(event, parameter)) return event;
+  return recovering(std::move(event), recovery_->of(parameter)->law());
 }
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,

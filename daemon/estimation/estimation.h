@@ -105,6 +105,8 @@ class Estimation {
   void main_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
   void follow_recovery(const estimator::WindowEstimate& estimate);
+  /// Whether a change of this parameter began with the strong motion that its recovery law is of.
+  bool is_recovering(const event_t& event, int parameter) const;
   event_t with_recovery(event_t event, int parameter) const;
   void look_for_gap(const estimator::SampleSet& instant);
   void look_for_shaking(const estimator::SampleSet& instant);

@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kEver_us = 2'000'000'000'000'000'000;
 constexpr double kOtherClocks_s = 60;  // by which the stamps of two axes may differ
 
-std::int64_t microseconds(double seconds) {
+std::int64_t backlog_us(double seconds) {
   return static_cast<std::int64_t>(1e6 * seconds);
 }
 
@@ -42,8 +42,8 @@ RawBacklog RawBacklog::read(const Config& config, const std::vector<std::int64_t
   const std::vector<RawLog> logs = raw_logs(raw_folder(directory));
   if (logs.empty()) return out;
   const std::int64_t newest_us = *std::max_element(known_us.begin(), known_us.end());
-  std::int64_t from_us = logs.back().start_us - microseconds(kMost_s);
-  if (newest_us != INT64_MIN) from_us = std::max(from_us, newest_us - microseconds(kOtherClocks_s));
+  std::int64_t from_us = logs.back().start_us - backlog_us(kMost_s);
+  if (newest_us != INT64_MIN) from_us = std::max(from_us, newest_us - backlog_us(kOtherClocks_s));
   const std::size_t most = kMostSamples + static_cast<std::size_t>(config.pipeline.options.rate_hz *
                                                                    config.history->rotate_s) *
                                               config.pipeline.axes.size();
@@ -67,7 +67,7 @@ RawBacklog RawBacklog::read(const Config& config, const std::vector<std::int64_t
                                 visitor, notes, problem);
   if (!problem.empty()) notes.push_back(problem);
   if (!out.samples_.empty())
-    out.drop_before(to_microseconds(out.samples_.back().time) - microseconds(kMost_s));
+    out.drop_before(to_microseconds(out.samples_.back().time) - backlog_us(kMost_s));
   if (out.samples_.size() > kMostSamples)
     out.drop_before(to_microseconds(out.samples_[out.samples_.size() - kMostSamples].time));
   if (!resumed) out.keep_strong_motion(config);
@@ -88,7 +88,7 @@ void RawBacklog::keep_strong_motion(const Config& config) {
   for (const estimator::AccelSample& sample : samples_) acquisition.push(sample);
   acquisition.finish();
   if (shaking->active())
-    drop_before(began_us - microseconds(kBefore_s));
+    drop_before(began_us - backlog_us(kBefore_s));
   else
     *this = RawBacklog(whole_);
 }

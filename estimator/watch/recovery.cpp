@@ -111,6 +111,11 @@ void Recovery::push(const RecoveryWindow& w) {
   bin.off_square += weight * w.off * w.off;
 }
 
+bool Recovery::is_of(Time since) const {
+  const double after_s = seconds_from_to(began_, since);
+  return active_ && after_s >= -kMotion_s && after_s <= kRenew_s[0];
+}
+
 int Recovery::windows() const {
   int out = 0;
   for (const Bin& b : bins_) out += b.count;

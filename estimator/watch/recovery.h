@@ -80,6 +80,7 @@ class Recovery {
   static constexpr std::size_t kFewest = 4;  ///< windows that a law needs
   static constexpr double kLeastSpan = 0.5;  ///< decades of time that a law needs
   static constexpr double kYear_s = 31'557'600;
+  static constexpr double kMotion_s = 900;  ///< no strong motion is longer
   /// The finding is renewed so long after the strong motion, s.
   static constexpr std::array<double, 3> kRenew_s{600, 3600, 86400};
 
@@ -90,6 +91,9 @@ class Recovery {
   void begin(Time end_of_motion);
   bool active() const { return active_; }
   Time began() const { return began_; }
+  /// Whether a change that is seen since then may be of this strong motion: from kMotion_s before
+  /// its end to the first renewal. Later ones have another cause, and no law.
+  bool is_of(Time since) const;
   /// Windows that the law is made of.
   int windows() const;
   /// Windows that begin before the end of the strong motion, or overlap the last one of their

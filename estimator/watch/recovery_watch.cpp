@@ -24,6 +24,7 @@ void RecoveryWatch::begin(Time ended) {
 }
 
 const Recovery* RecoveryWatch::of(int parameter) const {
+  if (parameter < 0 || static_cast<std::size_t>(parameter) >= recoveries_.size()) return nullptr;
   const Recovery& r = recoveries_[static_cast<std::size_t>(parameter)];
   return r.windows() > 0 ? &r : nullptr;
 }

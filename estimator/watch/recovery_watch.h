@@ -23,7 +23,8 @@ class RecoveryWatch {
             const StrongMotion& strong);
   /// Elements whose finding is to be renewed now: Recovery::kRenew_s. Valid until the next push().
   const std::vector<int>& due() const { return due_; }
-  /// Null while the element has no law: no strong motion, or no window since.
+  /// Null while the element has no law (no strong motion, or no window since), and when there is no
+  /// such element.
   const Recovery* of(int parameter) const;
 
   template <typename Archive>

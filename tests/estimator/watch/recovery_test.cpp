@@ -285,6 +285,10 @@ TEST(Recovery, IsRenewedAtTenMinutesAnHourAndADayOnce) {
   r.push({at(90'000), at(90'005), -0.1, 0.01, 0, 0, 0});
   EXPECT_TRUE(r.renewal_due(at(90'006)));
   EXPECT_FALSE(r.renewal_due(at(1e6)));
+  EXPECT_TRUE(r.is_of(at(-100)));
+  EXPECT_TRUE(r.is_of(at(500)));
+  EXPECT_FALSE(r.is_of(at(-1000)));
+  EXPECT_FALSE(r.is_of(at(700)));  // another cause
 }
 
 TEST(Recovery, GoesOnFromItsState) {
