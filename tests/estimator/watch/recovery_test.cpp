@@ -60,7 +60,7 @@ double amplitude_m(double s) {
 
 /// Mean over a window.
 double mean_loss(const Series& s, double from_s, double to_s) {
-  constexpr int kParts = 200;
+  constexpr int kParts = 24;
   double sum = 0;
   for (int i = 0; i < kParts; ++i) sum += s.loss(from_s + (to_s - from_s) * (i + 0.5) / kParts);
   return sum / kParts;
