@@ -27,8 +27,9 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
     : config_(config),
       observer_(std::move(observer)),
       publisher_(config, std::move(sink)),
+      foreseen_(with_design_error(config.pipeline)),
       pipeline_(
-          with_design_error(config.pipeline),
+          foreseen_,
           [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
           [this](const estimator::WindowEstimate& estimate) {
             publisher_.other(estimate);
@@ -58,7 +59,8 @@ void Estimation::begin_watch() {
   watch_.reset();
   if (!config_.watch) return;
   watch_.emplace(pipeline_.parameters(), config_.watch->options,
-                 window_lengths_s(config_.pipeline.options), config_.watch->baseline);
+                 window_lengths_s(config_.pipeline.options), config_.watch->baseline,
+                 {foreseen_.change_error, foreseen_.change_leak});
 }
 
 void Estimation::begin_gap() {
@@ -84,9 +86,24 @@ void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
   }
   if (!ended) return;
   EventReport report{shaking_->ended(), axis_counters(), findings_};
+  add_records(report);
   for (std::size_t a = 0; a < report.axes.size(); ++a) subtract(counted_before_[a], report.axes[a]);
   announce(event_of(report, config_));
   if (taps_.shaken) taps_.shaken(report);
+}
+
+/// What [watch] and others found is what the report says.
+void Estimation::add_records(EventReport& report) const {
+  for (const event_t& e : raised_.all())
+    if (e.severity == severity::alarm && e.kind != "stiffness_change" && e.kind != "strong_motion")
+      report.open.push_back(e);
+  if (!watch_) return;
+  for (std::size_t p = 0; p < report.shaking.stiffness.size(); ++p) {
+    estimator::ShakenStiffness& s = report.shaking.stiffness[p];
+    s.watched = watch_->baseline() != nullptr && watch_->baseline()->knows(p) && watch_->watched(p);
+    if (const auto* r = watch_->record(static_cast<int>(p))) s.record = *r;
+  }
+  if (const auto* r = watch_->record(estimator::ChangeRecord::kEverything)) report.everything = *r;
 }
 
 void Estimation::main_window(const estimator::WindowEstimate& estimate) {
