@@ -28,9 +28,9 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
     : config_(config),
       observer_(std::move(observer)),
       publisher_(config, std::move(sink)),
+      foreseen_(with_design_error(config.pipeline)),
       pipeline_(
-          with_design_error(config.pipeline),
-          [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
+          foreseen_, [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
           [this](const estimator::WindowEstimate& estimate) {
             publisher_.other(estimate);
             watch(estimate);
@@ -63,7 +63,8 @@ void Estimation::begin_watch() {
   recovery_.reset();
   if (!config_.watch) return;
   watch_.emplace(pipeline_.parameters(), config_.watch->options,
-                 window_lengths_s(config_.pipeline.options), config_.watch->baseline);
+                 window_lengths_s(config_.pipeline.options), config_.watch->baseline,
+                 {foreseen_.change_error, foreseen_.change_leak});
   recovery_.emplace(*watch_, config_.watch->options);
 }
 
@@ -90,9 +91,24 @@ void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
   }
   if (!ended) return;
   EventReport report{shaking_->ended(), axis_counters(), findings_};
+  add_records(report);
   for (std::size_t a = 0; a < report.axes.size(); ++a) subtract(counted_before_[a], report.axes[a]);
   announce(event_of(report, config_));
   if (taps_.shaken) taps_.shaken(report);
+}
+
+/// What [watch] and others found is what the report says.
+void Estimation::add_records(EventReport& report) const {
+  for (const event_t& e : raised_.all())
+    if (e.severity == severity::alarm && e.kind != "stiffness_change" && e.kind != "strong_motion")
+      report.open.push_back(e);
+  if (!watch_) return;
+  for (std::size_t p = 0; p < report.shaking.stiffness.size(); ++p) {
+    estimator::ShakenStiffness& s = report.shaking.stiffness[p];
+    s.watched = watch_->baseline() != nullptr && watch_->baseline()->knows(p) && watch_->watched(p);
+    if (const auto* r = watch_->record(static_cast<int>(p))) s.record = *r;
+  }
+  if (const auto* r = watch_->record(estimator::ChangeRecord::kEverything)) report.everything = *r;
 }
 
 void Estimation::main_window(const estimator::WindowEstimate& estimate) {
@@ -125,28 +141,6 @@ void Estimation::watch(const estimator::WindowEstimate& estimate) {
   for (const estimator::Alarm& alarm : watch_->push(estimate))
     announce(with_recovery(stiffness_event(alarm, pipeline_.parameters()), alarm.parameter));
   follow_recovery(estimate);
-}
-
-void Estimation::follow_recovery(const estimator::WindowEstimate& estimate) {
-  const bool of_weak_motion = static_cast<std::size_t>(estimate.window) ==
-                              window_lengths_s(config_.pipeline.options).size();
-  recovery_->push(estimate, of_weak_motion, *watch_, strong_);
-  const estimator::ParameterTable table = pipeline_.parameters();
-  for (const int p : recovery_->due()) {
-    const event_t* const raised = raised_.find("stiffness_change", table[p].name);
-    if (raised != nullptr && is_recovering(*raised, p))
-      announce(with_recovery(renewed(*raised, estimate.end), p));
-  }
-}
-
-bool Estimation::is_recovering(const event_t& event, int parameter) const {
-  const estimator::Recovery* recovery = recovery_->of(parameter);
-  return recovery != nullptr && recovery->is_of(estimator::from_microseconds(event.since_us));
-}
-
-event_t Estimation::with_recovery(event_t event, int parameter) const {
-  if (!is_recovering(event, parameter)) return event;
-  return recovering(std::move(event), recovery_->of(parameter)->law());
 }
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,

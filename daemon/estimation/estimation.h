@@ -111,6 +111,7 @@ class Estimation {
   void look_for_gap(const estimator::SampleSet& instant);
   void look_for_shaking(const estimator::SampleSet& instant);
   void begin_shaking();
+  void add_records(EventReport& report) const;
   void begin_watch();
   void begin_gap();
   void intake_notice(const drivers::IntakeNotice& notice);
@@ -123,6 +124,7 @@ class Estimation {
   Taps taps_;
   Publisher publisher_;
   RaisedEvents raised_;
+  const estimator::PipelineConfig foreseen_;  ///< with what the layout makes of errors
   estimator::Pipeline pipeline_;
   std::optional<estimator::Watch> watch_;
   estimator::StrongMotion strong_;

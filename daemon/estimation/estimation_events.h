@@ -9,7 +9,9 @@
 
 namespace framewatch::daemon {
 
-/// News of a parameter's alarm as an event of kind "stiffness_change"; value and std_error in %.
+/// News of a parameter's alarm as an event of kind "stiffness_change"; value and std_error in %,
+/// NaN while the record has no number. Of what every stiffness has in common its place is
+/// kWholeBuilding.
 event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table);
 
 /// A raised event of a stiffness with what its recovery law says, unless it is cleared or nothing

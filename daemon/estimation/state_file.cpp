@@ -16,7 +16,7 @@ namespace framewatch::daemon {
 namespace {
 
 const std::string kMagic = "framewatch state\n";
-constexpr std::int32_t kFormat = 14;  ///< goes up whenever archive() of any class changes
+constexpr std::int32_t kFormat = 15;  ///< goes up whenever archive() of any class changes
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;
 

@@ -5,6 +5,7 @@
 #include "estimator/motion/sample.h"
 #include "estimator/shaking/story_response.h"
 #include "estimator/watch/change_point.h"
+#include "estimator/watch/change_record.h"
 
 namespace framewatch::estimator {
 
@@ -22,9 +23,17 @@ struct ShakenStiffness {
   WindowMean before, during, after;
   BeforeFrom before_from = BeforeFrom::none;
   bool free = false;  ///< `after` is of windows behind the strong motion; else of its last ones
+  bool watched = false;  ///< changes are looked for against a baseline: only a record is a change
+  ChangeRecord record{};  ///< of its change; without an id: there is none
 
-  bool known() const { return before.count > 0 && after.count > 0; }
-  double ratio() const { return after.value / before.value - 1; }
+  /// Whether there is a size of a change.
+  bool known() const {
+    return record.id != 0 ? record.measured() : before.count > 0 && after.count > 0;
+  }
+  /// The record's where there is one with a number: whoever shows a change shows that.
+  double ratio() const {
+    return record.measured() ? record.change.ratio : after.value / before.value - 1;
+  }
   double std_error() const;  ///< of ratio()
 };
 

@@ -25,6 +25,7 @@ BaselineLearner any_windows(std::size_t parameters) {
 }  // namespace
 
 double ShakenStiffness::std_error() const {
+  if (record.measured()) return record.change.std_error;
   return std::hypot(after.std_error, after.value / before.value * before.std_error) /
          std::abs(before.value);
 }
