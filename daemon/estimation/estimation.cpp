@@ -64,7 +64,7 @@ void Estimation::begin_watch() {
   if (!config_.watch) return;
   watch_.emplace(pipeline_.parameters(), config_.watch->options,
                  window_lengths_s(config_.pipeline.options), config_.watch->baseline,
-                 {foreseen_.change_error, foreseen_.change_leak});
+                 estimator::ChangeModel{foreseen_.change_error, foreseen_.change_leak});
   recovery_.emplace(*watch_, config_.watch->options);
 }
 

@@ -2,6 +2,7 @@
 // it had heard before, by the raw samples of its history, and says first when nobody listened.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <optional>
 
@@ -177,6 +178,9 @@ class Restart : public testing::Test {
     return most;
   }
   static double force(const Json& report) { return report["base_shear_n"]["x"].get<double>(); }
+  static void print(const char* what, const Json& report) {
+    std::printf("%s: drift %.4f %%, force %.1f N\n", what, 100 * drift(report), force(report));
+  }
   static void expect_same_peaks(const Json& report, const Json& whole) {
     EXPECT_NEAR(drift(report) / drift(whole), 1, kSame);
     EXPECT_NEAR(force(report) / force(whole), 1, kSame);
@@ -225,6 +229,8 @@ TEST_F(Restart, TheReportHasThePeaksThatTheStateLacks) {
   ASSERT_EQ(whole.json.size(), 1u);
   ASSERT_EQ(r.json.size(), 1u);
   EXPECT_TRUE(whole.json[0]["unheard"].empty());
+  print("never stopped", whole.json[0]);
+  print("killed, with state and history", r.json[0]);
   expect_same_peaks(r.json[0], whole.json[0]);
   EXPECT_EQ(r.json[0]["start_us"], whole.json[0]["start_us"]);
   EXPECT_NEAR(seconds(r.json[0]["end_us"].get<std::int64_t>() -
@@ -250,6 +256,7 @@ TEST_F(Restart, WithoutAStateTheStoredSamplesAreEnough) {
   const Reports whole = uninterrupted(), r = restarted("stateless", {.state = false});
   ASSERT_EQ(whole.json.size(), 1u);
   ASSERT_EQ(r.json.size(), 1u);
+  print("killed, with history alone", r.json[0]);
   expect_same_peaks(r.json[0], whole.json[0]);
   EXPECT_EQ(r.json[0]["unheard"].size(), 1u);
   EXPECT_EQ(r.json[0]["unheard"][0]["why"], "restart");
@@ -258,6 +265,7 @@ TEST_F(Restart, WithoutAStateTheStoredSamplesAreEnough) {
 TEST_F(Restart, WithoutAHistoryTheReportSaysThatSamplesAreLost) {
   const Reports r = restarted("forgetful", {.history = false});
   ASSERT_EQ(r.json.size(), 1u);
+  print("killed, with a state alone", r.json[0]);
   const Json& unheard = r.json[0]["unheard"][0];
   EXPECT_EQ(unheard["why"], "restart_without_raw_samples");
   EXPECT_NEAR(unheard["seconds"].get<double>(), kAway_s + kStateAge_s, 0.5);

@@ -2,6 +2,7 @@
 // intact building that is only softer while it moves more.
 #include "estimator/watch/recovery.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
