@@ -28,21 +28,22 @@ void AcknowledgeDesk::acknowledge(const acknowledge_t& request, const std::strin
   if (request.request == answered_) return;
   const Acknowledgement by{now_us, who_text(user, request.who),
                            printable(request.comment, kMostComment)};
+  if (request.id == kAllEvents) all_ = by;
   bool any = false;
   for (RaisedEvents* events : raised)
     for (const event_t& e : events->all()) {
-      if (request.id != 0 && request.id != e.id) continue;
+      if (request.id != kAllEvents && request.id != e.id) continue;
       any = true;
-      if (request.id == 0 && events->acknowledgement(e.id) != nullptr) continue;
+      if (request.id == kAllEvents && events->acknowledgement(e.id) != nullptr) continue;
       events->acknowledge(e.id, by);
       log(LogLevel::notice, fmt::format("event {} ({} {}) is acknowledged by {}: {}", e.id, e.kind,
                                         e.place, by.who, by.comment));
       done_(e, by);
     }
   answered_ = request.request;
-  refused_ = any               ? ""
-             : request.id == 0 ? "no event is raised"
-                               : fmt::format("no event {} is raised", request.id);
+  refused_ = any                        ? ""
+             : request.id == kAllEvents ? "no event is raised"
+                                        : fmt::format("no event {} is raised", request.id);
   news_ = true;
 }
 
@@ -59,7 +60,7 @@ std::optional<acknowledged_t> AcknowledgeDesk::obey(std::span<const std::uint8_t
   for (const RaisedEvents* events : raised)
     for (const event_t& e : events->all()) {
       const Acknowledgement* by = events->acknowledgement(e.id);
-      const bool meant = request->id == 0 || request->id == e.id;
+      const bool meant = request->id == kAllEvents || request->id == e.id;
       if (by == nullptr || !meant || out.events == kMostAnswered) continue;
       add_acknowledged(out, e, {by->time_us, by->who, ""});
     }
@@ -89,6 +90,7 @@ void AcknowledgeDesk::look(const Raised& raised, std::int64_t now_us) {
   for (const RaisedEvents* events : raised)
     for (const event_t& e : events->all())
       if (const Acknowledgement* by = events->acknowledgement(e.id)) add_acknowledged(out, e, *by);
+  if (all_) add_all_acknowledged(out, *all_);
   lcm_.publish(config_.lcm.prefix + "ACKNOWLEDGED", &out);
 }
 

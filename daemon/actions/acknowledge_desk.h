@@ -59,6 +59,7 @@ class AcknowledgeDesk {
   OnceASecond second_;
   bool news_ = false;
   std::string refused_;
+  std::optional<Acknowledgement> all_;  ///< of the newest request for every event
 };
 
 }  // namespace framewatch::daemon

@@ -17,6 +17,7 @@ namespace {
 
 namespace ch = std::chrono;
 
+constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
 constexpr std::size_t kStampLength = 16;  // 20261121T231500Z
 
 struct Civil {
@@ -108,11 +109,16 @@ std::optional<std::int64_t> read_utc(const std::string& text) {
 }
 
 std::string sensor_time_text(std::int64_t time_us) {
-  constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
   if (time_us < kYear2000_us) return fmt::format("{:.3f} s", 1e-6 * static_cast<double>(time_us));
   const Civil c = civil(time_us);
   return fmt::format("{}-{:02}-{:02} {:02}:{:02}:{:02} UTC", c.year, c.month, c.day, c.hour,
                      c.minute, c.second);
+}
+
+std::string sensor_clock_text(std::int64_t time_us) {
+  if (time_us < kYear2000_us) return sensor_time_text(time_us);
+  const Civil c = civil(time_us);
+  return fmt::format("{:02}:{:02}:{:02}", c.hour, c.minute, c.second);
 }
 
 std::string utc_and_local_text(std::int64_t time_us) {

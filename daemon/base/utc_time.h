@@ -23,6 +23,8 @@ std::optional<std::int64_t> read_utc(const std::string& text);
 /// For people: "2026-11-21 14:03:10 UTC"; "3.200 s" for a sensor clock that does not count from
 /// 1970.
 std::string sensor_time_text(std::int64_t time_us);
+/// The same without the day: "14:03:10"; "3.200 s" likewise.
+std::string sensor_clock_text(std::int64_t time_us);
 /// For people at this machine: "2026-11-21 14:03:10 UTC (15:03:10 CET)"; without what is in
 /// brackets where the machine's zone is UTC.
 std::string utc_and_local_text(std::int64_t time_us);

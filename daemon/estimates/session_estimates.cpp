@@ -34,6 +34,10 @@ class Reader {
     } else if (kind == status_t::getHash()) {
       if (auto status = drivers::decoded<status_t>(event.data))
         session_.status = std::move(*status);
+    } else if (kind == watch_t::getHash()) {
+      if (auto watch = drivers::decoded<watch_t>(event.data);
+          watch && watch->parameters == session_.table.parameters)
+        session_.watch = std::move(*watch);
     } else if (kind == model_fit_t::getHash()) {
       model_fit(event);
     } else if (kind == event_t::getHash() && session_.events.size() < kMostEvents) {
@@ -124,6 +128,11 @@ std::optional<SessionEstimates> read_session_estimates(const std::string& path,
     problems.push_back({path, "there is no estimate in it"});
   if (!problems.empty()) return std::nullopt;
   return session;
+}
+
+bool SessionEstimates::compared(std::size_t p) const {
+  return watch && p < watch->baseline.size() && watch->watched[p] != 0 &&
+         (std::isfinite(watch->baseline[p]) || std::isfinite(watch->quiet_baseline[p]));
 }
 
 WindowRange windows_within(const SessionEstimates& session, std::int64_t from_us,

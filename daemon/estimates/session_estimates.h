@@ -9,6 +9,7 @@
 #include <framewatch/model_fit_t.hpp>
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/status_t.hpp>
+#include <framewatch/watch_t.hpp>
 
 #include "drivers/base/problem.h"
 #include "drivers/records/record.h"
@@ -33,11 +34,14 @@ struct SessionEstimates {
   std::vector<std::vector<std::uint8_t>> reason;      ///< [parameter][window]: told_reason()
   std::vector<ModelFitTold> model_fit;                ///< in the order of the log
   std::optional<status_t> status;                     ///< the last one
+  std::optional<watch_t> watch;                       ///< the last one; none: without [watch]
   std::vector<event_t> events;
   std::vector<std::string> notes;  ///< damage that was left out, for the person
 
   std::size_t windows() const { return end_us.size(); }
   std::size_t parameters() const { return value.size(); }
+  /// Whether [watch] compared this parameter with a baseline: then the events say what changed.
+  bool compared(std::size_t parameter) const;
 };
 
 /// Windows `from` to `to` - 1.

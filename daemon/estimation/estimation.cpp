@@ -1,5 +1,6 @@
 #include "daemon/estimation/estimation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -27,26 +28,29 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
     : config_(config),
       observer_(std::move(observer)),
       publisher_(config, std::move(sink)),
+      foreseen_(with_design_error(config.pipeline)),
       pipeline_(
-          with_design_error(config.pipeline),
-          [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
+          foreseen_, [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
           [this](const estimator::WindowEstimate& estimate) {
             publisher_.other(estimate);
             watch(estimate);
           },
           [this](const estimator::SampleSet& instant) {
+            if (watch_) strong_.push(instant);
             look_for_gap(instant);
             look_for_shaking(instant);
             if (taps_.instant) taps_.instant(instant);
           },
           [this](const estimator::ModelFit& fit) { publisher_.model(fit); }),
+      strong_(pipeline_.axes(), config.pipeline.options.rate_hz),
       intake_(
           wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
           intake_settings(config)),
       can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
       can_events_(config.can),
       absurd_events_(config.pipeline.axes),
-      channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s) {
+      channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s),
+      newest_us_(config.pipeline.axes.size(), INT64_MIN) {
   pipeline_.on_late([this](const estimator::WindowEstimate& estimate) { late_window(estimate); });
   intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
   can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
@@ -57,9 +61,12 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
 
 void Estimation::begin_watch() {
   watch_.reset();
+  recovery_.reset();
   if (!config_.watch) return;
   watch_.emplace(pipeline_.parameters(), config_.watch->options,
-                 window_lengths_s(config_.pipeline.options), config_.watch->baseline);
+                 window_lengths_s(config_.pipeline.options), config_.watch->baseline,
+                 estimator::ChangeModel{foreseen_.change_error, foreseen_.change_leak});
+  recovery_.emplace(*watch_, config_.watch->options);
 }
 
 void Estimation::begin_gap() {
@@ -86,9 +93,24 @@ void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
   if (!ended) return;
   EventReport report{shaking_->ended(), axis_counters(), findings_};
   report.shaking.known.noise_density = pipeline_.noise_density();
+  add_records(report);
   for (std::size_t a = 0; a < report.axes.size(); ++a) subtract(counted_before_[a], report.axes[a]);
   announce(event_of(report, config_));
   if (taps_.shaken) taps_.shaken(report);
+}
+
+/// What [watch] and others found is what the report says.
+void Estimation::add_records(EventReport& report) const {
+  for (const event_t& e : raised_.all())
+    if (e.severity == severity::alarm && e.kind != "stiffness_change" && e.kind != "strong_motion")
+      report.open.push_back(e);
+  if (!watch_) return;
+  for (std::size_t p = 0; p < report.shaking.stiffness.size(); ++p) {
+    estimator::ShakenStiffness& s = report.shaking.stiffness[p];
+    s.watched = watch_->baseline() != nullptr && watch_->baseline()->knows(p) && watch_->watched(p);
+    if (const auto* r = watch_->record(static_cast<int>(p))) s.record = *r;
+  }
+  if (const auto* r = watch_->record(estimator::ChangeRecord::kEverything)) report.everything = *r;
 }
 
 void Estimation::main_window(const estimator::WindowEstimate& estimate) {
@@ -125,7 +147,8 @@ void Estimation::adopt(const estimator::GapModel& model) {
 void Estimation::watch(const estimator::WindowEstimate& estimate) {
   if (!watch_) return;
   for (const estimator::Alarm& alarm : watch_->push(estimate))
-    announce(stiffness_event(alarm, pipeline_.parameters()));
+    announce(with_recovery(stiffness_event(alarm, pipeline_.parameters()), alarm.parameter));
+  follow_recovery(estimate);
 }
 
 drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
@@ -175,7 +198,15 @@ void Estimation::sample(const estimator::AccelSample& sample) {
   if (seconds_.passed(to_microseconds(sample.time))) publish_state();
   if (taps_.sample) taps_.sample(sample);
   channel_events_.sample(sample);
+  if (const auto axis = static_cast<std::size_t>(sample.axis); axis < newest_us_.size())
+    newest_us_[axis] = to_microseconds(sample.time);
   pipeline_.push(sample);
+}
+
+void Estimation::came_up(bool raw) {
+  if (!shaking_) return;
+  const std::int64_t newest_us = *std::max_element(newest_us_.begin(), newest_us_.end());
+  shaking_->came_up(estimator::from_microseconds(newest_us), raw);
 }
 
 void Estimation::finish() {

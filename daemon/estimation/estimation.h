@@ -24,6 +24,8 @@
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/gap/gap_monitor.h"
 #include "estimator/shaking/shaking_watch.h"
+#include "estimator/watch/recovery_watch.h"
+#include "estimator/watch/strong_motion.h"
 
 namespace framewatch::daemon {
 
@@ -99,6 +101,12 @@ class Estimation {
   /// After load(): these sections were not among those it was given. Findings that they alone could
   /// clear are withdrawn with the next status.
   void went_without(const std::vector<std::string>& lost);
+  /// Sensor time of the newest sample of every axis that was taken; INT64_MIN: none was.
+  const std::vector<std::int64_t>& newest_us() const { return newest_us_; }
+  /// The process began with the samples up to newest_us(), by a state or from a history, and
+  /// listens from now on: a report of strong motion says what lies between. raw: it read the raw
+  /// samples that the process before had stored last.
+  void came_up(bool raw);
 
  private:
   template <typename Visit>
@@ -108,9 +116,14 @@ class Estimation {
   void main_window(const estimator::WindowEstimate& estimate);
   void late_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
+  void follow_recovery(const estimator::WindowEstimate& estimate);
+  /// Whether a change of this parameter began with the strong motion that its recovery law is of.
+  bool is_recovering(const event_t& event, int parameter) const;
+  event_t with_recovery(event_t event, int parameter) const;
   void look_for_gap(const estimator::SampleSet& instant);
   void look_for_shaking(const estimator::SampleSet& instant);
   void begin_shaking();
+  void add_records(EventReport& report) const;
   void begin_watch();
   void begin_gap();
   void intake_notice(const drivers::IntakeNotice& notice);
@@ -123,8 +136,11 @@ class Estimation {
   Taps taps_;
   Publisher publisher_;
   RaisedEvents raised_;
+  const estimator::PipelineConfig foreseen_;  ///< with what the layout makes of errors
   estimator::Pipeline pipeline_;
   std::optional<estimator::Watch> watch_;
+  estimator::StrongMotion strong_;
+  std::optional<estimator::RecoveryWatch> recovery_;  ///< with watch_
   std::optional<estimator::GapMonitor> gap_;
   std::optional<estimator::ShakingWatch> shaking_;
   std::vector<estimator::AxisCounters> counted_before_;  ///< when the strong motion began
@@ -138,6 +154,7 @@ class Estimation {
   AbsurdEvents absurd_events_;
   ChannelEvents channel_events_;
   SensorSeconds seconds_;
+  std::vector<std::int64_t> newest_us_;
   LiveState live_;
   std::int64_t windows_ = 0;
   std::int64_t absurd_temperatures_ = 0;

@@ -10,30 +10,71 @@
 #include "daemon/config/gap_model.h"
 #include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
+#include "daemon/events/recovery_words.h"
+#include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 
+namespace {
+
+using estimator::ChangeReason;
+
+std::string end_words(const estimator::Alarm& alarm, const std::string& name) {
+  switch (alarm.reason) {
+    case ChangeReason::not_confirmed:
+      return fmt::format("{} has not changed: the windows behind the alarm do not show it", name);
+    case ChangeReason::of_all:
+      return fmt::format("{} has not changed alone: every stiffness has changed alike", name);
+    default:
+      return fmt::format("{} is at its baseline again", name);
+  }
+}
+
+std::string change_words(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
+  const estimator::Change& c = alarm.change;
+  if (alarm.parameter == estimator::ChangeRecord::kEverything)
+    return common_change_sentence(c.ratio, alarm.measured ? c.std_error : estimator::kNaN);
+  const estimator::Parameter& p = table[alarm.parameter];
+  if (!alarm.measured) return changing_sentence(p, c.ratio);
+  return change_sentence(p, c.ratio, c.std_error) +
+         (alarm.reason == ChangeReason::further ? "; it has changed further" : "");
+}
+
+}  // namespace
+
 event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
-  const std::string& name = table[alarm.parameter].name;
-  const double change = 100 * alarm.change.ratio, error = 100 * alarm.change.std_error;
+  const bool everything = alarm.parameter == estimator::ChangeRecord::kEverything;
+  const bool over = alarm.state == estimator::AlarmState::cleared;
   event_t m{};
   m.time_us = to_microseconds(alarm.found);
   m.since_us = to_microseconds(alarm.change.since);
   m.id = alarm.id;
   m.state = static_cast<std::int32_t>(alarm.state);
-  m.severity = alarm.state == estimator::AlarmState::cleared ? severity::warning : severity::alarm;
+  m.severity = over || everything ? severity::warning : severity::alarm;
   m.kind = "stiffness_change";
-  m.place = name;
-  m.value = change;
-  m.std_error = error;
+  m.place = everything ? kWholeBuilding : table[alarm.parameter].name;
+  m.value = alarm.measured ? 100 * alarm.change.ratio : estimator::kNaN;
+  m.std_error = alarm.measured ? 100 * alarm.change.std_error : estimator::kNaN;
   m.unit = "%";
-  m.message = alarm.state == estimator::AlarmState::cleared
-                  ? fmt::format("{} is at its baseline again", name)
-                  : fmt::format("{}, since {}",
-                                change_sentence(table[alarm.parameter], alarm.change.ratio,
-                                                alarm.change.std_error),
-                                sensor_time_text(m.since_us));
+  m.message =
+      over ? end_words(alarm, everything ? "everything" : m.place)
+           : fmt::format("{}, since {}", change_words(alarm, table), sensor_time_text(m.since_us));
   return m;
+}
+
+event_t recovering(event_t event, const estimator::RecoveryLaw& law) {
+  const bool early = law.verdict == estimator::RecoveryVerdict::not_known &&
+                     law.time_s < estimator::Recovery::kRenew_s[0];
+  if (event.state == event_state::cleared || early) return event;
+  event.message += kAfterStrongMotion + recovery_words(law);
+  return event;
+}
+
+event_t renewed(event_t raised, estimator::Time now) {
+  raised.time_us = to_microseconds(now);
+  raised.state = event_state::changed;
+  raised.message = raised.message.substr(0, raised.message.find(kAfterStrongMotion));
+  return raised;
 }
 
 event_t gap_event(const estimator::GapNews& news, const Config& config) {

@@ -56,6 +56,7 @@ void Estimation::each_section(const Visit& visit) {
     a(seconds_);
     for (std::int64_t* count : {&windows_, &absurd_temperatures_})
       a.within(*count, 0, a.kMostCount);
+    a(newest_us_);
   });
   visit("events", [this](auto& a) { a(raised_); });
   visit("lcm", [this](auto& a) { a(intake_); });
@@ -78,7 +79,10 @@ void Estimation::each_section(const Visit& visit) {
       const bool another = given && (baseline() == nullptr || !baseline()->holds(*given));
       if (std::decay_t<decltype(a)>::kReading && another) a.refuse();
     });
-    visit("watch", [this](auto& a) { watch_->archive_detection(a); });
+    visit("watch", [this](auto& a) {
+      watch_->archive_detection(a);
+      a(strong_, *recovery_);
+    });
   }
   if (gap_)
     visit("gap", [this](auto& a) {
@@ -158,6 +162,7 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   copy(before.raised_, raised_);
   windows_ = before.windows_;
   absurd_temperatures_ = before.absurd_temperatures_;
+  newest_us_ = before.newest_us_;
   live_ = before.live_;
   if (keep_window) {
     estimator::StateWriter writer;
@@ -169,8 +174,9 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
   const estimator::Baseline* given = baseline();
   const bool same_baseline =
       given == nullptr || (before.baseline() != nullptr && before.baseline()->holds(*given));
-  const bool watch_goes_on =
-      watch_ && before.watch_ && same_baseline && copy(*before.watch_, *watch_);
+  const bool watch_goes_on = watch_ && before.watch_ && same_baseline &&
+                             copy(*before.watch_, *watch_) && copy(before.strong_, strong_) &&
+                             copy(*before.recovery_, *recovery_);
   if (!watch_goes_on) {
     begin_watch();
     withdraw("stiffness_change");

@@ -18,7 +18,7 @@ namespace framewatch::daemon {
 namespace {
 
 const std::string kMagic = "framewatch state\n";
-constexpr std::int32_t kFormat = 16;  ///< goes up whenever archive() of any class changes
+constexpr std::int32_t kFormat = 17;  ///< goes up whenever archive() of any class changes
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;
 constexpr std::size_t kMostEntries = 100;  ///< of a list in the head, which has some ten

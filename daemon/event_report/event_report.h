@@ -18,6 +18,9 @@ struct EventReport {
   estimator::Shaking shaking;
   std::vector<estimator::AxisCounters> axes;  ///< what happened to the samples meanwhile
   std::vector<event_t> findings;              ///< announced meanwhile
+  /// Of what every stiffness has in common; without an id: nothing.
+  estimator::ChangeRecord everything{};
+  std::vector<event_t> open{};  ///< alarms of other kinds that are raised when it ends
 };
 
 enum class EventColor { green, yellow, red };

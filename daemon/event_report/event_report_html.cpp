@@ -9,6 +9,7 @@
 #include "daemon/documents/svg_plot.h"
 #include "daemon/event_report/event_report.h"
 #include "daemon/event_report/response_words.h"
+#include "daemon/event_report/unheard_words.h"
 #include "daemon/events/event_words.h"
 
 namespace framewatch::daemon {
@@ -36,11 +37,16 @@ std::string verdict_text(const EventReport& r, const Config& config, const Event
                          const DriftReport& drifts) {
   std::string word = color_word(verdict.color);
   word[0] = static_cast<char>(word[0] - 'a' + 'A');
-  std::string out =
-      "<p class=\"verdict\">" + word + ": " + html_text(verdict.reasons.front()) + ".</p>\n";
+  std::string out;
+  const std::vector<std::string> unheard = unheard_sentences(r.shaking);
+  for (const std::string& one : unheard)
+    if (one != verdict.reasons.front())
+      out += "<p class=\"unheard\"><strong>" + html_text(one) + ".</strong></p>\n";
+  out += "<p class=\"verdict\">" + word + ": " + html_text(verdict.reasons.front()) + ".</p>\n";
   std::string rest;
   for (std::size_t i = 1; i < verdict.reasons.size(); ++i)
-    rest += "<li>" + html_text(verdict.reasons[i]) + "</li>\n";
+    if (std::find(unheard.begin(), unheard.end(), verdict.reasons[i]) == unheard.end())
+      rest += "<li>" + html_text(verdict.reasons[i]) + "</li>\n";
   if (!rest.empty()) out += "<ul>\n" + rest + "</ul>\n";
   out += "<p>" + std::string(advice(verdict.color)) + "</p>\n" + placard_section(drifts);
   const double length =
@@ -55,6 +61,7 @@ std::string drift_section(const EventReport& r, const Config& config, const Drif
   const EventReportSettings& s = *config.event_report;
   SvgAxis stories{""};
   SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
+  const bool incomplete = !r.shaking.unheard.empty();
   for (const estimator::StoryDrift& drift : drifts.drifts) {
     if (stories.categories.size() == kMostBars) break;
     stories.categories.push_back(fmt::format("story {}", drift.story));
@@ -76,9 +83,11 @@ std::string drift_section(const EventReport& r, const Config& config, const Drif
                                  "standard error; dotted: yellow from {:g} %, red from {:g} %.",
                                  100 * s.yellow_drift_ratio, 100 * s.red_drift_ratio)) +
          drift_table_section(drifts, config) +
-         "<h2>Force and acceleration</h2>\n<p>Peak base shear: " +
+         "<h2>Force and acceleration</h2>\n<p>Peak base shear: " + (incomplete ? "at least " : "") +
          base_shear_words(r.shaking.peak, config.pipeline.structure) + ".</p>\n" +
-         html_table({"", "peak acceleration, m/s^2"}, rows);
+         html_table(
+             {"", incomplete ? "peak acceleration, at least, m/s^2" : "peak acceleration, m/s^2"},
+             rows);
 }
 
 std::string stiffness_section(const EventReport& r, const Config& config) {

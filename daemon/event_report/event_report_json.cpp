@@ -5,6 +5,7 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/documents/json_values.h"
 #include "daemon/event_report/event_report.h"
+#include "daemon/event_report/unheard_words.h"
 #include "daemon/events/event_words.h"
 #include "estimator/numeric/nan.h"
 
@@ -28,6 +29,25 @@ const char* before_word(estimator::BeforeFrom from) {
       break;
   }
   return "none";
+}
+
+/// Times of which no sample is known; peaks are those of the rest.
+Json unheard_json(const estimator::Shaking& shaking) {
+  const std::vector<std::string> sentences = unheard_sentences(shaking);
+  Json out = Json::array();
+  for (std::size_t i = 0; i < sentences.size(); ++i) {
+    const estimator::Unheard& u = shaking.unheard[i];
+    const std::int64_t from_us = to_microseconds(u.from), to_us = to_microseconds(u.to);
+    out.push_back(
+        {{"from_us", u.from_known ? Json(from_us) : Json(nullptr)},
+         {"to_us", to_us},
+         {"seconds",
+          u.from_known ? Json(1e-6 * static_cast<double>(to_us - from_us)) : Json(nullptr)},
+         {"why", unheard_why(u.why)},
+         {"drifts_from_us", to_us + static_cast<std::int64_t>(1e6 * shaking.drift_settles_s)},
+         {"message", sentences[i]}});
+  }
+  return out;
 }
 
 Json stiffness_json(const EventReport& r, const Config& config) {
@@ -73,6 +93,7 @@ std::string event_report_json(const EventReport& r, const Config& config) {
   const EventReportSettings& s = *config.event_report;
   Json out{{"schema", "framewatch.event_report/1"},
            {"building", config.pipeline.structure.name},
+           {"unheard", unheard_json(r.shaking)},
            {"verdict", color_word(verdict.color)},
            {"reasons", verdict.reasons},
            {"start_us", to_microseconds(r.shaking.start)},

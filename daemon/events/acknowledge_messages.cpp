@@ -39,6 +39,12 @@ void add_acknowledged(acknowledged_t& message, const event_t& event, const Ackno
   message.events = static_cast<std::int32_t>(message.id.size());
 }
 
+void add_all_acknowledged(acknowledged_t& message, const Acknowledgement& by) {
+  event_t all{};
+  all.id = kAllEvents;
+  add_acknowledged(message, all, by);
+}
+
 acknowledged_t acknowledged_message(const event_t& event, const Acknowledgement& by) {
   acknowledged_t out{};
   out.time_us = by.time_us;

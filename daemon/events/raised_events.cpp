@@ -31,6 +31,12 @@ std::vector<event_t> RaisedEvents::take(const std::string& kind) {
   return taken;
 }
 
+const event_t* RaisedEvents::find(const std::string& kind, const std::string& place) const {
+  for (const event_t& e : events_)
+    if (e.kind == kind && e.place == place) return &e;
+  return nullptr;
+}
+
 void RaisedEvents::acknowledge(std::int64_t id, const Acknowledgement& by) {
   forget(id);
   acknowledged_.push_back({id, by});

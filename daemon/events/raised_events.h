@@ -29,6 +29,8 @@ class RaisedEvents {
   /// Removes and returns the events of a kind.
   std::vector<event_t> take(const std::string& kind);
   const std::vector<event_t>& all() const { return events_; }
+  /// Null when none of this kind is raised at this place.
+  const event_t* find(const std::string& kind, const std::string& place) const;
   /// For an event that is raised; replaces an earlier acknowledgement.
   void acknowledge(std::int64_t id, const Acknowledgement& by);
   /// Null when nobody has acknowledged it.

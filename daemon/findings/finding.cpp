@@ -9,6 +9,7 @@
 #include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/events/place_words.h"
+#include "daemon/events/recovery_words.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
@@ -23,17 +24,40 @@ bool is_channel(const Config& config, const std::string& place) {
   return std::any_of(axes.begin(), axes.end(), [&](const auto& a) { return a.name == place; });
 }
 
+/// A message without ", since ...": the finding has the time.
+std::string without_time(const std::string& message) {
+  const std::size_t at = message.rfind(", since ");
+  return (at == std::string::npos ? message : message.substr(0, at)) + ".";
+}
+
 void describe_change(Finding& f, const Config& config) {
   const estimator::ParameterTable table = config.pipeline.parameters();
   const auto at = table.find(f.place);
   f.kind = FindingKind::change;
+  if (f.place == kWholeBuilding) {
+    f.text = without_time(f.text);
+    f.advice =
+        "Find out which it is: look at temperature, load, and the sensors' scale and clock. If "
+        "none "
+        "explains it, have a structural engineer look at the building.";
+    return;
+  }
   f.advice = fmt::format(
       "Have a structural engineer look at {} before the building is used as before; then "
       "acknowledge "
       "the finding.",
       at ? place_words(f.place) : f.place);
-  if (!at || !std::isfinite(f.change_ratio) || !(f.std_error > 0)) return;  // its message says it
-  f.text = change_sentence(table[*at], f.change_ratio, f.std_error) + ".";
+  const std::size_t at_recovery = f.text.find(kAfterStrongMotion);
+  const std::string recovery =
+      at_recovery == std::string::npos
+          ? ""
+          : " After strong motion: " + f.text.substr(at_recovery + kAfterStrongMotion.size()) + ".";
+  f.text = f.text.substr(0, at_recovery);
+  if (!at || !std::isfinite(f.change_ratio) || !(f.std_error > 0)) {
+    f.text = without_time(f.text) + recovery;  // its message says it
+    return;
+  }
+  f.text = change_sentence(table[*at], f.change_ratio, f.std_error) + "." + recovery;
 }
 
 void describe_strong_motion(Finding& f) {

@@ -40,7 +40,8 @@ Housekeeping::Housekeeping(const Config& config, const std::string& text,
       report_(starts, resumed),
       config_(config) {}
 
-void Housekeeping::look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager) {
+void Housekeeping::look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
+                        const std::vector<RaisedEvents*>& raised) {
   const std::int64_t now_us = host_clock_us();
   Estimation& estimation = live.estimation();
   intake_warnings_.look(live, now_us);
@@ -51,7 +52,7 @@ void Housekeeping::look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& man
   state_.look(live.config(), estimation, now_us);
   baseline_.look(estimation);
   gap_.look(estimation, now_us);
-  if (const auto report = report_.look(live, state_, reloader_.count(), now_us)) {
+  if (const auto report = report_.look(live, raised, state_, reloader_.count(), now_us)) {
     lcm.publish(config_.lcm.prefix + "SERVICE", &*report);
     const reception_t reception = reception_report(live, now_us);
     lcm.publish(config_.lcm.prefix + "RECEPTION", &reception);

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "daemon/config/config.h"
 #include "daemon/estimation/baseline_keeper.h"
 #include "daemon/estimation/gap_keeper.h"
+#include "daemon/events/raised_events.h"
 #include "daemon/live/can_monitor.h"
 #include "daemon/live/can_warnings.h"
 #include "daemon/live/intake_warnings.h"
@@ -28,8 +30,9 @@ class Housekeeping {
   Housekeeping(const Config& config, const std::string& text, const std::string& state_path,
                int state_every_s, const StartCount& starts, bool resumed);
 
-  /// To be called several times a second.
-  void look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager);
+  /// To be called several times a second. raised: every event of this process that is raised.
+  void look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
+            const std::vector<RaisedEvents*>& raised);
   /// Reads the configuration anew. Whether it was accepted: then live.config() is a new one.
   bool reload(LiveEstimation& live, ServiceManager& manager);
   /// Writes the state and waits for it.

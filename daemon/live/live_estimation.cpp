@@ -64,7 +64,43 @@ void LiveEstimation::reconfigure(Config next, Reach reach) {
   estimation_->take_over(*before, reach == Reach::settings);
 }
 
+void LiveEstimation::catch_up(RawBacklog backlog) {
+  backlog_ = std::move(backlog);
+  if (backlog_.empty()) estimation_->came_up(backlog_.read_whole());
+}
+
+/// Gives the estimation what waits for it, first the backlog.
+void LiveEstimation::feed() {
+  const std::int64_t until_us = steady_clock_us() + 1000 * kFeed_ms;
+  const auto enough = [until_us] { return steady_clock_us() >= until_us; };
+  feeding_ = true;
+  if (!backlog_.empty()) {
+    backlog_.give([this](const estimator::AccelSample& s) { estimation_->sample(s); },
+                  [this](const drivers::LogEvent& event) {
+                    estimation_->message(event.channel, event.data.data(), event.data.size());
+                  },
+                  enough);
+    if (backlog_.empty()) estimation_->came_up(backlog_.read_whole());
+  }
+  feeding_ = false;
+  for (; backlog_.empty() && !later_.empty() && !enough(); later_.pop_front()) {
+    const Later& l = later_.front();
+    if (l.channel.empty())
+      estimate_frame(l.bus, l.frame);
+    else
+      estimate_message({l.channel, l.data.data(), l.data.size(), l.received_us, l.sender});
+  }
+}
+
+void LiveEstimation::keep(Later later) {
+  if (later_.size() == kMostLater)
+    ++state_.queue_dropped;
+  else
+    later_.push_back(std::move(later));
+}
+
 void LiveEstimation::on_sample(const estimator::AccelSample& sample) {
+  if (feeding_) return;
   times_.received_us = host_clock_us();
   times_.newest_us[static_cast<std::size_t>(sample.axis)] = to_microseconds(sample.time);
   if (segments_) segments_->sample(sample);
@@ -81,6 +117,10 @@ void LiveEstimation::step_done(std::int64_t began_us, std::int64_t windows_befor
 }
 
 bool LiveEstimation::poll(int timeout_ms) {
+  if (catching_up()) {
+    feed();
+    if (catching_up()) timeout_ms = 0;
+  }
   if (config_->can.empty()) return handle_messages(timeout_ms);
   std::vector<pollfd> waiting{{source_.descriptor(), POLLIN, 0}};
   can_.descriptors(waiting);
@@ -105,6 +145,16 @@ bool LiveEstimation::handle_messages(int timeout_ms) {
 void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
   const std::string& interface = config_->can.buses[static_cast<std::size_t>(bus)].interface;
   if (can_log_ != nullptr && !can_log_->write(frame, interface)) can_log_failed_ = true;
+  if (catching_up()) {
+    Later later;
+    later.bus = bus;
+    later.frame = frame;
+    return keep(std::move(later));
+  }
+  estimate_frame(bus, frame);
+}
+
+void LiveEstimation::estimate_frame(int bus, const drivers::CanFrame& frame) {
   const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
   estimation_->frame(bus, frame);
   const std::int64_t dropped = can_.dropped();
@@ -118,6 +168,17 @@ void LiveEstimation::on_message(const drivers::LcmMessage& message) {
     if (on_request_) on_request_({static_cast<const std::uint8_t*>(message.data), message.size});
     return;
   }
+  if (!catching_up()) return estimate_message(message);
+  const auto* bytes = static_cast<const std::uint8_t*>(message.data);
+  Later later;
+  later.channel = message.channel;
+  later.data.assign(bytes, bytes + message.size);
+  later.sender = message.sender;
+  later.received_us = message.received_us;
+  keep(std::move(later));
+}
+
+void LiveEstimation::estimate_message(const drivers::LcmMessage& message) {
   const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
   estimation_->message(message.channel, message.data, message.size, message.sender,
                        message.received_us);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "daemon/history/history.h"
 #include "daemon/keys/option_table.h"
 #include "daemon/live/live_times.h"
+#include "daemon/live/raw_backlog.h"
 #include "drivers/can/can_log.h"
 #include "drivers/can/can_source.h"
 #include "drivers/lcm/lcm_source.h"
@@ -38,6 +40,10 @@ class LiveEstimation {
   /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
   [[nodiscard]] bool poll(int timeout_ms);
   void finish() { estimation_->finish(); }
+  /// From now on poll() first gives the estimation these samples, for at most kFeed_ms a call, and
+  /// keeps what comes meanwhile for afterwards. They are not stored again.
+  void catch_up(RawBacklog backlog);
+  bool catching_up() const { return !backlog_.empty() || !later_.empty(); }
   /// From now on samples and published messages are stored there too; null: no longer.
   void record_to(History* history) { history_ = history; }
   /// From now on called with every event after it was published.
@@ -53,13 +59,28 @@ class LiveEstimation {
   /// Goes on with another configuration, one that reloaded() made of config(). No message is lost.
   void reconfigure(Config next, Reach reach);
   const LiveState& state() const { return state_; }
+  static constexpr std::int64_t kFeed_ms = 50;
+  static constexpr std::size_t kMostLater = 1'000'000;  ///< messages and frames kept meanwhile
   const LiveTimes& times() const { return times_; }
   /// What LCM's receiver did not take.
   drivers::ReceiverCounters dropped() const { return source_.dropped(); }
   drivers::CanSource& can() { return can_; }
 
  private:
+  /// Of a message or frame that came while the backlog was given.
+  struct Later {
+    std::string channel;  ///< empty: a frame
+    std::vector<std::uint8_t> data;
+    drivers::LcmSender sender{};
+    std::int64_t received_us = 0;
+    int bus = 0;
+    drivers::CanFrame frame{};
+  };
   bool handle_messages(int timeout_ms);
+  void feed();
+  void keep(Later later);
+  void estimate_message(const drivers::LcmMessage& message);
+  void estimate_frame(int bus, const drivers::CanFrame& frame);
   void on_message(const drivers::LcmMessage& message);
   void on_frame(int bus, const drivers::CanFrame& frame);
   void on_sample(const estimator::AccelSample& sample);
@@ -78,6 +99,9 @@ class LiveEstimation {
   EventReportFiles reports_;
   History* history_ = nullptr;
   std::function<void(const event_t&)> on_event_;
+  RawBacklog backlog_;
+  bool feeding_ = false;
+  std::deque<Later> later_;
   const std::string request_channel_;
   std::function<void(std::span<const std::uint8_t>)> on_request_;
   std::unique_ptr<Estimation> estimation_;

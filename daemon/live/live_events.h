@@ -24,8 +24,10 @@ class LiveEvents {
   /// Goes on with another configuration, of which [actions] may differ.
   void reconfigure(const Config& config) { actions_.reconfigure(config); }
 
- private:
+  /// Every event of this process that is raised: those of the estimation and of the history.
   AcknowledgeDesk::Raised raised() { return {&live_.estimation().raised(), &history_.raised()}; }
+
+ private:
   void acknowledged(const event_t& event, const Acknowledgement& by);
   CommandPacket obey(const CommandPacket& command, const std::string& user);
 

@@ -16,12 +16,14 @@
 #include "daemon/base/log.h"
 #include "daemon/base/reload_signal.h"
 #include "daemon/base/stop_signal.h"
+#include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/estimation/state_file.h"
 #include "daemon/live/heard_channels.h"
 #include "daemon/live/housekeeping.h"
 #include "daemon/live/live_events.h"
+#include "daemon/live/raw_backlog.h"
 #include "daemon/service/open_lcm.h"
 #include "daemon/service/service_manager.h"
 #include "daemon/service/start_count.h"
@@ -71,6 +73,18 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
                          state.problem, aside, none.message())
            : fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
   return false;
+}
+
+/// The stored raw samples that the estimation has to get first.
+RawBacklog missed_samples(const Config& config, const Estimation& estimation, bool resumed) {
+  std::vector<std::string> notes;
+  RawBacklog out = RawBacklog::read(config, estimation.newest_us(), resumed, notes);
+  for (const std::string& note : notes)
+    log(LogLevel::warning, fmt::format("stored samples: {}", note));
+  if (!out.empty())
+    log(LogLevel::notice, fmt::format("goes on with {:.1f} s of stored samples, from {} on",
+                                      out.seconds(), sensor_time_text(out.first_us())));
+  return out;
 }
 
 void log_summary(const Estimation& estimation) {
@@ -125,7 +139,9 @@ int run(const RunArguments& a) {
     resumed = resume(a.state, *config, *lcm, recorder, estimation);
   }
   LiveEstimation& live = *estimation;
+  RawBacklog missed = missed_samples(*config, live.estimation(), resumed);
   LiveEvents events(*config, *lcm, live);
+  live.catch_up(std::move(missed));
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
   Housekeeping housekeeping(*config, *text, a.state, a.state_every_s, starts, resumed);
   if (!a.quiet)
@@ -140,7 +156,7 @@ int run(const RunArguments& a) {
                can_log.error().empty() ? "LCM failed to deliver" : "CAN log: " + can_log.error());
       ::usleep(1000 * kPoll_ms);
     }
-    housekeeping.look(live, *lcm, manager);
+    housekeeping.look(live, *lcm, manager, events.raised());
     events.look();
     if (reload_requested() && housekeeping.reload(live, manager)) events.reconfigure(live.config());
   }

@@ -21,8 +21,10 @@ reception_t reception_report(const LiveEstimation& live, std::int64_t now_us) {
 ServiceReport::ServiceReport(const StartCount& starts, bool resumed)
     : starts_(starts), resumed_(resumed), started_us_(host_clock_us()) {}
 
-std::optional<service_t> ServiceReport::look(const LiveEstimation& live, const StateKeeper& state,
-                                             const ReloadCount& reloads, std::int64_t now_us) {
+std::optional<service_t> ServiceReport::look(const LiveEstimation& live,
+                                             const std::vector<RaisedEvents*>& raised,
+                                             const StateKeeper& state, const ReloadCount& reloads,
+                                             std::int64_t now_us) {
   if (!second_.due(now_us)) return std::nullopt;
   const LiveTimes& times = live.times();
   service_t m{};
@@ -54,14 +56,15 @@ std::optional<service_t> ServiceReport::look(const LiveEstimation& live, const S
   m.name = axis_names(live.config());
   m.newest_us = times.newest_us;
   m.channels = static_cast<std::int32_t>(m.name.size());
-  for (const event_t& e : live.estimation().raised().all()) {
-    m.event_id.push_back(e.id);
-    m.event_since_us.push_back(e.since_us);
-    m.event_severity.push_back(e.severity);
-    m.event_kind.push_back(e.kind);
-    m.event_place.push_back(e.place);
-    m.event_message.push_back(e.message);
-  }
+  for (const RaisedEvents* events : raised)
+    for (const event_t& e : events->all()) {
+      m.event_id.push_back(e.id);
+      m.event_since_us.push_back(e.since_us);
+      m.event_severity.push_back(e.severity);
+      m.event_kind.push_back(e.kind);
+      m.event_place.push_back(e.place);
+      m.event_message.push_back(e.message);
+    }
   m.raised = static_cast<std::int32_t>(m.event_id.size());
   return m;
 }

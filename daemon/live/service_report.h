@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <framewatch/reception_t.hpp>
 #include <framewatch/service_t.hpp>
 
 #include "daemon/base/once_a_second.h"
+#include "daemon/events/raised_events.h"
 #include "daemon/live/live_estimation.h"
 #include "daemon/live/state_keeper.h"
 #include "daemon/service/start_count.h"
@@ -28,8 +30,10 @@ reception_t reception_report(const LiveEstimation& live, std::int64_t now_us);
 class ServiceReport {
  public:
   ServiceReport(const StartCount& starts, bool resumed);
-  /// The report; empty when less than a second has passed since the last one.
-  std::optional<service_t> look(const LiveEstimation& live, const StateKeeper& state,
+  /// The report; empty when less than a second has passed since the last one. raised: every event
+  /// of this process that is raised.
+  std::optional<service_t> look(const LiveEstimation& live,
+                                const std::vector<RaisedEvents*>& raised, const StateKeeper& state,
                                 const ReloadCount& reloads, std::int64_t now_us);
 
  private:

@@ -193,6 +193,20 @@ void add_reception(MetricFamilies& out, const reception_t& r) {
     out.value(static_cast<double>(count), {{"reason", reason}});
 }
 
+/// The records of changes that have a number.
+void add_changes(MetricFamilies& out, const std::vector<event_t>& raised) {
+  std::vector<const event_t*> sized;
+  for (const event_t& e : raised)
+    if (e.kind == "stiffness_change" && std::isfinite(e.value) && e.std_error > 0)
+      sized.push_back(&e);
+  if (sized.empty()) return;
+  out.gauge("stiffness_change_ratio",
+            "Size of a change that is raised, relative to the baseline; negative: a loss.");
+  for (const event_t* e : sized) out.value(e->value / 100, {{"parameter", e->place}});
+  out.gauge("stiffness_change_error_ratio", "Its standard error.");
+  for (const event_t* e : sized) out.value(e->std_error / 100, {{"parameter", e->place}});
+}
+
 void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
   std::map<std::pair<std::string, std::string>, int> counts;
   // Always there, so that an alert sees it rise from nothing.
@@ -209,6 +223,7 @@ void add_events(MetricFamilies& out, const std::vector<event_t>& raised) {
   out.gauge("events_raised", "Events raised and not cleared.");
   for (const auto& [of, count] : counts)
     out.value(count, {{"kind", of.first}, {"severity", of.second}});
+  add_changes(out, raised);
 }
 
 void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report) {

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "daemon/estimates/settled_windows.h"
+#include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/events/place_words.h"
 #include "estimator/numeric/nan.h"
@@ -18,6 +22,10 @@ using estimator::WindowValue;
 
 constexpr double kTimeStep_s = 0.1;
 constexpr int kFewestWindows = 4;
+constexpr double kTemperatureErrors = 3;     // of a slope, that are no change
+constexpr double kMostByTemperature = 0.05;  // beyond nothing is judged
+/// A loss in one story may show in its group's value by so much less than in its stiffness.
+constexpr double kGroupShows = 1.5;
 
 bool is_stiffness(const SessionEstimates& s, std::size_t p) {
   return s.table.kind[p] <= static_cast<int>(estimator::ParameterKind::panel_stiffness);
@@ -85,17 +93,43 @@ void divide(const SessionEstimates& s, std::size_t p, const std::vector<WindowVa
   divide(s, p, {at(found->after_begin), values.end()}, out);
 }
 
-/// Changes that are raised at the end of the log, of elements in which none was found.
-void add_announced(const SessionEstimates& s, std::vector<ElementChange>& out) {
+/// The record of an element, as the newest of its events has it; null: none is raised at the end.
+const event_t* record_of(const SessionEstimates& s, const std::string& place) {
+  const event_t* last = nullptr;
+  for (const event_t& e : s.events)
+    if (e.kind == "stiffness_change" && e.place == place) last = &e;
+  return last == nullptr || last->state == event_state::cleared ? nullptr : last;
+}
+
+/// A change has one size: where [watch] has a record of it, the record's.
+void take_records(const SessionEstimates& s, std::vector<ElementChange>& out) {
   for (std::size_t p = 0; p < s.parameters(); ++p) {
-    const event_t* last = nullptr;
-    for (const event_t& e : s.events)
-      if (e.kind == "stiffness_change" && e.place == s.table.name[p]) last = &e;
-    const bool known = std::any_of(out.begin(), out.end(),
-                                   [&](const ElementChange& c) { return c.parameter == p; });
-    if (last == nullptr || last->state == event_state::cleared || known) continue;
-    out.push_back({p, last->since_us, {}, {}, last->value / 100, last->std_error / 100});
+    const event_t* record = record_of(s, s.table.name[p]);
+    ElementChange told{p, 0, {}, {}, 0, 0, true};
+    if (record != nullptr)
+      for (const ElementChange& c : out)
+        if (c.parameter == p && (c.ratio < 0) == (record->value < 0)) told = c;
+    if (record != nullptr || s.compared(p))
+      std::erase_if(out, [&](const ElementChange& c) { return c.parameter == p; });
+    if (record == nullptr) continue;
+    told.told = true;
+    told.since_us = record->since_us;
+    told.ratio = record->value / 100;
+    told.std_error = record->std_error / 100;
+    out.push_back(told);
   }
+}
+
+/// What the temperature may explain of a deviation, relative: it would not have shown.
+double by_temperature(const SessionEstimates& s, std::size_t p) {
+  if (!s.watch || p >= s.watch->per_degc.size()) return 0;
+  const watch_t& w = *s.watch;
+  const double off = std::abs(w.temperature_degc - w.baseline_degc[p]);
+  if (!std::isfinite(off)) return 0;
+  const double slope = std::isfinite(w.per_degc[p])
+                           ? w.per_degc_std_error[p]
+                           : estimator::DependenceLearner::kUsualPerDegc;
+  return kTemperatureErrors * slope * off;
 }
 
 /// Median of a window's standard error over its value, of the windows within two times.
@@ -162,25 +196,57 @@ std::vector<ElementChange> session_changes(const SessionEstimates& s) {
   std::vector<ElementChange> out;
   for (std::size_t p = 0; p < s.parameters(); ++p)
     if (is_stiffness(s, p)) divide(s, p, separate(s, p), out);
-  add_announced(s, out);
+  take_records(s, out);
   std::stable_sort(out.begin(), out.end(), [](const ElementChange& a, const ElementChange& b) {
     return a.since_us < b.since_us;
   });
   return out;
 }
 
-std::vector<std::size_t> judged_elements(const SessionEstimates& s) {
-  std::vector<std::size_t> out;
+estimator::Parameter parameter_of(const parameter_table_t& t, std::size_t p) {
+  estimator::Parameter out{};
+  out.name = t.name[p];
+  out.kind = static_cast<estimator::ParameterKind>(t.kind[p]);
+  out.story = out.last_story = t.story[p];
+  const std::string& n = t.name[p];
+  if (const std::size_t to = n.find("to"); to != std::string::npos)
+    out.last_story = std::max(out.story, std::atoi(n.c_str() + to + 2));
+  return out;
+}
+
+const event_t* common_change(const SessionEstimates& s) {
+  return record_of(s, kWholeBuilding);
+}
+
+std::vector<JudgedElement> judged_elements(const SessionEstimates& s) {
+  std::vector<JudgedElement> out;
   for (std::size_t p = 0; p < s.parameters(); ++p) {
     if (!is_stiffness(s, p)) continue;
     const std::vector<WindowValue> values = separate(s, p);
     if (values.size() < kFewestWindows) continue;
     const estimator::WindowMean mean = estimator::mean_of(values, 0, values.size());
     // Of the difference between two halves.
-    if (2 * estimator::kChangeErrors * mean.std_error < 2 * least_change(s, p) * mean.value)
-      out.push_back(p);
+    const double errors = 2 * estimator::kChangeErrors * mean.std_error / mean.value;
+    const double least = least_change(s, p), temperature = by_temperature(s, p);
+    if (!(errors < 2 * least) || temperature > kMostByTemperature) continue;
+    const estimator::Parameter parameter = parameter_of(s.table, p);
+    const bool group = parameter.last_story > parameter.story;
+    const double shows = (std::max(least, errors) + temperature) * (group ? kGroupShows : 1);
+    out.push_back({p, loss_of_one_story(parameter, std::min(shows, 1.0))});
   }
   return out;
+}
+
+std::string why_not_judged(const SessionEstimates& s) {
+  std::size_t hidden = 0;
+  for (std::size_t p = 0; p < s.parameters(); ++p)
+    if (is_stiffness(s, p) && by_temperature(s, p) > kMostByTemperature) ++hidden;
+  return hidden == 0 ? ""
+                     : fmt::format(
+                           "{} stiffnesses are not judged, because the building has another "
+                           "temperature than its baseline and what that makes of them is not "
+                           "learned yet. ",
+                           hidden);
 }
 
 std::string element_words(const parameter_table_t& table, std::size_t p) {

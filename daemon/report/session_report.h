@@ -47,7 +47,7 @@ struct SessionReport {
   std::optional<SessionMotion> motion;
   std::vector<Stage> stages;                       ///< empty without motion
   std::vector<ElementChange> changes, recoveries;  ///< a recovery is no change
-  std::vector<std::size_t> judged;    ///< stiffnesses in which a change would have been found
+  std::vector<JudgedElement> judged;  ///< stiffnesses in which a change would have been found
   std::vector<ReportStage> compared;  ///< at least one
   /// Table order, SI, NaN: none. reference_static: the design of the configuration, or what the
   /// estimator began with; reference_dynamic: of frames, by the ratio of natural frequencies.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -9,13 +10,16 @@
 #include "daemon/documents/number_words.h"
 #include "daemon/documents/svg_plot.h"
 #include "daemon/estimates/parameter_summary.h"
+#include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/report/session_report.h"
+#include "estimator/watch/watch.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kMostEvents = 100, kMostNamed = 3, kMostInChart = 40;
+constexpr double kRounding = 1e-9;
 
 std::string capital(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
@@ -36,15 +40,27 @@ double error_percent(const ElementChange& c) {
   return std::max(0.1, std::ceil(1000 * c.std_error) / 10);
 }
 
+/// Of a loss of a group: what that may be of one of its stories.
+std::string of_one_story(const parameter_table_t& table, const ElementChange& c) {
+  const estimator::Parameter p = parameter_of(table, c.parameter);
+  if (p.last_story == p.story || !(c.ratio < 0)) return "";
+  const double most = std::min(2 * c.std_error - c.ratio, 1.0);
+  return fmt::format(" (one of stories {} to {} may have lost up to {:.0f} %)", p.story, p.last_story,
+                     100 * loss_of_one_story(p, most));
+}
+
 /// "frame y2 of story 1 has lost 15.0 % (+-0.4 %) of its stiffness".
 std::string what(const SessionReport& r, const ElementChange& c) {
   const std::string element = element_words(r.estimates.table, c.parameter);
   const bool several = element.rfind("stories", 0) == 0;
+  if (!c.sized())
+    return element + (several ? " are" : " is") + " changing, how much is not known yet";
   const std::string size =
       fmt::format("{:.1f} % (+-{:.1f} %)", 100 * std::abs(c.ratio), error_percent(c));
   return element + (several ? " have " : " has ") +
          (c.ratio < 0 ? fmt::format("lost {} of {} stiffness", size, several ? "their" : "its")
-                      : "become stiffer by " + size);
+                      : "become stiffer by " + size) +
+         of_one_story(r.estimates.table, c);
 }
 
 std::vector<ElementChange> largest_first(std::vector<ElementChange> changes) {
@@ -62,15 +78,17 @@ std::size_t stiffnesses(const SessionReport& r) {
 /// What is said of the elements that have not changed.
 std::string the_others(const SessionReport& r) {
   std::size_t same = 0;
-  for (const std::size_t p : r.judged)
+  std::set<std::size_t> changed, seen;
+  for (const JudgedElement& j : r.judged) {
+    seen.insert(j.parameter);
     same += std::none_of(r.changes.begin(), r.changes.end(),
-                         [&](const ElementChange& c) { return c.parameter == p; });
-  std::set<std::size_t> changed, seen(r.judged.begin(), r.judged.end());
+                         [&](const ElementChange& c) { return c.parameter == j.parameter; });
+  }
   for (const ElementChange& c : r.changes) changed.insert(c.parameter);
   for (const ElementChange& c : r.recoveries) seen.insert(c.parameter);
   seen.insert(changed.begin(), changed.end());
   const std::size_t unseen = stiffnesses(r) - seen.size();
-  std::string out;
+  std::string out = why_not_judged(r.estimates);
   if (same > 0 && !changed.empty())
     out += fmt::format("{} other element{} of the building {} not changed. ", same,
                        same == 1 ? "" : "s", same == 1 ? "has" : "have");
@@ -109,7 +127,8 @@ std::string change_chart(const SessionReport& r) {
     (stage.after ? after : before) = &stage;
   }
   if (before == nullptr || after == nullptr) return "";
-  std::vector<std::size_t> shown = r.judged;
+  std::vector<std::size_t> shown;
+  for (const JudgedElement& j : r.judged) shown.push_back(j.parameter);
   for (const ElementChange& c : r.changes) shown.push_back(c.parameter);
   std::sort(shown.begin(), shown.end());
   shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
@@ -121,7 +140,7 @@ std::string change_chart(const SessionReport& r) {
     names.categories.push_back(r.estimates.table.name[p]);
     bars.x.push_back(static_cast<double>(names.categories.size()));
     const auto change = std::find_if(r.changes.begin(), r.changes.end(), [&](const auto& c) {
-      return c.parameter == p && c.measured();
+      return c.parameter == p && c.sized();
     });
     const double windows = r.estimates.table.window_rows / r.estimates.table.hop_rows;
     const auto error = [&](const ParameterSummary& s, const WindowRange& w) {
@@ -193,19 +212,57 @@ std::string change_table(const SessionReport& r) {
     };
     rows.push_back({html_text(element_words(r.estimates.table, c.parameter)),
                     html_text(r.estimates.table.name[c.parameter]), unit, mean(c.before),
-                    mean(c.after), change_with_error(c.ratio, 0.01 * error_percent(c)),
+                    mean(c.after), c.sized() ? change_with_error(c.ratio, 0.01 * error_percent(c)) : "not known yet",
                     fmt::format("{:.1f}", session_seconds(r, c.since_us))});
   }
-  return rows.empty() ? ""
-                      : html_table({"element", "parameter", "unit", "before", "after", "change, %",
-                                    "since, s"},
-                                   rows);
+  if (rows.empty()) return "";
+  const bool told = std::any_of(r.changes.begin(), r.changes.end(),
+                                [](const ElementChange& c) { return c.told; });
+  return html_table({"element", "parameter", "unit", "before", "after", "change, %", "since, s"},
+                    rows) +
+         (told ? "<p>The change is the announced one, against the baseline and at like amplitude; "
+                 "before and after are means of this session's windows.</p>\n"
+               : "");
+}
+
+/// The least loss of one story of a frame that would have shown in every frame that is judged.
+double shows(const SessionReport& r) {
+  double most = 0;
+  for (const JudgedElement& j : r.judged)
+    if (r.estimates.table.kind[j.parameter] ==
+        static_cast<int>(estimator::ParameterKind::frame_stiffness))
+      most = std::max(most, j.shows);
+  return most > 0 ? most : estimator::WatchOptions{}.least_change_k;
+}
+
+/// An alarm that is raised at the end and is no change of a stiffness.
+const event_t* open_alarm(const SessionReport& r) {
+  std::map<std::int64_t, const event_t*> last;
+  for (const event_t& e : r.estimates.events) last[e.id] = &e;
+  for (const auto& [id, e] : last)
+    if (e->state != event_state::cleared && e->severity == severity::alarm &&
+        e->kind != "stiffness_change")
+      return e;
+  return nullptr;
+}
+
+/// Why there may be no events though something changed.
+std::string nothing_compared(const SessionReport& r) {
+  if (!r.estimates.watch)
+    return "[watch] was not configured: nothing was compared while it was measured.";
+  for (std::size_t p = 0; p < r.estimates.parameters(); ++p)
+    if (r.estimates.compared(p)) return "";
+  return "[watch] had no baseline yet: nothing was compared while it was measured.";
 }
 
 }  // namespace
 
 std::string verdict_sentence(const SessionReport& r) {
   const std::vector<ElementChange> changes = largest_first(r.changes);
+  if (const event_t* all = common_change(r.estimates); changes.empty() && all != nullptr)
+    return capital(common_change_sentence(all->value / 100, all->std_error / 100)) + ".";
+  if (const event_t* open = open_alarm(r); changes.empty() && open != nullptr)
+    return fmt::format("An alarm is open at the end: {}.", open->message);
   if (changes.empty() && r.judged.empty() && !r.recoveries.empty())
     return "Whether the building has changed cannot be said: after its strong motion there was "
            "only "
@@ -216,8 +273,8 @@ std::string verdict_sentence(const SessionReport& r) {
   if (changes.empty())
     return fmt::format(
         "The building has not changed: {} of its {} frames and floor panels kept "
-        "their stiffness, and the loss of 3 % of a frame would have shown.",
-        r.judged.size(), stiffnesses(r));
+        "their stiffness, and the loss of {:.0f} % of a frame would have shown.",
+        r.judged.size(), stiffnesses(r), std::ceil(100 * shows(r) - kRounding));
   std::string out;
   for (std::size_t i = 0; i < std::min(changes.size(), kMostNamed); ++i)
     out += (i == 0 ? "" : "; ") + what(r, changes[i]) + ", " + since(r, changes[i].since_us);
@@ -262,6 +319,8 @@ std::string verdict_section(const SessionReport& r) {
   if (!r.recoveries.empty()) out += "<p>" + html_text(recovery_sentence(r)) + "</p>\n";
   if (const std::string bending = bending_sentence(r); !bending.empty())
     out += "<p>" + html_text(bending) + "</p>\n";
+  if (const std::string why = nothing_compared(r); !why.empty() && r.estimates.watch)
+    out += "<p>" + html_text(why) + "</p>\n";
   const std::string rest = the_others(r) + sensors_sentence(r);
   if (!rest.empty()) out += "<p>" + html_text(rest) + "</p>\n";
   out += change_chart(r);
@@ -279,7 +338,11 @@ std::string events_section(const SessionReport& r) {
                     word(kEventStates, e.state), word(kSeverities, e.severity), html_text(e.place),
                     html_text(e.message)});
   }
-  if (rows.empty()) return "<h2>Events</h2>\n<p>None was announced while it was measured.</p>\n";
+  if (rows.empty()) {
+    const std::string why = nothing_compared(r);
+    return "<h2>Events</h2>\n<p>" +
+           (why.empty() ? "None was announced while it was measured." : html_text(why)) + "</p>\n";
+  }
   return "<h2>Events</h2>\n<p>As they were announced while it was measured.</p>\n" +
          html_table({"time, s", "state", "severity", "place", "what"}, rows) +
          (r.estimates.events.size() > kMostEvents

@@ -113,9 +113,13 @@ void of_watch(const watch_t& w, const Config& config, std::vector<std::string>& 
     out.push_back(fmt::format("no temperature is heard on {}", config.watch->temperature_channel));
 }
 
-void of_history(const history_status_t& s, std::vector<std::string>& out) {
-  if (!s.raw_trouble.empty()) out.push_back("raw samples are not stored: " + s.raw_trouble);
-  if (!s.summary_trouble.empty()) out.push_back("summaries are not stored: " + s.summary_trouble);
+/// Trouble that is raised as an event is told, or acknowledged, as that.
+void of_history(const history_status_t& s, const service_t& service,
+                std::vector<std::string>& out) {
+  if (!s.raw_trouble.empty() && !is_raised(service, "history", "raw"))
+    out.push_back("raw samples are not stored: " + s.raw_trouble);
+  if (!s.summary_trouble.empty() && !is_raised(service, "history", "summaries"))
+    out.push_back("summaries are not stored: " + s.summary_trouble);
 }
 
 void of_uplink(const Heard& heard, const Config& config, std::int64_t now_us,
@@ -258,7 +262,7 @@ std::vector<std::string> oddities(const Heard& heard, const Config& config, std:
   of_punctuality(heard, out);
   if (heard.can) of_can(*heard.can, out);
   if (heard.watch) of_watch(*heard.watch, config, out);
-  if (heard.history) of_history(*heard.history, out);
+  if (heard.history) of_history(*heard.history, s, out);
   if (heard.actions) of_actions(*heard.actions, out);
   of_uplink(heard, config, now_us, out);
   of_reception(heard, out);

@@ -28,6 +28,9 @@ struct PipelineConfig {
   /// Of groups of stories, by parameter: relative error that these tolerances make
   /// (LayoutPrediction::design_error); empty: none is counted.
   std::vector<double> design_error = {};
+  /// Of groups of stories: what a loss in one story makes of their values
+  /// (LayoutPrediction::change_error, change_leak); empty: the usual.
+  std::vector<double> change_error = {}, change_leak = {};
 
   StoryGroups groups() const {
     return story_groups(structure, axes, {group_floors, bending_nmprad.any()});

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"
@@ -24,6 +25,7 @@ BaselineLearner any_windows(std::size_t parameters) {
 }  // namespace
 
 double ShakenStiffness::std_error() const {
+  if (record.measured()) return record.change.std_error;
   return std::hypot(after.std_error, after.value / before.value * before.std_error) /
          std::abs(before.value);
 }
@@ -82,6 +84,9 @@ ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& o
 bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {
   began_ = false;
   response_.push(set);
+  const bool missed = look_for_unheard(set.time);
+  // What follows so long a silence is another motion.
+  if (active_ && missed && seconds(start_, set.time) >= kLongest_s) return end(set.time, baseline);
   const bool strong = std::any_of(trigger_axes_.begin(), trigger_axes_.end(), [this](auto axis) {
     return std::abs(response_.accel_mps2()[axis]) > options_.trigger_mps2;
   });
@@ -89,15 +94,56 @@ bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {
   if (!active_) return false;
   if (strong) {
     last_ = set.time;
+    unheard_calm_s_ = 0;
     after_.count = 0;
   }
   peak_.take(response_);
-  const bool over = seconds(last_, set.time) >= options_.quiet_s;
+  const bool over = seconds(last_, set.time) - unheard_calm_s_ >= options_.quiet_s;
   if (!over && seconds(start_, set.time) < kLongest_s) return false;
+  return end(set.time, baseline);
+}
+
+bool ShakingWatch::end(Time now, const Baseline* baseline) {
   active_ = false;
-  if (seconds(start_, last_) < kShortest_s) return false;
-  finish(set.time, baseline);
+  const bool long_enough = seconds(start_, last_) >= kShortest_s;
+  if (long_enough) finish(now, baseline);
+  // The newest one may be the beginning of the next strong motion.
+  if (unheard_count_ > 1) unheard_[0] = unheard_[unheard_count_ - 1];
+  unheard_count_ = std::min<std::size_t>(unheard_count_, 1);
+  return long_enough;
+}
+
+void ShakingWatch::came_up(Time known, bool raw) {
+  came_up_ = CameUp{known, raw};
+}
+
+/// True when there was one just before this instant.
+bool ShakingWatch::look_for_unheard(Time now) {
+  const bool first = !std::exchange(heard_any_, true);
+  const Time before = std::exchange(heard_, now);
+  const UnheardWhy restart =
+      came_up_ && came_up_->raw ? UnheardWhy::restart : UnheardWhy::restart_no_raw;
+  if (first) {
+    if (came_up_) add_unheard({now, now, false, restart});
+    return false;
+  }
+  const double missing_s = seconds(before, now);
+  if (missing_s <= kUnheard_s) return false;
+  const bool restarted = came_up_ && before <= came_up_->known && came_up_->known <= now;
+  add_unheard({before, now, true, restarted ? restart : UnheardWhy::no_samples});
+  unheard_calm_s_ += missing_s;
   return true;
+}
+
+void ShakingWatch::add_unheard(const Unheard& unheard) {
+  if (!active_) unheard_count_ = 0;
+  if (unheard_count_ == kMostUnheard) {
+    Unheard& last = unheard_[kMostUnheard - 1];
+    last.to = unheard.to;
+    last.why = std::max(last.why, unheard.why);
+    return;
+  }
+  unheard_[unheard_count_++] = unheard;
 }
 
 void ShakingWatch::begin(Time now) {
@@ -107,6 +153,8 @@ void ShakingWatch::begin(Time now) {
   first_.count = final_.count = after_.count = late_.count = 0;
   during_ = any_windows(2 * elements_);
   gap_ = kNaN;
+  unheard_calm_s_ = 0;
+  if (unheard_count_ > 0 && seconds(unheard_[0].to, now) >= options_.quiet_s) unheard_count_ = 0;
 }
 
 void ShakingWatch::push(const WindowEstimate& e) {
@@ -146,7 +194,9 @@ void ShakingWatch::gap(double nrmse) {
 }
 
 void ShakingWatch::finish(Time now, const Baseline* baseline) {
-  ended_ = {start_, last_, now, peak_, {}, gap_, response_.knowledge()};
+  ended_ = {start_, last_, now, peak_, {}, gap_, response_.knowledge(), {}, response_.settling_s()};
+  ended_.unheard.assign(unheard_.begin(),
+                        unheard_.begin() + static_cast<std::ptrdiff_t>(unheard_count_));
   const Baseline during = during_.so_far();
   for (std::size_t p = 0; p < elements_; ++p) {
     ShakenStiffness s;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "estimator/setup/pipeline_config.h"
@@ -10,10 +12,14 @@
 namespace framewatch::estimator {
 
 /// Notices strong motion, follows its peaks, and says at its end what the building went through.
-/// Bounded: a motion of over kLongest_s is divided.
+/// Bounded: a motion of over kLongest_s is divided. A time without samples is no calm: only heard
+/// calm ends strong motion.
 class ShakingWatch {
  public:
   static constexpr double kShortest_s = 0.5, kLongest_s = 900;
+  /// A time without samples that is told; in a shorter one no story drifts far.
+  static constexpr double kUnheard_s = 0.5;
+  static constexpr std::size_t kMostUnheard = 8;  ///< of one strong motion; further ones join
 
   ShakingWatch(const PipelineConfig& config, const ShakingOptions& options);
 
@@ -21,6 +27,9 @@ class ShakingWatch {
   bool push(const SampleSet& set, const Baseline* baseline);
   /// An estimate of the main window, late ones too.
   void push(const WindowEstimate& estimate);
+  /// The program was started anew and has every sample up to `known`; samples may be missing from
+  /// there to the next instant. raw: it has those that the program before had heard last.
+  void came_up(Time known, bool raw);
   /// The gap of simulation and measurement.
   void gap(double nrmse);
   bool active() const { return active_; }
@@ -29,7 +38,11 @@ class ShakingWatch {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(active_, start_, last_, response_, peak_, before_, first_, final_, after_, late_, during_, gap_);
+    a(active_, start_, last_, response_, peak_, before_, first_, final_, after_, late_, during_,
+      gap_);
+    a(heard_any_, heard_, unheard_);
+    a.within(unheard_count_, 0, static_cast<double>(kMostUnheard));
+    a.finite(unheard_calm_s_);
   }
 
  private:
@@ -53,7 +66,10 @@ class ShakingWatch {
   void begin(Time now);
   void push_late(const WindowEstimate& estimate);
   WindowMean first_mean(std::size_t parameter) const;
+  bool end(Time now, const Baseline* baseline);
   void finish(Time now, const Baseline* baseline);
+  bool look_for_unheard(Time now);
+  void add_unheard(const Unheard& unheard);
 
   std::size_t elements_;
   ShakingOptions options_;
@@ -62,6 +78,16 @@ class ShakingWatch {
   PeakResponse peak_;
   bool active_ = false, began_ = false;
   Time start_{}, last_{};
+  bool heard_any_ = false;
+  Time heard_{};                               ///< the newest instant
+  std::array<Unheard, kMostUnheard> unheard_;  ///< while calm the newest one alone
+  std::size_t unheard_count_ = 0;
+  double unheard_calm_s_ = 0;  ///< of the time since last_
+  struct CameUp {
+    Time known{};
+    bool raw = false;
+  };
+  std::optional<CameUp> came_up_;  ///< of this process, so no state
   double gap_ = 0;
   Windows before_, first_, final_, after_;
   Windows late_;  ///< those before first_ that came late

@@ -28,6 +28,7 @@ StoryResponse::StoryResponse(const PipelineConfig& config)
       mean_step_(2 * std::numbers::pi * kMeanShare * config.options.high_pass_hz /
                  config.options.rate_hz),
       settling_(kSettlePeriods * config.options.rate_hz / config.options.high_pass_hz),
+      step_s_(1 / config.options.rate_hz),
       motion_of_dof_(static_cast<std::size_t>(structure_.degrees_of_freedom()), -1),
       accel_(axes_.size(), kNaN),
       slow_drift_(config),

@@ -52,6 +52,8 @@ class StoryResponse {
   DriftKnowledge knowledge() const { return slow_drift_.knowledge(); }
   /// Along x and y: minus the floors' masses times their accelerations, N; NaN: not known.
   const std::array<double, 2>& base_shear_n() const { return base_shear_; }
+  /// Displacements are not known for so long after an interruption.
+  double settling_s() const { return settling_ * step_s_; }
 
   template <typename Archive>
   void archive(Archive& a) {
@@ -92,6 +94,7 @@ class StoryResponse {
   double over_w2_;                    ///< s^2
   double mean_step_;                  ///< of the mean's filter
   double settling_;                   ///< instants
+  double step_s_;                     ///< between instants
   std::optional<EveryFloor> floors_;  ///< none where every frame has a sensor on every floor
   std::vector<int> motion_of_dof_;    ///< -1: none
   std::int64_t next_index_ = -1;

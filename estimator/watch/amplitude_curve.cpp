@@ -160,6 +160,7 @@ double RecentAmplitude::remembered(std::size_t i, double time_s) const {
 }
 
 void RecentAmplitude::push(double time_s, double amplitude_m) {
+  if (count_ > 0 && time_s < time_s_[count_ - 1]) return;
   while (count_ > 0 && amplitude_[count_ - 1] <= amplitude_m) --count_;
   if (count_ == kMost) {  // the one that counts least of those but the newest
     std::size_t least = 0;

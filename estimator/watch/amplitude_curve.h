@@ -117,7 +117,7 @@ class RecentAmplitude {
   static constexpr double kHolds_s = 20;
   static constexpr std::size_t kMost = 8;
 
-  /// time_s: never before the last one.
+  /// One that comes late, before the last one, is left out.
   void push(double time_s, double amplitude_m);
   /// The last one; 0: nothing.
   double newest() const { return count_ > 0 ? amplitude_[count_ - 1] : 0; }

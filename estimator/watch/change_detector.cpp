@@ -31,21 +31,38 @@ ChangeDetector::ChangeDetector(const Baseline& baseline, const std::vector<Watch
 
 int ChangeDetector::free_phase(const WindowEstimate& e) const {
   const auto length = e.end - e.start;
-  const Time newest = *std::max_element(used_until_.begin(), used_until_.end());
+  const auto phases = used_until_.begin() + kPhases;
+  const Time newest = *std::max_element(used_until_.begin(), phases);
+  if (e.end < newest) return used_until_[kPhases] <= e.start ? kPhases : -1;
   if (newest != kLongAgo && e.end - newest < length / kPhases) return -1;
-  const auto free = std::find_if(used_until_.begin(), used_until_.end(),
-                                 [&](Time until) { return until <= e.start; });
-  return free == used_until_.end() ? -1 : static_cast<int>(free - used_until_.begin());
+  const auto free =
+      std::find_if(used_until_.begin(), phases, [&](Time until) { return until <= e.start; });
+  return free == phases ? -1 : static_cast<int>(free - used_until_.begin());
 }
 
-void ChangeDetector::push(const WindowEstimate& e) {
+void ChangeDetector::push(const WindowEstimate& e, const std::vector<std::uint8_t>& held) {
   const int phase = free_phase(e);
   if (phase < 0) return;
   used_until_[static_cast<std::size_t>(phase)] = e.end;
   for (std::size_t p = 0; p < parameters_.size(); ++p) {
     const Watched& watched = parameters_[p].watched;
+    if (!held.empty() && held[p] != 0) continue;
     if (watched.least_change > 0 && baseline_.knows(p) && watched.counts(e, p)) judge(p, phase, e);
   }
+}
+
+void ChangeDetector::forget(std::size_t p) {
+  Parameter& parameter = parameters_[p];
+  parameter.sign = parameter.phase = parameter.size = 0;
+  parameter.back.fill(0);
+  for (auto& tracks : parameter.away) tracks.fill({});
+}
+
+double ChangeDetector::evidence(int parameter, int sign) const {
+  double most = 0;
+  for (const Tracks& tracks : of(parameter).away[sign < 0 ? 0 : 1])
+    for (const Track& track : tracks) most = std::max(most, track.sum);
+  return most / (sign < 0 ? threshold_ : kGain * threshold_);
 }
 
 void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
@@ -61,16 +78,19 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
                                    (std::min(error, most) - usual);
   const double scale = std::hypot(std::max(error, usual), baseline_error);
   const double off = e.value[p] / baseline_.value[p] - 1;
-  const double tolerance = (parameter.watched.tolerance + kBaselineErrors * baseline_error) / scale;
+  const double tolerance =
+      (parameter.watched.tolerance + parameter.tolerated + kBaselineErrors * baseline_error) /
+      scale;
   const double z = off / scale, least = parameter.watched.least_change / scale;
 
   // The error is at least the usual one, of so many windows.
   const double freedom = kFreedom * (1 + kMemory_s / window_s);
   const auto likelihood = [&](double distance) { return log_likelihood(distance, freedom); };
 
-  const double most_gain =
-      (window_s < kConvincing_s ? kShortWindow : kMostOfThreshold) * threshold_;
   for (const int sign : {-1, 1}) {
+    const double threshold = sign < 0 ? threshold_ : kGain * threshold_;
+    const double most_gain =
+        (window_s < kConvincing_s ? kShortWindow : kMostOfThreshold) * threshold;
     const double toward = sign * z;
     const double unchanged = likelihood(toward - std::clamp(toward, 0.0, tolerance));
     for (int size = 0; size < kSizes; ++size) {
@@ -83,10 +103,10 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
         continue;
       }
       if (track.sum == 0) track.since = e.start;
-      track.sum = std::min(track.sum + gain, kMostOfThreshold * threshold_);
+      track.sum = std::min(track.sum + gain, kMostOfThreshold * threshold);
       track.weight += 1 / (scale * scale);
       track.off += off / (scale * scale);
-      if (parameter.sign != 0 || track.sum <= threshold_) continue;
+      if (parameter.sign != 0 || track.sum <= threshold) continue;
       parameter.sign = sign;
       parameter.phase = phase;
       parameter.size = size;
@@ -111,7 +131,7 @@ Change ChangeDetector::change(int parameter) const {
   if (track.weight <= 0) return {};
   return {track.off / track.weight,
           std::hypot(1 / std::sqrt(track.weight), baseline_.std_error[u] / baseline_.value[u]),
-          track.since};
+          track.since, track.since, track.since};
 }
 
 }  // namespace framewatch::estimator

@@ -10,6 +10,10 @@ inline double seconds_of(Time time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
+inline double seconds_of(SensorClock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
 /// Selects the windows to learn from: valid ones that do not overlap, so that their errors are
 /// nearly independent.
 class SeparateWindows {

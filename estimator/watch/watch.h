@@ -8,8 +8,7 @@
 #include "estimator/structure/parameter_table.h"
 #include "estimator/watch/amplitude_curve.h"
 #include "estimator/watch/baseline.h"
-#include "estimator/watch/change_detector.h"
-#include "estimator/watch/change_size.h"
+#include "estimator/watch/change_book.h"
 #include "estimator/watch/dependence.h"
 #include "estimator/watch/mean_temperature.h"
 
@@ -31,18 +30,6 @@ struct WatchOptions {
   bool temperature = false, amplitude = true;
 };
 
-enum class AlarmState { cleared, raised, changed };
-
-/// A transition of a parameter's alarm.
-struct Alarm {
-  std::int64_t id;  ///< the same from raised to cleared; from 1
-  AlarmState state;
-  int parameter;
-  /// Its size so far, which sharpens while windows come; of a cleared alarm the last one reported.
-  Change change;
-  Time found;  ///< end of the window that shows it
-};
-
 /// How the parameters are watched: theta order.
 std::vector<Watched> watched_parameters(const ParameterTable& table, const WatchOptions& options);
 
@@ -54,11 +41,17 @@ class Watch {
  public:
   /// baseline: parameters that it lacks are learned. windows_s: lengths of the windows,
   /// WindowEstimate::window its index; the next index is that of the long window, if there is one.
+  /// model: what a change of one element makes of the others; empty: the usual one.
   Watch(const ParameterTable& table, const WatchOptions& options,
-        const std::vector<double>& windows_s, const std::optional<Baseline>& baseline);
+        const std::vector<double>& windows_s, const std::optional<Baseline>& baseline,
+        const ChangeModel& model = {});
 
-  /// The transitions of alarms that this window causes; valid until the next call.
+  /// The transitions of records that this window causes; valid until the next call. Windows may
+  /// come late and in any order; those of one length that lie closer than a fifth of it are left
+  /// out.
   const std::vector<Alarm>& push(const WindowEstimate& estimate);
+  /// The record of a change of a parameter, or of ChangeRecord::kEverything; null: there is none.
+  const ChangeRecord* record(int parameter) const { return book_.record(parameter); }
 
   /// A reading of the thermometer.
   void temperature(Time time, double degc) { temperature_.push(time, degc); }
@@ -110,10 +103,7 @@ class Watch {
   }
   template <typename Archive>
   void archive_detection(Archive& a) {
-    a(temperature_, detectors_, states_, recent_, usual_);
-    a.within(last_id_, 0, a.kMostCount);
-    for (const State& state : states_)
-      if (state.detector >= detectors_.size()) a.refuse();
+    a(temperature_, book_, recent_, usual_);
   }
   /// Forgets what was learned under other conditions than these options correct for.
   void resumed() {
@@ -121,19 +111,6 @@ class Watch {
   }
 
  private:
-  struct State {
-    std::int64_t id = 0;  ///< of its alarm; 0: none
-    std::size_t detector = 0;
-    Change reported;
-    ChangeSize size;
-    Time sized_until{};  ///< windows that begin before are not part of the size
-
-    template <typename Archive>
-    void archive(Archive& a) {
-      a.within(id, 0, a.kMostCount);
-      a(detector, reported, size, sized_until);
-    }
-  };
   /// The mean logarithm of an amplitude.
   struct Usual {
     std::int64_t count = 0;
@@ -156,29 +133,16 @@ class Watch {
     double ratio;      ///< most likely
     double low, high;  ///< what it may be
   };
-  /// What was taken off a deviation because the conditions may explain it, and a standard error of
-  /// that, relative to the baseline.
-  struct Explained {
-    double off = 0, std_error = 0;
-  };
   Explained correct(WindowEstimate& estimate, std::size_t parameter, double baseline,
                     const Intact& intact) const;
   bool is_shorter(const WindowEstimate& estimate) const;  ///< than the main window
   Intact intact(std::size_t parameter, const WindowEstimate& estimate, double degc) const;
-  /// Whether anything looks at this window's values.
-  bool used(const WindowEstimate& estimate) const;
-  bool measures(std::size_t parameter, const WindowEstimate& estimate) const;
   /// The estimate as it would be under the conditions of its baseline.
   const WindowEstimate& corrected(const WindowEstimate& estimate);
   void remember_amplitudes(const WindowEstimate& estimate);
   double recovering(std::size_t parameter, Time now) const;
   const WindowEstimate& corrected_quiet(const WindowEstimate& estimate);
-  /// The window that sizes of the changes a detector has found are measured in.
-  std::size_t sizing_window(std::size_t detector) const;
-  void measure(std::size_t parameter, const WindowEstimate& corrected);
-  Change found_by(std::size_t detector, int parameter) const;
-  Change size_of(int parameter) const;
-  void report(int parameter, const WindowEstimate& estimate);
+  void find_doubted(const WindowEstimate& estimate);
 
   WatchOptions options_;
   std::vector<Watched> watched_;      ///< theta order
@@ -195,12 +159,11 @@ class Watch {
   DependenceLearner quiet_learner_;
   Baseline quiet_baseline_;
   Dependence dependence_;
-  std::vector<ChangeDetector> detectors_;  ///< by window, the long one last
+  ChangeBook book_;
   WindowEstimate corrected_;
-  std::vector<Explained> explained_;  ///< in the newest window
-  std::vector<State> states_;
-  std::vector<Alarm> news_;
-  std::int64_t last_id_ = 0;
+  std::vector<Explained> explained_;   ///< in the newest window
+  std::vector<std::uint8_t> doubted_;  ///< gains that are not to be believed now
+  std::vector<Alarm> none_;
   bool other_conditions_ = false;  ///< what archive_learned() read was corrected for others
 };
 

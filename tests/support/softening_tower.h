@@ -30,6 +30,10 @@ class SofteningTower {
   const estimator::PipelineConfig& config() const { return config_; }
   /// Keeps its motion.
   void lose(int story, double ratio) { stiffness_[story - 1] *= 1 - ratio; }
+  /// Of stories in series, from `first` to `last`, without softening, N/m.
+  double stiffness(int first, int last) const {
+    return 1 / stiffness_.segment(first - 1, last - first + 1).inverse().sum();
+  }
   /// What the channels show at the next instant, m/s^2. level: of the ground's motion, 1: strong.
   const Eigen::VectorXd& next(double level);
 

@@ -154,11 +154,15 @@ void LiveView::message(const std::string& channel, const void* data, std::size_t
   }
 }
 
+bool LiveView::found_here(const event_t& event) const {
+  return !config_.watch && event.kind == "stiffness_change";
+}
+
 void LiveView::alarms_message(const std::string& name, const void* data, std::size_t size) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (name == "EVENT") {
-    if (const auto e = drivers::decoded<event_t>(bytes(data, size)))
-      push_alarms({alarms_.note(*e)});
+    const auto e = drivers::decoded<event_t>(bytes(data, size));
+    if (e) push_alarms({found_here(*e) ? alarms_.note_own(*e) : alarms_.note(*e)});
   } else if (name == "SERVICE") {
     if (const auto s = drivers::decoded<service_t>(bytes(data, size)))
       push_alarms(alarms_.still_raised(*s));
@@ -323,8 +327,7 @@ std::optional<std::int64_t> LiveView::acknowledge(std::int64_t id, const std::st
   const std::lock_guard<std::mutex> lock(mutex_);
   const event_t* event = alarms_.find(id);
   if (event == nullptr) return std::nullopt;
-  const bool found_here = !config_.watch && event->kind == "stiffness_change";
-  if (!alarms_.kept_elsewhere() || found_here) {
+  if (!alarms_.kept_elsewhere() || found_here(*event)) {
     push_alarms({alarms_.acknowledge(id)});
     return 0;
   }

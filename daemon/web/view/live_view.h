@@ -69,6 +69,8 @@ class LiveView {
   void estimate(const std::string& channel, const void* data, std::size_t size);
   void look_for_changes(int window, const window_estimate_t& estimate);
   void alarms_message(const std::string& name, const void* data, std::size_t size);
+  /// Without [watch] changes of stiffness are found by pages, not by `framewatch run`.
+  bool found_here(const event_t& event) const;
   void keep(const std::string& name, std::string json);
   void push(const std::string& name, const std::string& data);
   void push_alarms(const std::vector<std::string>& alarms);

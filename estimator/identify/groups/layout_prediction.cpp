@@ -23,7 +23,8 @@ using Eigen::MatrixXd;
 constexpr double kHighest_hz = 25, kGroundHighPass_hz = 0.25;
 /// Distance of frequencies: a share of the frequency, as modes are as narrow, within bounds.
 constexpr double kStepRatio = 0.02, kLeastStep_hz = 0.02, kMostStep_hz = 0.3;
-constexpr double kDetected = 4;  // standard errors of a difference
+constexpr double kNotLinear = 0.15;  // of the size of a loss of 20 to 40 % of a story
+constexpr double kDetected = 4;      // standard errors of a difference
 
 struct Frequency {
   double hz, step_hz;
@@ -75,7 +76,9 @@ class Prediction {
     const auto dofs = static_cast<std::size_t>(config_.structure.degrees_of_freedom());
     LayoutPrediction out{std::vector<double>(parameters, kNaN),
                          std::vector<double>(parameters, kNaN),
-                         std::vector<double>(dofs, std::numeric_limits<double>::infinity())};
+                         std::vector<double>(dofs, std::numeric_limits<double>::infinity()),
+                         {},
+                         {}};
     const Index p = table_.size();
     if (building_.rows() == 0) return out;
     const Ldlt factor(information_);
@@ -87,6 +90,7 @@ class Prediction {
     for (Index i = 0; i < p; ++i)
       out.window_error[static_cast<std::size_t>(i)] = std::sqrt(covariance(i, i));
     add_design_error(sensitivity, out);
+    add_changes(sensitivity, out);
     for (std::size_t dof = 0; dof < dofs; ++dof)
       for (Index i = 0; i < table_.elements(); ++i)
         out.smallest_loss[dof] =
@@ -233,31 +237,63 @@ class Prediction {
     }
   }
 
+  /// The frames of a group's stories, and the share of each in the group's flexibility.
+  struct Shares {
+    std::vector<Index> dof;
+    std::vector<double> share;
+  };
+  Shares shares_of(const Parameter& group) const {
+    const ParameterTable all(config_.structure);
+    Shares out;
+    double flexibility = 0;
+    for (int story = group.story; story <= group.last_story; ++story) {
+      double sum = 0;
+      for (const int f : group.frames) sum += design_.theta[all.frame_stiffness(story, f)];
+      flexibility += 1 / sum;
+      for (const int f : group.frames) {
+        out.dof.push_back(config_.structure.dof(story, f));
+        out.share.push_back(design_.theta[all.frame_stiffness(story, f)] / (sum * sum));
+      }
+    }
+    for (double& share : out.share) share /= flexibility;
+    return out;
+  }
+
+  void add_changes(const MatrixXd& sensitivity, LayoutPrediction& out) const {
+    const auto n = static_cast<std::size_t>(table_.elements());
+    out.change_error.assign(n, 0);
+    out.change_leak.assign(n * n, 0);
+    for (std::size_t g = 0; g < n; ++g) {
+      const Shares shares = shares_of(table_[static_cast<int>(g)]);
+      const auto count = static_cast<double>(shares.dof.size());
+      double squares = 0, own = 0;
+      for (std::size_t i = 0; i < shares.dof.size(); ++i) {
+        const double moved = sensitivity(static_cast<Index>(g), shares.dof[i]);
+        squares += std::pow(moved / shares.share[i] - 1, 2) / count;
+        own += std::abs(moved) / count;
+      }
+      // What is linear here is not where a story loses much of its stiffness.
+      out.change_error[g] = std::hypot(kNotLinear, std::sqrt(squares));
+      for (std::size_t q = 0; q < n; ++q)
+        for (const Index d : shares.dof)
+          if (q != g && own > 0)
+            out.change_leak[g * n + q] = std::max(
+                out.change_leak[g * n + q], std::abs(sensitivity(static_cast<Index>(q), d)) / own);
+    }
+  }
+
   /// A story's error less what the whole group has in common, which is the group's factor.
   void add_design_error(const MatrixXd& sensitivity, LayoutPrediction& out) const {
     const Structure& s = config_.structure;
-    const ParameterTable all(s);
     const Index p = table_.size();
     Eigen::VectorXd variance = Eigen::VectorXd::Zero(p);
     for (int g = 0; g < table_.elements(); ++g) {
-      const Parameter& group = table_[g];
-      std::vector<Index> dof;
-      std::vector<double> share;
-      double flexibility = 0;
-      for (int story = group.story; story <= group.last_story; ++story) {
-        double sum = 0;
-        for (const int f : group.frames) sum += design_.theta[all.frame_stiffness(story, f)];
-        flexibility += 1 / sum;
-        for (const int f : group.frames) {
-          dof.push_back(s.dof(story, f));
-          share.push_back(design_.theta[all.frame_stiffness(story, f)] / (sum * sum));
-        }
-      }
+      const Shares shares = shares_of(table_[g]);
       Eigen::VectorXd common = Eigen::VectorXd::Zero(p);
-      for (const Index d : dof) common += sensitivity.col(d);
-      for (std::size_t i = 0; i < dof.size(); ++i)
+      for (const Index d : shares.dof) common += sensitivity.col(d);
+      for (std::size_t i = 0; i < shares.dof.size(); ++i)
         variance += std::pow(tolerance_.profile, 2) *
-                    (sensitivity.col(dof[i]) - share[i] / flexibility * common).cwiseAbs2();
+                    (sensitivity.col(shares.dof[i]) - shares.share[i] * common).cwiseAbs2();
     }
     for (int story = 1; story <= s.stories; ++story)
       variance += std::pow(tolerance_.mass, 2) *

@@ -30,6 +30,11 @@ struct LayoutPrediction {
   /// By frame story (Structure::dof), relative: loss of stiffness that changes a group by four
   /// standard errors of a difference of two windows. Infinite: never.
   std::vector<double> smallest_loss;
+  /// What a small loss in one story makes of the groups' values. By element: rms over its stories
+  /// of the change of its value over that of its stiffness, less 1. Element by element, by the one
+  /// with the loss first: largest change of the other one's value over that of its own value.
+  /// Empty: not identified.
+  std::vector<double> change_error, change_leak;
 };
 
 /// config: of groups. noise_density: of every axis, m/s^2/sqrt(Hz), > 0.

@@ -145,6 +145,22 @@ TEST_F(Desk, RefusesWhatIsNotRaisedAndTakesEverything) {
   EXPECT_EQ(here_.acknowledgement(1)->who, "somebody else");
 }
 
+TEST_F(Desk, SaysWhenEverythingWasAcknowledged) {
+  here_.note(event(1));
+  ask(acknowledge_request(kAllEvents, "", "seen"), 7);
+  look(0);
+  ASSERT_EQ(answers_.size(), 1u);
+  EXPECT_EQ(answers_[0].id, (std::vector<std::int64_t>{1, kAllEvents}));
+  EXPECT_EQ(answers_[0].since_us[1], 7);
+  EXPECT_EQ(answers_[0].comment[1], "seen");
+  // A page may have events where run has none.
+  here_.note(event(1, event_state::cleared));
+  ask(acknowledge_request(kAllEvents, "", ""), 9);
+  look(10);
+  EXPECT_EQ(answers_[1].id, std::vector<std::int64_t>{kAllEvents});
+  EXPECT_EQ(answers_[1].since_us[0], 9);
+}
+
 TEST_F(Desk, BytesThatAreNoRequestChangeNothing) {
   const std::vector<std::uint8_t> junk = {'j', 'u', 'n', 'k'};
   EXPECT_FALSE(desk_.obey(junk, "alice", {&here_}, 5));

@@ -75,6 +75,41 @@ TEST_F(EventReportTest, IsYellowOrRedByDrift) {
   EXPECT_FALSE(green_and_past(event_of(report_, *config_), INT64_MAX));
 }
 
+TEST_F(EventReportTest, SaysFirstWhatWasNotHeard) {
+  const estimator::Time start = report_.shaking.start;
+  report_.shaking.drift_settles_s = 7;
+  report_.shaking.unheard = {{start + std::chrono::seconds(4), start + std::chrono::seconds(32),
+                              true, estimator::UnheardWhy::restart}};
+  const std::string said =
+      "Nobody listened from 00:46:32 to 00:47:00 (28 s): peaks in that time are not known; drifts "
+      "are known again from 00:47:07 on";
+  EXPECT_EQ(verdict().color, EventColor::yellow);
+  EXPECT_EQ(verdict().reasons.front(), said);
+  report_.shaking.peak.drift_m.back() = 0.02;
+  EXPECT_EQ(verdict().color, EventColor::red);
+  EXPECT_NE(verdict().reasons.front().find("by at least 2.00 %"), std::string::npos);
+  const std::string html = event_report_html(report_, *config_);
+  EXPECT_LT(html.find(said), html.find("Red: "));
+  EXPECT_EQ(html.find(said), html.rfind(said));  // once
+  const auto json = nlohmann::json::parse(event_report_json(report_, *config_));
+  ASSERT_EQ(json["unheard"].size(), 1u);
+  EXPECT_EQ(json["unheard"][0]["seconds"], 28.0);
+  EXPECT_EQ(json["unheard"][0]["why"], "restart");
+  EXPECT_EQ(json["unheard"][0]["message"], said);
+  EXPECT_NE(event_of(report_, *config_).message.find("28 s of it were not heard; red"),
+            std::string::npos);
+  estimator::Unheard& u = report_.shaking.unheard[0];
+  u.why = estimator::UnheardWhy::restart_no_raw;
+  EXPECT_NE(event_report_html(report_, *config_).find("[history] stores them"), std::string::npos);
+  u.why = estimator::UnheardWhy::no_samples;
+  EXPECT_NE(event_report_html(report_, *config_).find("No samples came from"), std::string::npos);
+  u.from_known = false;
+  EXPECT_NE(event_report_html(report_, *config_).find("Nobody listened before 00:47:00"),
+            std::string::npos);
+  EXPECT_TRUE(nlohmann::json::parse(event_report_json(report_, *config_))["unheard"][0]["from_us"]
+                  .is_null());
+}
+
 TEST_F(EventReportTest, SaysWhichDriftsAreComputed) {
   EXPECT_EQ(event_report_html(report_, *config_).find("computed"), std::string::npos);
   std::vector<ConfigProblem> problems;

@@ -7,6 +7,7 @@
 #include "daemon/event_report/response_words.h"
 #include "daemon/events/change_words.h"
 #include "daemon/events/event_words.h"
+#include "daemon/events/recovery_words.h"
 #include "daemon/findings/model_fit.h"
 #include "tests/support/config_fixture.h"
 
@@ -49,6 +50,20 @@ class AnswersTest : public ::testing::Test {
   Config config_;
   Known known_;
 };
+
+TEST_F(AnswersTest, AChangeSaysWhetherItLasts) {
+  event_t e = event_of("stiffness_change", "kx_1_y1", severity::alarm);
+  e.message +=
+      ", since noon" + kAfterStrongMotion +
+      "lost 9 % at the earthquake, 6 % after 1 hour, lasting: full recovery is excluded, at "
+      "least 6 % stays";
+  find(e, -9, 0.5);
+  EXPECT_TRUE(known_.findings[0].text.ends_with(
+      " After strong motion: lost 9 % at the earthquake, 6 % after 1 hour, lasting: full recovery "
+      "is excluded, at least 6 % stays."))
+      << known_.findings[0].text;
+  EXPECT_NE(said(0).find("full recovery is excluded"), std::string::npos) << said(0);
+}
 
 TEST_F(AnswersTest, AQuietWholeBuildingNeedsNothing) {
   EXPECT_EQ(said(0), "No. None of 4 elements differs from what it was like (its baseline).");

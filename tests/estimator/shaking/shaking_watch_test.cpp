@@ -97,6 +97,77 @@ TEST_F(ShakingTest, AnInterruptionKeepsWhereASensorRests) {
   EXPECT_NEAR(w.ended().peak.accel_mps2[2] / (3 * accel), 1, 0.05);
 }
 
+TEST_F(ShakingTest, ATimeWithoutSamplesIsToldAndIsNoCalm) {
+  // Longer than quiet_s, in the middle of it.
+  for (const bool restart : {false, true}) {
+    ShakingWatch w = watch();
+    int ended = 0;
+    for (int i = 0; i < 7000; ++i) {
+      if (i >= 2400 && i < 2400 + 100 * kQuiet_s + 200) continue;
+      if (i == 2400 + 100 * kQuiet_s + 200 && restart)
+        w.came_up(from_microseconds(10'000LL * 2399), true);
+      if (w.push(at(i), nullptr)) ++ended;
+    }
+    ASSERT_EQ(ended, 1);
+    ASSERT_EQ(w.ended().unheard.size(), 1u);
+    const Unheard& u = w.ended().unheard[0];
+    EXPECT_TRUE(u.from_known);
+    EXPECT_EQ(to_microseconds(u.from), 23'990'000);
+    EXPECT_EQ(to_microseconds(u.to), 36'000'000);
+    EXPECT_EQ(u.why, restart ? UnheardWhy::restart : UnheardWhy::no_samples);
+    // Calm that was heard: from 36 s on.
+    EXPECT_NEAR(1e-6 * static_cast<double>(to_microseconds(w.ended().found)), 36 + kQuiet_s, 1);
+  }
+}
+
+TEST_F(ShakingTest, ASilenceBeforeItIsToldWhenItMayHaveBegunInIt) {
+  for (const bool near : {false, true}) {
+    ShakingWatch w = watch();
+    for (int i = 0; i < 6000; ++i) {
+      const int from = near ? 1400 : 100;
+      if (i >= from && i < from + 200) continue;
+      (void)w.push(at(i), nullptr);
+    }
+    EXPECT_EQ(w.ended().unheard.size(), near ? 1u : 0u);
+  }
+}
+
+TEST_F(ShakingTest, AProcessThatComesUpInItSaysSo) {
+  ShakingWatch w = watch();
+  w.came_up(from_microseconds(0), false);
+  for (int i = 2500; i < 6000; ++i) (void)w.push(at(i), nullptr);
+  ASSERT_EQ(w.ended().unheard.size(), 1u);
+  EXPECT_FALSE(w.ended().unheard[0].from_known);
+  EXPECT_EQ(to_microseconds(w.ended().unheard[0].to), 25'000'000);
+  EXPECT_EQ(w.ended().unheard[0].why, UnheardWhy::restart_no_raw);
+}
+
+TEST_F(ShakingTest, ManySilencesAreBounded) {
+  ShakingWatch w = watch();
+  for (int i = 0; i < 7000; ++i)
+    if (i < 2000 || i > 3000 || i % 100 < 40) (void)w.push(at(i), nullptr);
+  const std::vector<Unheard>& all = w.ended().unheard;
+  ASSERT_EQ(all.size(), ShakingWatch::kMostUnheard);
+  for (std::size_t k = 1; k < all.size(); ++k) EXPECT_GE(all[k].from, all[k - 1].to);
+  EXPECT_EQ(to_microseconds(all.back().to), 30'000'000);
+}
+
+TEST_F(ShakingTest, WhatFollowsAVeryLongSilenceIsAnotherMotion) {
+  ShakingWatch w = watch();
+  int ended = 0;
+  for (int i = 0; i < 6000; ++i) {
+    SampleSet set = at(i);
+    if (i >= 2500) set.time += std::chrono::seconds(3600);
+    if (i >= 2500) set.index += 360'000;
+    if (!w.push(set, nullptr)) continue;
+    if (++ended > 1) continue;
+    EXPECT_NEAR(1e-6 * static_cast<double>(to_microseconds(w.ended().end)), 25, 1);
+    EXPECT_EQ(w.ended().unheard.size(), 1u);
+  }
+  EXPECT_EQ(ended, 2);
+  EXPECT_EQ(w.ended().unheard.size(), 1u);  // it may have begun in it
+}
+
 TEST_F(ShakingTest, AFailedSensorHasNoPeakAndNoDrift) {
   ShakingWatch w = watch();
   for (int i = 0; i < 6000; ++i) {

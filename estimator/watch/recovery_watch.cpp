@@ -1,0 +1,76 @@
+#include "estimator/watch/recovery_watch.h"
+
+#include <chrono>
+#include <cmath>
+
+namespace framewatch::estimator {
+namespace {
+
+constexpr double kLawHolds_s = 86400;
+constexpr double kRemember = 0.05;  // share of the newest window in the usual amplitude
+
+}  // namespace
+
+RecoveryWatch::RecoveryWatch(const Watch& watch, const WatchOptions& options)
+    : usual_m_(static_cast<std::size_t>(watch.parameters()), 0.0) {
+  // A group's own least change is half of a story's; the watch knows which are groups.
+  recoveries_.assign(usual_m_.size(), Recovery(options.least_change_k));
+  due_.reserve(usual_m_.size());
+}
+
+void RecoveryWatch::begin(Time ended) {
+  ended_ = ended;
+  for (Recovery& r : recoveries_) r.begin(ended);
+}
+
+const Recovery* RecoveryWatch::of(int parameter) const {
+  if (parameter < 0 || static_cast<std::size_t>(parameter) >= recoveries_.size()) return nullptr;
+  const Recovery& r = recoveries_[static_cast<std::size_t>(parameter)];
+  return r.windows() > 0 ? &r : nullptr;
+}
+
+void RecoveryWatch::push(const WindowEstimate& e, bool long_window, const Watch& watch,
+                         const StrongMotion& strong) {
+  due_.clear();
+  if ((e.window != 0 && !long_window) || e.status != WindowStatus::valid) return;
+  if (strong.any() && strong.last() != ended_ && e.start >= strong.last()) {
+    const double since_s = std::chrono::duration<double>(strong.last() - ended_).count();
+    if (peak_mps2_ == 0 || since_s > kLawHolds_s ||
+        strong.peak_mps2() >= kAftershock * peak_mps2_) {
+      peak_mps2_ = strong.peak_mps2();
+      begin(strong.last());
+    }
+  }
+  const bool shaken = strong.any() && e.start < strong.last();
+  for (std::size_t p = 0; p < recoveries_.size(); ++p) {
+    if (!watch.watched(p) || e.reason[p] != Observability::observable) continue;
+    if (!shaken && !long_window && !recoveries_[p].active() && e.amplitude[p] > 0)
+      usual_m_[p] += (usual_m_[p] > 0 ? kRemember : 1) * (e.amplitude[p] - usual_m_[p]);
+    if (shaken || !recoveries_[p].active()) continue;
+    long_window ? take_long(p, e, watch) : take(p, e, watch);
+    if (recoveries_[p].renewal_due(e.end)) due_.push_back(static_cast<int>(p));
+  }
+}
+
+void RecoveryWatch::take(std::size_t p, const WindowEstimate& e, const Watch& watch) {
+  const Baseline* baseline = watch.baseline();
+  if (baseline == nullptr || !baseline->knows(p) || !(e.amplitude[p] > 0)) return;
+  const AmplitudeCurve& curve = watch.curve(p);
+  const double usual_m = usual_m_[p] > 0 ? usual_m_[p] : e.amplitude[p];
+  recoveries_[p].push(recovery_window(e.start, e.end, e.value[p], e.std_error[p], e.amplitude[p],
+                                      baseline->value[p], baseline->std_error[p], curve, usual_m));
+}
+
+void RecoveryWatch::take_long(std::size_t p, const WindowEstimate& e, const Watch& watch) {
+  const Baseline* baseline = watch.quiet_baseline();
+  if (baseline == nullptr || !baseline->knows(p)) return;
+  const Dependence::Expected intact =
+      watch.dependence().expected(p, {watch.degc(e.end), DependenceLearner::log_amplitude(e, p)});
+  if (!std::isfinite(intact.std_error) || !(intact.ratio > 0)) return;
+  const double value = baseline->value[p] * intact.ratio;
+  RecoveryWindow w{e.start, e.end, e.value[p] / value - 1, e.std_error[p] / value, 0, 0, 1};
+  w.baseline_error = std::hypot(baseline->std_error[p] / baseline->value[p], intact.std_error);
+  recoveries_[p].push(w);
+}
+
+}  // namespace framewatch::estimator
