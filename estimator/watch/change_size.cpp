@@ -17,7 +17,7 @@ void ChangeSize::Mean::add(double ratio, double std_error, double common_error) 
 double ChangeSize::excess() const {
   if (mean_.count == 0) return 1;
   const double scatter = std::max(mean_.square - mean_.sum * mean_.sum / mean_.weight, 0.0);
-  return std::max((kPriorWindows + scatter) / (kPriorWindows + mean_.count - 1), 1.0);
+  return std::max((kPriorWindows + scatter) / (kPriorWindows + mean_.count - 1), kLeastExcess);
 }
 
 double ChangeSize::std_error() const {

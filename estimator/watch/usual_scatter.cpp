@@ -6,6 +6,7 @@
 namespace framewatch::estimator {
 namespace {
 
+constexpr double kGroupPrior = 3;                  // groups without slow changes
 constexpr double kMemory = 60, kGroupMemory = 20;  // windows, groups of them
 constexpr double kPrior = 10;                      // windows that scatter as their errors say
 constexpr double kMostSquare = 25;                 // squared errors that a wild one counts as

@@ -11,12 +11,14 @@ namespace framewatch::estimator {
 /// windows of one length that do not overlap (docs/equations.md (72)).
 class UsualScatter {
  public:
+  static constexpr double kLeastExcess = 0.5;
+
   /// Deviation from the baseline, relative, and its standard error > 0. A window that overlaps the
   /// one before is left out.
   void push(Time start, Time end, double off, double std_error);
 
-  /// Variance from window to window over what the errors say, >= 1.
-  double excess() const { return excess_ > 1 ? excess_ : 1; }
+  /// Variance from window to window over what the errors say, >= kLeastExcess.
+  double excess() const { return excess_ > kLeastExcess ? excess_ : kLeastExcess; }
   /// Standard deviation of slow changes, relative to the baseline, >= 0.
   double slow() const;
 

@@ -109,6 +109,7 @@ class GroupFilter : public RowFilter {
   void reset(int settle) override;
   void push(const DeformationSet& set) override;
   int count(int) const override { return settling_ > 0 || starting_ ? 0 : tuning_->rows(0).rows; }
+  bool forms(int) const override { return settling_ == 0 && tuning_->rows(0).rows > 0; }
   const FloorRows& floor_rows(int) const override { return tuning_->rows(0); }
   std::uint8_t origin_of(int, const FloorRows* rows) const override { return rows != nullptr; }
   const FloorRows* floor_rows_from(int, std::uint8_t origin) const override {

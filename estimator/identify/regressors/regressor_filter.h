@@ -25,6 +25,10 @@ class RegressorFilter : public RowFilter {
     const Floor& f = floor_[static_cast<std::size_t>(floor)];
     return f.settling > 0 || f.starting ? 0 : f.rows->rows;
   }
+  bool forms(int floor) const override {
+    const Floor& f = floor_[static_cast<std::size_t>(floor)];
+    return f.settling == 0 && f.rows->rows > 0;
+  }
   const FloorRows& floor_rows(int floor) const override {
     return *floor_[static_cast<std::size_t>(floor)].rows;
   }

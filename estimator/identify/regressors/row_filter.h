@@ -26,6 +26,8 @@ class RowFilter {
   /// rows x padded(front) of a floor at the last push; count() is 0 while it settles.
   const double* rows(int floor) const { return &rows_[offset(floor)]; }
   virtual int count(int floor) const = 0;
+  /// Whether rows of a floor are formed, those among them that a start in motion costs.
+  virtual bool forms(int floor) const = 0;
   virtual const FloorRows& floor_rows(int floor) const = 0;
   /// Doubles of all floors' rows, and where a floor's begin.
   std::size_t size() const { return rows_.size(); }

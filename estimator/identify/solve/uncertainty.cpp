@@ -13,12 +13,13 @@ namespace {
 constexpr double kCorrection = 1.155;
 
 /// 97.5 % point of Student's t, by Fisher's expansion: within a hundredth from 3 degrees on.
-double student(int degrees) {
+double student(double n) {
   constexpr double z = 1.959964, z2 = z * z;
-  const double n = degrees;
   return z * (1 + (z2 + 1) / (4 * n) + ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
 }
+
+constexpr double kLeastDegrees = 1.5;  // the expansion's end: beyond it nothing is published
 
 /// Variance of a sum of so many scores over the sum of their squares about their mean.
 double spread_of(int blocks) {
@@ -111,6 +112,25 @@ int BatchMeans::blocks_with_rows(int floor) const {
   return blocks;
 }
 
+/// By how much the spread of few blocks is widened, of a floor's own unknown.
+double BatchMeans::widening(int floor, int position, int blocks) const {
+  if (blocks < kFewest || blocks == kBlocks) return 1;
+  const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
+  std::size_t at = shape.offset;
+  for (int i = 0; i < position; ++i)
+    at += static_cast<std::size_t>(shape.stride - packed_row_begin(i));
+  at += static_cast<std::size_t>(position - packed_row_begin(position));
+  double sum = 0, squares = 0;
+  for (const double* block : block_) {
+    const double information = block == nullptr ? 0 : block[at];
+    sum += information;
+    squares += information * information;
+  }
+  const double counting = squares > 0 ? sum * sum / squares : 1;
+  return student(std::max(counting - 1, kLeastDegrees)) / student(kBlocks - 1) *
+         std::sqrt(spread_of(blocks) / spread_of(kBlocks));
+}
+
 void BatchMeans::add_block_scores(int floor) {
   const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
   const int first = floor * layout_.own();
@@ -128,16 +148,13 @@ void BatchMeans::add_block_scores(int floor) {
   }
   // The floor's own scores are now whole: what the story above adds went to that story's.
   const int blocks = blocks_with_rows(floor);
-  const double widens = blocks < kFewest || blocks == kBlocks
-                            ? 1.0
-                            : student(blocks - 1) / student(kBlocks - 1) *
-                                  std::sqrt(spread_of(blocks) / spread_of(kBlocks));
   for (int u = first; u < first + layout_.own(); ++u) {
     double* row = columns(u);
     double mean = 0;
     for (int b = 0; b < kBlocks; ++b) mean += row[b];
     mean /= std::max(blocks, 1);
-    const double scale = score_scale_[static_cast<std::size_t>(u)] * widens;
+    const double scale =
+        score_scale_[static_cast<std::size_t>(u)] * widening(floor, u - first, blocks);
     for (int b = 0; b < kBlocks; ++b) row[b] = has_rows(floor, b) ? scale * (row[b] - mean) : 0.0;
   }
 }

@@ -22,7 +22,9 @@ namespace framewatch::estimator {
 /// scores are those of the newest kBlocks blocks about a solution that fits them, whatever the
 /// window's length: a short window has too few blocks, so it takes these, scaled to its own
 /// information. While fewer blocks have rows, the spread is taken from those, as Student's
-/// distribution widens it; from fewer than kFewest nothing is known, and the error is infinite.
+/// distribution widens it, with as many degrees of freedom as there are blocks that count: of a
+/// motion that has just begun the last ones carry nearly all information. From fewer than kFewest
+/// nothing is known, and the error is infinite.
 class BatchMeans {
  public:
   static constexpr int kBlocks = 20, kFewest = 4;
@@ -101,6 +103,7 @@ class BatchMeans {
   void finish(int floor);
   bool has_rows(int floor, int block) const;
   int blocks_with_rows(int floor) const;
+  double widening(int floor, int position, int blocks) const;
   double* columns(int unknown) { return columns_values_.data() + unknown * columns_; }
 
   FloorLayout layout_;

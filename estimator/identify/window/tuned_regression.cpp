@@ -28,7 +28,7 @@ void TunedRegression::start(std::int64_t instant) {
 void TunedRegression::advance(const MotionRing& ring) {
   entering_->push(ring.at(next_++));
   for (int floor = 0; floor < layout_.floors() && !counting_; ++floor)
-    counting_ = entering_->count(floor) > 0;
+    counting_ = entering_->forms(floor);
   if (!counting_) {
     counted_from_ = next_;
     return;

@@ -21,7 +21,9 @@ TEST(ChangeSize, IsTheWeightedMeanAndSharpens) {
   size.push(-0.10, 0.01);
   size.push(-0.13, 0.02);
   EXPECT_NEAR(size.ratio(), (-0.10 - 0.13 / 4) / 1.25, 1e-12);
-  EXPECT_NEAR(size.std_error(), 0.01 / std::sqrt(1.25), 1e-12);
+  // Two windows 0.03 apart scatter by 1.8 of what 0.01 and 0.02 explain.
+  const double excess = (ChangeSize::kPriorWindows + 1.8) / (ChangeSize::kPriorWindows + 1);
+  EXPECT_NEAR(size.std_error(), 0.01 * std::sqrt(excess / 1.25), 1e-12);
 }
 
 TEST(ChangeSize, WhatWindowsHaveInCommonStays) {
