@@ -62,7 +62,7 @@ std::string building_text(Random& random, int stories, const std::vector<int>& f
                      chance(random, 0.8) ? "true" : "false");
   if (chance(random, 0.5)) out += "other_windows_s = [1.0, 4.0]\n";
   if (chance(random, 0.7))
-    out += fmt::format("[watch]\nlearn_s = {}\namplitude = {}\n", between(random, 3, 8),
+    out += fmt::format("[watch]\nlearn_s = {}\nfollow_amplitude = {}\n", between(random, 3, 8),
                        chance(random, 0.7) ? "true" : "false");
   if (chance(random, 0.5)) out += "[gap]\n";
   if (chance(random, 0.7)) out += "[event_report]\ndirectory = \"reports\"\nquiet_s = 2\n";
@@ -105,8 +105,13 @@ std::string fault_text(Random& random, const std::string& channel) {
       return effect + fmt::format("\"clipping\"\nlevel_mps2 = {}\n", between(random, 0.2, 2));
     case 10:
       return effect + fmt::format("\"bias_drift\"\nramp_mps3 = 0.05\nfrom_s = {}\n", from);
-    default:
-      return effect + "\"misalignment\"\nangle_deg = 10\n";
+    default: {  // toward a frame of the other direction: "F2-y1", "F2-x1"
+      std::string other = channel;
+      char& along = other[other.size() - 2];
+      along = along == 'x' ? 'y' : 'x';
+      return effect +
+             fmt::format("\"misalignment\"\nwith_channel = \"{}\"\nangle_deg = 10\n", other);
+    }
   }
 }
 

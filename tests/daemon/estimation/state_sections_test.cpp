@@ -204,7 +204,8 @@ TEST_F(StateSections, AnotherConfigurationCostsWhatRestsOnTheDifference) {
   const auto lost = [&](const Config& config) { return Resumed(config).lost(); };
   EXPECT_EQ(lost(configured("other.toml", [](std::string& text) { text += "# a comment\n"; })),
             Names{});
-  EXPECT_EQ(lost(replaced("learn_s = 1", "learn_s = 1\nleast_change_k = 0.05")), Names{"watch"});
+  EXPECT_EQ(lost(replaced("learn_s = 1", "learn_s = 1\nsmallest_change_k_ratio = 0.05")),
+            Names{"watch"});
   EXPECT_EQ(lost(replaced("hop_s = 0.01", "hop_s = 0.02")),
             (Names{"can", "window", "watch", "gap", "event_report"}));
   EXPECT_EQ(lost(replaced("node_mass_kg = 20.0", "node_mass_kg = 21.0")),
