@@ -92,10 +92,26 @@ bool reads_along(const Structure& s, const SensorAxis& a, Direction direction) {
          (a.frame >= 0 ? s.direction(a.frame) : a.direction) == direction;
 }
 
+/// Relative standard error of a story's stiffness by the windows; 0: not known.
+double own_error(const ParameterTable& table, const DriftKnowledge& known, int story, int frame) {
+  const int p = table.frame_stiffness(story, frame);
+  if (p < 0 || static_cast<std::size_t>(p) >= known.std_error.size()) return 0;
+  const double error = known.std_error[static_cast<std::size_t>(p)];
+  return std::isfinite(error) ? error : 0;
+}
+
+/// Error of the slow part, relative to it: that of the stiffness it was computed with.
+double stiffness_error(const PipelineConfig& c, const ParameterTable& table,
+                       const DriftKnowledge& known, int story, int frame) {
+  const double misfit = std::isfinite(known.misfit) ? known.misfit : 0;
+  return std::hypot(own_error(table, known, story, frame), std::hypot(c.mass_tolerance, misfit));
+}
+
 /// Relative error of a drift that is computed between the measured floors around it: the story's
 /// share in the flexibility between them is known to profile_tolerance. Above the highest measured
-/// floor the whole flexibility counts, and the masses.
-double share_error(const PipelineConfig& c, int story, int frame) {
+/// floor the whole flexibility counts, the masses, and how far EveryFloor's stiffness may be off.
+double share_error(const PipelineConfig& c, const ParameterTable& table,
+                   const DriftKnowledge& known, int story, int frame) {
   const Structure& s = c.structure;
   int below = 0, above = s.stories + 1;
   for (const SensorAxis& a : c.axes) {
@@ -103,7 +119,11 @@ double share_error(const PipelineConfig& c, int story, int frame) {
     if (a.story < story) below = std::max(below, a.story);
     if (a.story >= story) above = std::min(above, a.story);
   }
-  if (above > s.stories) return std::hypot(c.profile_tolerance, c.mass_tolerance);
+  if (above > s.stories) {
+    const double followed = EveryFloor::kFar / std::sqrt(3.0);  // anywhere within
+    return std::hypot(std::hypot(c.profile_tolerance, c.mass_tolerance),
+                      std::hypot(own_error(table, known, story, frame), followed));
+  }
   const ParameterTable stories(s);
   const VectorXd theta = design_of(c).theta;
   double sum = 0;
@@ -114,18 +134,6 @@ double share_error(const PipelineConfig& c, int story, int frame) {
     squares += i == story ? (1 - share) * (1 - share) : share * share;
   }
   return c.profile_tolerance * std::sqrt(squares);
-}
-
-/// Error of the slow part, relative to it: that of the stiffness it was computed with.
-double stiffness_error(const PipelineConfig& c, const ParameterTable& table,
-                       const DriftKnowledge& known, int story, int frame) {
-  const int p = table.frame_stiffness(story, frame);
-  double own = 0;
-  if (p >= 0 && static_cast<std::size_t>(p) < known.std_error.size() &&
-      std::isfinite(known.std_error[static_cast<std::size_t>(p)]))
-    own = known.std_error[static_cast<std::size_t>(p)];
-  const double misfit = std::isfinite(known.misfit) ? known.misfit : 0;
-  return std::hypot(own, std::hypot(c.mass_tolerance, misfit));
 }
 
 double unseen_share(const PipelineConfig& c, const PeakResponse& peak, int story) {
@@ -193,7 +201,8 @@ std::vector<StoryDrift> story_drifts(const PipelineConfig& c, const PeakResponse
                          : kUnknownSlow * removed * one.ratio;
     const double misfit = std::isfinite(known.misfit) ? known.misfit : 0;
     if (!one.measured)
-      one.model_error = std::hypot(share_error(c, story, most.frame), misfit) * one.ratio;
+      one.model_error =
+          std::hypot(share_error(c, table, known, story, most.frame), misfit) * one.ratio;
     one.std_error = std::hypot(one.noise_error, std::hypot(one.slow_error, one.model_error));
     out.back() = one;
   }
