@@ -29,8 +29,7 @@ Estimation::Estimation(const Config& config, MessageSink sink, Observer observer
       publisher_(config, std::move(sink)),
       foreseen_(with_design_error(config.pipeline)),
       pipeline_(
-          foreseen_,
-          [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
+          foreseen_, [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
           [this](const estimator::WindowEstimate& estimate) {
             publisher_.other(estimate);
             watch(estimate);
@@ -60,7 +59,7 @@ void Estimation::begin_watch() {
   if (!config_.watch) return;
   watch_.emplace(pipeline_.parameters(), config_.watch->options,
                  window_lengths_s(config_.pipeline.options), config_.watch->baseline,
-                 {foreseen_.change_error, foreseen_.change_leak});
+                 estimator::ChangeModel{foreseen_.change_error, foreseen_.change_leak});
 }
 
 void Estimation::begin_gap() {

@@ -55,9 +55,9 @@ event_t stiffness_event(const estimator::Alarm& alarm, const estimator::Paramete
   m.value = alarm.measured ? 100 * alarm.change.ratio : estimator::kNaN;
   m.std_error = alarm.measured ? 100 * alarm.change.std_error : estimator::kNaN;
   m.unit = "%";
-  m.message = over ? end_words(alarm, everything ? "everything" : m.place)
-                   : fmt::format("{}, since {}", change_words(alarm, table),
-                                 sensor_time_text(m.since_us));
+  m.message =
+      over ? end_words(alarm, everything ? "everything" : m.place)
+           : fmt::format("{}, since {}", change_words(alarm, table), sensor_time_text(m.since_us));
   return m;
 }
 

@@ -96,19 +96,19 @@ Compared judge_losses(const EventReport& r, const Config& config, std::vector<Re
     reasons.push_back(
         {color, of_story / limit,
          fmt::format("{} ({}) lost {:.1f} % (+-{:.1f} %) of {} stiffness{} (limit {:g} %)",
-                     element_words(p.name), p.name, 100 * loss,
-                     std::max(0.1, 100 * k.std_error()), group ? "their" : "its",
+                     element_words(p.name), p.name, 100 * loss, std::max(0.1, 100 * k.std_error()),
+                     group ? "their" : "its",
                      group ? fmt::format(", one of stories {} to {} up to {:.0f} %", p.story,
                                          p.last_story, 100 * of_story)
                            : std::string(),
                      100 * limit)});
   }
   if (r.everything.id != 0)
-    reasons.push_back({EventColor::yellow, 1,
-                       common_change_sentence(r.everything.change.ratio,
-                                              r.everything.measured()
-                                                  ? r.everything.change.std_error
-                                                  : estimator::kNaN)});
+    reasons.push_back(
+        {EventColor::yellow, 1,
+         common_change_sentence(r.everything.change.ratio, r.everything.measured()
+                                                               ? r.everything.change.std_error
+                                                               : estimator::kNaN)});
   for (const event_t& e : r.open)
     reasons.push_back({EventColor::yellow, 0, fmt::format("an alarm is open: {}", e.message)});
   return out;
@@ -142,10 +142,9 @@ EventVerdict judge(const EventReport& r, const Config& config) {
         "no stiffness could be compared: the building moved too little or too "
         "shortly");
   else if (reasons.empty() && compared.known > compared.hidden)
-    out.reasons.push_back(fmt::format("none of {} stiffnesses (of {}) lost {:g} % or more{}",
-                                      compared.known - compared.hidden, all,
-                                      100 * config.event_report->yellow_loss_ratio,
-                                      grouped ? " of one story" : ""));
+    out.reasons.push_back(fmt::format(
+        "none of {} stiffnesses (of {}) lost {:g} % or more{}", compared.known - compared.hidden,
+        all, 100 * config.event_report->yellow_loss_ratio, grouped ? " of one story" : ""));
   if (compared.hidden > 0)
     out.reasons.push_back(
         fmt::format("{} stiffnesses are not judged to {:g} %{}, because their errors are larger: a "

@@ -36,7 +36,8 @@ void describe_change(Finding& f, const Config& config) {
   if (f.place == kWholeBuilding) {
     f.text = without_time(f.text);
     f.advice =
-        "Find out which it is: look at temperature, load, and the sensors' scale and clock. If none "
+        "Find out which it is: look at temperature, load, and the sensors' scale and clock. If "
+        "none "
         "explains it, have a structural engineer look at the building.";
     return;
   }
