@@ -22,8 +22,8 @@ enum class BeforeFrom { none, baseline, windows_before, first_windows };
 struct ShakenStiffness {
   WindowMean before, during, after;
   BeforeFrom before_from = BeforeFrom::none;
-  bool free = false;  ///< `after` is of windows behind the strong motion; else of its last ones
-  bool watched = false;  ///< changes are looked for against a baseline: only a record is a change
+  bool free = false;      ///< `after` is of windows behind the strong motion; else of its last ones
+  bool watched = false;   ///< changes are looked for against a baseline: only a record is a change
   ChangeRecord record{};  ///< of its change; without an id: there is none
 
   /// Whether there is a size of a change.

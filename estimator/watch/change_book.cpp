@@ -9,7 +9,8 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kHold = 3;              // the same until other elements are judged nevertheless
+constexpr double kJudged = 1;  // lengths of main windows behind a change: others may be named
+constexpr double kHold = 3;    // the same until other elements are judged nevertheless
 constexpr double kCommonEvidence = 0.4;  // of what is asked for: an element alone waits for it
 
 }  // namespace
@@ -56,6 +57,7 @@ ChangeBook::ChangeBook(const ParameterTable& table, const std::vector<Watched>& 
   });
   news_.reserve(2 * elements_ + 2);
   times_.reserve(detectors_.size());
+  alone_.reserve(elements_);
 }
 
 void ChangeBook::set_baseline(const Baseline& baseline) {
@@ -210,10 +212,43 @@ void ChangeBook::tolerate() {
   for (ChangeDetector& d : of_all_) d.tolerate(0, of_all);
 }
 
+/// Whether the frames without a record are better described by what they have in common than by as
+/// many changes of their own as they need, each of which costs what the detectors ask for.
+bool ChangeBook::all_alike(std::size_t window, Time since) {
+  const WindowHistory& h = histories_[window];
+  alone_.clear();
+  double weight = 0, sum = 0;
+  for (std::size_t p = 0; p < elements_; ++p) {
+    if (frame_[p] == 0 || records_[p].id != 0) continue;
+    double count = 0, own = 0, off = 0;
+    for (std::size_t i = h.first(p, since); i < h.size(); ++i) {
+      if (!h.has(i, p)) continue;
+      const WindowHistory::Value v = h.value(i, p);
+      ++count;
+      own += 1 / (v.std_error * v.std_error);
+      off += v.off / (v.std_error * v.std_error);
+    }
+    if (count == 0) continue;
+    const double separate = 1 + (count - 1) / ChangeDetector::kPhases;
+    const double error = std::hypot(std::sqrt(count / separate / own), baseline_error(window, p));
+    alone_.push_back({off / own, error});
+    weight += 1 / (error * error);
+    sum += off / own / (error * error);
+  }
+  if (alone_.size() < 2) return false;
+  const double price = 2 * threshold_, common = sum / weight;
+  double alike = price, apart = 0;
+  for (const auto& [off, error] : alone_) {
+    alike += std::min(std::pow((off - common) / error, 2), price);
+    apart += std::min(std::pow(off / error, 2), price);
+  }
+  return alike < apart;
+}
+
 /// Whether the windows behind the newest changes have been judged.
 bool ChangeBook::settled() const {
   return std::none_of(records_.begin(), records_.end(), [&](const Record& r) {
-    return r.id != 0 && r.state == ChangeState::changing &&
+    return r.id != 0 && r.state == ChangeState::changing && r.behind_s < kJudged * length_s(r) &&
            is_long(r.detector) == is_long(static_cast<std::size_t>(judged_.window)) &&
            seconds_of(judged_.end - r.found) < kHold * length_s(r);
   });
@@ -222,9 +257,12 @@ bool ChangeBook::settled() const {
 void ChangeBook::find(const std::vector<std::uint8_t>& doubted) {
   const auto window = static_cast<std::size_t>(judged_.window);
   if (of_all_[window].changed(0) && records_[all()].id == 0) {
-    for (Record& r : records_)
-      if (r.id != 0 && !r.measured()) end(r, ChangeReason::of_all);
-    return begin(all(), window);
+    if (all_alike(window, of_all_[window].change(0).since)) {
+      for (Record& r : records_)
+        if (r.id != 0 && !r.measured()) end(r, ChangeReason::of_all);
+      return begin(all(), window);
+    }
+    of_all_[window].forget(0);
   }
   if (!settled()) return;
   const bool lost = std::any_of(records_.begin(), records_.end(),
@@ -237,7 +275,9 @@ void ChangeBook::find(const std::vector<std::uint8_t>& doubted) {
     if (sign > 0 && (lost || doubted[p] != 0)) continue;
     double common = 0;
     for (const ChangeDetector& d : of_all_) common = std::max(common, d.evidence(0, sign));
-    if (frame_[p] != 0 && common >= kCommonEvidence && records_[all()].id == 0) continue;
+    if (frame_[p] != 0 && common >= kCommonEvidence && records_[all()].id == 0 &&
+        all_alike(window, detectors_[window].change(static_cast<int>(p)).since))
+      continue;
     const Baseline& b = baseline_of(window);
     const double z =
         std::abs(judged_.value[p] / b.value[p] - 1) / judged_.std_error[p] * b.value[p];

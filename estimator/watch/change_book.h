@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "estimator/structure/parameter_table.h"
@@ -122,6 +123,7 @@ class ChangeBook {
   bool worth_a_number(const Record& record, const Change& change) const;
   void tell(Record& record, bool further);
   void find(const std::vector<std::uint8_t>& doubted);
+  bool all_alike(std::size_t window, Time since);
   bool settled() const;
   void begin(std::size_t element, std::size_t window);
   void end(Record& record, ChangeReason reason);
@@ -150,6 +152,7 @@ class ChangeBook {
   CommonChange median_;
   double common_off_ = 0, common_explained_ = 0;
   std::vector<std::uint8_t> held_;
+  std::vector<std::pair<double, double>> alone_;  ///< of all_alike(): deviation and its error
   std::vector<const WindowHistory*> times_;
   std::vector<Alarm> news_;
 };

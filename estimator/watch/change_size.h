@@ -4,15 +4,17 @@ namespace framewatch::estimator {
 
 /// How large a lasting change is, from windows that lie wholly behind it and do not overlap: the
 /// mean of their deviations from the baseline, weighted with 1 / error^2 (docs/equations.md (72)).
-/// Where the windows scatter more than their errors say, the error of the mean is larger by that. A
-/// window alone that lies kFar errors from the mean is left out; two in a row on the same side
-/// begin it anew, because the element has changed further.
+/// The windows' scatter says more of the error of the mean than their own errors do, which are
+/// careful: it makes it larger, or smaller down to a bound. A window alone that lies kFar errors
+/// from the mean is left out; two in a row on the same side begin it anew, because the element has
+/// changed further.
 class ChangeSize {
  public:
   static constexpr double kFar = 5;
   /// The scatter of a few windows says little of their errors: the errors count as so many windows
   /// that scatter as they say.
   static constexpr double kPriorWindows = 4;
+  static constexpr double kLeastExcess = 0.5;
 
   /// Deviation of a window that overlaps none before, relative to the baseline, and its standard
   /// error > 0. common_error >= 0: of what all windows have in common, which no mean makes smaller.
@@ -26,7 +28,7 @@ class ChangeSize {
   /// Only while known(); the standard error is without that of the baseline.
   double ratio() const { return mean_.sum / mean_.weight; }
   double std_error() const;
-  /// Variance of the windows over what their errors say, >= 1.
+  /// Variance of the windows over what their errors say, >= kLeastExcess.
   double excess() const;
 
   template <typename Archive>
