@@ -119,11 +119,10 @@ void print_watch(const Heard& h) {
       count += w.watched[p] != 0 && std::isfinite(baseline[p]) ? 1 : 0;
     return count;
   };
-  std::string text =
-      known(w.baseline) + known(w.quiet_baseline) == 0
-          ? std::string("no baseline yet, nothing is compared")
-          : fmt::format("{} of {} stiffnesses have a baseline", known(w.baseline),
-                        std::count(w.watched.begin(), w.watched.end(), 1));
+  std::string text = known(w.baseline) + known(w.quiet_baseline) == 0
+                         ? std::string("no baseline yet, nothing is compared")
+                         : fmt::format("{} of {} stiffnesses have a baseline", known(w.baseline),
+                                       std::count(w.watched.begin(), w.watched.end(), 1));
   if (w.long_window_s > 0)
     text += w.quiet_learned_ratio < 1
                 ? fmt::format(", the one of weak motion is {:.0f} % learned",

@@ -39,15 +39,15 @@ double loss_of_group(const estimator::Parameter& p, double loss_of_story) {
 
 std::string change_sentence(const estimator::Parameter& p, double ratio, double std_error) {
   const bool group = p.last_story > p.story;
-  std::string out = fmt::format(
-      "{} ({}) {} {} {} of {} stiffness, give or take {}: {}", place_words(p.name), p.name,
-      group ? "have" : "has", ratio < 0 ? "lost" : "gained",
-      percent_words(std::abs(ratio), std_error), group ? "their" : "its",
-      percent_words(std_error, std_error), sure_words(std::abs(ratio) / std_error));
+  std::string out =
+      fmt::format("{} ({}) {} {} {} of {} stiffness, give or take {}: {}", place_words(p.name),
+                  p.name, group ? "have" : "has", ratio < 0 ? "lost" : "gained",
+                  percent_words(std::abs(ratio), std_error), group ? "their" : "its",
+                  percent_words(std_error, std_error), sure_words(std::abs(ratio) / std_error));
   if (group && ratio < 0)
-    out += fmt::format(
-        "; one of stories {} to {} may have lost up to {:.0f} %", p.story, p.last_story,
-        100 * loss_of_one_story(p, std::min(std::abs(ratio) + kUpTo * std_error, 1.0)));
+    out +=
+        fmt::format("; one of stories {} to {} may have lost up to {:.0f} %", p.story, p.last_story,
+                    100 * loss_of_one_story(p, std::min(std::abs(ratio) + kUpTo * std_error, 1.0)));
   return out;
 }
 
@@ -60,14 +60,15 @@ std::string changing_sentence(const estimator::Parameter& p, double ratio) {
 
 std::string common_change_sentence(double ratio, double std_error) {
   const char* verb = ratio < 0 ? "softened" : "became stiffer";
-  const std::string size =
-      std_error > 0 ? fmt::format(" by {}, give or take {}", percent_words(std::abs(ratio), std_error),
-                                  percent_words(std_error, std_error))
-                    : std::string(", how much is not known yet");
+  const std::string size = std_error > 0 ? fmt::format(" by {}, give or take {}",
+                                                       percent_words(std::abs(ratio), std_error),
+                                                       percent_words(std_error, std_error))
+                                         : std::string(", how much is not known yet");
   return fmt::format(
       "everything {} alike{}: temperature, mass, a sensor's scale, the clock, or real. Temperature "
       "comes and goes with the day; another mass changes every damping by the same share, a wrong "
-      "clock by half of it; a scale shows in one channel; what is real began with shaking and stays",
+      "clock by half of it; a scale shows in one channel; what is real began with shaking and "
+      "stays",
       verb, size);
 }
 

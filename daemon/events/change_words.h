@@ -10,24 +10,24 @@ namespace framewatch::daemon {
 std::string percent_words(double ratio, double std_error);
 /// "story 1, frame y2 (kx_1_y2) has lost 14.8 % of its stiffness, give or take 0.4 %: 36 times its
 /// uncertainty": ratio relative to the baseline, negative for a loss; std_error > 0. Of a group of
-/// stories it goes on with what that may be of one story: "; one of stories 5 to 8 may have lost up to
-/// 8 %".
+/// stories it goes on with what that may be of one story: "; one of stories 5 to 8 may have lost up
+/// to 8 %".
 std::string change_sentence(const estimator::Parameter& parameter, double ratio, double std_error);
 
 /// "story 1, frame y2 (kx_1_y2) is changing: it loses stiffness, how much is not known yet", of a
 /// change whose record has no number. ratio: its sign counts.
 std::string changing_sentence(const estimator::Parameter& parameter, double ratio);
 
-/// "everything softened by 5.0 %, give or take 0.4 %: ..." with the causes that change every stiffness
-/// alike and what tells them apart. std_error NaN: no number yet.
+/// "everything softened by 5.0 %, give or take 0.4 %: ..." with the causes that change every
+/// stiffness alike and what tells them apart. std_error NaN: no number yet.
 std::string common_change_sentence(double ratio, double std_error);
 
 /// The place of an event about what every stiffness has in common.
 inline constexpr const char* kWholeBuilding = "building";
 
-/// What one story of a group has lost, relative, when the stiffness of the group has lost `loss` and
-/// its stories were equally stiff: they are springs in series. The same for a single story. loss: 0
-/// to 1.
+/// What one story of a group has lost, relative, when the stiffness of the group has lost `loss`
+/// and its stories were equally stiff: they are springs in series. The same for a single story.
+/// loss: 0 to 1.
 double loss_of_one_story(const estimator::Parameter& parameter, double loss);
 /// The other way round: what the group loses with one story.
 double loss_of_group(const estimator::Parameter& parameter, double loss_of_story);

@@ -200,10 +200,9 @@ void name_report(const Known& k, Answer& out) {
   AnswerLine line{same ? fmt::format("Judged {}: {}.", color, r.reason)
                        : fmt::format("The last strong motion was judged {}: {}.", color, r.reason),
                   same ? 0 : r.start_us, same ? 0 : r.end_us, r.name};
-  const bool changed =
-      std::any_of(k.findings.begin(), k.findings.end(), [](const Finding& f) {
-        return f.kind == FindingKind::change && !f.acknowledged;
-      });
+  const bool changed = std::any_of(k.findings.begin(), k.findings.end(), [](const Finding& f) {
+    return f.kind == FindingKind::change && !f.acknowledged;
+  });
   if (r.color == EventColor::green && changed) {  // found since
     line.text += " Since then a change was found: see above.";
     if (out.state == AnswerState::good) out.state = AnswerState::look;

@@ -126,9 +126,8 @@ double by_temperature(const SessionEstimates& s, std::size_t p) {
   const watch_t& w = *s.watch;
   const double off = std::abs(w.temperature_degc - w.baseline_degc[p]);
   if (!std::isfinite(off)) return 0;
-  const double slope = std::isfinite(w.per_degc[p])
-                           ? w.per_degc_std_error[p]
-                           : estimator::DependenceLearner::kUsualPerDegc;
+  const double slope = std::isfinite(w.per_degc[p]) ? w.per_degc_std_error[p]
+                                                    : estimator::DependenceLearner::kUsualPerDegc;
   return kTemperatureErrors * slope * off;
 }
 
@@ -212,6 +211,14 @@ estimator::Parameter parameter_of(const parameter_table_t& t, std::size_t p) {
   if (const std::size_t to = n.find("to"); to != std::string::npos)
     out.last_story = std::max(out.story, std::atoi(n.c_str() + to + 2));
   return out;
+}
+
+std::string of_one_story(const parameter_table_t& table, const ElementChange& c) {
+  const estimator::Parameter p = parameter_of(table, c.parameter);
+  if (p.last_story == p.story || !(c.ratio < 0)) return "";
+  const double most = std::min(2 * c.std_error - c.ratio, 1.0);
+  return fmt::format(" (one of stories {} to {} may have lost up to {:.0f} %)", p.story,
+                     p.last_story, 100 * loss_of_one_story(p, most));
 }
 
 const event_t* common_change(const SessionEstimates& s) {

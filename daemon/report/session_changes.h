@@ -27,6 +27,9 @@ struct ElementChange {
 /// A parameter of a log, as far as its words need it: name, kind and stories.
 estimator::Parameter parameter_of(const parameter_table_t& table, std::size_t parameter);
 
+/// " (one of stories 5 to 8 may have lost up to 8 %)" of a loss of a group; else empty.
+std::string of_one_story(const parameter_table_t& table, const ElementChange& change);
+
 /// Whether a change of what every stiffness has in common is raised at the end, as its event says.
 const event_t* common_change(const SessionEstimates& session);
 
@@ -49,8 +52,8 @@ struct JudgedElement {
   double shows = 0;  ///< least loss of one of its stories that would have shown, relative
 };
 /// Stiffnesses with windows enough that session_changes() would have found a change of twice the
-/// least relevant one. What shows counts the windows' errors, the temperature's slope, and of groups
-/// the model's error.
+/// least relevant one. What shows counts the windows' errors, the temperature's slope, and of
+/// groups the model's error.
 std::vector<JudgedElement> judged_elements(const SessionEstimates& session);
 /// Why stiffnesses are not judged though their windows would do; empty: there is no such reason.
 std::string why_not_judged(const SessionEstimates& session);

@@ -40,15 +40,6 @@ double error_percent(const ElementChange& c) {
   return std::max(0.1, std::ceil(1000 * c.std_error) / 10);
 }
 
-/// Of a loss of a group: what that may be of one of its stories.
-std::string of_one_story(const parameter_table_t& table, const ElementChange& c) {
-  const estimator::Parameter p = parameter_of(table, c.parameter);
-  if (p.last_story == p.story || !(c.ratio < 0)) return "";
-  const double most = std::min(2 * c.std_error - c.ratio, 1.0);
-  return fmt::format(" (one of stories {} to {} may have lost up to {:.0f} %)", p.story, p.last_story,
-                     100 * loss_of_one_story(p, most));
-}
-
 /// "frame y2 of story 1 has lost 15.0 % (+-0.4 %) of its stiffness".
 std::string what(const SessionReport& r, const ElementChange& c) {
   const std::string element = element_words(r.estimates.table, c.parameter);
@@ -139,9 +130,8 @@ std::string change_chart(const SessionReport& r) {
     if (!std::isfinite(a.mean) || !std::isfinite(b.mean)) continue;
     names.categories.push_back(r.estimates.table.name[p]);
     bars.x.push_back(static_cast<double>(names.categories.size()));
-    const auto change = std::find_if(r.changes.begin(), r.changes.end(), [&](const auto& c) {
-      return c.parameter == p && c.sized();
-    });
+    const auto change = std::find_if(r.changes.begin(), r.changes.end(),
+                                     [&](const auto& c) { return c.parameter == p && c.sized(); });
     const double windows = r.estimates.table.window_rows / r.estimates.table.hop_rows;
     const auto error = [&](const ParameterSummary& s, const WindowRange& w) {
       return s.std_error / std::sqrt(std::max(1.0, static_cast<double>(w.size()) / windows));
@@ -210,10 +200,11 @@ std::string change_table(const SessionReport& r) {
     const auto mean = [factor = factor](const estimator::WindowMean& m) {
       return m.count > 0 ? with_error(factor * m.value, factor * m.std_error) : std::string("-");
     };
-    rows.push_back({html_text(element_words(r.estimates.table, c.parameter)),
-                    html_text(r.estimates.table.name[c.parameter]), unit, mean(c.before),
-                    mean(c.after), c.sized() ? change_with_error(c.ratio, 0.01 * error_percent(c)) : "not known yet",
-                    fmt::format("{:.1f}", session_seconds(r, c.since_us))});
+    rows.push_back(
+        {html_text(element_words(r.estimates.table, c.parameter)),
+         html_text(r.estimates.table.name[c.parameter]), unit, mean(c.before), mean(c.after),
+         c.sized() ? change_with_error(c.ratio, 0.01 * error_percent(c)) : "not known yet",
+         fmt::format("{:.1f}", session_seconds(r, c.since_us))});
   }
   if (rows.empty()) return "";
   const bool told = std::any_of(r.changes.begin(), r.changes.end(),

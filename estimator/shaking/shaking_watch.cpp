@@ -84,6 +84,9 @@ ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& o
 bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {
   began_ = false;
   response_.push(set);
+  // An instant that no sensor has said anything of was not heard.
+  if (std::none_of(set.accel.begin(), set.accel.end(), [](double a) { return std::isfinite(a); }))
+    return false;
   const bool missed = look_for_unheard(set.time);
   // What follows so long a silence is another motion.
   if (active_ && missed && seconds(start_, set.time) >= kLongest_s) return end(set.time, baseline);

@@ -9,7 +9,8 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kHold = 3;              // the same until other elements are judged nevertheless
+constexpr double kJudged = 1;  // lengths of main windows behind a change: others may be named
+constexpr double kHold = 3;    // the same until other elements are judged nevertheless
 constexpr double kCommonEvidence = 0.4;  // of what is asked for: an element alone waits for it
 
 }  // namespace
@@ -247,7 +248,7 @@ bool ChangeBook::all_alike(std::size_t window, Time since) {
 /// Whether the windows behind the newest changes have been judged.
 bool ChangeBook::settled() const {
   return std::none_of(records_.begin(), records_.end(), [&](const Record& r) {
-    return r.id != 0 && r.state == ChangeState::changing &&
+    return r.id != 0 && r.state == ChangeState::changing && r.behind_s < kJudged * length_s(r) &&
            is_long(r.detector) == is_long(static_cast<std::size_t>(judged_.window)) &&
            seconds_of(judged_.end - r.found) < kHold * length_s(r);
   });

@@ -12,6 +12,7 @@ constexpr double kLeastBehind_s = 2;  // length of the windows that a first numb
 constexpr double kOfLeak = 0.5;   // standard error of what a change moves others by, over the most
 constexpr double kWait = 0.3;     // of its length, that a longer window may begin later
 constexpr double kSharper = 0.7;  // of the error told: a smaller one is told, too
+constexpr double kMovedFar = 3;   // the same where the new size is less exact
 constexpr double kMoved = 2;      // errors told that a size moves by before it is told again
 constexpr double kRefuted = 4;    // lengths of main windows behind a change that is none
 constexpr double kRefined = 2;    // the same until its time is found no more
@@ -160,9 +161,10 @@ void ChangeBook::tell(Record& r, bool further) {
         {r.id, AlarmState::changed, r.parameter, now, judged_.end, true, ChangeReason::none});
     return;
   }
-  const bool moved = std::abs(now.ratio - r.change.ratio) > kMoved * r.change.std_error;
-  if (!further && !moved && now.std_error > kSharper * r.change.std_error) return;
   const bool less_exact = now.std_error > r.change.std_error;
+  const double most = (less_exact ? kMovedFar : kMoved) * r.change.std_error;
+  const bool moved = std::abs(now.ratio - r.change.ratio) > most;
+  if (!further && !moved && now.std_error > kSharper * r.change.std_error) return;
   r.change = now;
   news_.push_back({r.id, AlarmState::changed, r.parameter, now, judged_.end, true,
                    further || less_exact ? ChangeReason::further : ChangeReason::none});

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace framewatch::estimator {
+namespace {
+
+constexpr int kFewWindows = 4;  // whose scatter is not believed to be smaller
+
+}  // namespace
 
 void ChangeSize::Mean::add(double ratio, double std_error, double common_error) {
   const double w = 1 / (std_error * std_error + common_error * common_error);
@@ -17,7 +22,8 @@ void ChangeSize::Mean::add(double ratio, double std_error, double common_error) 
 double ChangeSize::excess() const {
   if (mean_.count == 0) return 1;
   const double scatter = std::max(mean_.square - mean_.sum * mean_.sum / mean_.weight, 0.0);
-  return std::max((kPriorWindows + scatter) / (kPriorWindows + mean_.count - 1), kLeastExcess);
+  return std::max((kPriorWindows + scatter) / (kPriorWindows + mean_.count - 1),
+                  mean_.count < kFewWindows ? 1.0 : kLeastExcess);
 }
 
 double ChangeSize::std_error() const {

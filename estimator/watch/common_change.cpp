@@ -10,12 +10,12 @@ constexpr double kWithin = 3;  // standard errors of the element
 
 }  // namespace
 
-CommonChange::CommonChange(std::size_t most) {
+CommonChange::CommonChange(std::size_t most) : most_(most) {
   elements_.reserve(most);
 }
 
 void CommonChange::add(double off, double std_error) {
-  if (elements_.size() == elements_.capacity()) return;
+  if (elements_.size() == most_) return;
   elements_.push_back({off, std_error, 1 / (std_error * std_error)});
 }
 

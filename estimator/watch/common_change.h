@@ -31,7 +31,8 @@ class CommonChange {
   struct Element {
     double off, std_error, weight;
   };
-  std::vector<Element> elements_;  ///< never beyond its capacity
+  std::size_t most_;
+  std::vector<Element> elements_;
 };
 
 }  // namespace framewatch::estimator

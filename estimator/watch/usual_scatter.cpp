@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kGroupPrior = 3;                  // groups without slow changes
 constexpr double kMemory = 60, kGroupMemory = 20;  // windows, groups of them
-constexpr double kPrior = 10;                      // windows that scatter as their errors say
+constexpr double kPrior = 5;                       // windows that scatter as their errors say
 constexpr double kMostSquare = 25;                 // squared errors that a wild one counts as
 
 }  // namespace
@@ -31,12 +31,16 @@ void UsualScatter::push(Time start, Time end, double off, double error) {
   ++groups_;
   const double mean = sum_ / weight_, by_chance = excess() / weight_;
   slow_ += (mean * mean - by_chance - slow_) / std::min(static_cast<double>(groups_), kGroupMemory);
+  chance_ += (by_chance - chance_) / std::min(static_cast<double>(groups_), kGroupMemory);
   group_ = 0;
   weight_ = sum_ = 0;
 }
 
 double UsualScatter::slow() const {
-  return std::sqrt(std::max(slow_, 0.0));
+  if (groups_ == 0) return 0;
+  const double error =
+      chance_ * std::sqrt(2 / std::min(static_cast<double>(groups_), kGroupMemory));
+  return std::sqrt(std::max(slow_ - error, 0.0));
 }
 
 }  // namespace framewatch::estimator

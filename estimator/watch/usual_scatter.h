@@ -11,7 +11,7 @@ namespace framewatch::estimator {
 /// windows of one length that do not overlap (docs/equations.md (72)).
 class UsualScatter {
  public:
-  static constexpr double kLeastExcess = 0.5;
+  static constexpr double kLeastExcess = 0.35;
 
   /// Deviation from the baseline, relative, and its standard error > 0. A window that overlaps the
   /// one before is left out.
@@ -28,7 +28,7 @@ class UsualScatter {
     a.within(group_, 0, kGroup);
     a.within(windows_, 0, a.kMostCount);
     a.within(groups_, 0, a.kMostCount);
-    a.finite(last_off_, last_error_, excess_, weight_, sum_, slow_);
+    a.finite(last_off_, last_error_, excess_, weight_, sum_, slow_, chance_);
   }
 
  private:
@@ -40,7 +40,8 @@ class UsualScatter {
   double last_off_ = 0, last_error_ = 0;
   double excess_ = 1;
   double weight_ = 0, sum_ = 0;  ///< of the group so far
-  double slow_ = 0;              ///< variance
+  double chance_ = 0;            ///< variance of a group's mean by chance
+  double slow_ = 0;              ///< variance beyond chance
 };
 
 }  // namespace framewatch::estimator

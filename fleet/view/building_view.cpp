@@ -79,6 +79,8 @@ json raised_json(const BuildingState& state) {
                    {"kind", e.kind},
                    {"place", e.place},
                    {"message", e.message},
+                   {"value", e.value},
+                   {"std_error", e.std_error},
                    {"known", state.is_known(e)},
                    {"known_to", state.is_known(e) ? state.known.at(e.id) : ""}});
   return out;

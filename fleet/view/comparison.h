@@ -27,6 +27,8 @@ struct Comparison {
   double ratio = 0;      ///< after / before - 1; negative: a loss
   double std_error = 0;  ///< of the ratio
   bool compared = false;
+  bool told =
+      false;  ///< the building's own record of the change: ratio and std_error are that one's
   /// compared: the ratio in standard errors; negative for a loss.
   double times_error() const { return std_error > 0 ? ratio / std_error : 0; }
 };

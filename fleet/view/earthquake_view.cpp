@@ -35,6 +35,12 @@ constexpr const char* kShaken =
     " AND time_us > (extract(epoch FROM now()) * 1000000)::bigint - $1::bigint"
     " ORDER BY time_us DESC LIMIT {}";
 
+/// The newest state of every change that began between two times.
+constexpr const char* kRecords =
+    "SELECT DISTINCT ON (building, id) building, place, state, value, std_error FROM event"
+    " WHERE kind = 'stiffness_change' AND since_us BETWEEN $1 AND $2"
+    " ORDER BY building, id, time_us DESC";
+
 /// A building of the list with what it is sorted by.
 struct Judgement {
   const ComparedBuilding* building = nullptr;
@@ -51,7 +57,27 @@ struct Judgement {
 };
 
 bool is_loss(const Comparison& c, double limit) {
-  return c.compared && c.times_error() < -limit;
+  return c.compared && (c.told ? c.ratio < 0 : c.times_error() < -limit);
+}
+
+/// A change that the building has a record of has the record's size here, too.
+bool take_records(Database& database, std::int64_t from_us, std::int64_t to_us,
+                  std::map<std::int64_t, ComparedBuilding>& buildings) {
+  const auto rows = database.query(kRecords, {std::to_string(from_us), std::to_string(to_us)});
+  if (!rows) return false;
+  for (const Database::Row& row : *rows) {
+    const auto building = buildings.find(integer_at(row, 0));
+    const auto value = number_at(row, 3), std_error = number_at(row, 4);
+    if (building == buildings.end() || integer_at(row, 2) == 0 || !value || !std_error) continue;
+    if (!std::isfinite(*value) || !(*std_error > 0)) continue;
+    for (Comparison& c : building->second.stiffness) {
+      if (c.name != text_at(row, 1)) continue;
+      c.compared = c.told = true;
+      c.ratio = *value / 100;
+      c.std_error = *std_error / 100;
+    }
+  }
+  return true;
 }
 
 Judgement judge(const ComparedBuilding& building, double limit) {
@@ -78,7 +104,8 @@ json comparison_json(const Comparison& c, double limit) {
   if (!c.compared) return out;
   out["ratio"] = c.ratio;
   out["std_error"] = c.std_error;
-  out["significant"] = c.std_error > 0 && std::abs(c.times_error()) > limit;
+  out["significant"] = c.told || (c.std_error > 0 && std::abs(c.times_error()) > limit);
+  out["told"] = c.told;
   return out;
 }
 
@@ -112,7 +139,8 @@ std::string earthquake_json(Database& database, const EarthquakeRequest& r) {
   const ComparedTime tens{600, t - R::kLongBefore_us, t, t + R::kSettle_us, t + R::kLongAfter_us};
   if (!reader.read(buildings, minutes, R::kLeastPeriods) ||
       !reader.read(buildings, tens, R::kLeastPeriods) || !reader.read(buildings, tens, 1) ||
-      !reader.read(buildings, minutes, 1))
+      !reader.read(buildings, minutes, 1) ||
+      !take_records(database, t - kTogether_us, t + R::kLongAfter_us, buildings))
     return json{{"problem", database.error()}}.dump();
   std::size_t compared = 0;
   for (const auto& [id, building] : buildings)

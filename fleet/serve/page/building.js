@@ -66,7 +66,8 @@ function drawValues(d) {
   const rows = d.parameters.map(p => {
     const known = p.observed_us !== undefined && p.median !== null;
     const base = p.baseline !== null && p.baseline !== undefined && Number.isFinite(p.baseline) ? p.baseline : null;
-    const ratio = known && base ? p.median / base - 1 : null, error = known && base ? Math.hypot(p.std_error, (p.median / base) * (p.baseline_std_error || 0)) / base : 0;
+    const record = d.raised.find(r => r.kind === 'stiffness_change' && r.place === p.name && r.std_error > 0); // a change has one size
+    const ratio = record ? record.value / 100 : known && base ? p.median / base - 1 : null, error = record ? record.std_error / 100 : known && base ? Math.hypot(p.std_error, (p.median / base) * (p.baseline_std_error || 0)) / base : 0;
     const far = ratio !== null && ratio < 0 && -ratio > 3 * error;
     return el('tr', {}, el('td', {}, el('a', {href: `#/building/${d.name}`, onclick: e => { e.preventDefault(); seen.parameter = seen.select.value = p.name; loadSeries(); seen.box.scrollIntoView({block: 'center'}); }}, p.name), el('div', {className: 'soft'}, placeOf(p.name))),
       numbers('', known ? withError(p.median, p.std_error, p.unit) : el('span', {className: 'soft'}, 'not observable')), numbers('', ratio === null ? '' : el('span', {className: far ? 'loss' : ''}, percent(ratio, error))), numbers('', known ? when(p.observed_us) : ''));

@@ -158,6 +158,40 @@ frame = "y1"
     EXPECT_EQ(story["drift_is"], story["story"] == 1 ? "measured" : "computed") << story;
 }
 
+TEST_F(EventReportTest, AnOpenRecordIsNeverGreenAndItsNumberIsTheReports) {
+  estimator::ShakenStiffness& k = report_.shaking.stiffness[1];
+  k.watched = true;
+  k.record.id = 1;
+  k.record.state = estimator::ChangeState::changing;
+  k.record.change.ratio = -0.02;
+  EXPECT_EQ(verdict().color, EventColor::yellow);
+  EXPECT_NE(verdict().reasons.front().find("is changing"), std::string::npos);
+  EXPECT_FALSE(k.known());
+  k.record.state = estimator::ChangeState::measured;
+  k.record.change.std_error = 0.001;
+  EXPECT_EQ(verdict().color, EventColor::yellow);  // below the threshold, and open
+  EXPECT_EQ(k.ratio(), -0.02);
+  EXPECT_EQ(k.std_error(), 0.001);
+  k.record.change.ratio = -0.3;
+  EXPECT_EQ(verdict().color, EventColor::red);
+}
+
+TEST_F(EventReportTest, WhatWatchDoesNotClaimIsNoLoss) {
+  report_.shaking.stiffness[1].after.value = 900;
+  report_.shaking.stiffness[1].watched = true;
+  EXPECT_EQ(verdict().color, EventColor::green);
+}
+
+TEST_F(EventReportTest, WhatEverythingHasInCommonIsYellow) {
+  report_.everything.id = 1;
+  report_.everything.state = estimator::ChangeState::measured;
+  report_.everything.change.ratio = -0.05;
+  report_.everything.change.std_error = 0.004;
+  EXPECT_EQ(verdict().color, EventColor::yellow);
+  EXPECT_NE(verdict().reasons.front().find("everything softened alike by 5.0 %"),
+            std::string::npos);
+}
+
 TEST_F(EventReportTest, IsYellowOrRedByALossThatIsCertain) {
   report_.shaking.stiffness[1].after.value = 900;
   EXPECT_EQ(verdict().color, EventColor::yellow);

@@ -37,8 +37,8 @@ TEST(RestartKill, TheReportSpansTheWholeEarthquakeAndSaysWhenNobodyListened) {
     scenario.replace(at, what.size(), by);
   };
   set("\"table_two_story.toml\"", "\"" + configs + "table_two_story.toml\"");
-  set("length_s = 3600.0", "length_s = 40");
-  set("strong_s = 100000.0", "strong_s = 30");
+  set("length_s = 3600.0", "length_s = 24");
+  set("strong_s = 100000.0", "strong_s = 16");
   test::write_file(directory.path("scenario.toml"), scenario);
   test::write_file(directory.path("table.toml"),
                    test::read_file(test::table_config()) +

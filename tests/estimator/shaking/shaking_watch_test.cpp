@@ -99,6 +99,16 @@ TEST_F(ShakingTest, AnInterruptionKeepsWhereASensorRests) {
 
 TEST_F(ShakingTest, ATimeWithoutSamplesIsToldAndIsNoCalm) {
   // Longer than quiet_s, in the middle of it.
+  // Instants without a value are missing ones, too.
+  for (const bool empty : {false, true}) {
+    ShakingWatch w = watch();
+    for (int i = 0; i < 6000; ++i) {
+      SampleSet set = at(i);
+      if (i >= 2400 && i < 2480 && empty) set.accel.assign(3, kNaN);
+      (void)w.push(set, nullptr);
+    }
+    EXPECT_EQ(w.ended().unheard.size(), empty ? 1u : 0u);
+  }
   for (const bool restart : {false, true}) {
     ShakingWatch w = watch();
     int ended = 0;

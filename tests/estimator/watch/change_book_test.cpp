@@ -115,6 +115,7 @@ TEST(ChangeBook, IsChangingBeforeItHasANumberAndThenSharpens) {
     EXPECT_EQ(a.parameter, 3);
     EXPECT_EQ(a.id, news.front().id);
     if (!a.measured) continue;
+    EXPECT_EQ(a.reason, ChangeReason::none);
     EXPECT_LT(a.change.std_error, last);
     last = a.change.std_error;
     EXPECT_NEAR(a.change.ratio, -0.15, 4 * a.change.std_error);
