@@ -37,15 +37,15 @@ ChangeBook::ChangeBook(const ParameterTable& table, const std::vector<Watched>& 
       held_(watched.size()) {
   lengths_s_.push_back(long_window_s);
   if (!model_.is_of(elements_)) model_ = usual_change_model(table);
-  double least = 1;
   for (std::size_t p = 0; p < elements_; ++p) {
     const Parameter& parameter = table[static_cast<int>(p)];
     frame_[p] = parameter.kind == ParameterKind::frame_stiffness && watched[p].least_change > 0;
-    if (frame_[p] != 0) least = std::min(least, watched[p].least_change);
+    if (frame_[p] != 0) least_of_all_ = std::min(least_of_all_, watched[p].least_change);
     records_[p].parameter = static_cast<int>(p);
   }
   records_[all()].parameter = ChangeRecord::kEverything;
-  of_all_.assign(detectors_.size(), ChangeDetector(Baseline(1), {Watched{least}}, threshold));
+  of_all_.assign(detectors_.size(),
+                 ChangeDetector(Baseline(1), {Watched{least_of_all_}}, threshold));
   // The main window first, then longer ones, then shorter ones, the longest first.
   std::iota(order_.begin(), order_.end(), std::size_t{0});
   std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
@@ -183,7 +183,8 @@ void ChangeBook::remember(const std::vector<Explained>& explained) {
   const auto put = [&](std::size_t element, double off, double own, double common) {
     UsualScatter& scatter = scatter_[window * (elements_ + 1) + element];
     const double error = usual_error(window, element, own);
-    if (records_[element].id == 0 && judged_.start >= gate_)
+    // What the conditions make of the element is no scatter.
+    if (records_[element].id == 0 && judged_.start >= gate_ && common <= least_change(element))
       scatter.push(judged_.start, judged_.end, off, error);
     const double slow = scatter_[main * (elements_ + 1) + element].slow();
     histories_[window].put(place, element,

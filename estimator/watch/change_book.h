@@ -104,6 +104,9 @@ class ChangeBook {
                ? all()
                : static_cast<std::size_t>(record.parameter);
   }
+  double least_change(std::size_t element) const {
+    return element == all() ? least_of_all_ : watched_[element].least_change;
+  }
   double usual_error(std::size_t window, std::size_t element, double own) const;
 
   void find_common(const std::vector<Explained>& explained);
@@ -134,6 +137,7 @@ class ChangeBook {
   std::size_t elements_;
   ChangeModel model_;
   std::vector<Watched> watched_;
+  double least_of_all_ = 1;
   std::vector<std::uint8_t> frame_;  ///< by element: counts for what everything has in common
   std::vector<std::size_t> order_;   ///< of windows by which a size is taken first
   double threshold_;

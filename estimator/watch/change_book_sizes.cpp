@@ -136,11 +136,14 @@ Change ChangeBook::measured(const Record& r) const {
   return out;
 }
 
-/// Whether the windows behind a change do not show one. The model's error is about its size alone.
+/// Whether the windows behind a change know its size well enough to say that it is none. The
+/// model's error is about the size alone; what the conditions may explain keeps the error large,
+/// and then the detector, which leaves that out, knows better.
 bool ChangeBook::is_none(const Record& r) const {
+  const std::size_t element = index_of(r);
+  const double error = std::hypot(r.size.std_error(), baseline_error(r.detector, element));
   return r.size.known() && r.behind_s >= kRefuted * length_s(r) &&
-         std::abs(r.size.ratio()) <
-             kNothing * std::hypot(r.size.std_error(), baseline_error(r.detector, index_of(r)));
+         error <= least_change(element) / kNothing && std::abs(r.size.ratio()) < kNothing * error;
 }
 
 bool ChangeBook::worth_a_number(const Record& r, const Change& now) const {
@@ -162,7 +165,9 @@ void ChangeBook::tell(Record& r, bool further) {
     return;
   }
   const bool less_exact = now.std_error > r.change.std_error;
-  const double most = (less_exact ? kMovedFar : kMoved) * r.change.std_error;
+  // A less exact size must contradict the one told.
+  const double most = less_exact ? kMovedFar * std::hypot(now.std_error, r.change.std_error)
+                                 : kMoved * r.change.std_error;
   const bool moved = std::abs(now.ratio - r.change.ratio) > most;
   if (!further && !moved && now.std_error > kSharper * r.change.std_error) return;
   r.change = now;

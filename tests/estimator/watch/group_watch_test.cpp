@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "estimator/identify/groups/layout_prediction.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/watch/watch.h"
 #include "tests/support/softening_tower.h"
@@ -192,7 +193,10 @@ Aftermath shaken(double lost) {
   const ParameterTable table = tower.config().parameters();
   WatchOptions o = options();
   o.learn_s = 120;
-  Watch watch(table, o, Watched::windows_s(), std::nullopt);
+  const LayoutPrediction foreseen =
+      predict_layout(tower.config(), noise_densities(tower.config().axes), {});
+  Watch watch(table, o, Watched::windows_s(), std::nullopt,
+              {foreseen.change_error, foreseen.change_leak});
   Aftermath out;
   Watched building(tower, [&](const WindowEstimate& e) {
     for (const Alarm& alarm : watch.push(e)) {
@@ -203,8 +207,8 @@ Aftermath shaken(double lost) {
       if (alarm.state == AlarmState::raised && alarm.parameter != 1) ++out.others;
       if (alarm.state == AlarmState::raised) ++out.alarms;
       if (alarm.parameter != 1 || alarm.state == AlarmState::cleared) continue;
-      out.ratio = alarm.change.ratio;
-      out.error = alarm.change.std_error;
+      if (alarm.measured) out.ratio = alarm.change.ratio;
+      if (alarm.measured) out.error = alarm.change.std_error;
       out.found_s =
           std::min(out.found_s, 1e-6 * static_cast<double>(to_microseconds(e.end)) - kLearn_s);
     }
