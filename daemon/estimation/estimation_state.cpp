@@ -56,7 +56,6 @@ void Estimation::each_section(const Visit& visit) {
     a(seconds_);
     for (std::int64_t* count : {&windows_, &absurd_temperatures_})
       a.within(*count, 0, a.kMostCount);
-    a(newest_us_);
   });
   visit("events", [this](auto& a) { a(raised_); });
   visit("lcm", [this](auto& a) { a(intake_); });
@@ -67,7 +66,7 @@ void Estimation::each_section(const Visit& visit) {
   });
   // What is said of channels compares the pipeline's counters with those it saw before.
   visit("window", [this](auto& a) {
-    a(absurd_events_, channel_events_);
+    a(absurd_events_, channel_events_, newest_us_);
     archive_pipeline(a, pipeline_);
   });
   if (watch_) {

@@ -140,7 +140,7 @@ class Restart : public testing::Test {
       feed(live, lcm, 0, killed_s, [&](double now_s) {
         if (saved || now_s < killed_s - kStateAge_s) return;
         saved = true;
-        ASSERT_EQ(write_state(path(name + ".state"), state_bytes(config, live.estimation(), 0)),
+        ASSERT_EQ(write_state(path(name + ".state"), saved_state(config, live.estimation(), 0)),
                   "");
       });
     }
