@@ -31,13 +31,6 @@ DriftReport drift_report(const Config& config, const estimator::PipelineConfig& 
                          const estimator::PeakResponse& peak,
                          const estimator::DriftKnowledge& known, const std::string& loss = "");
 
-/// "inspected", "restricted use", "restricted use (not judged)", "unsafe".
-std::string placard_words(const estimator::PlacardChoice& choice);
-/// "INDICATION: an engineer decides after an inspection." in one sentence.
-const char* placard_caution();
-/// "1.20 % ± 0.10 %"; "not known".
-std::string drift_with_error(const estimator::StoryDrift& drift);
-
 /// HTML: the placard with its reason, to stand first; empty without [fragility].
 std::string placard_section(const DriftReport& report);
 /// HTML: a table of every story's drift with its error and of its damage, and the remarks.

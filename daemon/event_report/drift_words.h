@@ -2,8 +2,9 @@
 
 #include <string>
 
-#include "daemon/event_report/drift_report.h"
 #include "daemon/event_report/response_words.h"
+#include "estimator/shaking/placard.h"
+#include "estimator/shaking/story_drift.h"
 
 namespace framewatch::daemon {
 
@@ -13,5 +14,11 @@ const char* state_word(estimator::DamageState state);
 std::string probability_words(double probability);
 /// The first letter large.
 std::string capitalised(std::string text);
+/// "inspected", "restricted use", "restricted use (not judged)", "unsafe".
+std::string placard_words(const estimator::PlacardChoice& choice);
+/// "INDICATION: an engineer decides after an inspection." in one sentence.
+const char* placard_caution();
+/// "1.20 % ± 0.10 %"; "not known".
+std::string drift_with_error(const estimator::StoryDrift& drift);
 
 }  // namespace framewatch::daemon

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/utc_time.h"
+#include "daemon/event_report/drift_words.h"
 #include "daemon/event_report/event_report.h"
 #include "daemon/event_report/unheard_words.h"
 #include "daemon/events/change_words.h"
@@ -200,11 +201,10 @@ event_t event_of(const EventReport& r, const Config& config) {
   if (verdict.worst_story > 0)
     m.std_error = 100 * drifts.drifts[static_cast<std::size_t>(verdict.worst_story - 1)].std_error;
   const std::string unheard = unheard_words(r.shaking);
-  m.message = fmt::format("after strong motion: {}{}, {}; {}report {}",
-                          unheard.empty() ? "" : unheard + "; ", color_word(verdict.color),
-                          verdict.reasons.front(),
-                          drifts.placard ? "placard: " + placard_words(*drifts.placard) + "; " : "",
-                          m.segment);
+  m.message = fmt::format(
+      "after strong motion: {}{}, {}; {}report {}", unheard.empty() ? "" : unheard + "; ",
+      color_word(verdict.color), verdict.reasons.front(),
+      drifts.placard ? "placard: " + placard_words(*drifts.placard) + "; " : "", m.segment);
   return m;
 }
 

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/event_report/drift_report.h"
+#include "daemon/event_report/drift_words.h"
 #include "daemon/event_report/response_words.h"
 #include "daemon/events/event_words.h"
 #include "daemon/service/health.h"

@@ -96,7 +96,7 @@ FirstPasses::FirstPasses(const Config& config, const TuningInput& input,
   const Config reduced = tuning_only(config);
   for (bool settled = false; !settled && passes_ < kMostPasses;) {
     Pass pass(reduced, tuning_);
-    const bool whole = pass.read(reduced, input, progress);
+    const bool whole = read_ = pass.read(reduced, input, progress);
     tuning_ = whole ? pass.tuning() : std::nullopt;
     if (!tuning_) return;
     ++passes_;

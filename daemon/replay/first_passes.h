@@ -38,12 +38,15 @@ class FirstPasses {
   /// Empty when the input cannot be read or shows too little, or when self-tuning is off.
   const std::optional<estimator::Tuning>& tuning() const { return tuning_; }
   int passes() const { return passes_; }
+  /// The input could be read; otherwise reading it to estimate says why not.
+  bool read() const { return read_; }
   /// What a person is told: of the passes, that of the estimation among them.
   std::string note() const;
 
  private:
   std::optional<estimator::Tuning> tuning_;
   int passes_ = 0;
+  bool read_ = false;
 };
 
 /// Whether the configuration asks for self-tuning.

@@ -173,7 +173,7 @@ class ReplayRun {
     const FirstPasses first(config_, {a_.inputs, a_.record, a_.salvage, a_.span},
                             [&](std::int64_t bytes) { progress(bytes); });
     if (first.tuning()) estimation_.start_tuned(*first.tuning());
-    if (!a_.quiet) fmt::print(stderr, "{}\n", first.note());
+    if (!a_.quiet && first.read()) fmt::print(stderr, "{}\n", first.note());
   }
 
   void read_everything() {

@@ -21,7 +21,7 @@
 namespace framewatch::estimator {
 
 /// Simulates the current model under the measured inputs continuously and gives the gap to
-/// what the axes above measure. docs/gap.md, docs/equations.md (42), (43). What drives the
+/// what the axes above measure. docs/gap.md, docs/equations.md (45), (46). What drives the
 /// model is measured_inputs(): a motion of the base that no axis shows is a gap.
 class GapMonitor {
  public:

@@ -18,7 +18,7 @@ struct Fragility {
 /// Probabilities that a story is in a damage state or a worse one, by DamageState.
 /// drift_ratio: its peak, > 0; std_error: its standard error, >= 0, which widens the dispersion.
 /// A worse state is never more likely than a lighter one, whatever the dispersions are.
-/// docs/equations.md (60). NaN when one of the arguments is.
+/// docs/equations.md (63). NaN when one of the arguments is.
 std::array<double, kDamageStates> damage_probabilities(const Fragility& fragility,
                                                        double drift_ratio, double std_error);
 

@@ -27,7 +27,7 @@ struct DriftKnowledge {
 
 /// The elastic part of the story drifts that double integration above a corner removes: the floors'
 /// slow accelerations times their masses are the slow story forces, and the identified stiffness
-/// turns these into drift. docs/equations.md (55), (56). It knows nothing of permanent drift.
+/// turns these into drift. docs/equations.md (58), (59). It knows nothing of permanent drift.
 class SlowDrift {
  public:
   /// Relative change of a stiffness from which on the flexibility is computed anew.

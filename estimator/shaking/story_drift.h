@@ -30,11 +30,11 @@ struct StoryDrift {
 };
 
 /// Variance of a displacement, m^2, per variance of white noise in the acceleration's samples,
-/// (m/s^2)^2: the energy of the impulse response of StoryResponse. docs/equations.md (57).
+/// (m/s^2)^2: the energy of the impulse response of StoryResponse. docs/equations.md (60).
 double displacement_noise_gain(const EstimatorOptions& options);
 
 /// Every story, from the lowest up. config: with the axes that `peak` is of; known: what the
-/// stiffness and the noise were at the end of the motion. docs/equations.md (57) to (59).
+/// stiffness and the noise were at the end of the motion. docs/equations.md (60) to (62).
 std::vector<StoryDrift> story_drifts(const PipelineConfig& config, const PeakResponse& peak,
                                      const DriftKnowledge& known);
 

@@ -1,11 +1,20 @@
 #include "estimator/watch/watch.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "estimator/numeric/nan.h"
+
 namespace framewatch::estimator {
 namespace {
+
+/// A frame's stiffness that is known to less says nothing of a change that matters, and how well it
+/// is known is itself known badly.
+constexpr double kMostErrorRatio = 0.035;
+/// Windows shorter than this share of their length, after a start, have errors from few blocks.
+constexpr double kWhole = 0.9;
 
 /// Of a story's least relevant change: what a group of several in series shows of a larger one.
 constexpr double kOfGroup = 0.5;
@@ -80,6 +89,11 @@ Watch::Watch(const ParameterTable& table, const WatchOptions& options,
       corrected_(watched_.size()),
       explained_(watched_.size()),
       doubted_(watched_.size()) {
+  certain_ = WindowEstimate(watched_.size());
+  for (int p = 0; p < table.size(); ++p) {
+    const bool frame = table[p].kind == ParameterKind::frame_stiffness;
+    stiffness_of_frames_.push_back(frame ? 1 : 0);
+  }
   for (int p = 0; p < table.size(); ++p)
     if (table[p].kind == ParameterKind::bending_stiffness)
       bending_.push_back(static_cast<std::size_t>(p));
@@ -101,10 +115,27 @@ void Watch::begin_quiet() {
   book_.begin_long(quiet_baseline_, watched);
 }
 
-const std::vector<Alarm>& Watch::push(const WindowEstimate& estimate) {
-  const auto window = static_cast<std::size_t>(estimate.window);
-  if (window > windows_s_.size()) return none_;
+const WindowEstimate& Watch::certain(const WindowEstimate& e) {
+  bool all = true;
+  for (std::size_t p = 0; p < watched_.size(); ++p)
+    all = all && !(e.std_error[p] > kMostErrorRatio * e.value[p] && stiffness_of_frames_[p] != 0);
+  if (all) return e;
+  certain_ = e;
+  for (std::size_t p = 0; p < watched_.size(); ++p) {
+    if (stiffness_of_frames_[p] == 0 || !(e.std_error[p] > kMostErrorRatio * e.value[p])) continue;
+    certain_.reason[p] = Observability::quiet;
+    certain_.value[p] = certain_.std_error[p] = kNaN;
+  }
+  return certain_;
+}
+
+const std::vector<Alarm>& Watch::push(const WindowEstimate& given) {
+  const auto window = static_cast<std::size_t>(given.window);
+  if (window > windows_s_.size() || given.late) return none_;
   const bool quiet = window == windows_s_.size();
+  const double length_s = std::chrono::duration<double>(given.end - given.start).count();
+  if (!quiet && length_s < kWhole * windows_s_[window]) return none_;
+  const WindowEstimate& estimate = quiet ? given : certain(given);
   const std::vector<Alarm>* news = &none_;
   if (book_.takes(estimate)) {
     explained_.assign(watched_.size(), {});

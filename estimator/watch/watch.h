@@ -47,8 +47,8 @@ class Watch {
         const ChangeModel& model = {});
 
   /// The transitions of records that this window causes; valid until the next call. Windows may
-  /// come late and in any order; those of one length that lie closer than a fifth of it are left
-  /// out.
+  /// come in any order; those of one length that lie closer than a fifth of it are left out, and so
+  /// are late ones (WindowEstimate::late) and those that are not whole yet.
   const std::vector<Alarm>& push(const WindowEstimate& estimate);
   /// The record of a change of a parameter, or of ChangeRecord::kEverything; null: there is none.
   const ChangeRecord* record(int parameter) const { return book_.record(parameter); }
@@ -141,6 +141,8 @@ class Watch {
   const WindowEstimate& corrected(const WindowEstimate& estimate);
   void remember_amplitudes(const WindowEstimate& estimate);
   double recovering(std::size_t parameter, Time now) const;
+  /// The estimate without stiffnesses of frames that are too uncertain.
+  const WindowEstimate& certain(const WindowEstimate& estimate);
   const WindowEstimate& corrected_quiet(const WindowEstimate& estimate);
   void find_doubted(const WindowEstimate& estimate);
 
@@ -161,6 +163,8 @@ class Watch {
   Dependence dependence_;
   ChangeBook book_;
   WindowEstimate corrected_;
+  std::vector<std::uint8_t> stiffness_of_frames_;  ///< flags, theta order
+  WindowEstimate certain_;
   std::vector<Explained> explained_;   ///< in the newest window
   std::vector<std::uint8_t> doubted_;  ///< gains that are not to be believed now
   std::vector<Alarm> none_;

@@ -1,6 +1,7 @@
 #include "estimator/watch/window_history.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace framewatch::estimator {
 

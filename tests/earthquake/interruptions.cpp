@@ -1,4 +1,5 @@
 // interruptions: what is estimated after a start in motion or an interruption, and how soon.
+#include <algorithm>
 #include <cstdio>
 #include <thread>
 

@@ -22,7 +22,6 @@
 #include "drivers/base/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/message_check.h"
-#include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -34,13 +33,6 @@ constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
 
 std::span<const std::uint8_t> bytes(const void* data, std::size_t size) {
   return {static_cast<const std::uint8_t*>(data), size};
-}
-
-std::vector<std::string> parameter_names(const Config& config) {
-  const estimator::ParameterTable table = config.pipeline.parameters();
-  std::vector<std::string> out;
-  for (int p = 0; p < table.size(); ++p) out.push_back(table[p].name);
-  return out;
 }
 
 }  // namespace

@@ -25,6 +25,13 @@ estimator::Watch fresh_watch(const estimator::ParameterTable& table,
 
 }  // namespace
 
+std::vector<std::string> parameter_names(const Config& config) {
+  const estimator::ParameterTable table = config.pipeline.parameters();
+  std::vector<std::string> out;
+  for (int p = 0; p < table.size(); ++p) out.push_back(table[p].name);
+  return out;
+}
+
 estimator::WindowEstimate decoded_estimate(int window, const window_estimate_t& m) {
   estimator::WindowEstimate e;
   e.window = window;

@@ -12,6 +12,8 @@
 
 namespace framewatch::daemon {
 
+/// Theta order. Estimates of parameters with other names are not watched.
+std::vector<std::string> parameter_names(const Config& config);
 /// What Watch and the motion of floors without sensors read of an estimate.
 estimator::WindowEstimate decoded_estimate(int window, const window_estimate_t& message);
 

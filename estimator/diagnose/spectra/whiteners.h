@@ -25,7 +25,7 @@ struct ReadMotions {
 /// The same where the last columns D_u of the operation are of motions that no axis reads. They are
 /// eliminated by Z' = read' - (read' D_u) (unread' D_u)^-1 unread': Z' D_u = 0. Whitening matrices
 /// L^-1 Z', L L^H = Z' D S D^H Z*, below them rows of zeros up to the number of equations. Source:
-/// docs/equations.md (46), (47).
+/// docs/equations.md (49), (50).
 std::vector<Whitener> whiteners(const std::function<Eigen::MatrixXcd(Eigen::Index)>& operation,
                                 const Eigen::MatrixXd& noise, const Eigen::MatrixXd& pushed,
                                 const ReadMotions& motions);

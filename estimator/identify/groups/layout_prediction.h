@@ -38,7 +38,7 @@ struct LayoutPrediction {
 };
 
 /// config: of groups. noise_density: of every axis, m/s^2/sqrt(Hz), > 0.
-/// Source: docs/equations.md (50) and (51).
+/// Source: docs/equations.md (53) and (54).
 LayoutPrediction predict_layout(const PipelineConfig& config,
                                 const std::vector<double>& noise_density,
                                 const ExpectedShaking& shaking,

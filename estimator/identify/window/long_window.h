@@ -10,7 +10,7 @@ namespace framewatch::estimator {
 
 /// The normal equations of a long window, an hour for instance, in BatchMeans::kBlocks pieces of
 /// whole blocks: it identifies what moves too weakly for an ordinary window. Five windows per
-/// length. docs/equations.md (44).
+/// length. docs/equations.md (47).
 ///
 /// A block whose response has more than kMostOfUsual times the usual energy is scaled down to that,
 /// so that one strong motion, a single piece without a spread, does not dominate the hour. A block

@@ -10,61 +10,17 @@
 #include "estimator/identify/groups/group_tuning.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/regressor_tuning.h"
+#include "estimator/identify/window/window_rows.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 namespace {
 
 constexpr int kBlocks = BatchMeans::kBlocks;  // per window
-constexpr int kFewestBlocks = 4;              // of another window
 /// Of the main window: rows enough for standard errors, but for the first of a start.
 constexpr double kWarm = 0.75 * BatchMeans::kFewest / BatchMeans::kBlocks;
 /// A channel that is away for less is waited for; for longer, its floor becomes an inner one.
 constexpr double kAxesSteady_s = 2;
-
-DerivativeTriple triple_of(const EstimatorOptions& o, bool grouped, double advance) {
-  if (grouped) return held_triple(o.rate_hz, advance);
-  return o.variant == Variant::paper ? trapezoid_triple(o.rate_hz)
-                                     : matched_triple(o.rate_hz, advance);
-}
-
-/// Acquisition subtracts whole samples of a delay from the stamps; the triple undoes the rest.
-std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o, bool grouped,
-                                         const std::vector<SensorAxis>& axes) {
-  std::vector<DerivativeTriple> triples;
-  for (const SensorAxis& axis : axes) {
-    const double samples = axis.delay * o.rate_hz;
-    triples.push_back(triple_of(o, grouped, samples - std::round(samples)));
-  }
-  return triples;
-}
-
-int rows_of(double seconds, double rate) {
-  return std::max(1, static_cast<int>(std::lround(seconds * rate)));
-}
-
-std::vector<int> blocks_of(const std::vector<double>& windows_s, double rate_hz, int block_rows) {
-  std::vector<int> blocks;
-  for (const double s : windows_s)
-    blocks.push_back(
-        std::max(kFewestBlocks, static_cast<int>(std::lround(s * rate_hz / block_rows))));
-  return blocks;
-}
-
-/// Instants of motion that are kept beside the longest window: what the slowest possible row filter
-/// of the paper's variant needs to settle; of the others, what windows are looked at again from.
-int kept_beside(const EstimatorOptions& o, bool grouped) {
-  const double slowest_s = grouped
-                               ? GroupTuning::kLongestSettle_s
-                               : 3 / (std::min(o.filter_damping, 0.7) * 2 * M_PI * o.high_pass_hz);
-  return rows_of(std::max(o.settle_s, slowest_s), o.rate_hz) + 1;
-}
-
-int longest_window(int block_rows, const std::vector<int>& other_blocks) {
-  int longest = kBlocks;
-  for (const int blocks : other_blocks) longest = std::max(longest, blocks);
-  return longest * block_rows;
-}
 
 std::unique_ptr<MotionSource> motion_source(const Structure& structure, const FloorLayout& layout,
                                             const std::vector<SensorAxis>& axes) {

@@ -100,6 +100,7 @@ TEST(KeyTargets, EveryKeyReachesItsFieldAndNoOther) {
   round_trip<GapSettings>("gap", keys);
   round_trip<HistorySettings>("history", keys);
   round_trip<EventReportSettings>("event_report", keys);
+  round_trip<FragilitySettings>("fragility", keys);
   round_trip<ActionSettings>("actions", keys);
   round_trip<FleetSettings>("fleet", keys);
   int all = 0;

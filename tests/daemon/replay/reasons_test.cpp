@@ -15,6 +15,7 @@ namespace framewatch::daemon {
 namespace reasons_test {
 
 constexpr double kSeconds = 30;
+constexpr int kFirst = 100, kWindow = 500;
 constexpr int kWarmUp = 1000;  // windows, of a hundred a second, and some
 constexpr const char* kChannel = "F1-Y1";
 
@@ -60,7 +61,7 @@ TEST_F(Reasons, AReversedChannelIsNotQuiet) {
       of([](const std::string& cell) { return cell[0] == '-' ? cell.substr(1) : "-" + cell; });
   const nlohmann::json& own = found["kx_1_y1"];
   EXPECT_EQ(own["ok"], 0);
-  EXPECT_EQ(own["quiet"], 0) << own;
+  EXPECT_LT(own["quiet"], kFirst) << own;
   EXPECT_GT(own["too uncertain"], 500) << own;
 }
 
@@ -69,7 +70,8 @@ TEST_F(Reasons, ADeadChannelIsTheReasonOnItsWholeFlexibleFloor) {
   for (const char* name : {"kx_1_y1", "kx_1_y2", "ky_1_x1", "cx_1_y2", "Gk_1_x1y1"}) {
     EXPECT_LT(found[name]["warming up"], kWarmUp) << name << found[name];
     EXPECT_GT(found[name]["channel lost"], kWarmUp) << name << found[name];
-    EXPECT_EQ(found[name]["ok"], 0) << name;
+    // Half a second passes until what stands still is known to be dead; its rows stay for a window.
+    EXPECT_LT(found[name]["ok"], kWindow) << name;
   }
   EXPECT_GT(found["kx_2_y2"]["ok"], kWarmUp) << found["kx_2_y2"];
 }

@@ -13,6 +13,7 @@
 namespace framewatch::estimator {
 namespace start_tuned_test {
 
+constexpr int kRows = 500;  // of a whole window
 constexpr double kRate_hz = 100, kSeconds = 25;
 constexpr double kSoft = 0.4;        // design over truth
 constexpr double kSooner_s = 1;      // at least, than a pipeline that has to find its tuning
@@ -39,7 +40,7 @@ const Tower& tower() {
 
 struct Seen {
   double first_s = 0;  ///< end of the first window with a value
-  double worst = 0;    ///< error of a frame in it
+  double worst = 0;    ///< error of a frame in the first whole one
   std::optional<Tuning> tuning;
 };
 
@@ -47,8 +48,9 @@ Seen run(const std::optional<Tuning>& start) {
   const Tower& t = tower();
   Seen seen;
   Pipeline pipeline(t.config, [&](const WindowEstimate& e) {
-    if (seen.first_s > 0 || e.status != WindowStatus::valid) return;
-    seen.first_s = static_cast<double>(to_microseconds(e.end)) * 1e-6;
+    if (e.status == WindowStatus::valid && seen.first_s == 0)
+      seen.first_s = static_cast<double>(to_microseconds(e.end)) * 1e-6;
+    if (e.rows < kRows || seen.worst > 0 || e.status != WindowStatus::valid) return;
     for (int p = 0; p < t.table.size(); ++p)
       if (const double v = e.value[static_cast<std::size_t>(p)];
           t.table[p].kind == ParameterKind::frame_stiffness && !std::isnan(v))

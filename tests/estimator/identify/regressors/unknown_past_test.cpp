@@ -19,7 +19,7 @@ constexpr double kRate_hz = 100, kHighPass_hz = 0.3, kDamping = 0.35;
 constexpr int kStride = 4, kSignals = 3, kStart = 1000, kRows = 1500;
 constexpr int kShapes = 4;
 constexpr double kRounding = 1e-9;  // of the rows' energy
-constexpr double kLeft = 1e-5;  // likewise: shapes end at a thousandth
+constexpr double kLeft = 1e-5;      // likewise: shapes end at a thousandth
 
 PolePair high_pass_poles() {
   const HighPass h(kHighPass_hz, kRate_hz);
