@@ -19,9 +19,9 @@ void WindowHistory::move(std::size_t from, std::size_t to) {
       return values.begin() + static_cast<std::ptrdiff_t>(i * width);
     };
     if (from > to)
-      std::move(at(from), at(count_), at(to));
+      std::copy(at(from), at(count_), at(to));
     else
-      std::move_backward(at(from), at(count_), at(count_ + 1));
+      std::copy_backward(at(from), at(count_), at(count_ + 1));
   };
   shift(start_, 1);
   shift(end_, 1);
