@@ -15,14 +15,14 @@ WindowHistory::WindowHistory(std::size_t parameters)
 
 /// Moves the windows from `from` on to `to`: by one place either way.
 void WindowHistory::move(std::size_t from, std::size_t to) {
-  const std::size_t places = count_ - std::max(from, to) + (from > to ? 0 : 1);
   const auto shift = [&](auto& values, std::size_t width) {
-    const auto begin = values.begin();
-    const auto at = [&](std::size_t i) { return begin + static_cast<std::ptrdiff_t>(i * width); };
+    const auto at = [&](std::size_t i) {
+      return values.begin() + static_cast<std::ptrdiff_t>(i * width);
+    };
     if (from > to)
-      std::move(at(from), at(count_), at(to));
+      std::copy(at(from), at(count_), at(to));
     else
-      std::move_backward(at(from), at(from + places - 1), at(to + places - 1));
+      std::copy_backward(at(from), at(count_), at(count_ + 1));
   };
   shift(start_, 1);
   shift(end_, 1);
