@@ -3,7 +3,7 @@
 namespace framewatch::estimator {
 
 /// How large a lasting change is, from windows that lie wholly behind it and do not overlap: the
-/// mean of their deviations from the baseline, weighted with 1 / error^2 (docs/equations.md (56)).
+/// mean of their deviations from the baseline, weighted with 1 / error^2 (docs/equations.md (43)).
 /// The windows' scatter says more of the error of the mean than their own errors do, which are
 /// careful: it makes it larger, or smaller down to a bound. A window alone that lies kFar errors
 /// from the mean is left out; two in a row on the same side begin it anew, because the element has

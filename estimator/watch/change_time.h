@@ -16,7 +16,7 @@ struct ChangeTime {
 
 /// Divides the windows of a parameter at an instant between `from` and `to`: those wholly before it
 /// have one value, those wholly behind it another one, and those across it as much of the change as
-/// of their time is behind it (docs/equations.md (55)). histories: of windows of different lengths,
+/// of their time is behind it (docs/equations.md (42)). histories: of windows of different lengths,
 /// step: between the instants that are tried. before_error: > 0, what the value before may be off
 /// the baseline by. Windows that overlap share a likelihood. Empty when no window shows a change.
 std::optional<ChangeTime> time_of_change(std::span<const WindowHistory* const> histories,

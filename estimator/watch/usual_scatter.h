@@ -8,7 +8,7 @@ namespace framewatch::estimator {
 
 /// By how much the windows of an intact element scatter more than their standard errors say: from
 /// one window to the next, which a mean makes smaller, and slowly, which it does not. Both from
-/// windows of one length that do not overlap (docs/equations.md (56)).
+/// windows of one length that do not overlap (docs/equations.md (43)).
 class UsualScatter {
  public:
   static constexpr double kLeastExcess = 0.35;

@@ -5,8 +5,8 @@
 #include "estimator/motion/derivative_triple.h"
 #include "estimator/setup/pipeline_config.h"
 
-// What the options of a SlidingWindowEstimator come to in samples: its windows in rows and in blocks
-// of rows, and its derivatives. grouped: groups of stories are identified.
+// What the options of a SlidingWindowEstimator come to in samples: its windows in rows and in
+// blocks of rows, and its derivatives. grouped: groups of stories are identified.
 namespace framewatch::estimator {
 
 /// advance: in samples.

@@ -23,7 +23,7 @@ constexpr double kMostErrors = 5;     // standard errors a value may be off by
 constexpr double kMostScatter = 1.4;  // rms of these
 constexpr double kMostError = 0.09;
 constexpr double kMostErrorOfOthers = 0.035;  // of what ordinary windows publish
-constexpr double kSpike = 1000;  // m/s^2
+constexpr double kSpike = 1000;               // m/s^2
 
 struct DeliveryResult {
   std::vector<WindowEstimate> given;
