@@ -53,13 +53,28 @@ class SlowDrift {
     a(theta_, std_error_);
     a.each_within(identified_, 0, 1);
     a(misfit_, strongest_m2_, newest_);
-    if constexpr (Archive::kReading) form();
+    archive_flexibility(a);
     a.finite(static_before_);
     a(drift_);
   }
 
  private:
   void follow_misfit(const WindowEstimate& estimate);
+  /// The flexibility is of the stiffness it was computed with last, not of the newest.
+  template <typename Archive>
+  void archive_flexibility(Archive& a) {
+    std::vector<double> formed(formed_.begin(), formed_.end());
+    a.any_size(formed);
+    if constexpr (Archive::kReading) {
+      if (!formed.empty() && formed.size() != theta_.size()) return a.refuse();
+      formed_.resize(0);
+      flexibility_.resize(0, 0);
+      if (formed.empty()) return;
+      theta_.swap(formed);
+      form();
+      theta_.swap(formed);
+    }
+  }
   void form();
   double damping_lag_s() const;
 

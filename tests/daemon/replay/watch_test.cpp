@@ -80,7 +80,9 @@ TEST_F(WatchedTable, SaysWhichElementHowMuchHowSureAndSinceWhen) {
   EXPECT_EQ(first.state, 1);
   EXPECT_EQ(first.unit, "%");
   // "Is changing" comes first, without a number.
-  if (std::isnan(first.value)) EXPECT_NE(first.message.find("is changing"), std::string::npos);
+  if (std::isnan(first.value)) {
+    EXPECT_NE(first.message.find("is changing"), std::string::npos);
+  }
   EXPECT_GT(first.time_us, 1e6 * kChange_s);
   EXPECT_LT(first.time_us, 1e6 * (kChange_s + kSoon_s));
   EXPECT_NEAR(1e-6 * static_cast<double>(first.since_us), kChange_s, kSoon_s);
