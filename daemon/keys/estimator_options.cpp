@@ -123,7 +123,8 @@ const Option kOptions[] = {
      .default_value = "3.0",
      .min = 0,
      .max = 3600,
-     .meaning = "Time a new or interrupted input needs before its windows count.",
+     .meaning = "Time that the filters of the paper's variant settle after a start. The other "
+                "variant needs none.",
      .reload = restart,
      .target = into<&estimator::EstimatorOptions::settle_s>},
     {.section = "estimator",
