@@ -90,7 +90,6 @@ class SelfTuning {
   int blocks_, fill_, parts_per_instant_, catch_up_per_instant_;
   Phase phase_ = Phase::idle;
   bool tuned_ = false;
-  bool rough_ = false;    ///< the check under way
   bool lending_ = false;  ///< what is being tuned is to be lent
   int next_part_ = 0, passes_ = 0, since_check_ = 0;
   double detuning_ = 0;
