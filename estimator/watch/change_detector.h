@@ -82,6 +82,7 @@ class ChangeDetector {
   struct Parameter {
     Watched watched;
     double usual_error = 0;                           ///< running mean
+    std::int64_t errors = 0;                          ///< in it
     int sign = 0;                                     ///< of the change; 0: none
     int phase = 0, size = 0;                          ///< whose track found it
     double tolerated = 0;                             ///< set again before every window
@@ -91,6 +92,7 @@ class ChangeDetector {
     template <typename Archive>
     void archive(Archive& a) {
       a.finite(usual_error, back);
+      a.within(errors, 0, a.kMostCount);
       a.within(sign, -1, 1);
       a.within(phase, 0, kSeries - 1);
       a.within(size, 0, kSizes - 1);

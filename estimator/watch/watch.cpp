@@ -14,7 +14,7 @@ namespace {
 /// is known is itself known badly.
 constexpr double kMostErrorRatio = 0.035;
 /// Windows shorter than this share of their length, after a start, have errors from few blocks.
-constexpr double kWhole = 0.9;
+constexpr double kWhole = 0.98;
 
 /// Of a story's least relevant change: what a group of several in series shows of a larger one.
 constexpr double kOfGroup = 0.5;

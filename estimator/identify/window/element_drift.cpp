@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kHighestCorner = 0.2;  // of the sampling rate
 constexpr double kSmallestShare = 1e-9;
+constexpr int kShapes = 4;  // of an element: two of the high-pass, two of the oscillator section
 
 std::size_t place_of(int count) {
   return static_cast<std::size_t>(count);
@@ -43,11 +44,15 @@ ElementDrift::ElementDrift(const PipelineConfig& config, const ParameterTable& t
       elements_(place_of(table.elements())),
       s1_(elements_.size(), 0.0),
       s2_(elements_.size(), 0.0),
+      past_(elements_.size(), UnknownPast(1, 1, kShapes)),
+      was_known_(elements_.size(), 0),
       sums_(place_of(blocks_) * elements_.size(), 0.0),
       counts_(sums_.size(), 0) {
   const double hz = corner_hz(config);
   const OscillatorSection section(hz, config.options.filter_damping, config.options.rate_hz);
-  gain_ = section.gain, a1_ = section.a1, a2_ = section.a2;
+  gain_ = section.gain, section_ = {section.a1, section.a2};
+  const HighPass high_pass(config.options.high_pass_hz, config.options.rate_hz);
+  high_pass_poles_ = {high_pass.a1, high_pass.a2};
   over_w2_ = 1 / (4 * M_PI * M_PI * hz * hz);
   if (table.grouped())
     find_groups(config, table);
@@ -101,6 +106,7 @@ void ElementDrift::find_groups(const PipelineConfig& config, const ParameterTabl
 void ElementDrift::restart() {
   std::fill(s1_.begin(), s1_.end(), 0.0);
   std::fill(s2_.begin(), s2_.end(), 0.0);
+  std::fill(was_known_.begin(), was_known_.end(), 0);
   std::fill(sums_.begin(), sums_.end(), 0.0);
   std::fill(counts_.begin(), counts_.end(), 0);
   rows_ = at_ = 0;
@@ -128,14 +134,22 @@ void ElementDrift::push(const DeformationSet& set) {
   for (std::size_t e = 0; e < count; ++e) {
     const Element& element = elements_[e];
     const bool is_known = known(element, set);
+    if (is_known && was_known_[e] == 0) {
+      past_[e].begin(1);
+      past_[e].add(0, high_pass_poles_);
+      past_[e].add(0, section_);
+    }
+    was_known_[e] = is_known ? 1 : 0;
     double x = 0;
     if (is_known)
       for (const Term& term : element.terms) x += term.weight * set.values[term.value];
-    const double s = gain_ * x - a1_ * s1_[e] - a2_ * s2_[e];
+    const double s = gain_ * x - section_.a1 * s1_[e] - section_.a2 * s2_[e];
     s2_[e] = s1_[e];
     s1_[e] = s;
     if (!is_known) continue;
-    sums[e] += s * s;
+    double own = s;
+    if (!past_[e].remove(&own)) continue;
+    sums[e] += own * own;
     ++counts[e];
   }
 }

@@ -6,6 +6,7 @@
 
 #include "estimator/identify/elements/floor_layout.h"
 #include "estimator/identify/elements/motion_source.h"
+#include "estimator/identify/regressors/unknown_past.h"
 #include "estimator/setup/pipeline_config.h"
 #include "estimator/state/archive.h"
 
@@ -14,7 +15,9 @@ namespace framewatch::estimator {
 /// How far every frame, panel or group of stories is deformed, as a root mean square over whole
 /// blocks: the amplitude that its stiffness may depend on. Displacements are those of one
 /// oscillator section (OscillatorSection) whose corner is kCorner of the design's lowest frequency.
-/// Bounded; allocates when constructed, never after.
+/// What the filters owe to the motion before a start is removed (UnknownPast): it decays for
+/// seconds and would be taken for a large deformation. Bounded; allocates when constructed, never
+/// after.
 class ElementDrift {
  public:
   static constexpr double kCorner = 0.4;
@@ -38,6 +41,8 @@ class ElementDrift {
   template <typename Archive>
   void archive(Archive& a) {
     a.finite(s1_, s2_, sums_);
+    a.each_within(was_known_, 0, 1);
+    a(past_);
     a.each_within(counts_, 0, block_rows_);
     a.within(rows_, 0, block_rows_);
     a.within(at_, 0, static_cast<double>(blocks_ - 1));
@@ -57,9 +62,12 @@ class ElementDrift {
   bool known(const Element& element, const DeformationSet& set) const;
 
   int block_rows_, blocks_;
-  double gain_ = 0, a1_ = 0, a2_ = 0, over_w2_ = 0;
+  double gain_ = 0, over_w2_ = 0;
+  PolePair high_pass_poles_, section_;
   std::vector<Element> elements_;  ///< by stiffness parameter
   std::vector<double> s1_, s2_;
+  std::vector<UnknownPast> past_;        ///< by element
+  std::vector<std::uint8_t> was_known_;  ///< flags, at the last instant
   std::vector<double> sums_;          ///< of squares, blocks x elements
   std::vector<std::int32_t> counts_;  ///< instants in them
   int rows_ = 0, at_ = 0;             ///< of the block that is being filled, and which it is

@@ -73,7 +73,7 @@ void ModelCheck::pause() {
 
 const ModelFit* ModelCheck::advance(const Context& c) {
   advance_corners(c);
-  if (!c.errors_new || !c.tuned) return nullptr;
+  if (!c.errors_new || !c.tuned || !c.whole) return nullptr;
   if (++blocks_ < kEvery) return nullptr;
   blocks_ = 0;
   take_misfit(c);

@@ -40,7 +40,8 @@ class ModelCheck {
     const MotionRing* ring;
     WindowSolution::Trust trust;
     bool tuned;
-    bool errors_new;  ///< the main window's standard errors are those of a new block
+    bool whole;       ///< the main window is as long as it gets
+    bool errors_new;  ///< its standard errors are those of a new block
     Time end;         ///< of the window that ends now
   };
   /// One instant's share; once a second the fit, otherwise null.

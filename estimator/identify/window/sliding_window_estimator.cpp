@@ -203,7 +203,8 @@ void SlidingWindowEstimator::advance(const std::vector<double>& accel, Time time
     go_on();
   model_fit_ =
       check_ && ring_.end() > triple_.length()
-          ? check_->advance({&series_.main(), &ring_, trust(), tuned(), errors_new_, window_end})
+          ? check_->advance({&series_.main(), &ring_, trust(), tuned(),
+                             active_->sums().rows() >= window_rows(), errors_new_, window_end})
           : nullptr;
   if (!self_tuning_) return;
   const bool was_tuned = tuned();

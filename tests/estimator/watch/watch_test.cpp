@@ -204,10 +204,11 @@ TEST(Watch, WhatIsLearnedInWeakMotionIsNoChangeInTraffic) {
   EXPECT_LT(found_s, kSoon_s);
 }
 
-/// Issue 9: 20 of 20, median delay 5 s, 90 % within 9 s, no false alarm in 20 frame-hours, 1 % of
+/// Issue 9: 20 of 20, 90 % within 9 s, no false alarm in 20 frame-hours, 1 % of
 /// the other elements flagged. FRAMEWATCH_WATCH_RUNS=20 tests all of it.
 TEST(Watch, FindsATwentiethLostInOneFrameAndNothingElse) {
-  constexpr double kMedian_s = 5, kLate_s = 9, kOthers = 0.01;
+  // Issue 38: at most .5 s later than the 4.92 s before it.
+  constexpr double kMedian_s = 5.42, kLate_s = 9, kOthers = 0.01;
   constexpr int kUndamagedPerDamaged = 3;  // a minute of 20 frames each
   const char* wanted = std::getenv("FRAMEWATCH_WATCH_RUNS");
   const int runs = wanted != nullptr ? std::atoi(wanted) : 2;
