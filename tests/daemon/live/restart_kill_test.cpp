@@ -24,6 +24,7 @@ constexpr auto kSoon = 60s;        // for what takes some seconds on a machine w
 constexpr double kMostLost_s = 1;  // of raw samples, at a kill: half a second and its way here
 
 constexpr auto kShakenBefore = 3s;
+constexpr auto kAway = 1s;  // a shorter absence is not told
 constexpr int kSpeed = 2;
 
 TEST(RestartKill, TheReportSpansTheWholeEarthquakeAndSaysWhenNobodyListened) {
@@ -60,6 +61,7 @@ TEST(RestartKill, TheReportSpansTheWholeEarthquakeAndSaysWhenNobodyListened) {
   ASSERT_FALSE(counts.empty());
   const std::int64_t heard_us = counts.back().time_us;
 
+  std::this_thread::sleep_for(kAway);
   test::Child second(run());
   const std::string reports = directory.path("reports");
   ASSERT_TRUE(test::comes_true([&] { return !event_report_names(reports).empty(); }, kSoon));

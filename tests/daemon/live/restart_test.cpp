@@ -21,6 +21,7 @@
 #include "drivers/lcm/accel_intake.h"
 #include "drivers/lcm/lcm_log.h"
 #include "estimator/motion/acquisition.h"
+#include "estimator/pipeline/pipeline.h"
 #include "estimator/shaking/story_response.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
@@ -293,17 +294,18 @@ TEST_F(Restart, ThePageHasTheSamePeaks) {
   // The page's own process was not killed.
   const Config config = config_of("page2", false);
   std::optional<Shaking> shaking;
-  estimator::Acquisition acquisition(config.pipeline.axes, config.pipeline.options,
-                                     [&](const estimator::SampleSet& set) { shaking->push(set); });
-  estimator::PipelineConfig pipeline = config.pipeline;
-  pipeline.axes = acquisition.axes();
-  shaking.emplace(pipeline);
+  estimator::Pipeline pipeline(
+      config.pipeline, [&](const estimator::WindowEstimate& e) { shaking->follow(e); }, {},
+      [&](const estimator::SampleSet& set) { shaking->push(set); });
+  estimator::PipelineConfig calibrated = config.pipeline;
+  calibrated.axes = pipeline.axes();
+  shaking.emplace(calibrated);
   drivers::AccelIntake intake(
-      wanted_axes(config), [&](const estimator::AccelSample& s) { acquisition.push(s); },
+      wanted_axes(config), [&](const estimator::AccelSample& s) { pipeline.push(s); },
       intake_settings(config));
   for (const drivers::LogEvent& e : messages())
     (void)intake.message(e.channel, e.data.data(), e.data.size());
-  acquisition.finish();
+  pipeline.finish();
   ASSERT_NE(shaking->strongest(), nullptr);
   const estimator::PeakResponse& peak = shaking->strongest()->peak;
   EXPECT_NEAR(drift(r.json[0]) / estimator::largest_drift_ratio(peak, config.pipeline.structure), 1,
