@@ -44,10 +44,11 @@ ElementDrift::ElementDrift(const PipelineConfig& config, const ParameterTable& t
       elements_(place_of(table.elements())),
       s1_(elements_.size(), 0.0),
       s2_(elements_.size(), 0.0),
-      past_(elements_.size(), UnknownPast(1, 1, kShapes)),
       was_known_(elements_.size(), 0),
       sums_(place_of(blocks_) * elements_.size(), 0.0),
       counts_(sums_.size(), 0) {
+  past_.reserve(elements_.size());  // copies would not keep what they reserve
+  for (std::size_t e = 0; e < elements_.size(); ++e) past_.emplace_back(1, 1, kShapes);
   const double hz = corner_hz(config);
   const OscillatorSection section(hz, config.options.filter_damping, config.options.rate_hz);
   gain_ = section.gain, section_ = {section.a1, section.a2};
