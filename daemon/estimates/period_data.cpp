@@ -42,7 +42,10 @@ bool PeriodCollector::ends_before(const parameter_table_t& table) const {
 }
 
 void PeriodCollector::add(const parameter_table_t& table) {
-  if (table.name != table_.name || table.unit != table_.unit) data_.parameters.clear();
+  if (table.name != table_.name || table.unit != table_.unit) {
+    data_.parameters.clear();
+    late_.clear();
+  }
   table_ = table;
 }
 
@@ -53,16 +56,30 @@ void PeriodCollector::add(const window_estimate_t& e) {
       before != taken_.end() && e.window_end_us <= before->second)
     return;
   if (data_.windows == 0) data_.start_us = start_us;
-  data_.parameters.resize(e.value.size());
   ++data_.windows;
   data_.last_us = std::max(data_.last_us, e.window_end_us);
+  add_values(e, data_);
+}
+
+void PeriodCollector::add_late(const window_estimate_t& e) {
+  if (table_.name.empty() || e.value.size() != table_.name.size()) return;
+  const std::int64_t start_us = slot(e.window_end_us);
+  if (data_.windows > 0 && start_us == data_.start_us) return add_values(e, data_);
+  if (!taken_.contains(start_us)) return;
+  PeriodData& late = late_[start_us];
+  late.start_us = start_us;
+  add_values(e, late);
+}
+
+void PeriodCollector::add_values(const window_estimate_t& e, PeriodData& to) {
+  to.parameters.resize(e.value.size());
   const auto spacing_us = static_cast<std::int64_t>(
       std::max(1.0, 1e6 * table_.window_rows / std::max(table_.rate_hz, 1e-3) / kBoxesPerWindow));
   const bool boxed = std::exchange(box_slot_, floor_to(e.window_end_us, spacing_us)) != box_slot_;
   for (std::size_t p = 0; p < e.value.size(); ++p) {
     const double value = e.value[p];
     if (e.reason[p] != 0 || !std::isfinite(value)) continue;
-    ParameterData& data = data_.parameters[p];
+    ParameterData& data = to.parameters[p];
     ++data.observable;
     data.sum += value;
     data.error_squares += e.std_error[p] * e.std_error[p];
@@ -90,6 +107,13 @@ void PeriodCollector::add(const status_t& s) {
 PeriodData PeriodCollector::take() {
   if (data_.windows > 0) taken(data_.start_us, data_.last_us);
   return std::exchange(data_, {});
+}
+
+std::vector<PeriodData> PeriodCollector::take_late() {
+  std::vector<PeriodData> out;
+  for (auto& [start_us, data] : late_) out.push_back(std::move(data));
+  late_.clear();
+  return out;
 }
 
 void PeriodCollector::taken(std::int64_t start_us, std::int64_t last_us) {

@@ -32,7 +32,9 @@ struct ChannelData {
 /// What is to go into the database of one of the shortest periods, in one piece or in several.
 struct PeriodData {
   std::int64_t start_us = 0;
-  std::int64_t windows = 0, last_us = INT64_MIN;  ///< the newest of them ended then
+  /// The newest of them ended at last_us. 0 windows with parameters: values that came late, of
+  /// windows that an earlier piece counted without a value.
+  std::int64_t windows = 0, last_us = INT64_MIN;
   std::vector<ParameterData> parameters;
   std::vector<ChannelData> channels;
 };
@@ -53,18 +55,23 @@ class PeriodCollector {
   void taken(std::int64_t start_us, std::int64_t last_us);
   /// Estimates that come before their table, or were stored already, are left out.
   void add(const window_estimate_t& estimate);
+  /// A window that was counted before, without values, and has them now.
+  void add_late(const window_estimate_t& estimate);
   void add(const status_t& status);
   void add(const parameter_table_t& table);
 
   bool empty() const { return data_.windows == 0 && data_.channels.empty(); }
   /// Returns what was collected and begins anew.
   PeriodData take();
+  /// The same of values that came late, after their period had been taken.
+  std::vector<PeriodData> take_late();
 
   const parameter_table_t& parameters() const { return table_; }
   const std::vector<std::string>& channels() const { return status_.name; }
 
  private:
   std::int64_t slot(std::int64_t time_us) const;
+  void add_values(const window_estimate_t& estimate, PeriodData& to);
 
   std::int64_t period_us_;
   parameter_table_t table_{};
@@ -72,6 +79,7 @@ class PeriodCollector {
   std::int64_t box_slot_ = INT64_MIN;
   std::map<std::int64_t, std::int64_t> taken_;  ///< newest end by start of the period
   PeriodData data_;
+  std::map<std::int64_t, PeriodData> late_;  ///< by start of the period
 };
 
 }  // namespace framewatch::daemon

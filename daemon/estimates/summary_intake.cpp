@@ -1,6 +1,7 @@
 #include "daemon/estimates/summary_intake.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include <framewatch/status_t.hpp>
@@ -14,6 +15,7 @@ namespace framewatch::daemon {
 SummaryIntake::SummaryIntake(const std::string& prefix, std::int64_t shortest_s,
                              std::function<void()> before_other_names)
     : estimate_(prefix + "ESTIMATE"),
+      late_(prefix + "ESTIMATE_LATE"),
       table_(prefix + "PARAMETERS"),
       status_(prefix + "STATUS"),
       event_(prefix + "EVENT"),
@@ -23,6 +25,7 @@ SummaryIntake::SummaryIntake(const std::string& prefix, std::int64_t shortest_s,
 
 std::optional<SummaryIntake::Kind> SummaryIntake::kind_of(const std::string& channel) const {
   return channel == estimate_       ? Kind::estimate
+         : channel == late_         ? Kind::late
          : channel == table_        ? Kind::table
          : channel == status_       ? Kind::status
          : channel == event_        ? Kind::event
@@ -39,6 +42,9 @@ SummaryIntake::Taken SummaryIntake::take(Kind kind, std::span<const std::uint8_t
         collector_.add(*e);
         newest_us_ = std::max(newest_us_, e->window_end_us);
       }
+      break;
+    case Kind::late:
+      if (const auto e = drivers::decoded<window_estimate_t>(bytes)) collector_.add_late(*e);
       break;
     case Kind::table:
       if (const auto t = drivers::decoded<parameter_table_t>(bytes)) {
@@ -73,10 +79,12 @@ SummaryIntake::Taken SummaryIntake::take(Kind kind, std::span<const std::uint8_t
 }
 
 bool SummaryIntake::end_period() {
-  if (collector_.empty()) return false;
+  std::vector<PeriodData> periods = collector_.take_late();
+  if (!collector_.empty()) periods.push_back(collector_.take());
+  if (periods.empty()) return false;
   batch_.parameters = collector_.parameters();
   batch_.channels = collector_.channels();
-  batch_.periods.push_back(collector_.take());
+  std::move(periods.begin(), periods.end(), std::back_inserter(batch_.periods));
   return true;
 }
 

@@ -29,7 +29,7 @@ struct SummaryBatch {
 /// The messages of an estimation, collected into what a SummaryStore takes.
 class SummaryIntake {
  public:
-  enum class Kind { estimate, table, status, event, acknowledged };
+  enum class Kind { estimate, late, table, status, event, acknowledged };
   struct Taken {
     bool period = false;  ///< a period has ended, before the message
     bool news = false;    ///< an event or an acknowledgement came
@@ -44,7 +44,8 @@ class SummaryIntake {
   std::optional<Kind> kind_of(const std::string& channel) const;
   /// What does not decode is left alone.
   Taken take(Kind kind, std::span<const std::uint8_t> bytes);
-  /// The period that is being collected goes to the batch. False when there is none.
+  /// The period that is being collected goes to the batch, and values of earlier ones that came
+  /// late. False when there is none of either.
   bool end_period();
 
   SummaryBatch& batch() { return batch_; }
@@ -52,7 +53,7 @@ class SummaryIntake {
   std::int64_t newest_us() const { return newest_us_; }  ///< end of a window; INT64_MIN: none
 
  private:
-  const std::string estimate_, table_, status_, event_, acknowledged_;  ///< channels
+  const std::string estimate_, late_, table_, status_, event_, acknowledged_;  ///< channels
   std::function<void()> before_other_names_;
   PeriodCollector collector_;
   SummaryBatch batch_;

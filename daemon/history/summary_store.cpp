@@ -116,12 +116,14 @@ bool SummaryStore::add_names(const SummaryBatch& batch) {
 }
 
 bool SummaryStore::add_period(const PeriodData& data, Grown& grown) {
-  if (data.windows == 0 || data.parameters.size() != parameter_ids_.size()) return true;
+  if (data.parameters.empty() || data.parameters.size() != parameter_ids_.size()) return true;
   const std::int64_t period_s = settings_.summary_s.front();
   SqliteStatement there =
       file_.prepare("SELECT open, last_us FROM period WHERE period_s = ? AND start_us = ?");
   there.bind(1, period_s).bind(2, data.start_us);
-  if (there.row() && (there.integer(0) == 0 || data.last_us <= there.integer(1))) {
+  const bool known = there.row(), late = data.windows == 0;
+  if (!known && late) return true;
+  if (known && (there.integer(0) == 0 || (!late && data.last_us <= there.integer(1)))) {
     ++repeated_;
     return true;
   }

@@ -115,13 +115,23 @@ function before(history) {
   Object.assign(window.framewatch, {rows: 0, lost: 0, motion: null, opened: history.rows.length});
   pending = null;
   resumed = true;
-  for (const [end_us, status, residual, x, y, value, error] of history.rows) {
-    const e = {end_us, status, residual, value, error, reason: value.map(v => v === null ? 2 : 0)};
-    remember(e);
-    const rms = plan.axes[+$('channel').value].direction === 'x' ? x : y;
-    strips.excitation.push([seconds(end_us), rms]);
-    strips.residual.push([seconds(end_us), status === 0 ? null : residual]);
+  for (const [end_us, , , x, y] of history.rows) strips.excitation.push([seconds(end_us), plan.axes[+$('channel').value].direction === 'x' ? x : y]);
+  estimatesOf(history);
+}
+function estimatesOf(history) {
+  for (const [end_us, status, residual, , , value, error] of history.rows) {
+    remember({end_us, status, residual, value, error, reason: value.map(v => v === null ? 2 : 0)});
+    pushResidual({end_us, status, residual});
   }
+}
+// Windows from before the filters were tuned have their values now.
+function onLate() {
+  fetch('history.json').then(r => r.ok ? r.json() : null).then(history => {
+    if (!history) return;
+    past.length = 0;
+    strips.k.clear(); strips.residual.clear();
+    estimatesOf(history);
+  }).catch(() => {});
 }
 let rms = [], resumed = false;
 function onMotion(m) {
@@ -182,8 +192,9 @@ function onLast(l) {
 function onEstimate(e) {
   estimate = window.framewatch.estimate = e;
   remember(e);
-  strips.residual.push([seconds(e.end_us), e.status === 0 ? null : e.residual]);
+  pushResidual(e);
 }
+function pushResidual(e) { strips.residual.push([seconds(e.end_us), e.status === 0 ? null : e.residual]); }
 function colour() {
   plan.parameters.forEach((q, i) => {
     if (q.kind > 1 && q.kind !== 4) return;
@@ -270,7 +281,7 @@ function showRefusal(id) { if (ours.has(id) && refusals.has(id)) warn('Refused: 
 function listen() {
   const source = new EventSource('events');
   const on = (name, f) => source.addEventListener(name, e => { lastAlive = performance.now(); f(JSON.parse(e.data)); });
-  on('motion', onMotion); on('estimate', onEstimate); on('status', onStatus); on('alarm', onAlarm);
+  on('motion', onMotion); on('estimate', onEstimate); on('late', onLate); on('status', onStatus); on('alarm', onAlarm);
   on('session', onSession); on('gap', onGap); on('can', onCan); on('refused', onRefused);
   on('boxes', b => { boxes = window.framewatch.boxes = b; });
   on('fit', f => { fit = f; });

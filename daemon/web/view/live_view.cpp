@@ -91,6 +91,7 @@ std::vector<std::string> LiveView::channels() const {
                            "SERVICE", "ACKNOWLEDGED", "WATCH"})
     out.push_back(config_.lcm.prefix + name);
   out.insert(out.end(), estimate_channels_.begin(), estimate_channels_.end());
+  out.push_back(estimate_channels_.front() + kLate);
   return out;
 }
 
@@ -121,6 +122,8 @@ void LiveView::message(const std::string& channel, const void* data, std::size_t
   const std::string name = channel.substr(prefix.size());
   if (name == "PARAMETERS") {
     parameters(data, size);
+  } else if (channel == estimate_channels_.front() + kLate) {
+    late_estimate(data, size);
   } else if (name.starts_with("ESTIMATE")) {
     estimate(channel, data, size);
   } else if (name == "STATUS") {
@@ -195,6 +198,13 @@ void LiveView::estimate(const std::string& channel, const void* data, std::size_
     history_.estimate(*found);
   }
   newest_ = std::move(*found);
+}
+
+void LiveView::late_estimate(const void* data, std::size_t size) {
+  const auto found = drivers::decoded<window_estimate_t>(bytes(data, size));
+  if (!found) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  late_rows_ = history_.late(*found) || late_rows_;
 }
 
 void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
@@ -282,6 +292,7 @@ void LiveView::flush() {
     push_if_new("baseline", baseline_json(baseline()));
     push_if_new("answers", answers_json(known(), config_));
     push_if_new("last", history_.last_json());
+    if (std::exchange(late_rows_, false)) ring_.push("late", "{}");
     ring_.push("alive", "{}");
   }
   if (std::exchange(new_estimate_, false))

@@ -67,6 +67,7 @@ class LiveView {
  private:
   void parameters(const void* data, std::size_t size);
   void estimate(const std::string& channel, const void* data, std::size_t size);
+  void late_estimate(const void* data, std::size_t size);
   void look_for_changes(int window, const window_estimate_t& estimate);
   void alarms_message(const std::string& name, const void* data, std::size_t size);
   /// Without [watch] changes of stiffness are found by pages, not by `framewatch run`.
@@ -93,6 +94,7 @@ class LiveView {
   std::optional<watch_t> told_watch_;  ///< of `framewatch run` with [watch]
   std::optional<window_estimate_t> newest_;
   bool new_estimate_ = false;                                   ///< since the last flush
+  bool late_rows_ = false;  ///< rows of history_ have values now that they lacked
   std::int64_t flushes_ = 0, motion_at_ = 0, estimate_at_ = 0;  ///< flushes: the view's clock
   Shaking shaking_;
   bool grouped_;                  ///< parameters are of groups of stories

@@ -51,6 +51,19 @@ void PageHistory::estimate(const window_estimate_t& e) {
     rows_.pop_front();
 }
 
+bool PageHistory::late(const window_estimate_t& e) {
+  const auto row = std::lower_bound(
+      rows_.begin(), rows_.end(), e.window_end_us,
+      [](const Row& r, std::int64_t end_us) { return r.end_us < end_us; });
+  if (row == rows_.end() || row->end_us != e.window_end_us || row->value.size() != e.value.size())
+    return false;
+  row->status = e.status;
+  row->residual = e.residual_ratio;
+  row->value = e.value;
+  row->error = e.std_error;
+  return true;
+}
+
 void PageHistory::keep_last(const window_estimate_t& e) {
   const std::size_t n = e.value.size();
   if (last_us_.size() != n) {

@@ -29,6 +29,8 @@ class PageHistory {
   void restore(const std::vector<window_estimate_t>& estimates);
   /// A main window.
   void estimate(const window_estimate_t& estimate);
+  /// One that came before without values and has them now. True when a row has changed.
+  bool late(const window_estimate_t& estimate);
   /// A "motion" event; `at` counts up, per_s of it a second.
   void motion(const std::string& json, std::int64_t at, int per_s);
 

@@ -71,9 +71,11 @@ GroupTuning::GroupTuning(const PipelineConfig& config, const EstimatorOptions& o
       layout_(&layout),
       high_pass_poles_{high_pass.a1, high_pass.a2},
       table_(table),
+      configured_(design),
       design_(design),
-      designed_(group_parameters(config.structure, table, design)),
-      theta0_(designed_),
+      shares_(group_parameters(config.structure, table, design)),
+      designed_(shares_),
+      theta0_(shares_),
       noise_density_(noise_densities(config.axes)),
       present_(identifying(config.axes)),
       perturbed_(layout) {
@@ -83,7 +85,7 @@ GroupTuning::GroupTuning(const PipelineConfig& config, const EstimatorOptions& o
   for (const std::vector<double>* taps :
        {&triple.value, &triple.first, &triple.second, &triple.held_first, &triple.held_second})
     impulse_.push_back(response(*taps, high_pass, length));
-  set_axes(present_);
+  set_axes(present_, shares_);
   tune(0);
 }
 
@@ -97,8 +99,11 @@ void GroupTuning::set_theta0(const Eigen::VectorXd& theta0,
   tuned_parts_ = 0;
 }
 
-void GroupTuning::set_axes(const std::vector<std::uint8_t>& present) {
+void GroupTuning::set_axes(const std::vector<std::uint8_t>& present, const Eigen::VectorXd& theta) {
   present_ = present;
+  shares_ = theta;
+  design_.theta = story_parameters(config_->structure, table_, configured_, shares_);
+  designed_ = group_parameters(config_->structure, table_, design_);
   building_ = reduced_building(config_->structure, config_->axes, table_, design_, present);
   tuned_parts_ = 0;
 }
@@ -200,7 +205,7 @@ void GroupTuning::finish_noise() {
 void GroupTuning::restore() {
   const int parts_done = tuned_parts_;
   if (noise_density_.size() != config_->axes.size()) return;
-  set_axes(present_);
+  set_axes(present_, shares_);
   for (int part = 0; part < parts_done && part < parts(); ++part) tune(part);
 }
 

@@ -38,8 +38,9 @@ class RowTuning {
   /// Flags of the axes that rows are formed of, where another set of them asks for another tuning;
   /// empty where it does not.
   virtual const std::vector<std::uint8_t>& axes() const { return no_axes_; }
-  /// As set_theta0().
-  virtual void set_axes(const std::vector<std::uint8_t>&) {}
+  /// As set_theta0(). theta: all parameters, SI: groups of stories that become one, because a floor
+  /// between them is not measured any more, keep the ratio that they have in it.
+  virtual void set_axes(const std::vector<std::uint8_t>&, const Eigen::VectorXd&) {}
   /// The same, on its own.
   virtual std::unique_ptr<RowTuning> copy() const = 0;
   /// Refers to the tuning, which must outlive it.

@@ -36,7 +36,7 @@ void OtherCorner::restart(int settle) {
 }
 
 void OtherCorner::retune(const RowTuning& active) {
-  if (tuning_->axes() != active.axes()) tuning_->set_axes(active.axes());
+  if (tuning_->axes() != active.axes()) tuning_->set_axes(active.axes(), active.theta0());
   tuning_->set_theta0(active.theta0(), active.noise_density());
   next_part_ = 0;
 }

@@ -41,12 +41,14 @@ class OtherCorner {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(*tuning_, *rows_filter_);
+    a(*tuning_);
+    a.within(next_part_, 0, a.kMostCount);
+    // While it is tuned, its filter is of what it was tuned to before.
+    if (next_part_ >= tuning_->parts()) a(*rows_filter_);
     a.finite(sum_);
     a.each_within(instants_, 0, a.kMostCount);
     a.within(count_, 0, rows_);
     a.within(settling_, 0, a.kMostCount);
-    a.within(next_part_, 0, a.kMostCount);
     solution_.archive(a, *rows_filter_, *this);
   }
   // Blocks of batch means, of which there are none.

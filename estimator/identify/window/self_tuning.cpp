@@ -70,18 +70,23 @@ void SelfTuning::begin_check(const TunedRegression& active, const std::vector<do
 
 void SelfTuning::begin_axes(const TunedRegression& active,
                             const std::vector<std::uint8_t>& present) {
-  standby_->tuning().set_axes(present);
-  standby_->tuning().set_theta0(active.tuning().theta0(), active.tuning().noise_density());
   noise_measured_ = noise_known_;
-  phase_ = Phase::tuning;
-  next_part_ = 0;
+  begin_tuning(active, present, active.tuning().theta0(), active.tuning().noise_density());
 }
 
 void SelfTuning::lend(const TunedRegression& active) {
-  if (standby_->tuning().axes() != active.tuning().axes())
-    standby_->tuning().set_axes(active.tuning().axes());
-  standby_->tuning().set_theta0(active.tuning().theta0(), active.tuning().noise_density());
   lending_ = true;
+  begin_tuning(active, active.tuning().axes(), active.tuning().theta0(),
+               active.tuning().noise_density());
+}
+
+void SelfTuning::begin_tuning(const TunedRegression& active, const std::vector<std::uint8_t>& axes,
+                              const Eigen::VectorXd& theta0,
+                              const std::vector<double>& noise_density) {
+  standby_->rest();
+  if (standby_->tuning().axes() != axes)
+    standby_->tuning().set_axes(axes, active.tuning().theta0());
+  standby_->tuning().set_theta0(theta0, noise_density);
   phase_ = Phase::tuning;
   next_part_ = 0;
 }
@@ -119,12 +124,8 @@ void SelfTuning::check_floors(TunedRegression& active) {
     return;
   }
   if (!tuned_) ++passes_;
-  phase_ = Phase::tuning;
-  next_part_ = 0;
-  if (standby_->tuning().axes() != active.tuning().axes())
-    standby_->tuning().set_axes(active.tuning().axes());
-  standby_->tuning().set_theta0(next_theta0_,
-                                noise_measured_ ? noise_ : active.tuning().noise_density());
+  begin_tuning(active, active.tuning().axes(), next_theta0_,
+               noise_measured_ ? noise_ : active.tuning().noise_density());
 }
 
 void SelfTuning::tune_parts(const MotionRing& ring) {

@@ -80,6 +80,9 @@ class SelfTuning {
 
  private:
   enum class Phase { idle, checking, tuning, catching_up, lent };
+  /// Of the standby, for these axes.
+  void begin_tuning(const TunedRegression& active, const std::vector<std::uint8_t>& axes,
+                    const Eigen::VectorXd& theta0, const std::vector<double>& noise_density);
   void check_floors(TunedRegression& active);
   void tune_parts(const MotionRing& ring);
   bool catch_up(const TunedRegression& active, const MotionRing& ring);

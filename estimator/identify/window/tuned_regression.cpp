@@ -18,7 +18,7 @@ TunedRegression::TunedRegression(std::unique_ptr<RowTuning> tuning, const FloorL
 
 void TunedRegression::start(std::int64_t instant) {
   next_ = delayed_next_ = instant;
-  counting_ = false;
+  counting_ = resting_ = false;
   const int start = tuning_->start_rows();
   entering_->reset(start);
   delayed_->reset(start);

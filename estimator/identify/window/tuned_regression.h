@@ -68,6 +68,9 @@ class TunedRegression {
   /// Prepares the following instant; true when a block closed.
   bool finish(const MotionRing& ring);
 
+  /// The tuning changes: rows and sums are of no use, and no state, until start().
+  void rest() { resting_ = true; }
+
   bool full() const { return counting_ && sums_.full(); }
   /// Blocks have closed that are enough for standard errors.
   bool suffices() const { return counting_ && sums_.closed() >= BatchMeans::kFewest; }
@@ -80,7 +83,9 @@ class TunedRegression {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a(*tuning_, *entering_, *delayed_, sums_, counting_);
+    a(*tuning_, resting_);
+    if (resting_) return;
+    a(*entering_, *delayed_, sums_, counting_);
     for (std::int64_t* number : {&next_, &delayed_next_, &counted_from_})
       a.within(*number, 0, a.kMostCount);
   }
@@ -91,7 +96,7 @@ class TunedRegression {
   std::unique_ptr<RowFilter> entering_, delayed_;
   SlidingGram sums_;
   std::int64_t next_ = 0, delayed_next_ = 0, counted_from_ = 0;
-  bool counting_ = false;
+  bool counting_ = false, resting_ = false;
 };
 
 }  // namespace framewatch::estimator

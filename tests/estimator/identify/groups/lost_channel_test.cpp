@@ -23,28 +23,18 @@ WindowEstimate last_estimate(const PipelineConfig& config, const Eigen::MatrixXd
   return last;
 }
 
+/// The groups on both sides of it become one, which keeps the ratio that was identified while the
+/// channel was there, whatever the design's was.
 TEST(LostChannel, MakesItsFloorAnInnerOne) {
   daemon::TallTrial trial;
   trial.duration_s = 60;
-  const daemon::TallRecord whole = daemon::tall_record(trial);
-  daemon::TallRecord lost = whole, never = whole;
+  daemon::TallRecord lost = daemon::tall_record(trial);
   lost.accel.col(2).tail(lost.accel.rows() - 2000).setConstant(kNoSample);
-  never.config.axes.erase(never.config.axes.begin() + 2);
-  never.accel.resize(whole.accel.rows(), 4);
-  for (int a = 0, to = 0; a < 5; ++a)
-    if (a != 2) never.accel.col(to++) = whole.accel.col(a);
   const WindowEstimate last = last_estimate(lost.config, lost.accel);
-  const WindowEstimate reference = last_estimate(never.config, never.accel);
-  const ParameterTable table = lost.config.parameters(), merged = never.config.parameters();
-  ASSERT_EQ(merged[0].name, "kx_1to5");
-  ASSERT_EQ(merged[1].name, "kx_6to15");
-  ASSERT_EQ(to_microseconds(last.end), to_microseconds(reference.end));
-  EXPECT_EQ(last.reason[0], Observability::observable);
-  EXPECT_EQ(last.reason[1], Observability::observable);
-  EXPECT_NEAR(last.solution[0] / reference.solution[0], 1, 3e-3);
-  const double series = 1 / (1 / last.solution[1] + 1 / last.solution[2]);
-  EXPECT_NEAR(series / reference.solution[1], 1, 3e-3);
-  EXPECT_NEAR(last.solution[3] / reference.solution[2], 1, 3e-3);
+  for (int p = 0; p < 4; ++p) {
+    EXPECT_EQ(last.reason[static_cast<std::size_t>(p)], Observability::observable);
+    EXPECT_NEAR(last.solution[static_cast<std::size_t>(p)] / lost.truth[p], 1, 0.01) << p;
+  }
 }
 
 TEST(LostChannel, ThatComesBackIsUsedAgain) {
