@@ -33,12 +33,14 @@ void OtherCorner::restart(int settle) {
   std::fill(sum_.begin(), sum_.end(), 0.0);
   std::fill(instants_.begin(), instants_.end(), 0);
   count_ = 0;
+  resting_ = false;
 }
 
 void OtherCorner::retune(const RowTuning& active) {
   if (tuning_->axes() != active.axes()) tuning_->set_axes(active.axes(), active.theta0());
   tuning_->set_theta0(active.theta0(), active.noise_density());
   next_part_ = 0;
+  resting_ = true;
 }
 
 bool OtherCorner::tune() {

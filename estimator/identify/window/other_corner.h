@@ -43,8 +43,8 @@ class OtherCorner {
   void archive(Archive& a) {
     a(*tuning_);
     a.within(next_part_, 0, a.kMostCount);
-    // While it is tuned, its filter is of what it was tuned to before.
-    if (next_part_ >= tuning_->parts()) a(*rows_filter_);
+    a(resting_);
+    if (!resting_) a(*rows_filter_);
     a.finite(sum_);
     a.each_within(instants_, 0, a.kMostCount);
     a.within(count_, 0, rows_);
@@ -65,6 +65,7 @@ class OtherCorner {
   std::vector<int> instants_;  ///< by floor
   int count_ = 0, settling_ = 0;
   int next_part_ = 0;
+  bool resting_ = true;  ///< until restart(): the filter is of what it was tuned to before
 };
 
 }  // namespace framewatch::estimator
