@@ -88,6 +88,39 @@ TEST(SummaryStore, AParameterThatIsNeverObservableHasNoNumbers) {
   EXPECT_TRUE(std::isnan(row.mean) && std::isnan(row.min) && std::isnan(row.box.median));
 }
 
+/// Windows from before the filters were tuned: in the period that runs, and in one that was stored.
+TEST(SummaryStore, ValuesThatComeLateAreInThePeriodsOfTheirWindows) {
+  const test::TemporaryDirectory directory;
+  const HistorySettings s = settings(directory);
+  Program program(s);
+  for (std::int64_t i = 0; i < 150; ++i) {
+    window_estimate_t e = window(i);
+    e.reason = {1, 1};
+    if (program.collector().ends_before(e)) program.commit();
+    program.collector().add(e);
+  }
+  for (std::int64_t i = 0; i < 150; ++i) program.collector().add_late(window(i));
+  program.windows(150, 200);
+  program.commit();
+  for (std::size_t p = 0; p < 2; ++p) {
+    const auto name = table().name[p];
+    expect_summary(rows(s, name, 1).at(0), p, 0, 100);
+    expect_summary(rows(s, name, 1).at(1), p, 100, 200);
+    expect_summary(rows(s, name, 2).at(0), p, 0, 200);
+  }
+  EXPECT_EQ(program.store().repeated(), 0);
+}
+
+TEST(SummaryStore, ValuesThatComeLateOfAPeriodThatIsNotThereAreLeftOut) {
+  const test::TemporaryDirectory directory;
+  const HistorySettings s = settings(directory);
+  Program program(s);
+  program.windows(0, 50);
+  program.collector().add_late(window(-150));
+  program.commit();
+  EXPECT_EQ(rows(s, "kx_1_y1", 1).size(), 1u);
+}
+
 TEST(SummaryStore, ARestartThatRepeatsWindowsCountsThemOnce) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);

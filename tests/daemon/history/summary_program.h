@@ -101,11 +101,11 @@ class Program {
     }
   }
   void commit() {
-    if (collector_.empty()) return;
     SummaryBatch batch;
     batch.parameters = table();
     batch.channels = collector_.channels();
-    batch.periods.push_back(collector_.take());
+    batch.periods = collector_.take_late();
+    if (!collector_.empty()) batch.periods.push_back(collector_.take());
     EXPECT_EQ(store_.add(batch), "");
   }
   SummaryStore& store() { return store_; }

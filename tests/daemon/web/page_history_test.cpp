@@ -61,6 +61,19 @@ TEST_F(PageHistoryTest, KeepsTwoWindowsASecondForFiveMinutes) {
   EXPECT_EQ(json::parse(history_.json(7.5))["silent_s"], 7.5);
 }
 
+TEST_F(PageHistoryTest, AWindowThatComesLateFillsItsRow) {
+  for (std::int64_t i = 0; i < 4; ++i)
+    history_.estimate(estimate_at(500'000 * i, {estimator::kNaN, 2}));
+  EXPECT_TRUE(history_.late(estimate_at(500'000, {7, 2})));
+  EXPECT_FALSE(history_.late(estimate_at(510'000, {8, 2})));  // between two rows
+  EXPECT_FALSE(history_.late(estimate_at(9'000'000, {8, 2})));
+  EXPECT_FALSE(history_.late(estimate_at(500'000, {8})));  // another building's
+  const json rows = json::parse(history_.json(0))["rows"];
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[1][5], json({7, 2}));
+  EXPECT_TRUE(rows[2][5][0].is_null());
+}
+
 TEST_F(PageHistoryTest, IsBoundedWhateverTheBuilding) {
   const std::vector<double> many(2000, 1.0);
   for (std::int64_t i = 0; i < 600; ++i) history_.estimate(estimate_at(1'000'000 * i, many));
@@ -117,6 +130,9 @@ class Answering : public Served {
     table.parameters = names.size();
     send("FRAMEWATCH_PARAMETERS", table);
   }
+  std::size_t view_parameters() const {
+    return static_cast<std::size_t>(estimator::ParameterTable(config_.pipeline.structure).size());
+  }
   void second() {
     for (int i = 0; i < 20; ++i) view_.flush();
   }
@@ -132,6 +148,19 @@ class Answering : public Served {
     return json::parse(text.substr(from, text.find('\n', from) - from));
   }
 };
+
+TEST_F(Answering, ThePageIsToldThatWindowsHaveComeLate) {
+  parameters();
+  const std::size_t n = view_parameters();
+  send("FRAMEWATCH_ESTIMATE", estimate_at(500'000, std::vector<double>(n, estimator::kNaN)));
+  EventRing::Cursor cursor = view_.join();
+  send("FRAMEWATCH_ESTIMATE_LATE", estimate_at(500'000, std::vector<double>(n, 7)));
+  second();
+  std::string text(1'000'000, '\0');
+  text.resize(view_.read(cursor, text.data(), text.size()));
+  EXPECT_NE(text.find("event: late\n"), std::string::npos);
+  EXPECT_EQ(json::parse(view_.history_json())["rows"][0][5][0], 7);
+}
 
 TEST_F(Answering, WhoJoinsLateGetsAnswersFindingsAndHistory) {
   parameters();
