@@ -247,8 +247,10 @@ void GroupFilter::start() {
   chain_.start(tuning_->equations(), tuning_->layout().own());
   motion_.assign(count_of(tuning_->building().measured) * AxisMotion::kSignals, 0.0);
   const FloorRows& rows = tuning_->rows(0);
+  past_.end();
+  starting_ = rows.rows > 0 && settle_ == 0;
+  if (!starting_) return;  // what settles owes nothing
   past_.begin(rows.rows);
-  starting_ = rows.rows > 0;
   for (int r = 0; r < rows.rows; ++r) {
     past_.add(r, tuning_->high_pass_poles());
     past_.add(r, {rows.a1[count_of(r)], rows.a2[count_of(r)]});

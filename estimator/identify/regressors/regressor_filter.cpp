@@ -45,7 +45,7 @@ void RegressorFilter::rebuild(int floor) {
   std::fill(f.s2.begin(), f.s2.end(), 0.0);
   f.settling = settle_ + 1;
   f.past.end();
-  f.starting = tuning_->removes_past();
+  f.starting = tuning_->removes_past() && settle_ == 0;  // what settles owes nothing
   if (!f.starting) return;
   f.past.begin(f.rows->rows);
   for (int r = 0; r < f.rows->rows; ++r) {
