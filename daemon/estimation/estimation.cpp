@@ -204,6 +204,7 @@ void Estimation::sample(const estimator::AccelSample& sample) {
 }
 
 void Estimation::came_up(bool raw) {
+  intake_.came_up();
   if (!shaking_) return;
   const std::int64_t newest_us = *std::max_element(newest_us_.begin(), newest_us_.end());
   shaking_->came_up(estimator::from_microseconds(newest_us), raw);

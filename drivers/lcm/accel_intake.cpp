@@ -165,6 +165,8 @@ IntakeResult AccelIntake::judge(HeardNode& node, const SensorNodeSample& sample,
   const std::int64_t lost = counter.lost, backwards = counter.backwards;
   const auto verdict =
       counter.see({sample.sequence, to_microseconds(sample.time), arrival_us_, digest_of(sample)});
+  if (std::exchange(node.away, false))
+    node.unheard += std::max<std::int64_t>(counter.lost - lost, 0);
   lost_ += counter.lost - lost;
   backwards_ += counter.backwards - backwards;
   if (verdict == SequenceCounter::Verdict::duplicate) return IntakeResult::duplicate;
@@ -175,6 +177,10 @@ IntakeResult AccelIntake::judge(HeardNode& node, const SensorNodeSample& sample,
     return IntakeResult::other_sender;
   }
   return IntakeResult::samples;
+}
+
+void AccelIntake::came_up() {
+  for (auto& [place, node] : heard_) node.away = true;
 }
 
 void AccelIntake::look(std::int64_t arrival_us) {

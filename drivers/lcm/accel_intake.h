@@ -49,6 +49,9 @@ class AccelIntake {
                        const LcmSender& sender = {}, std::int64_t received_us = 0);
   /// A log begins: its tables may bind otherwise than those of the log before.
   void log_begins();
+  /// The program was started anew: what was sent while it was away is counted as lost, but is no
+  /// trouble of the network.
+  void came_up();
 
   const AxisBinding& binding() const { return binding_; }
   const IntakeCounters& counters() const { return counters_; }

@@ -23,6 +23,8 @@ struct HeardNode {
   std::size_t axis = 0;       ///< the first sensor axis it carried
   std::uint8_t in_input = 0;  ///< it was heard in the log that is read
   std::int64_t withheld = 0;  ///< messages of the first of two senders, while none goes on
+  std::int64_t unheard = 0;   ///< of the lost ones: nobody listened
+  bool away = false;          ///< nobody listened before its next message
 
   /// Messages that came under the node's number and were left out.
   std::int64_t left_out() const {
@@ -32,7 +34,7 @@ struct HeardNode {
     return counter.contested(arrival_us) || sender.contested(arrival_us);
   }
   SequenceWatch::Counts counts() const {
-    return {counter.received, counter.lost, counter.duplicates, counter.leaps,
+    return {counter.received, counter.lost - unheard, counter.duplicates, counter.leaps,
             counter.conflicts + counter.others + sender.contests};
   }
 
@@ -42,6 +44,7 @@ struct HeardNode {
     a(counter, sender, watch, axis, in_input);
     a.within(order, 0, kMostNodes);
     a.within(withheld, 0, a.kMostCount);
+    a.within(unheard, 0, a.kMostCount);
   }
 };
 

@@ -73,8 +73,8 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   double& usual = parameter.usual_error;
   // Windows across a change have large errors; they must not hide the next ones.
   const double most = kMostOfUsual * usual;
-  const double share = std::max(window_s / kPhases / kMemory_s,
-                                1 / static_cast<double>(++parameter.errors));
+  const double share =
+      std::max(window_s / kPhases / kMemory_s, 1 / static_cast<double>(++parameter.errors));
   usual += std::min(1.0, share) * ((usual == 0 ? error : std::min(error, most)) - usual);
   const double scale = std::hypot(std::max(error, usual), baseline_error);
   const double off = e.value[p] / baseline_.value[p] - 1;

@@ -93,8 +93,8 @@ class LiveView {
   std::optional<PageWatch> watch_;
   std::optional<watch_t> told_watch_;  ///< of `framewatch run` with [watch]
   std::optional<window_estimate_t> newest_;
-  bool new_estimate_ = false;                                   ///< since the last flush
-  bool late_rows_ = false;  ///< rows of history_ have values now that they lacked
+  bool new_estimate_ = false;  ///< since the last flush
+  bool late_rows_ = false;     ///< rows of history_ have values now that they lacked
   std::int64_t flushes_ = 0, motion_at_ = 0, estimate_at_ = 0;  ///< flushes: the view's clock
   Shaking shaking_;
   bool grouped_;                  ///< parameters are of groups of stories

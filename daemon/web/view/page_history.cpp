@@ -52,9 +52,9 @@ void PageHistory::estimate(const window_estimate_t& e) {
 }
 
 bool PageHistory::late(const window_estimate_t& e) {
-  const auto row = std::lower_bound(
-      rows_.begin(), rows_.end(), e.window_end_us,
-      [](const Row& r, std::int64_t end_us) { return r.end_us < end_us; });
+  const auto row =
+      std::lower_bound(rows_.begin(), rows_.end(), e.window_end_us,
+                       [](const Row& r, std::int64_t end_us) { return r.end_us < end_us; });
   if (row == rows_.end() || row->end_us != e.window_end_us || row->value.size() != e.value.size())
     return false;
   row->status = e.status;

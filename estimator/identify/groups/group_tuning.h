@@ -86,8 +86,8 @@ class GroupTuning : public RowTuning {
   PolePair high_pass_poles_;
   ParameterTable table_;
   const GroupDesign configured_;
-  GroupDesign design_;       ///< as configured within a group; between groups by shares_
-  Eigen::VectorXd shares_;   ///< of the groups, SI: how those that become one share its stiffness
+  GroupDesign design_;      ///< as configured within a group; between groups by shares_
+  Eigen::VectorXd shares_;  ///< of the groups, SI: how those that become one share its stiffness
   Eigen::VectorXd designed_, theta0_;
   std::vector<double> noise_density_;
   std::vector<std::uint8_t> present_;

@@ -68,9 +68,9 @@ class ElementDrift {
   std::vector<double> s1_, s2_;
   std::vector<UnknownPast> past_;        ///< by element
   std::vector<std::uint8_t> was_known_;  ///< flags, at the last instant
-  std::vector<double> sums_;          ///< of squares, blocks x elements
-  std::vector<std::int32_t> counts_;  ///< instants in them
-  int rows_ = 0, at_ = 0;             ///< of the block that is being filled, and which it is
+  std::vector<double> sums_;             ///< of squares, blocks x elements
+  std::vector<std::int32_t> counts_;     ///< instants in them
+  int rows_ = 0, at_ = 0;                ///< of the block that is being filled, and which it is
 };
 
 }  // namespace framewatch::estimator

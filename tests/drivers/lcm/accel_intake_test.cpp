@@ -110,6 +110,15 @@ TEST(AccelIntake, CountsLossesPerNode) {
   EXPECT_EQ(f.intake.lost(), 3);
 }
 
+TEST(AccelIntake, WhatWasSentWhileTheProgramWasAwayIsNoTroubleOfTheNetwork) {
+  Fixture f({{"one", "ACCEL", 1, 0}});
+  for (std::int64_t i = 0; i < 10; ++i) (void)f.send_accel(i);
+  f.intake.came_up();
+  for (const std::int64_t i : {200, 201, 205}) (void)f.send_accel(i);
+  EXPECT_EQ(f.intake.lost(), 190 + 3);
+  EXPECT_EQ(f.intake.node_of(0)->counts().lost, 3);
+}
+
 TEST(AccelIntake, TableInTheStreamBindsByName) {
   Fixture f({{"three", "", -1, 0}});
   EXPECT_EQ(f.send_accel(1, 2), IntakeResult::foreign);
