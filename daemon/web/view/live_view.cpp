@@ -31,10 +31,6 @@ constexpr int kFlushesPerBoxplot = 5;
 constexpr int kFlushesPerSecond = 20;
 constexpr std::int64_t kYear2000_us = 946'684'800'000'000;
 
-std::span<const std::uint8_t> bytes(const void* data, std::size_t size) {
-  return {static_cast<const std::uint8_t*>(data), size};
-}
-
 }  // namespace
 
 LiveView::LiveView(const Config& config, MessageSink publish, PageCommands::Give give)
@@ -120,32 +116,33 @@ void LiveView::message(const std::string& channel, const void* data, std::size_t
     return;
   }
   const std::string name = channel.substr(prefix.size());
+  const std::span bytes(static_cast<const std::uint8_t*>(data), size);
   if (name == "PARAMETERS") {
-    parameters(data, size);
+    parameters(bytes);
   } else if (channel == estimate_channels_.front() + kLate) {
-    late_estimate(data, size);
+    late_estimate(bytes);
   } else if (name.starts_with("ESTIMATE")) {
-    estimate(channel, data, size);
+    estimate(channel, bytes);
   } else if (name == "STATUS") {
-    if (const auto s = drivers::decoded<status_t>(bytes(data, size))) {
+    if (const auto s = drivers::decoded<status_t>(bytes)) {
       same_config_ = s->config_sha256 == config_.sha256;
       keep("status", status_json(*s, config_.sha256));
     }
   } else if (name == "WATCH") {
-    if (auto w = drivers::decoded<watch_t>(bytes(data, size))) told_watch_ = std::move(*w);
+    if (auto w = drivers::decoded<watch_t>(bytes)) told_watch_ = std::move(*w);
   } else if (name == "SESSION") {
-    if (const auto s = drivers::decoded<session_status_t>(bytes(data, size)))
+    if (const auto s = drivers::decoded<session_status_t>(bytes))
       keep("session", session_status_json(*s));
   } else if (name == "CAN") {
-    if (const auto s = drivers::decoded<can_status_t>(bytes(data, size))) keep("can", can_json(*s));
+    if (const auto s = drivers::decoded<can_status_t>(bytes)) keep("can", can_json(*s));
   } else if (name == "GAP") {
-    if (const auto gap = drivers::decoded<gap_t>(bytes(data, size))) keep("gap", gap_json(*gap));
+    if (const auto gap = drivers::decoded<gap_t>(bytes)) keep("gap", gap_json(*gap));
   } else if (name == "MODEL_FIT") {
-    const auto fit = drivers::decoded<model_fit_t>(bytes(data, size));
+    const auto fit = drivers::decoded<model_fit_t>(bytes);
     if (fit && static_cast<std::size_t>(fit->parameters) == parameters_.size())
       keep("fit", model_fit_json(*fit));
   } else {
-    alarms_message(name, data, size);
+    alarms_message(name, bytes);
   }
 }
 
@@ -153,71 +150,17 @@ bool LiveView::found_here(const event_t& event) const {
   return !config_.watch && event.kind == "stiffness_change";
 }
 
-void LiveView::alarms_message(const std::string& name, const void* data, std::size_t size) {
+void LiveView::alarms_message(const std::string& name, std::span<const std::uint8_t> bytes) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (name == "EVENT") {
-    const auto e = drivers::decoded<event_t>(bytes(data, size));
+    const auto e = drivers::decoded<event_t>(bytes);
     if (e) push_alarms({found_here(*e) ? alarms_.note_own(*e) : alarms_.note(*e)});
   } else if (name == "SERVICE") {
-    if (const auto s = drivers::decoded<service_t>(bytes(data, size)))
-      push_alarms(alarms_.still_raised(*s));
+    if (const auto s = drivers::decoded<service_t>(bytes)) push_alarms(alarms_.still_raised(*s));
   } else if (name == "ACKNOWLEDGED") {
-    if (auto a = drivers::decoded<acknowledged_t>(bytes(data, size)))
+    if (auto a = drivers::decoded<acknowledged_t>(bytes))
       push_alarms(alarms_.acknowledged(std::move(*a)));
   }
-}
-
-void LiveView::parameters(const void* data, std::size_t size) {
-  const auto table = drivers::decoded<parameter_table_t>(bytes(data, size));
-  if (!table || table->name == parameters_) return;
-  parameters_ = table->name;
-  watch_.reset();
-  // An estimator of another building's configuration is shown, not watched.
-  same_parameters_ = parameters_ == parameter_names(config_);
-  if (same_parameters_) watch_.emplace(config_, std::max<std::int64_t>(1, table->time_us));
-}
-
-void LiveView::estimate(const std::string& channel, const void* data, std::size_t size) {
-  const auto at = std::find(estimate_channels_.begin(), estimate_channels_.end(), channel);
-  if (at == estimate_channels_.end()) return;
-  auto found = drivers::decoded<window_estimate_t>(bytes(data, size));
-  // Arithmetic on the times of others stays exact.
-  if (!found || found->window_end_us > drivers::kLatestTime_us ||
-      found->window_end_us < -drivers::kLatestTime_us)
-    return;
-  const auto window = static_cast<int>(at - estimate_channels_.begin());
-  look_for_changes(window, *found);
-  if (window != 0) return;
-  new_estimate_ = true;
-  estimate_at_ = flushes_;
-  fit_.push(*found);
-  if (found->value.size() == parameters_.size() && same_parameters_)
-    shaking_.follow(decoded_estimate(window, *found));
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    history_.estimate(*found);
-  }
-  newest_ = std::move(*found);
-}
-
-void LiveView::late_estimate(const void* data, std::size_t size) {
-  const auto found = drivers::decoded<window_estimate_t>(bytes(data, size));
-  if (!found) return;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  late_rows_ = history_.late(*found) || late_rows_;
-}
-
-void LiveView::look_for_changes(int window, const window_estimate_t& estimate) {
-  if (!watch_) return;
-  bool renew = false;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    std::swap(renew, renew_);
-  }
-  if (renew) watch_->renew();
-  for (const event_t& e : watch_->observe(window, estimate))
-    if (!config_.watch)  // else the estimator publishes its own
-      publish_(e.time_us, config_.lcm.prefix + "EVENT", drivers::encoded(e));
 }
 
 void LiveView::instant(const estimator::SampleSet& set) {
@@ -227,18 +170,6 @@ void LiveView::instant(const estimator::SampleSet& set) {
                         : set);
   const std::lock_guard<std::mutex> lock(mutex_);
   history_.instant(set);
-}
-
-std::vector<double> LiveView::baseline() const {
-  if (told_watch_ && told_watch_->baseline.size() == parameters_.size())
-    return told_watch_->baseline;
-  return watch_ && !config_.watch ? watch_->baseline() : std::vector<double>{};
-}
-
-bool LiveView::watched(std::size_t parameter) const {
-  if (told_watch_ && parameter < told_watch_->watched.size())
-    return told_watch_->watched[parameter] != 0;
-  return watch_ && watch_->watched(parameter);
 }
 
 double LiveView::seconds_since(std::int64_t flush) const {

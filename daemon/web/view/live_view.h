@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,11 +66,11 @@ class LiveView {
   bool tell_recorder(const session_command_t& command);
 
  private:
-  void parameters(const void* data, std::size_t size);
-  void estimate(const std::string& channel, const void* data, std::size_t size);
-  void late_estimate(const void* data, std::size_t size);
+  void parameters(std::span<const std::uint8_t> bytes);
+  void estimate(const std::string& channel, std::span<const std::uint8_t> bytes);
+  void late_estimate(std::span<const std::uint8_t> bytes);
   void look_for_changes(int window, const window_estimate_t& estimate);
-  void alarms_message(const std::string& name, const void* data, std::size_t size);
+  void alarms_message(const std::string& name, std::span<const std::uint8_t> bytes);
   /// Without [watch] changes of stiffness are found by pages, not by `framewatch run`.
   bool found_here(const event_t& event) const;
   void keep(const std::string& name, std::string json);
