@@ -31,6 +31,11 @@ Eigen::VectorXd guessed_design(const Structure& s, const ParameterTable& table) 
   return theta;
 }
 
+double trusted_ratio(double ratio, double std_error) {
+  const double doubt = std_error / kTrustedError;
+  return std::exp(std::log(ratio) / (1 + doubt * doubt));
+}
+
 RetuningWork::RetuningWork(int parameters) : factor(static_cast<std::size_t>(parameters)) {
   seen.reserve(factor.size());
 }
@@ -43,8 +48,7 @@ void retuned_design(const FloorLayout& layout, const ParameterTable& table,
   for (int u = 0; u < layout.unknowns(); ++u) {
     const auto i = static_cast<std::size_t>(u);
     if (shown[i] == 0 || !(ratio[i] > 0)) continue;
-    const double doubt = std_error[i] / ratio[i] / kTrustedError;
-    const double moved = std::exp(std::log(ratio[i]) / (1 + doubt * doubt));
+    const double moved = trusted_ratio(ratio[i], std_error[i] / ratio[i]);
     const int parameter = layout.parameter(u / layout.own(), u % layout.own());
     work.factor[static_cast<std::size_t>(parameter)] =
         std::clamp(moved, 1 / kLargestStep, kLargestStep);

@@ -15,6 +15,9 @@ namespace framewatch::estimator {
 /// period of 0.1 s per story, panels as stiff as the mean frame, 2 % damping. theta order, SI.
 Eigen::VectorXd guessed_design(const Structure& structure, const ParameterTable& table);
 
+/// How far to follow an identified ratio > 0 of a relative standard error: docs/equations.md (23).
+double trusted_ratio(double ratio, double std_error);
+
 /// What retuned_design() works with, so that it need not allocate.
 struct RetuningWork {
   explicit RetuningWork(int parameters);

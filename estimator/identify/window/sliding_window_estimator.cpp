@@ -227,7 +227,19 @@ void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known)
       !shows_groups(config_.structure, config_.axes, identified_from_))
     return;
   axes_steady_rows_ = 0;
-  self_tuning_->begin_axes(*active_, identified_from_);
+  self_tuning_->begin_axes(*active_, identified_from_, identified());
+}
+
+/// The median of the last windows that showed it, of every parameter, as far as their errors allow
+/// (23).
+Eigen::VectorXd SlidingWindowEstimator::identified() const {
+  Eigen::VectorXd theta = theta0();
+  for (std::size_t p = 0; p < estimate_.last_value.size(); ++p) {
+    const auto i = static_cast<Eigen::Index>(p);
+    if (const double value = estimate_.boxplot[p].median; value > 0)
+      theta[i] *= trusted_ratio(value / theta[i], estimate_.last_std_error[p] / value);
+  }
+  return theta;
 }
 
 void SlidingWindowEstimator::block_closed(Time window_end) {
