@@ -163,7 +163,7 @@ void add_diagnose(CommandList& commands) {
       "Examples:\n"
       "  framewatch diagnose building.toml --train monday.csv --holdout tuesday.csv --out "
       "diagnosis\n"
-      "  framewatch diagnose building.toml --event 1795292291750000 --out d");
+      "  framewatch diagnose building.toml --event 1795292291560000 --out d");
   add_config(commands, command, arguments.config);
   commands.reads_files(
       command->add_option("--train", arguments.train, "record files and LCM event logs")

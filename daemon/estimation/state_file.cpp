@@ -22,7 +22,7 @@ constexpr std::int32_t kFormat = 17;  ///< goes up whenever archive() of any cla
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;
 constexpr std::size_t kMostEntries = 100;  ///< of a list in the head, which has some ten
-constexpr const char* kUnlike = "has sizes or numbers that no estimation has";
+constexpr const char* kUnlike = "has sizes or numbers that cannot be right";
 
 /// A list of the head: `count` of them are there.
 template <typename Archive, typename T>
@@ -121,7 +121,7 @@ ReadState read_state(const std::string& path) {
   Head head;
   head.magic.clear();
   head.archive_identity(reader);
-  if (head.magic != kMagic) return {"is no state of framewatch", {}, {}};
+  if (head.magic != kMagic) return {"is not a state of framewatch", {}, {}};
   // Another version of the program may load it, so that an upgrade keeps the window.
   if (reader.good() && head.format != kFormat)
     return {fmt::format("was written by framewatch {} (format {}), this is {} (format {})",
@@ -173,7 +173,7 @@ void leave_what_fits(ReadState& read, const Config& config, Estimation& estimati
                                     [&](const StateSection& s) { return s.name == name; });
     if (found != read.state.sections.end()) {
       if (const std::string other = other_grounds(*found, read.state, grounds); !other.empty())
-        lose(read, name, "rests on another configuration: " + other);
+        lose(read, name, "was written under another configuration: " + other);
     } else if (std::none_of(read.lost.begin(), read.lost.end(),
                             [&](const LostSection& l) { return l.name == name; })) {
       read.lost.push_back({name, "is not in the file"});

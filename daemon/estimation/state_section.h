@@ -23,8 +23,8 @@ struct LostSection {
 /// name that is not a section's.
 std::string_view without_section(std::string_view name);
 
-/// What a section rests on: names of sections of the configuration file, and of what StateGrounds
-/// adds to them. It does not fit an estimation for which one of them differs.
+/// The sections of the configuration file, and the further properties in StateGrounds, that a
+/// section of the state depends on. It is refused when one of them has changed.
 const std::vector<std::string>& grounds_of_section(std::string_view name);
 
 }  // namespace framewatch::daemon

@@ -73,9 +73,10 @@ GroupTuning::GroupTuning(const PipelineConfig& config, const EstimatorOptions& o
       table_(table),
       configured_(design),
       design_(design),
-      shares_(group_parameters(config.structure, table, design)),
-      designed_(shares_),
-      theta0_(shares_),
+      ratios_{group_parameters(config.structure, table, design),
+              std::vector<double>(count_of(table.size()), 0.0)},
+      designed_(ratios_.theta),
+      theta0_(ratios_.theta),
       noise_density_(noise_densities(config.axes)),
       present_(identifying(config.axes)),
       perturbed_(layout) {
@@ -85,7 +86,7 @@ GroupTuning::GroupTuning(const PipelineConfig& config, const EstimatorOptions& o
   for (const std::vector<double>* taps :
        {&triple.value, &triple.first, &triple.second, &triple.held_first, &triple.held_second})
     impulse_.push_back(response(*taps, high_pass, length));
-  set_axes(present_, shares_);
+  set_axes(present_, ratios_);
   tune(0);
 }
 
@@ -99,10 +100,10 @@ void GroupTuning::set_theta0(const Eigen::VectorXd& theta0,
   tuned_parts_ = 0;
 }
 
-void GroupTuning::set_axes(const std::vector<std::uint8_t>& present, const Eigen::VectorXd& theta) {
+void GroupTuning::set_axes(const std::vector<std::uint8_t>& present, const Known& ratios) {
   present_ = present;
-  shares_ = theta;
-  design_.theta = story_parameters(config_->structure, table_, configured_, shares_);
+  ratios_ = ratios;
+  design_.theta = story_parameters(config_->structure, table_, configured_, ratios_.theta);
   designed_ = group_parameters(config_->structure, table_, design_);
   building_ = reduced_building(config_->structure, config_->axes, table_, design_, present);
   tuned_parts_ = 0;
@@ -131,11 +132,31 @@ void GroupTuning::tune(int part) {
   push_impulse((part - 1) / parts_per_axis(), (part - 1) % parts_per_axis());
 }
 
+/// Groups in series that became one have its flexibility, and shares w of it that are as well known
+/// as their own stiffnesses e were: the error of one is (1 - w) e with the others' w e.
+std::vector<double> GroupTuning::share_error() const {
+  const std::vector<int>& first = building_.same_as;
+  std::vector<double> flexibility(first.size(), 0.0), square(first.size(), 0.0), out(first.size());
+  const auto share = [&](std::size_t p) { return 1 / designed_[static_cast<Eigen::Index>(p)]; };
+  for (std::size_t p = 0; p < first.size(); ++p) flexibility[count_of(first[p])] += share(p);
+  for (std::size_t p = 0; p < first.size(); ++p) {
+    const double error = share(p) / flexibility[count_of(first[p])] * ratios_.std_error[p];
+    square[count_of(first[p])] += error * error;
+  }
+  for (std::size_t p = 0; p < first.size(); ++p) {
+    const double w = share(p) / flexibility[count_of(first[p])], e = ratios_.std_error[p];
+    out[p] = std::sqrt(std::max(square[count_of(first[p])] + (1 - 2 * w) * e * e, 0.0));
+    if (w == 1) out[p] = 0;  // it is alone
+  }
+  return out;
+}
+
 void GroupTuning::form() {
   const Eigen::VectorXd x = theta0_.cwiseQuotient(designed_);
   equations_ = group_equations(building_, x, options_->rate_hz);
   rows_ = group_rows(*options_, design_, equations_, table_.size());
   rows_.same_as = building_.same_as;
+  rows_.share_error = share_error();
   const int stride = padded(table_.size() + 1);
   plain_ = rows_;
   moments_.assign(count_of(rows_.rows) * count_of(stride) * count_of(stride), 0.0);
@@ -205,7 +226,7 @@ void GroupTuning::finish_noise() {
 void GroupTuning::restore() {
   const int parts_done = tuned_parts_;
   if (noise_density_.size() != config_->axes.size()) return;
-  set_axes(present_, shares_);
+  set_axes(present_, ratios_);
   for (int part = 0; part < parts_done && part < parts(); ++part) tune(part);
 }
 

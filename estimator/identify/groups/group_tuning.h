@@ -46,7 +46,8 @@ class GroupTuning : public RowTuning {
   /// How far theta is from theta0, where rows are a linearisation.
   double detuning(int floor, const Eigen::VectorXd& theta) override;
   const std::vector<std::uint8_t>& axes() const override { return present_; }
-  void set_axes(const std::vector<std::uint8_t>& present, const Eigen::VectorXd& theta) override;
+  void set_axes(const std::vector<std::uint8_t>& present, const Known& ratios) override;
+  const Known& ratios() const override { return ratios_; }
   std::unique_ptr<RowTuning> copy() const override { return std::make_unique<GroupTuning>(*this); }
   std::unique_ptr<RowFilter> make_filter(int settle) override;
   void save(StateWriter& state) override { members(state); }
@@ -65,8 +66,9 @@ class GroupTuning : public RowTuning {
   void members(Archive& a) {
     for (Eigen::Index i = 0; i < theta0_.size(); ++i)
       a.within(theta0_[i], std::numeric_limits<double>::min(), a.kMost);
-    for (Eigen::Index i = 0; i < shares_.size(); ++i)
-      a.within(shares_[i], std::numeric_limits<double>::min(), a.kMost);
+    for (Eigen::Index i = 0; i < ratios_.theta.size(); ++i)
+      a.within(ratios_.theta[i], std::numeric_limits<double>::min(), a.kMost);
+    a.each_within(ratios_.std_error, 0, a.kMost);
     a.finite(noise_density_);
     a.each_within(present_, 0, 1);
     a.within(tuned_parts_, 0, a.kMostCount);
@@ -75,6 +77,7 @@ class GroupTuning : public RowTuning {
   /// Everything that follows from the parameters, as far as it had been tuned.
   void restore();
   void form();
+  std::vector<double> share_error() const;
   void push_impulse(int from, int to);
   void finish_noise();
   int impulse_rows() const;
@@ -86,8 +89,8 @@ class GroupTuning : public RowTuning {
   PolePair high_pass_poles_;
   ParameterTable table_;
   const GroupDesign configured_;
-  GroupDesign design_;      ///< as configured within a group; between groups by shares_
-  Eigen::VectorXd shares_;  ///< of the groups, SI: how those that become one share its stiffness
+  GroupDesign design_;  ///< as configured within a group, between groups by ratios_
+  Known ratios_;
   Eigen::VectorXd designed_, theta0_;
   std::vector<double> noise_density_;
   std::vector<std::uint8_t> present_;

@@ -48,6 +48,9 @@ struct FloorRows {
   std::vector<double> noise_compensation;
   /// Of groups: by unknown the one whose solution it has. Empty: each its own.
   std::vector<int> same_as;
+  /// Of groups: by unknown, the relative standard error that its share of a group it is part of
+  /// adds.
+  std::vector<double> share_error;
   double noise_residual = 0;  ///< expected weighted squared residual per instant
 
   template <typename Archive>

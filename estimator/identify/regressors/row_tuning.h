@@ -38,9 +38,16 @@ class RowTuning {
   /// Flags of the axes that rows are formed of, where another set of them asks for another tuning;
   /// empty where it does not.
   virtual const std::vector<std::uint8_t>& axes() const { return no_axes_; }
-  /// As set_theta0(). theta: all parameters, SI: groups of stories that become one, because a floor
-  /// between them is not measured any more, keep the ratio that they have in it.
-  virtual void set_axes(const std::vector<std::uint8_t>&, const Eigen::VectorXd&) {}
+  /// All parameters, SI, and their relative standard errors.
+  struct Known {
+    Eigen::VectorXd theta;
+    std::vector<double> std_error;
+  };
+  /// As set_theta0(). Groups of stories that become one, because a floor between them is not
+  /// measured any more, keep the ratio that is known.
+  virtual void set_axes(const std::vector<std::uint8_t>&, const Known&) {}
+  /// What the last set_axes() was given.
+  virtual const Known& ratios() const { return no_ratios_; }
   /// The same, on its own.
   virtual std::unique_ptr<RowTuning> copy() const = 0;
   /// Refers to the tuning, which must outlive it.
@@ -63,6 +70,7 @@ class RowTuning {
 
  private:
   std::vector<std::uint8_t> no_axes_;
+  Known no_ratios_;
 };
 
 }  // namespace framewatch::estimator

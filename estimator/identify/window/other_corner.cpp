@@ -37,7 +37,7 @@ void OtherCorner::restart(int settle) {
 }
 
 void OtherCorner::retune(const RowTuning& active) {
-  if (tuning_->axes() != active.axes()) tuning_->set_axes(active.axes(), active.theta0());
+  if (tuning_->axes() != active.axes()) tuning_->set_axes(active.axes(), active.ratios());
   tuning_->set_theta0(active.theta0(), active.noise_density());
   next_part_ = 0;
   resting_ = true;

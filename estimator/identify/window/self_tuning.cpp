@@ -69,22 +69,22 @@ void SelfTuning::begin_check(const TunedRegression& active, const std::vector<do
 }
 
 void SelfTuning::begin_axes(const TunedRegression& active, const std::vector<std::uint8_t>& present,
-                            const Eigen::VectorXd& theta) {
+                            const RowTuning::Known& known) {
   noise_measured_ = noise_known_;
-  begin_tuning(present, theta, theta, active.tuning().noise_density());
+  begin_tuning(present, known, known.theta, active.tuning().noise_density());
 }
 
 void SelfTuning::lend(const TunedRegression& active) {
   lending_ = true;
   const RowTuning& tuning = active.tuning();
-  begin_tuning(tuning.axes(), tuning.theta0(), tuning.theta0(), tuning.noise_density());
+  begin_tuning(tuning.axes(), tuning.ratios(), tuning.theta0(), tuning.noise_density());
 }
 
-void SelfTuning::begin_tuning(const std::vector<std::uint8_t>& axes, const Eigen::VectorXd& theta,
+void SelfTuning::begin_tuning(const std::vector<std::uint8_t>& axes, const RowTuning::Known& ratios,
                               const Eigen::VectorXd& theta0,
                               const std::vector<double>& noise_density) {
   standby_->rest();
-  if (standby_->tuning().axes() != axes) standby_->tuning().set_axes(axes, theta);
+  if (standby_->tuning().axes() != axes) standby_->tuning().set_axes(axes, ratios);
   standby_->tuning().set_theta0(theta0, noise_density);
   phase_ = Phase::tuning;
   next_part_ = 0;
@@ -123,7 +123,7 @@ void SelfTuning::check_floors(TunedRegression& active) {
     return;
   }
   if (!tuned_) ++passes_;
-  begin_tuning(active.tuning().axes(), active.tuning().theta0(), next_theta0_,
+  begin_tuning(active.tuning().axes(), active.tuning().ratios(), next_theta0_,
                noise_measured_ ? noise_ : active.tuning().noise_density());
 }
 

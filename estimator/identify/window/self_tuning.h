@@ -46,9 +46,9 @@ class SelfTuning {
   void begin_check(const TunedRegression& active, const std::vector<double>& ratio,
                    const std::vector<double>& std_error, const std::vector<std::uint8_t>& shown,
                    const AxisNoise& noise);
-  /// Begins a tuning to other axes. theta: what is known of the parameters, SI.
+  /// Begins a tuning to other axes.
   void begin_axes(const TunedRegression& active, const std::vector<std::uint8_t>& present,
-                  const Eigen::VectorXd& theta);
+                  const RowTuning::Known& known);
   /// Tunes the standby as the active regression is, and lends it: until give_back() it is not used
   /// for tuning.
   void lend(const TunedRegression& active);
@@ -81,8 +81,8 @@ class SelfTuning {
 
  private:
   enum class Phase { idle, checking, tuning, catching_up, lent };
-  /// Of the standby, for these axes. theta: RowTuning::set_axes().
-  void begin_tuning(const std::vector<std::uint8_t>& axes, const Eigen::VectorXd& theta,
+  /// Of the standby, for these axes.
+  void begin_tuning(const std::vector<std::uint8_t>& axes, const RowTuning::Known& ratios,
                     const Eigen::VectorXd& theta0, const std::vector<double>& noise_density);
   void check_floors(TunedRegression& active);
   void tune_parts(const MotionRing& ring);

@@ -19,17 +19,11 @@ namespace {
 constexpr int kBlocks = BatchMeans::kBlocks;  // per window
 /// Of the main window: rows enough for standard errors, but for the first of a start.
 constexpr double kWarm = 0.75 * BatchMeans::kFewest / BatchMeans::kBlocks;
-/// A channel that is away for less is waited for; for longer, its floor becomes an inner one.
-constexpr double kAxesSteady_s = 2;
 
 std::unique_ptr<MotionSource> motion_source(const Structure& structure, const FloorLayout& layout,
                                             const std::vector<SensorAxis>& axes) {
   if (layout.grouped()) return std::make_unique<AxisMotion>(static_cast<int>(axes.size()));
   return std::make_unique<Deformations>(structure, layout, axes);
-}
-
-SensorClock::duration duration_of(double rows, double rate_hz) {
-  return SensorClock::duration(std::llround(rows * 1e6 / rate_hz));
 }
 
 }  // namespace
@@ -213,35 +207,6 @@ void SlidingWindowEstimator::advance(const std::vector<double>& accel, Time time
   late_budget_ = self_tuning_->work_per_instant();
 }
 
-void SlidingWindowEstimator::follow_axes(const std::vector<std::uint8_t>& known) {
-  if (known != seen_axes_) {
-    seen_axes_ = known;
-    axes_steady_rows_ = 0;
-    return;
-  }
-  if (self_tuning_ == nullptr || !self_tuning_->idle()) return;
-  for (std::size_t a = 0; a < known.size(); ++a)
-    identified_from_[a] = known[a] != 0 && !config_.axes[a].check;
-  if (identified_from_ == active_->tuning().axes()) return;
-  if (++axes_steady_rows_ < options_.rate_hz * kAxesSteady_s ||
-      !shows_groups(config_.structure, config_.axes, identified_from_))
-    return;
-  axes_steady_rows_ = 0;
-  self_tuning_->begin_axes(*active_, identified_from_, identified());
-}
-
-/// The median of the last windows that showed it, of every parameter, as far as their errors allow
-/// (23).
-Eigen::VectorXd SlidingWindowEstimator::identified() const {
-  Eigen::VectorXd theta = theta0();
-  for (std::size_t p = 0; p < estimate_.last_value.size(); ++p) {
-    const auto i = static_cast<Eigen::Index>(p);
-    if (const double value = estimate_.boxplot[p].median; value > 0)
-      theta[i] *= trusted_ratio(value / theta[i], estimate_.last_std_error[p] / value);
-  }
-  return theta;
-}
-
 void SlidingWindowEstimator::block_closed(Time window_end) {
   const std::vector<std::uint8_t>& known = ring_.at(ring_.end() - 1).known;
   if (long_) long_->block_closed(active_->sums(), known, window_end);
@@ -255,38 +220,6 @@ void SlidingWindowEstimator::go_on() {
   if (bending_ &&
       bending_->advance({active_.get(), &ring_.at(ring_.end() - 1).known, trust(), tuned()}))
     hold_bending();
-}
-
-void SlidingWindowEstimator::look_back() {
-  late_until_ = ring_.end();
-  self_tuning_->lend(*active_);
-}
-
-const WindowEstimate* SlidingWindowEstimator::late() {
-  if (late_other_ != nullptr) return std::exchange(late_other_, nullptr);
-  TunedRegression* const regression = self_tuning_ ? self_tuning_->lent() : nullptr;
-  if (regression == nullptr) return nullptr;
-  if (!late_->running()) {
-    // Rows that leave are formed again: they must still be held when they are.
-    const int until_then = regression->sums().lag() / self_tuning_->work_per_instant() + 2;
-    late_->begin(*regression, ring_.begin_after(until_then), late_until_);
-  }
-  for (; late_budget_ > 0; --late_budget_) {
-    if (late_->complete(*regression)) {
-      late_->end();
-      self_tuning_->give_back();
-      return nullptr;
-    }
-    const auto ago = static_cast<double>(ring_.end() - 1 - regression->next());
-    const Time end = last_time_ - duration_of(ago + triple_.delay, options_.rate_hz);
-    const LateWindows::Given given = late_->advance(*regression, ring_, trust(), end);
-    if (given.main == nullptr && given.other == nullptr) continue;
-    --late_budget_;
-    if (given.main == nullptr) return given.other;
-    late_other_ = given.other;
-    return given.main;
-  }
-  return nullptr;
 }
 
 void SlidingWindowEstimator::advance_long() {
@@ -307,30 +240,6 @@ void SlidingWindowEstimator::hold_bending() {
     if (late_) late_->hold(held.unknown, ratio, held.std_error);
     if (check_) check_->hold(held.unknown, ratio, held.std_error);
   }
-}
-
-void SlidingWindowEstimator::check_tuning() {
-  if (!self_tuning_ || !self_tuning_->due()) return;
-  for (std::size_t u = 0; u < shown_.size(); ++u)
-    shown_[u] = series_.main().shown(static_cast<int>(u));
-  self_tuning_->begin_check(*active_, series_.main().solver().solution(),
-                            series_.main().std_error(), shown_, noise_);
-}
-
-void SlidingWindowEstimator::regression_exchanged() {
-  for (int u = 0; u < layout_.unknowns(); ++u) {
-    const int p = layout_.parameter(u / layout_.own(), u % layout_.own());
-    const double before = self_tuning_->before().tuning().theta0()[p];
-    series_.main().rescale(u, before / theta0()[p]);
-    retuned_by_[static_cast<std::size_t>(u)] = theta0()[p] / before;
-  }
-  series_.retuned();
-  if (long_) long_->retuned();
-  if (bending_) {
-    bending_->retuned(retuned_by_);
-    hold_bending();
-  }
-  if (check_) check_->regression_exchanged(active_->tuning());
 }
 
 void SlidingWindowEstimator::fill_estimate(Time end) {

@@ -122,7 +122,7 @@ class SlidingWindowEstimator {
   /// Of groups: a channel that is gone makes its floor an inner one, one that is back a measured
   /// one.
   void follow_axes(const std::vector<std::uint8_t>& known);
-  Eigen::VectorXd identified() const;
+  RowTuning::Known identified() const;
   void regression_exchanged();
   /// The filters are right, as far as is known.
   bool tuned() const { return self_tuning_ == nullptr || self_tuning_->tuned(); }

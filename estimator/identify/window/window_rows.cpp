@@ -29,6 +29,10 @@ std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o, bool grouped
   return triples;
 }
 
+SensorClock::duration duration_of(double rows, double rate_hz) {
+  return SensorClock::duration(std::llround(rows * 1e6 / rate_hz));
+}
+
 int rows_of(double seconds, double rate) {
   return std::max(1, static_cast<int>(std::lround(seconds * rate)));
 }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "estimator/motion/derivative_triple.h"
+#include "estimator/motion/sample.h"
 #include "estimator/setup/pipeline_config.h"
 
 // What the options of a SlidingWindowEstimator come to in samples: its windows in rows and in
@@ -17,6 +18,7 @@ std::vector<DerivativeTriple> triples_of(const EstimatorOptions& o, bool grouped
                                          const std::vector<SensorAxis>& axes);
 
 int rows_of(double seconds, double rate);
+SensorClock::duration duration_of(double rows, double rate_hz);
 /// Of the other windows.
 std::vector<int> blocks_of(const std::vector<double>& windows_s, double rate_hz, int block_rows);
 /// Instants of motion that are kept beside the longest window: what the slowest possible row filter

@@ -38,6 +38,7 @@ WindowSolution::WindowSolution(const Structure& structure, const FloorLayout& la
       centre_(prior_.size(), 1.0),
       doubt_(prior_.size(), 1.0),
       same_as_(layout.grouped() ? static_cast<std::size_t>(layout.unknowns()) : 0, 0),
+      share_error_(same_as_.size(), 0.0),
       warm_(static_cast<std::size_t>(layout.floors()), 0),
       known_(static_cast<std::size_t>(layout.places()), 0),
       place_known_(static_cast<std::size_t>(layout.unknowns()), 0) {
@@ -86,7 +87,10 @@ void WindowSolution::solve(const WindowParts& sums, const RowFilter& rows, const
     warm_[f] = (*sums.instants)[f] >= warm_share_ * sums.rows ? kWarm
                : (*sums.instants)[f] > 0                      ? kFilling
                                                               : kRowless;
-  if (layout_.grouped()) same_as_ = rows.floor_rows(0).same_as;
+  if (layout_.grouped()) {
+    same_as_ = rows.floor_rows(0).same_as;
+    share_error_ = rows.floor_rows(0).share_error;
+  }
   const double prior_scale = trust.regularise && options_.prior ? noise_level_ : 0.0;
   for (std::size_t u = 0; u < prior_.size(); ++u)
     prior_[u] = (unknowns_[u].held ? noise_level_ : prior_scale) * unknowns_[u].prior;
@@ -211,7 +215,9 @@ void WindowSolution::fill(const Situation& situation, WindowEstimate& e) {
                           e.reason[p] == Observability::channel_lost);
     e.solution[p] = solved_ ? theta0 * solver_.solution()[i] : kNaN;
     e.value[p] = observable ? e.solution[p] : kNaN;
-    e.std_error[p] = observable ? theta0 * errors_.std_error()[i] : kNaN;
+    const double of_share =
+        share_error_.empty() ? 0 : share_error_[static_cast<std::size_t>(own)] * e.solution[p];
+    e.std_error[p] = observable ? std::hypot(theta0 * errors_.std_error()[i], of_share) : kNaN;
     const double noise = noise_.energy()[i] * gate_level();
     e.snr[p] = solved_ && noise > 0 ? solver_.information()[i] / noise : 0;
     const bool shares = solved_ && errors_known_;

@@ -94,6 +94,7 @@ class WindowSolution {
     noise_.archive(a, rows);
     errors_.archive(a, rows, sums);
     a.each_within(same_as_, 0, layout_.unknowns() - 1.0);
+    a.finite(share_error_);
     a(misfit_);
     a.finite(misfit_error_);
     for (Unknown& unknown : unknowns_) a.within(unknown.prior, 0, a.kMost);
@@ -134,6 +135,7 @@ class WindowSolution {
   std::vector<double> prior_;
   std::vector<double> centre_, doubt_;  ///< of the prior: hold()
   std::vector<int> same_as_;            ///< FloorRows::same_as of a building of groups
+  std::vector<double> share_error_;     ///< FloorRows::share_error, likewise
   /// Of every floor: kWarm when its rows fill most of the window, kRowless when it has none there.
   static constexpr std::uint8_t kFilling = 0, kWarm = 1, kRowless = 2;
   std::vector<std::uint8_t> warm_;

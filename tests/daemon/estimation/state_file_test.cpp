@@ -137,7 +137,7 @@ TEST_F(StateFile, DamagedCutOffAndForeignOnesAreRefusedWithTheReason) {
   write_file(path("state"), good.substr(0, good.size() / 2));
   EXPECT_NE(refused().second.find("section window is cut off"), std::string::npos);
   write_file(path("state"), "something else");
-  EXPECT_NE(refused().second.find("is no state of framewatch"), std::string::npos);
+  EXPECT_NE(refused().second.find("is not a state of framewatch"), std::string::npos);
   std::filesystem::remove(path("state"));
   EXPECT_NE(refused().second.find("No such file or directory"), std::string::npos);
 
@@ -209,7 +209,7 @@ TEST_F(StateFile, RunReadsItWritesItAndPutsAForeignOneAside) {
       << read_file(own.path("second"));
   write_file(own.path("state"), "not ours");
   EXPECT_EQ(run_and_stop(own.path("state"), own.path("third")), 0);
-  EXPECT_NE(read_file(own.path("third")).find("is no state of framewatch; starts anew"),
+  EXPECT_NE(read_file(own.path("third")).find("is not a state of framewatch; starts anew"),
             std::string::npos)
       << read_file(own.path("third"));
   EXPECT_EQ(read_file(own.path("state.refused")), "not ours");
