@@ -42,7 +42,8 @@ std::string placard_words(const estimator::PlacardChoice& choice) {
 }
 
 const char* placard_caution() {
-  return "This is an indication for the engineer who inspects the building. It does not replace the "
+  return "This is an indication for the engineer who inspects the building. It does not replace "
+         "the "
          "inspection: look at the building before you post a placard.";
 }
 

@@ -44,6 +44,7 @@ class LateWindows {
     a(running_);
     a.within(estimate_.sequence, -1, a.kMostCount);
     if (!running_) return;
+    if (regression.resting()) a.refuse();
     a(drift_, estimate_);
     a.within(until_, 0, a.kMostCount);
     a.within(since_hop_, 0, hop_rows_);

@@ -82,7 +82,7 @@ class SlidingWindowEstimator {
     a(last_time_);
     a.within(since_hop_, 0, hop_rows_);
     a.within(interruptions_, 0, a.kMostCount);
-    if (active_->next() != ring_.end()) a.refuse();
+    if (active_->next() != ring_.end() || active_->resting()) a.refuse();
   }
 
  private:

@@ -70,6 +70,7 @@ class TunedRegression {
 
   /// The tuning changes: rows and sums are of no use, and no state, until start().
   void rest() { resting_ = true; }
+  bool resting() const { return resting_; }
 
   bool full() const { return counting_ && sums_.full(); }
   /// Blocks have closed that are enough for standard errors.
