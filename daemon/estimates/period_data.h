@@ -63,7 +63,8 @@ class PeriodCollector {
   bool empty() const { return data_.windows == 0 && data_.channels.empty(); }
   /// Returns what was collected and begins anew.
   PeriodData take();
-  /// The same of values that came late, after their period had been taken.
+  /// Returns the values that add_late() got for periods that take() had returned before, by period,
+  /// and forgets them.
   std::vector<PeriodData> take_late();
 
   const parameter_table_t& parameters() const { return table_; }

@@ -44,8 +44,8 @@ class SummaryIntake {
   std::optional<Kind> kind_of(const std::string& channel) const;
   /// What does not decode is left alone.
   Taken take(Kind kind, std::span<const std::uint8_t> bytes);
-  /// The period that is being collected goes to the batch, and values of earlier ones that came
-  /// late. False when there is none of either.
+  /// Moves the period that is being collected to the batch, and values that came late for earlier
+  /// periods. Returns false when there was nothing to move.
   bool end_period();
 
   SummaryBatch& batch() { return batch_; }

@@ -43,8 +43,7 @@ std::string placard_words(const estimator::PlacardChoice& choice) {
 
 const char* placard_caution() {
   return "This is an indication for the engineer who inspects the building. It does not replace "
-         "the "
-         "inspection: look at the building before you post a placard.";
+         "the inspection: look at the building before you post a placard.";
 }
 
 std::string drift_with_error(const estimator::StoryDrift& drift) {

@@ -11,7 +11,7 @@ namespace framewatch::daemon {
 /// stop: "Nobody listened from 10:03:12 to 10:03:40 (28 s): peaks in
 /// that time are not known; drifts are known again from 10:03:50 on".
 std::vector<std::string> unheard_sentences(const estimator::Shaking& shaking);
-/// Their total length: "28 s of it were not heard"; empty: there are none.
+/// The total length of these parts: "28 s of it were not heard". Empty where there are none.
 std::string unheard_words(const estimator::Shaking& shaking);
 /// "restart", "restart_without_raw_samples", "no_samples".
 const char* unheard_why(estimator::UnheardWhy why);

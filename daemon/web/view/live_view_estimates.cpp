@@ -1,4 +1,4 @@
-// What an estimator publishes: its parameters and windows, and the changes looked for in them.
+// LiveView takes in the parameters and windows that an estimator publishes, and looks for changes.
 #include <algorithm>
 #include <cmath>
 #include <span>

@@ -46,7 +46,7 @@ class RowTuning {
   /// As set_theta0(). Groups of stories that become one, because a floor between them is not
   /// measured any more, keep the ratio that is known.
   virtual void set_axes(const std::vector<std::uint8_t>&, const Known&) {}
-  /// What the last set_axes() was given.
+  /// The parameters and errors that set_axes() got last.
   virtual const Known& ratios() const { return no_ratios_; }
   /// The same, on its own.
   virtual std::unique_ptr<RowTuning> copy() const = 0;

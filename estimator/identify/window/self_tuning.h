@@ -82,7 +82,7 @@ class SelfTuning {
 
  private:
   enum class Phase { idle, checking, tuning, catching_up, lent };
-  /// Of the standby, for these axes.
+  /// Begins to tune the standby to these axes and parameters. It forms no rows until its start().
   void begin_tuning(const std::vector<std::uint8_t>& axes, const RowTuning::Known& ratios,
                     const Eigen::VectorXd& theta0, const std::vector<double>& noise_density);
   void check_floors(TunedRegression& active);
