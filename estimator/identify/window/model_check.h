@@ -51,6 +51,8 @@ class ModelCheck {
   void archive(Archive& a) {
     for (OtherCorner& corner : corners_) a(corner);
     a.within(phase_, 0, static_cast<double>(Phase::pausing));
+    for (const OtherCorner& corner : corners_)
+      if (phase_ != Phase::tuning && corner.resting()) a.refuse();
     masses_.archive(a, corners_[1].shape(), corners_[1].sums());
     a(fit_);
     a.finite(low_, mass_error_, misfit_square_, corner_square_);

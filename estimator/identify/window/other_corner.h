@@ -39,6 +39,9 @@ class OtherCorner {
   const GramShape& shape() const { return shape_; }
   WindowSolution& solution() { return solution_; }
 
+  /// It was tuned anew and has no rows until restart().
+  bool resting() const { return resting_; }
+
   template <typename Archive>
   void archive(Archive& a) {
     a(*tuning_);
