@@ -14,8 +14,8 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostComment = 500;  // bytes
-constexpr int kMostAnswered = 200;         // events, so that the answer fits a packet
+constexpr std::size_t kMaxComment = 500;  // bytes
+constexpr int kMaxAnswered = 200;         // events, so that the answer fits a packet
 constexpr const char* kNobodyKnown = "LCM";
 
 }  // namespace
@@ -27,7 +27,7 @@ void AcknowledgeDesk::acknowledge(const acknowledge_t& request, const std::strin
                                   const Raised& raised, std::int64_t now_us) {
   if (request.request == answered_) return;
   const Acknowledgement by{now_us, who_text(user, request.who),
-                           printable(request.comment, kMostComment)};
+                           printable(request.comment, kMaxComment)};
   if (request.id == kAllEvents) all_ = by;
   bool any = false;
   for (RaisedEvents* events : raised)
@@ -61,7 +61,7 @@ std::optional<acknowledged_t> AcknowledgeDesk::obey(std::span<const std::uint8_t
     for (const event_t& e : events->all()) {
       const Acknowledgement* by = events->acknowledgement(e.id);
       const bool meant = request->id == kAllEvents || request->id == e.id;
-      if (by == nullptr || !meant || out.events == kMostAnswered) continue;
+      if (by == nullptr || !meant || out.events == kMaxAnswered) continue;
       add_acknowledged(out, e, {by->time_us, by->who, ""});
     }
   return out;
@@ -75,7 +75,7 @@ void AcknowledgeDesk::heard(std::span<const std::uint8_t> bytes, std::int64_t no
                                          not_obeyed_));
   }
   auto request = drivers::decoded<acknowledge_t>(bytes);
-  if (request && requests_.size() < kMostRequests) requests_.push_back(std::move(*request));
+  if (request && requests_.size() < kMaxRequests) requests_.push_back(std::move(*request));
 }
 
 void AcknowledgeDesk::look(const Raised& raised, std::int64_t now_us) {

@@ -25,7 +25,7 @@ namespace framewatch::daemon {
 /// (acknowledged_t) every second and after each request.
 class AcknowledgeDesk {
  public:
-  static constexpr std::size_t kMostRequests = 16;  ///< of LCM that wait; a sender repeats its own
+  static constexpr std::size_t kMaxRequests = 16;  ///< of LCM that wait; a sender repeats its own
   using Done = std::function<void(const event_t&, const Acknowledgement&)>;
   /// The events that can be acknowledged.
   using Raised = std::vector<RaisedEvents*>;

@@ -19,7 +19,7 @@ bool ActionQueue::wanted(const event_t& e) const {
 }
 
 void ActionQueue::remember(const Key& key, std::int64_t now_us) {
-  if (delivered_us_.size() >= kMostDelivered && !delivered_us_.contains(key))
+  if (delivered_us_.size() >= kMaxDelivered && !delivered_us_.contains(key))
     delivered_us_.erase(std::min_element(delivered_us_.begin(), delivered_us_.end(),
                                          [](auto& a, auto& b) { return a.second < b.second; }));
   delivered_us_[key] = now_us;
@@ -55,7 +55,7 @@ int ActionQueue::put(const event_t& e, bool acknowledged, std::int64_t now_us) {
     return 0;
   }
   waiting_.emplace(key, Waiting{e, due_us, order_++});
-  if (waiting_.size() <= kMost) return 0;
+  if (waiting_.size() <= kMax) return 0;
   const auto least = std::min_element(waiting_.begin(), waiting_.end(), [](auto& a, auto& b) {
     return std::pair(a.second.event.severity, -a.second.order) <
            std::pair(b.second.event.severity, -b.second.order);

@@ -18,8 +18,8 @@ namespace framewatch::daemon {
 /// newest news waits. Pure: times are the caller's, of a clock that is never set.
 class ActionQueue {
  public:
-  static constexpr std::size_t kMost = 256;            ///< events that wait
-  static constexpr std::size_t kMostDelivered = 4096;  ///< that are remembered as raised
+  static constexpr std::size_t kMax = 256;            ///< events that wait
+  static constexpr std::size_t kMaxDelivered = 4096;  ///< that are remembered as raised
 
   void configure(const ActionSettings& settings) { settings_ = settings; }
   /// The event was delivered before this began: only its end is to be delivered.

@@ -28,8 +28,8 @@ namespace {
 
 constexpr int kLook_ms = 20;
 constexpr std::int64_t kGrace_us = 1'000'000;  // between asking to end and ending
-constexpr std::size_t kMostOutput = 200;       // bytes of output that are kept
-constexpr int kMostReads = 64;                 // in one go
+constexpr std::size_t kMaxOutput = 200;        // bytes of output that are kept
+constexpr int kMaxReads = 64;                  // in one go
 
 bool is_ours(std::string_view entry) {
   for (const char* name : {"NOTIFY_SOCKET=", "WATCHDOG_", "LISTEN_", "FRAMEWATCH_"})
@@ -82,14 +82,14 @@ pid_t start(std::vector<std::string> arguments, std::vector<std::string> environ
   return failure == 0 ? pid : -1;
 }
 
-/// Reads what is there, up to kMostReads blocks, and keeps the last kMostOutput bytes.
+/// Reads what is there, up to kMaxReads blocks, and keeps the last kMaxOutput bytes.
 void read_some(int file, std::string& output) {
   std::array<char, 4096> buffer;
-  for (int i = 0; i < kMostReads; ++i) {
+  for (int i = 0; i < kMaxReads; ++i) {
     const ssize_t n = ::read(file, buffer.data(), buffer.size());
     if (n <= 0) return;
     output.append(buffer.data(), static_cast<std::size_t>(n));
-    if (output.size() > kMostOutput) output.erase(0, output.size() - kMostOutput);
+    if (output.size() > kMaxOutput) output.erase(0, output.size() - kMaxOutput);
   }
 }
 

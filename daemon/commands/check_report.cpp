@@ -43,11 +43,11 @@ std::size_t allocated_bytes() {
 
 /// The first few names, and how many more.
 std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 6;
-  const std::size_t shown = std::min(names.size(), kMost);
+  constexpr std::size_t kMax = 6;
+  const std::size_t shown = std::min(names.size(), kMax);
   std::string out;
   for (std::size_t i = 0; i < shown; ++i) out += (i ? ", " : "") + names[i];
-  return names.size() > kMost ? fmt::format("{}, {} more", out, names.size() - kMost) : out;
+  return names.size() > kMax ? fmt::format("{}, {} more", out, names.size() - kMax) : out;
 }
 
 void warn_about_panels(CheckReport& report) {

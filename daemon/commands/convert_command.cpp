@@ -73,12 +73,12 @@ bool is_force(const Record& record, const std::string& name) {
 drivers::PlausibleRange range_of(const std::optional<Config>& config, const Record& record,
                                  const std::string& name) {
   drivers::PlausibleRange range;
-  if (is_force(record, name)) range.range_mps2 = drivers::kMostValue;
+  if (is_force(record, name)) range.range_mps2 = drivers::kMaxValue;
   if (!config) return range;
   for (const estimator::SensorAxis& axis : config->pipeline.axes) {
     if (axis.name != name) continue;
     range.scale = axis.scale;
-    if (axis.is_force) range.range_mps2 = drivers::kMostValue;
+    if (axis.is_force) range.range_mps2 = drivers::kMaxValue;
     if (axis.range > 0) range.range_mps2 = axis.range;
   }
   return range;

@@ -26,7 +26,7 @@ namespace {
 
 constexpr int kDelivery_ms = 1000;
 constexpr double kShaken_s = 15;
-constexpr double kLeastSpeed = 3;  // times real time: room for bursts and for other programs
+constexpr double kMinSpeed = 3;  // times real time: room for bursts and for other programs
 constexpr std::size_t kDisk_bytes = 1 << 20;
 constexpr double kSlowDisk_s = 1;
 constexpr std::int64_t kLittleDisk_bytes = 1'000'000'000;
@@ -130,7 +130,7 @@ MachineCheck check_estimate() {
   }
   const double speed = 1e6 * kShaken_s / static_cast<double>(spent_us);
   const bool right = found > 0 && worst <= DemoView::kFrameLimit_ratio;
-  MachineCheck check{right && speed >= kLeastSpeed, "estimate",
+  MachineCheck check{right && speed >= kMinSpeed, "estimate",
                      fmt::format("{} frames of a virtual building within {:.2f} %, {:.0f} times as "
                                  "fast as they come, {}",
                                  found, 100 * worst, speed, instruction_set())};

@@ -12,7 +12,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kLeast = 1e-6;  ///< values of a design must be positive
+constexpr double kMin = 1e-6;  ///< values of a design must be positive
 
 /// [story][frame] lists of stiffness or damping, as in [structure.design].
 std::string grid(const estimator::ParameterTable& table, const Eigen::VectorXd& theta, int stories,
@@ -22,7 +22,7 @@ std::string grid(const estimator::ParameterTable& table, const Eigen::VectorXd& 
     out += story > 1 ? ", [" : "[";
     for (int f = from; f < from + count; ++f) {
       const int at = damping ? table.frame_damping(story, f) : table.frame_stiffness(story, f);
-      out += fmt::format("{}{:.9g}", f > from ? ", " : "", std::max(theta[at], kLeast));
+      out += fmt::format("{}{:.9g}", f > from ? ", " : "", std::max(theta[at], kMin));
     }
     out += "]";
   }
@@ -40,7 +40,7 @@ std::string panels(const estimator::Structure& s, const estimator::ParameterTabl
         const int panel = l * (s.m() - 1) + j;
         const int at =
             damping ? table.panel_damping(story, panel) : table.panel_stiffness(story, panel);
-        out += fmt::format("{}{:.9g}", j > 0 ? ", " : "", std::max(theta[at], kLeast));
+        out += fmt::format("{}{:.9g}", j > 0 ? ", " : "", std::max(theta[at], kMin));
       }
       out += "]";
     }
@@ -55,7 +55,7 @@ std::string bending(const estimator::Plant& plant, const estimator::Model& model
   for (const estimator::ModelEffect& e : model.effects) {
     const std::size_t along = e.place.direction == estimator::Direction::x ? 0 : 1;
     if (e.form != estimator::LawForm::bending || !(plant.bending[along] > 0)) continue;
-    const double flexibility = std::max(e.parameters[0].plain(), kLeast / plant.bending[along]);
+    const double flexibility = std::max(e.parameters[0].plain(), kMin / plant.bending[along]);
     out += along == 0 ? "krx_nmprad = [" : "kry_nmprad = [";
     for (int floor = 0; floor < plant.structure.stories; ++floor)
       out += fmt::format("{}{:.9g}", floor > 0 ? ", " : "",

@@ -20,8 +20,8 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr Eigen::Index kLeastInstants = 400;
-constexpr int kMostMissing = 3;  ///< successive samples that are interpolated
+constexpr Eigen::Index kMinInstants = 400;
+constexpr int kMaxMissing = 3;  ///< successive samples that are interpolated
 constexpr double kEverything_s = 1e9;
 
 constexpr double kSameInstant = 1e-6;  ///< of a sample
@@ -133,7 +133,7 @@ void interpolate(const Config& config, const estimator::ComponentTest& component
       const bool end = i == record.samples.accel.rows();
       if (!end && !std::isfinite(record.samples.accel(i, a))) continue;
       const Eigen::Index missing = i - last - 1;
-      if (missing > kMostMissing) {
+      if (missing > kMaxMissing) {
         problems.push_back(fmt::format("{}: channel '{}': {} samples missing after {:.3f} s",
                                        record.path, name_of_column(config, component, a), missing,
                                        static_cast<double>(last + 1) / record.samples.rate_hz));
@@ -188,9 +188,9 @@ std::optional<DiagnoseRecord> read_one(const Config& config, const std::string& 
   if (!read) return std::nullopt;
   interpolate(config, component, out, problems);
   if (!log && problems.size() == before) take_whole_delays(config, out.samples);
-  if (out.samples.accel.rows() < kLeastInstants)
+  if (out.samples.accel.rows() < kMinInstants)
     problems.push_back(fmt::format("{}: {} instants are too short, at least {} are needed", path,
-                                   out.samples.accel.rows(), kLeastInstants));
+                                   out.samples.accel.rows(), kMinInstants));
   out.sha256 = sha256_of_file(path);
   if (problems.size() > before) return std::nullopt;
   if (!component.prescribed && begins_in_motion(config, out))

@@ -13,16 +13,16 @@ namespace {
 
 using estimator::ClockOffset;
 
-constexpr std::size_t kMostNames = 4;
+constexpr std::size_t kMaxNames = 4;
 
 std::string names_of(const estimator::Plant& plant, const std::vector<ClockOffset>& offsets) {
   std::vector<std::string> names;
   for (const ClockOffset& o : offsets)
     names.push_back(plant.axes[static_cast<std::size_t>(o.axis)].name);
   const std::size_t count = names.size();
-  if (count > kMostNames) names.resize(kMostNames);
+  if (count > kMaxNames) names.resize(kMaxNames);
   const std::string more =
-      count > kMostNames ? fmt::format(" and {} more", count - kMostNames) : std::string();
+      count > kMaxNames ? fmt::format(" and {} more", count - kMaxNames) : std::string();
   return fmt::format("{}{}", fmt::join(names, ", "), more);
 }
 

@@ -43,9 +43,9 @@ constexpr const char* kStyle =
 
 namespace {
 
-constexpr std::size_t kShortTable = 10;   // rows; it stays on one page of paper
-constexpr std::size_t kLongWords = 40;    // characters
-constexpr std::size_t kMostColumns = 16;  // that words are looked for in
+constexpr std::size_t kShortTable = 10;  // rows; it stays on one page of paper
+constexpr std::size_t kLongWords = 40;   // characters
+constexpr std::size_t kMaxColumns = 16;  // that words are looked for in
 
 bool is_number(const std::string& cell) {
   return !cell.empty() && std::string("0123456789+-.").find(cell[0]) != std::string::npos;
@@ -55,7 +55,7 @@ bool is_number(const std::string& cell) {
 std::string columns_of_words(std::size_t columns,
                              const std::vector<std::vector<std::string>>& rows) {
   std::string out;
-  for (std::size_t c = 1; c < std::min(columns, kMostColumns); ++c) {
+  for (std::size_t c = 1; c < std::min(columns, kMaxColumns); ++c) {
     std::size_t longest = 0;
     bool words = !rows.empty();
     for (const auto& row : rows) {
@@ -72,7 +72,7 @@ std::string columns_of_words(std::size_t columns,
 /// Left-aligned, long ones broken into lines: what columns_of_words() names.
 std::string style_of_words() {
   std::string left, broken;
-  for (std::size_t c = 2; c <= kMostColumns; ++c) {
+  for (std::size_t c = 2; c <= kMaxColumns; ++c) {
     const std::string n = std::to_string(c), comma = left.empty() ? "" : ",";
     left += comma + ".w" + n + " th:nth-child(" + n + "),.w" + n + " td:nth-child(" + n + ")";
     broken += comma + ".l" + n + " td:nth-child(" + n + ")";

@@ -13,16 +13,16 @@ namespace framewatch::daemon {
 using Json = nlohmann::ordered_json;
 
 /// What is larger can be infinite once it is rounded.
-constexpr double kMostInJson = 1e300;
+constexpr double kMaxInJson = 1e300;
 
-/// "[1.25,null,3]": values beyond +-kMostInJson and those that are no numbers are null. format: of
+/// "[1.25,null,3]": values beyond +-kMaxInJson and those that are no numbers are null. format: of
 /// each value.
 template <typename Values>
 std::string json_list(const Values& values, const char* format = "{}") {
   std::string out;
   for (const auto value : values) {
     if (!out.empty()) out += ',';
-    if (std::abs(static_cast<double>(value)) <= kMostInJson)
+    if (std::abs(static_cast<double>(value)) <= kMaxInJson)
       fmt::format_to(std::back_inserter(out), fmt::runtime(format), value);
     else
       out += "null";

@@ -14,7 +14,7 @@ namespace framewatch::daemon {
 class MatFile {
  public:
   /// Largest size of a variable in that format.
-  static constexpr std::size_t kMostBytes = std::size_t{1} << 31;
+  static constexpr std::size_t kMaxBytes = std::size_t{1} << 31;
 
   explicit MatFile(_mat_t* file) : file_(file) {}
   /// rows x columns from values in row-major order.

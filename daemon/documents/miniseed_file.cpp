@@ -14,10 +14,10 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostCounts = 65536;  // that wait for a record
+constexpr std::size_t kMaxCounts = 65536;  // that wait for a record
 constexpr int kRecordBytes = 512;
 // Steim-2 holds differences of 30 bits.
-constexpr std::int32_t kMostCount = (1 << 28) - 1;
+constexpr std::int32_t kMaxCount = (1 << 28) - 1;
 
 struct FreeRecord {
   void operator()(MSRecord* record) const {
@@ -76,11 +76,11 @@ bool MiniseedFile::put(std::size_t channel, std::int64_t time_us, std::int32_t c
   Run& run = runs_[channel];
   const double due_us = 1e6 * static_cast<double>(run.counts.size()) / rate_hz_;
   const double off_us = static_cast<double>(time_us - run.start_us) - due_us;
-  if ((std::abs(off_us) > 0.5e6 / rate_hz_ || run.counts.size() >= kMostCounts) &&
+  if ((std::abs(off_us) > 0.5e6 / rate_hz_ || run.counts.size() >= kMaxCounts) &&
       !write_run(channel))
     return false;
   if (run.counts.empty()) run.start_us = time_us;
-  run.counts.push_back(std::clamp(count, -kMostCount, kMostCount));
+  run.counts.push_back(std::clamp(count, -kMaxCount, kMaxCount));
   return true;
 }
 

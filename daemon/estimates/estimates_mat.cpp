@@ -30,7 +30,7 @@ bool EstimatesMatWriter::open(const std::string& path, const std::vector<std::st
 bool EstimatesMatWriter::write(const window_estimate_t& e) {
   error_ = fault_of(e, names_.size());
   if (!error_.empty()) return false;
-  if ((columns_[0].values.size() + names_.size()) * sizeof(double) > MatFile::kMostBytes) {
+  if ((columns_[0].values.size() + names_.size()) * sizeof(double) > MatFile::kMaxBytes) {
     error_ =
         "a variable of a MATLAB 5 file holds at most 2 GiB: shorten with --from and --to, or "
         "write a .csv.gz";

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kStatusIsEarly_us = 2'000'000;  // windows come after their last sample
 constexpr double kBoxesPerWindow = 10;
-constexpr std::size_t kMostTaken = 4096;
+constexpr std::size_t kMaxTaken = 4096;
 
 std::int64_t floor_to(std::int64_t time_us, std::int64_t step_us) {
   const std::int64_t rest = time_us % step_us;
@@ -119,7 +119,7 @@ std::vector<PeriodData> PeriodCollector::take_late() {
 void PeriodCollector::taken(std::int64_t start_us, std::int64_t last_us) {
   std::int64_t& known = taken_.try_emplace(start_us, last_us).first->second;
   known = std::max(known, last_us);
-  if (taken_.size() > kMostTaken) taken_.erase(taken_.begin());
+  if (taken_.size() > kMaxTaken) taken_.erase(taken_.begin());
 }
 
 }  // namespace framewatch::daemon

@@ -17,7 +17,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostNotes = 20, kMostEvents = 10000;
+constexpr std::size_t kMaxNotes = 20, kMaxEvents = 10000;
 
 class Reader {
  public:
@@ -40,13 +40,13 @@ class Reader {
         session_.watch = std::move(*watch);
     } else if (kind == model_fit_t::getHash()) {
       model_fit(event);
-    } else if (kind == event_t::getHash() && session_.events.size() < kMostEvents) {
+    } else if (kind == event_t::getHash() && session_.events.size() < kMaxEvents) {
       if (auto found = drivers::decoded<event_t>(event.data))
         session_.events.push_back(std::move(*found));
     }
   }
   void note(std::string text) {
-    if (++notes_ <= kMostNotes) session_.notes.push_back(std::move(text));
+    if (++notes_ <= kMaxNotes) session_.notes.push_back(std::move(text));
   }
   bool has_table() const { return has_table_; }
 

@@ -37,9 +37,9 @@ class AbsurdEvents {
 
     template <typename Archive>
     void archive(Archive& a) {
-      for (std::int64_t* count : {&seen, &before}) a.within(*count, 0, a.kMostCount);
+      for (std::int64_t* count : {&seen, &before}) a.within(*count, 0, a.kMaxCount);
       for (std::int64_t* us : {&since_us, &newest_us})
-        a.within(*us, -2 * a.kMostCount, 2 * a.kMostCount);
+        a.within(*us, -2 * a.kMaxCount, 2 * a.kMaxCount);
       a(raised);
     }
   };

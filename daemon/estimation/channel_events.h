@@ -45,9 +45,9 @@ class ChannelEvents {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a.within(seconds, 0, a.kMostCount);
+      a.within(seconds, 0, a.kMaxCount);
       a(raised);
-      a.within(since_us, -2 * a.kMostCount, 2 * a.kMostCount);
+      a.within(since_us, -2 * a.kMaxCount, 2 * a.kMaxCount);
     }
   };
   struct Channel {
@@ -59,8 +59,8 @@ class ChannelEvents {
 
     template <typename Archive>
     void archive(Archive& a) {
-      for (std::int64_t* count : {&received, &stuck}) a.within(*count, 0, a.kMostCount);
-      a.within(heard_us, -2 * a.kMostCount, 2 * a.kMostCount);
+      for (std::int64_t* count : {&received, &stuck}) a.within(*count, 0, a.kMaxCount);
+      a.within(heard_us, -2 * a.kMaxCount, 2 * a.kMaxCount);
       a(value, changed, silent, still);
     }
   };

@@ -13,7 +13,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostFindings = 50;
+constexpr std::size_t kMaxFindings = 50;
 constexpr double kMost_degc = 200;  // either way: no thermometer on a building says more
 
 void subtract(const estimator::AxisCounters& before, estimator::AxisCounters& from) {
@@ -184,8 +184,7 @@ void Estimation::intake_notice(const drivers::IntakeNotice& notice) {
 
 void Estimation::announce(const event_t& event) {
   raised_.note(event);
-  if (shaking_ && shaking_->active() && findings_.size() < kMostFindings)
-    findings_.push_back(event);
+  if (shaking_ && shaking_->active() && findings_.size() < kMaxFindings) findings_.push_back(event);
   publisher_.event(event);
   if (taps_.event) taps_.event(event);
 }

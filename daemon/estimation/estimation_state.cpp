@@ -20,9 +20,9 @@ void archive_tuning(Archive& a, int parameters, std::size_t axes,
   if (!known) return tuning.reset();
   if (!tuning) tuning.emplace(estimator::Tuning{Eigen::VectorXd(parameters), {}});
   tuning->noise_density.resize(axes);
-  for (double& value : tuning->theta0) a.within(value, std::numeric_limits<double>::min(), a.kMost);
+  for (double& value : tuning->theta0) a.within(value, std::numeric_limits<double>::min(), a.kMax);
   for (double& value : tuning->noise_density)
-    a.within(value, std::numeric_limits<double>::min(), a.kMost);
+    a.within(value, std::numeric_limits<double>::min(), a.kMax);
   a(tuning->found_right);
 }
 
@@ -54,8 +54,7 @@ template <typename Visit>
 void Estimation::each_section(const Visit& visit) {
   visit("counts", [this](auto& a) {
     a(seconds_);
-    for (std::int64_t* count : {&windows_, &absurd_temperatures_})
-      a.within(*count, 0, a.kMostCount);
+    for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMaxCount);
   });
   visit("events", [this](auto& a) { a(raised_); });
   visit("lcm", [this](auto& a) { a(intake_); });

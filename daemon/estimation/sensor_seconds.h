@@ -18,7 +18,7 @@ class SensorSeconds {
   void archive(Archive& a) {
     a(started_);
     for (std::int64_t* us : {&newest_us_, &next_us_})
-      a.within(*us, -2 * a.kMostCount, 2 * a.kMostCount + kSecond_us);
+      a.within(*us, -2 * a.kMaxCount, 2 * a.kMaxCount + kSecond_us);
     a.within(strays_, 0, kStraysToFollow);
   }
 

@@ -20,15 +20,15 @@ namespace {
 const std::string kMagic = "framewatch state\n";
 constexpr std::int32_t kFormat = 17;  ///< goes up whenever archive() of any class changes
 constexpr std::size_t kDigestBytes = 64;
-constexpr std::int64_t kMostBytes = std::int64_t{1} << 30;
-constexpr std::size_t kMostEntries = 100;  ///< of a list in the head, which has some ten
+constexpr std::int64_t kMaxBytes = std::int64_t{1} << 30;
+constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head, which has some ten
 constexpr const char* kUnlike = "has sizes or numbers that cannot be right";
 
 /// A list of the head: `count` of them are there.
 template <typename Archive, typename T>
 void archive_list(Archive& a, std::vector<T>& list) {
   const std::size_t count = a.count(list.size());
-  if (count > kMostEntries) return a.refuse();
+  if (count > kMaxEntries) return a.refuse();
   list.resize(count);
   for (T& entry : list) entry.archive(a);
 }
@@ -49,7 +49,7 @@ struct Head {
     template <typename Archive>
     void archive(Archive& a) {
       a(name);
-      a.within(size, 0, static_cast<double>(kMostBytes));
+      a.within(size, 0, static_cast<double>(kMaxBytes));
       a(digest);
     }
   };
@@ -114,7 +114,7 @@ struct ReadState {
 
 ReadState read_state(const std::string& path) {
   ReadState out;
-  const std::optional<std::string> text = drivers::read_whole_file(path, kMostBytes, out.problem);
+  const std::optional<std::string> text = drivers::read_whole_file(path, kMaxBytes, out.problem);
   if (!text) return out;
   const std::vector<std::uint8_t> bytes{text->begin(), text->end()};
   estimator::StateReader reader(bytes);

@@ -41,15 +41,15 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
 
 /// "story 2", "stories 1 to 6", "stories 1, 3, 5 and 4 more"; ascending.
 std::string stories_words(const std::vector<int>& stories) {
-  constexpr std::size_t kMostNamed = 8;
+  constexpr std::size_t kMaxNamed = 8;
   if (stories.size() == 1) return fmt::format("story {}", stories.front());
   const bool row = stories.back() - stories.front() + 1 == static_cast<int>(stories.size());
   if (row && stories.size() > 2)
     return fmt::format("stories {} to {}", stories.front(), stories.back());
   std::string out = "stories ";
-  for (std::size_t i = 0; i < std::min(stories.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(stories.size(), kMaxNamed); ++i)
     out += fmt::format("{}{}", i == 0 ? "" : ", ", stories[i]);
-  if (stories.size() > kMostNamed) out += fmt::format(" and {} more", stories.size() - kMostNamed);
+  if (stories.size() > kMaxNamed) out += fmt::format(" and {} more", stories.size() - kMaxNamed);
   return out;
 }
 

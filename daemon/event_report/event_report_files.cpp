@@ -61,7 +61,7 @@ void EventReportFiles::write(const EventReport& report, const Config& config) {
     return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   });
   const std::string name = event_report_name(report);
-  if (writing_.size() == kMost) return log_lost_report(name, "others are still being written");
+  if (writing_.size() == kMax) return log_lost_report(name, "others are still being written");
   const std::string thrown = drivers::caught([&] {
     writing_.push_back(std::async(std::launch::async, [report, config, name] {
       std::string problem;

@@ -14,11 +14,11 @@ namespace framewatch::daemon {
 std::string write_event_report(const EventReport& report, const Config& config,
                                const std::string& directory);
 
-/// Writes reports in threads of their own, so that a slow disk delays no estimate. At most kMost
+/// Writes reports in threads of their own, so that a slow disk delays no estimate. At most kMax
 /// wait for it; what does not fit is said in the log.
 class EventReportFiles {
  public:
-  static constexpr std::size_t kMost = 4;
+  static constexpr std::size_t kMax = 4;
 
   EventReportFiles() = default;
   ~EventReportFiles();  ///< waits until they are written

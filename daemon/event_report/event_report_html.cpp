@@ -15,7 +15,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostBars = 40;
+constexpr std::size_t kMaxBars = 40;
 
 std::string number(double value, const char* format) {
   return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
@@ -63,7 +63,7 @@ std::string drift_section(const EventReport& r, const Config& config, const Drif
   SvgSeries bars{"", 0, SvgMark::bars, {}, {}, {}};
   const bool incomplete = !r.shaking.unheard.empty();
   for (const estimator::StoryDrift& drift : drifts.drifts) {
-    if (stories.categories.size() == kMostBars) break;
+    if (stories.categories.size() == kMaxBars) break;
     stories.categories.push_back(fmt::format("story {}", drift.story));
     bars.x.push_back(static_cast<double>(stories.categories.size()));
     bars.y.push_back(100 * drift.ratio);
@@ -111,7 +111,7 @@ std::string stiffness_section(const EventReport& r, const Config& config) {
                     mean(k.before), from, mean(k.during), mean(k.after),
                     k.free ? "free vibration" : "last windows",
                     k.known() ? change_with_error(k.ratio(), k.std_error()) : "-"});
-    if (!k.known() || names.categories.size() == kMostBars) continue;
+    if (!k.known() || names.categories.size() == kMaxBars) continue;
     names.categories.push_back(table[p].name);
     bars.x.push_back(static_cast<double>(names.categories.size()));
     bars.y.push_back(100 * k.ratio());

@@ -9,7 +9,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostSaid = 100;  // bytes
+constexpr std::size_t kMaxSaid = 100;  // bytes
 
 }  // namespace
 
@@ -26,7 +26,7 @@ acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
 
 std::string who_text(const std::string& user, const std::string& says) {
   if (says.empty()) return user;
-  return fmt::format("{} (says: {})", user, printable(says, kMostSaid));
+  return fmt::format("{} (says: {})", user, printable(says, kMaxSaid));
 }
 
 void add_acknowledged(acknowledged_t& message, const event_t& event, const Acknowledgement& by) {

@@ -15,7 +15,7 @@ void RaisedEvents::note(const event_t& e) {
   } else if (same != events_.end()) {
     *same = e;
   } else {
-    if (events_.size() == kMost) {
+    if (events_.size() == kMax) {
       forget(events_.front().id);
       events_.erase(events_.begin());
     }

@@ -22,7 +22,7 @@ void archive_event(Archive& a, event_t& e) {
 /// them.
 class RaisedEvents {
  public:
-  static constexpr std::size_t kMost = 1000;  ///< beyond, the oldest one is forgotten
+  static constexpr std::size_t kMax = 1000;  ///< beyond, the oldest one is forgotten
 
   /// Adds or replaces a raised event; a cleared one is removed.
   void note(const event_t& event);

@@ -17,7 +17,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr double kSilent_s = 3;
-constexpr int kAllStories = 8, kMostSwayed = 5;
+constexpr int kAllStories = 8, kMaxSwayed = 5;
 constexpr double kStronger = 1.2;  // than the newest shake: worth a line of its own
 
 std::string capital(std::string text) {
@@ -166,12 +166,12 @@ void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
     };
     std::stable_sort(stories.begin(), stories.end(),
                      [&](int a, int b) { return swayed(a) > swayed(b); });
-    stories.resize(kMostSwayed);
+    stories.resize(kMaxSwayed);
   }
   for (const int story : stories) out.more.push_back({drift_line(k, s, story), 0, 0});
   if (s.stories > kAllStories)
     out.more.push_back(
-        {fmt::format("The other {} stories swayed less.", s.stories - kMostSwayed), 0, 0});
+        {fmt::format("The other {} stories swayed less.", s.stories - kMaxSwayed), 0, 0});
 }
 
 std::string accel_words(const Shake& shake, const Config& config) {

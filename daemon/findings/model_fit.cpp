@@ -26,7 +26,7 @@ void ModelFit::push(const window_estimate_t& e) {
   mean_ += (seconds_ > 0 ? std::min(1.0, step_s / seconds_) : 1) * (square - mean_);
   if (seconds_ < kMean_s) return;
   const double residual = std::sqrt(mean_);
-  if (fits_ && residual > kMost) {
+  if (fits_ && residual > kMax) {
     fits_ = false;
     since_us_ = e.window_end_us - static_cast<std::int64_t>(1e6 * kMean_s);
   } else if (!fits_ && residual < kAgain) {

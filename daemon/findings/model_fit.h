@@ -10,11 +10,11 @@
 namespace framewatch::daemon {
 
 /// Whether the identified model explains the motion, from the residuals of the main windows that
-/// identify something: it does not while their mean over kMean_s is over kMost. With [gap] in the
+/// identify something: it does not while their mean over kMean_s is over kMax. With [gap] in the
 /// configuration its events say it more sharply; this needs no model of the building beside.
 class ModelFit {
  public:
-  static constexpr double kMost = 0.5, kAgain = 0.4, kMean_s = 10;
+  static constexpr double kMax = 0.5, kAgain = 0.4, kMean_s = 10;
 
   void push(const window_estimate_t& estimate);
 

@@ -18,11 +18,11 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kMostEvents = 1'000'000;
+constexpr std::int64_t kMaxEvents = 1'000'000;
 
 void print_events(const HistoryRequest& r, SummaryQuery& summaries) {
   std::multimap<std::int64_t, std::string> lines;
-  for (const event_t& e : summaries.events(r.from_us, r.to_us, kMostEvents))
+  for (const event_t& e : summaries.events(r.from_us, r.to_us, kMaxEvents))
     lines.emplace(e.time_us, event_line(e));
   for (const StoredAcknowledgement& a : summaries.acknowledgements(r.from_us, r.to_us))
     lines.emplace(a.time_us, acknowledgement_line(a));

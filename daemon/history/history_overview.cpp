@@ -17,7 +17,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostParameters = 24, kMostChannels = 6;
+constexpr std::size_t kMaxParameters = 24, kMaxChannels = 6;
 constexpr std::int64_t kEventsTold = 5;
 constexpr std::int64_t kEver_us = INT64_MAX / 4;
 
@@ -55,7 +55,7 @@ std::string parameter_lines(SummaryQuery& summaries, const SummaryPeriods& perio
   std::string out = fmt::format("\nSince {} ({} s):\n  {:<12} {:>12} {:>12} {:>12} {:>10}  {}\n",
                                 utc_text(period.last_us), period.period_s, "", "q1", "median", "q3",
                                 "observable", "unit");
-  for (std::size_t p = 0; p < std::min(parameters.size(), kMostParameters); ++p) {
+  for (std::size_t p = 0; p < std::min(parameters.size(), kMaxParameters); ++p) {
     const auto rows = summaries.rows(parameters[p].id, period.period_s, period.last_us, kEver_us);
     if (rows.empty()) continue;
     const SummaryRow& r = rows.back();
@@ -65,8 +65,8 @@ std::string parameter_lines(SummaryQuery& summaries, const SummaryPeriods& perio
     out += fmt::format("  {:<12} {:>12} {:>12} {:>12} {:>9.1f}%  {}\n", parameters[p].name,
                        value(r.q1), value(r.median), value(r.q3), 100 * share, parameters[p].unit);
   }
-  if (parameters.size() > kMostParameters)
-    out += fmt::format("  and {} more: --out FILE.csv\n", parameters.size() - kMostParameters);
+  if (parameters.size() > kMaxParameters)
+    out += fmt::format("  and {} more: --out FILE.csv\n", parameters.size() - kMaxParameters);
   return out;
 }
 
@@ -85,12 +85,12 @@ std::string channel_lines(SummaryQuery& summaries) {
   });
   std::stable_sort(channels.begin(), channels.end(),
                    [](const auto& a, const auto& b) { return a.lost > b.lost; });
-  for (std::size_t c = 0; c < std::min(channels.size(), kMostChannels); ++c)
+  for (std::size_t c = 0; c < std::min(channels.size(), kMaxChannels); ++c)
     out += fmt::format("  {:<12} {} lost, {} late, {} rejected, {} stuck, {} clipped\n",
                        channels[c].name, channels[c].lost, channels[c].late, channels[c].rejected,
                        channels[c].stuck, channels[c].clipped);
-  if (channels.size() > kMostChannels)
-    out += fmt::format("  and {} more channels\n", channels.size() - kMostChannels);
+  if (channels.size() > kMaxChannels)
+    out += fmt::format("  and {} more channels\n", channels.size() - kMaxChannels);
   return out;
 }
 

@@ -102,7 +102,7 @@ class RawJob {
                          static_cast<double>(seen) / static_cast<double>(expected_));
           if (!good || !place[c.channel]) return;
           ++samples;
-          beyond += c.count == drivers::kMostCount || c.count == -drivers::kMostCount;
+          beyond += c.count == drivers::kMaxCount || c.count == -drivers::kMaxCount;
           const double accel = c.count == drivers::kNoCount
                                    ? std::numeric_limits<double>::quiet_NaN()
                                    : c.count * c.resolution_mps2;

@@ -15,7 +15,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostNotes = 100;
+constexpr std::size_t kMaxNotes = 100;
 constexpr std::int64_t kMargin_us = 600'000'000;      // of clocks that step
 constexpr std::int64_t kLongest_us = 86'400'000'000;  // a raw log ends every day at least
 
@@ -67,8 +67,8 @@ bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std
     for (; read != drivers::LogRead::end && read != drivers::LogRead::error;
          read = reader.next(event)) {
       if (read != drivers::LogRead::event) {
-        if (!log.partial && notes.size() <= kMostNotes)
-          notes.push_back(notes.size() == kMostNotes
+        if (!log.partial && notes.size() <= kMaxNotes)
+          notes.push_back(notes.size() == kMaxNotes
                               ? "what else is damaged is not listed"
                               : fmt::format("{}: {} bytes from byte {} on are damaged: {}",
                                             log.path, reader.damage().bytes, reader.damage().offset,

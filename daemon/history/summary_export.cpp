@@ -67,7 +67,7 @@ std::string write_mat(const std::string& path, std::int64_t period_s,
     start_s.push_back(1e-6 * static_cast<double>(start_us));
   }
   const std::size_t cells = start_s.size() * summaries.size();
-  if (cells * sizeof(double) > MatFile::kMostBytes)
+  if (cells * sizeof(double) > MatFile::kMaxBytes)
     return path + ": a variable of a MATLAB 5 file holds at most 2 GiB: a shorter time, please";
   std::vector<std::string> names, units;
   for (const NamedSummaries& s : summaries) {

@@ -116,7 +116,7 @@ bool SummaryHistory::begin_anew(const std::string& reason) {
   store_.close();
   std::vector<event_t> readable;
   if (SummaryQuery old; old.open(config_.history->directory).empty())
-    readable = old.events(INT64_MIN / 4, INT64_MAX / 4, kMostEvents);
+    readable = old.events(INT64_MIN / 4, INT64_MAX / 4, kMaxEvents);
   SetAside aside = counters().set_aside;
   set_aside_database(database, host_clock_us(), reason, aside);
   if (aside.problem.empty()) {
@@ -168,15 +168,15 @@ void SummaryHistory::commit() {
 
 void SummaryHistory::bound() {
   std::int64_t dropped = 0;
-  while (waiting().periods.size() > kMostPeriods) {
+  while (waiting().periods.size() > kMaxPeriods) {
     dropped += waiting().periods.front().windows;
     waiting().periods.erase(waiting().periods.begin());
   }
-  while (waiting().events.size() > kMostEvents) {
+  while (waiting().events.size() > kMaxEvents) {
     ++dropped;
     waiting().events.erase(waiting().events.begin());
   }
-  while (waiting().acknowledged.size() > kMostEvents) {
+  while (waiting().acknowledged.size() > kMaxEvents) {
     ++dropped;
     waiting().acknowledged.erase(waiting().acknowledged.begin());
   }

@@ -24,8 +24,8 @@ namespace framewatch::daemon {
 class SummaryHistory {
  public:
   static constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
-  static constexpr std::size_t kMostPeriods = 240;  ///< that wait
-  static constexpr std::size_t kMostEvents = 10000;
+  static constexpr std::size_t kMaxPeriods = 240;  ///< that wait
+  static constexpr std::size_t kMaxEvents = 10000;
 
   struct Counters {
     std::int64_t commits = 0, until_us = 0;

@@ -10,8 +10,8 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr int kMostBays = 20;
-constexpr std::size_t kMostDecimals = 3;  ///< that anybody types: 18000,20000 are two masses
+constexpr int kMaxBays = 20;
+constexpr std::size_t kMaxDecimals = 3;  ///< that anybody types: 18000,20000 are two masses
 
 bool may_be_decimal_comma(std::string_view text) {
   const std::size_t comma = text.find(',');
@@ -20,7 +20,7 @@ bool may_be_decimal_comma(std::string_view text) {
   };
   std::size_t decimals = 0;
   while (comma != std::string_view::npos && is_digit(comma + 1 + decimals)) ++decimals;
-  return decimals > 0 && decimals <= kMostDecimals && comma > 0 && is_digit(comma - 1) &&
+  return decimals > 0 && decimals <= kMaxDecimals && comma > 0 && is_digit(comma - 1) &&
          text.find(',', comma + 1) == std::string_view::npos &&
          text.find('.') == std::string_view::npos;
 }
@@ -62,7 +62,7 @@ std::optional<Bays> parse_bays(std::string_view text) {
   if (cross == std::string_view::npos) return std::nullopt;
   const auto x = drivers::parse_integer(drivers::trimmed(text.substr(0, cross)));
   const auto y = drivers::parse_integer(drivers::trimmed(text.substr(cross + 1)));
-  const auto good = [](const auto& n) { return n && *n >= 0 && *n <= kMostBays; };
+  const auto good = [](const auto& n) { return n && *n >= 0 && *n <= kMaxBays; };
   if (!good(x) || !good(y)) return std::nullopt;
   return Bays{static_cast<int>(*x), static_cast<int>(*y)};
 }

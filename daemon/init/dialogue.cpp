@@ -18,9 +18,9 @@ constexpr const char* kChannel = "channel";
 
 /// The first lines: who answers one question needs no more of them.
 std::string first_lines(const std::string& text) {
-  constexpr int kMost = 3;
+  constexpr int kMax = 3;
   std::size_t at = 0;
-  for (int line = 0; line < kMost && at != std::string::npos; ++line) at = text.find('\n', at + 1);
+  for (int line = 0; line < kMax && at != std::string::npos; ++line) at = text.find('\n', at + 1);
   if (at == std::string::npos) return text;
   return fmt::format("{}\n  and {} more like it", text.substr(0, at),
                      std::count(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), '\n'));

@@ -16,7 +16,7 @@ namespace {
 
 using Draft = BuildingDraft;
 
-constexpr int kMostStories = 200;  ///< no building has so many
+constexpr int kMaxStories = 200;  ///< no building has so many
 
 bool always(const Draft&) {
   return true;
@@ -89,8 +89,8 @@ std::string take_dbc(const std::string& text, Draft& d, ColumnCache& files) {
 
 std::string take_stories(const std::string& text, Draft& d, ColumnCache&) {
   const auto number = drivers::parse_integer(text);
-  if (!number || *number < 1 || *number > kMostStories)
-    return fmt::format("a whole number from 1 to {}", kMostStories);
+  if (!number || *number < 1 || *number > kMaxStories)
+    return fmt::format("a whole number from 1 to {}", kMaxStories);
   d.plan.structure.stories = d.station_plan.stories = static_cast<int>(*number);
   d.stories_known = true;
   return "";

@@ -80,7 +80,7 @@ std::string ask_start(const BuildingDraft& d) {
 }
 
 std::string initial_start(const BuildingDraft& d) {
-  return height_m(d) >= kLeastBuildingStory_m * d.plan.structure.stories ? "height" : "none";
+  return height_m(d) >= kMinBuildingStory_m * d.plan.structure.stories ? "height" : "none";
 }
 
 std::string take_start(const std::string& text, BuildingDraft& d, ColumnCache&) {

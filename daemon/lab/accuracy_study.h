@@ -35,9 +35,9 @@ struct AccuracyCase {
   Eigen::VectorXd truth;
   double noise_ratio;
   std::array<double, 3> limit;  ///< medians of k, G, c that must be reached
-  bool bound_limited = false;   ///< k must be within kMostOverBound of the bound
+  bool bound_limited = false;   ///< k must be within kMaxOverBound of the bound
 };
-inline constexpr double kMostOverBound = 1.6;
+inline constexpr double kMaxOverBound = 1.6;
 
 /// The six rows the estimator is held to.
 std::vector<AccuracyCase> accuracy_cases();

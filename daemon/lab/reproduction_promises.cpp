@@ -9,10 +9,10 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr const char* kJudgedKinds[] = {"k", "G", "c"};
-constexpr double kLeastCoverage = 0.90, kMostCoverage = 0.98;
-constexpr double kMostWrong = 0.05;
-constexpr double kLeastHeld = 0.85;
-constexpr double kMostChangeByBias = 1e-4;
+constexpr double kMinCoverage = 0.90, kMaxCoverage = 0.98;
+constexpr double kMaxWrong = 0.05;
+constexpr double kMinHeld = 0.85;
+constexpr double kMaxChangeByBias = 1e-4;
 /// Fewer published values say nothing about the share of intervals that hold.
 constexpr int kFewestToJudge = 200;
 
@@ -24,7 +24,7 @@ void judge_coverage(const AccuracyRow& row, Method method, const std::string& su
     const double share = s.coverage_ratio();
     out.push_back({fmt::format("{}{}: 95 % intervals of {} hold in 90 to 98 %", row.name, suffix,
                                kJudgedKinds[kind]),
-                   percent_1(share), share >= kLeastCoverage && share <= kMostCoverage});
+                   percent_1(share), share >= kMinCoverage && share <= kMaxCoverage});
   }
 }
 
@@ -40,8 +40,8 @@ void judge_row(const AccuracyRow& row, std::vector<Promise>& out) {
     }
     if (c.bound_limited) {
       const double ratio = row.of(Method::matched, 0).quantile(0.5) / row.least_median(0);
-      out.push_back({fmt::format("{}: k within {} times the bound", row.name, kMostOverBound),
-                     fmt::format("{:.2f}", ratio), ratio <= kMostOverBound});
+      out.push_back({fmt::format("{}: k within {} times the bound", row.name, kMaxOverBound),
+                     fmt::format("{:.2f}", ratio), ratio <= kMaxOverBound});
     }
   }
   judge_coverage(row, Method::matched, "", out);
@@ -52,15 +52,15 @@ void judge(const Robustness& r, std::vector<Promise>& out) {
   for (const ExcitationSweep& sweep : r.sweeps)
     out.push_back({fmt::format("{}: published k wrong by more than 5 % from 0.3 % to 3000 % noise "
                                "at most {}",
-                               sweep.name, percent(kMostWrong)),
-                   percent_1(sweep.wrong_ratio(0)), sweep.wrong_ratio(0) <= kMostWrong});
+                               sweep.name, percent(kMaxWrong)),
+                   percent_1(sweep.wrong_ratio(0)), sweep.wrong_ratio(0) <= kMaxWrong});
   for (const Silence& s : r.silences)
     out.push_back({fmt::format("{}{}: nothing published in {:g} h of sensor noise", s.name,
                                s.noise_configured ? "" : ", noise not configured", s.hours),
                    fmt::format("{} of {} windows", s.published, s.windows),
                    s.published == 0 && s.windows > 0});
   out.push_back({"Table 1: a bias of 0.05 m/s^2 with a thermal ramp changes k by less than 1e-4",
-                 fmt::format("{:.1e}", r.change_by_bias), r.change_by_bias < kMostChangeByBias});
+                 fmt::format("{:.1e}", r.change_by_bias), r.change_by_bias < kMaxChangeByBias});
   if (r.random_buildings) judge_row(*r.random_buildings, out);
 }
 
@@ -77,8 +77,8 @@ void judge_wrong_model(const FewSensorsRow& row, std::vector<Promise>& out) {
   if (row.errors.stiffness.published == 0) return;
   const double held = row.errors.held_ratio();
   out.push_back({fmt::format("{}: intervals of k with the model's error hold in {} at least",
-                             row.name, percent(kLeastHeld)),
-                 percent_1(held), held >= kLeastHeld});
+                             row.name, percent(kMinHeld)),
+                 percent_1(held), held >= kMinHeld});
 }
 
 }  // namespace

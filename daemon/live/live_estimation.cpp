@@ -93,7 +93,7 @@ void LiveEstimation::feed() {
 }
 
 void LiveEstimation::keep(Later later) {
-  if (later_.size() == kMostLater)
+  if (later_.size() == kMaxLater)
     ++state_.queue_dropped;
   else
     later_.push_back(std::move(later));

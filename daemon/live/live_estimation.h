@@ -60,7 +60,7 @@ class LiveEstimation {
   void reconfigure(Config next, Reach reach);
   const LiveState& state() const { return state_; }
   static constexpr std::int64_t kFeed_ms = 50;
-  static constexpr std::size_t kMostLater = 1'000'000;  ///< messages and frames kept meanwhile
+  static constexpr std::size_t kMaxLater = 1'000'000;  ///< messages and frames kept meanwhile
   const LiveTimes& times() const { return times_; }
   /// What LCM's receiver did not take.
   drivers::ReceiverCounters dropped() const { return source_.dropped(); }

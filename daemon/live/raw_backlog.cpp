@@ -44,9 +44,9 @@ RawBacklog RawBacklog::read(const Config& config, const std::vector<std::int64_t
   const std::int64_t newest_us = *std::max_element(known_us.begin(), known_us.end());
   std::int64_t from_us = logs.back().start_us - backlog_us(kMost_s);
   if (newest_us != INT64_MIN) from_us = std::max(from_us, newest_us - backlog_us(kOtherClocks_s));
-  const std::size_t most = kMostSamples + static_cast<std::size_t>(config.pipeline.options.rate_hz *
-                                                                   config.history->rotate_s) *
-                                              config.pipeline.axes.size();
+  const std::size_t most = kMaxSamples + static_cast<std::size_t>(config.pipeline.options.rate_hz *
+                                                                  config.history->rotate_s) *
+                                             config.pipeline.axes.size();
   std::vector<int> axis_of;
   const RawVisitor visitor{
       [&](const std::vector<std::string>& names, double) { axis_of = axes_of(names, config); },
@@ -68,8 +68,8 @@ RawBacklog RawBacklog::read(const Config& config, const std::vector<std::int64_t
   if (!problem.empty()) notes.push_back(problem);
   if (!out.samples_.empty())
     out.drop_before(to_microseconds(out.samples_.back().time) - backlog_us(kMost_s));
-  if (out.samples_.size() > kMostSamples)
-    out.drop_before(to_microseconds(out.samples_[out.samples_.size() - kMostSamples].time));
+  if (out.samples_.size() > kMaxSamples)
+    out.drop_before(to_microseconds(out.samples_[out.samples_.size() - kMaxSamples].time));
   if (!resumed) out.keep_strong_motion(config);
   return out;
 }

@@ -18,7 +18,7 @@ class RawBacklog {
  public:
   /// A strong motion's longest time, and what the estimation gets of the time before it.
   static constexpr double kMost_s = 960, kBefore_s = 60;
-  static constexpr std::size_t kMostSamples = 8'000'000;  ///< 200 MB; of more sensors fewer seconds
+  static constexpr std::size_t kMaxSamples = 8'000'000;  ///< 200 MB; of more sensors fewer seconds
 
   struct Message {
     std::size_t before = 0;  ///< index of the sample that it came before

@@ -56,7 +56,7 @@ void doubt_masses(const TomlValue& section, const estimator::Structure& s,
   for (std::size_t i = 0; i < stories; ++i) {
     const auto begin = s.node_mass.begin() + static_cast<std::ptrdiff_t>(i * nodes);
     const double mass = std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(nodes), 0.0);
-    const bool tall = s.story_height[i] >= kLeastBuildingStory_m;
+    const bool tall = s.story_height[i] >= kMinBuildingStory_m;
     const PlausibleRange allowed = tall ? kBuildingDensity : kModelDensity;
     if (allowed.holds(mass / area_m2)) continue;
     doubts.push_back(

@@ -18,7 +18,7 @@ namespace framewatch::daemon {
 namespace {
 
 /// Larger buildings would keep a person waiting for dense matrices.
-constexpr int kMostDegreesOfFreedom = 200;
+constexpr int kMaxDegreesOfFreedom = 200;
 /// What a thousand times in stiffness or mass makes of a frequency.
 constexpr double kThousandfold = 31.6;
 
@@ -38,10 +38,10 @@ const char* stiffness_key(const estimator::Structure& s) {
 void doubt_frequency(const TomlValue& section, const estimator::Structure& s, double first_hz,
                      std::vector<TextProblem>& doubts) {
   const double height_m = std::accumulate(s.story_height.begin(), s.story_height.end(), 0.0);
-  const bool tall = height_m >= kLeastBuildingStory_m * s.stories;
+  const bool tall = height_m >= kMinBuildingStory_m * s.stories;
   const double usual_hz = kFrequencyTimesHeight_mps / height_m;
   const PlausibleRange allowed =
-      tall ? PlausibleRange{usual_hz / kMostOffFrequency, usual_hz * kMostOffFrequency}
+      tall ? PlausibleRange{usual_hz / kMaxOffFrequency, usual_hz * kMaxOffFrequency}
            : kModelFrequency_hz;
   if (allowed.holds(first_hz)) return;
   const std::string usual =
@@ -59,7 +59,7 @@ void doubt_frequency(const TomlValue& section, const estimator::Structure& s, do
 std::optional<double> first_damping_ratio(const estimator::Structure& s,
                                           const estimator::ParameterTable& table,
                                           const Eigen::VectorXd& design) {
-  if (s.degrees_of_freedom() > kMostDegreesOfFreedom) return std::nullopt;
+  if (s.degrees_of_freedom() > kMaxDegreesOfFreedom) return std::nullopt;
   const estimator::Matrices matrices = assemble(s, table, design);
   const Eigen::MatrixXd r = floor_constraint(s);
   const estimator::RealEigen modes = estimator::generalized_eigen(
@@ -93,7 +93,7 @@ void doubt_unequal_stories(const TomlValue& section, const char* key, const esti
       stories[static_cast<std::size_t>(story - 1)] +=
           design[table.frame_stiffness(story, first_frame + f)];
   const auto [least, most] = std::minmax_element(stories.begin(), stories.end());
-  if (!(*most > kMostUnequalStories * *least)) return;
+  if (!(*most > kMaxUnequalStories * *least)) return;
   std::vector<double> sorted = stories;
   std::nth_element(sorted.begin(), sorted.begin() + s.stories / 2, sorted.end());
   const double usual = sorted[static_cast<std::size_t>(s.stories / 2)];
@@ -104,7 +104,7 @@ void doubt_unequal_stories(const TomlValue& section, const char* key, const esti
                    "stories of one building hardly differ by more than {:g} times: a power of ten "
                    "too many or too few?",
                    key, most - stories.begin() + 1, *most, least - stories.begin() + 1, *least,
-                   kMostUnequalStories)});
+                   kMaxUnequalStories)});
 }
 
 }  // namespace

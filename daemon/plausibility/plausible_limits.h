@@ -8,7 +8,7 @@ struct PlausibleRange {
   bool holds(double value) const { return value >= least && value <= most; }
 };
 
-inline constexpr double kLeastBuildingStory_m = 2;  ///< lower ones are a model's
+inline constexpr double kMinBuildingStory_m = 2;  ///< lower ones are a model's
 inline constexpr PlausibleRange kStoryHeight_m{0.02, 20};
 inline constexpr PlausibleRange kUsualStoryHeight_m{2, 8};
 inline constexpr PlausibleRange kSpan_m{0.05, 100};
@@ -18,9 +18,9 @@ inline constexpr PlausibleRange kModelDensity{1, 8000};      ///< of plates of s
 /// First natural frequency of a building of height H (m): 46 / H Hz (Ellis, Proc. Instn Civ. Engrs
 /// 69 (1980) 763, from 163 buildings).
 inline constexpr double kFrequencyTimesHeight_mps = 46;
-inline constexpr double kMostOffFrequency = 10;  ///< times that or a share of it
+inline constexpr double kMaxOffFrequency = 10;  ///< times that or a share of it
 inline constexpr PlausibleRange kModelFrequency_hz{0.2, 100};
 inline constexpr PlausibleRange kFirstDampingRatio{0.001, 0.3};
-inline constexpr double kMostUnequalStories = 100;  ///< stiffness of one over that of another
+inline constexpr double kMaxUnequalStories = 100;  ///< stiffness of one over that of another
 
 }  // namespace framewatch::daemon

@@ -94,7 +94,7 @@ FirstPasses::FirstPasses(const Config& config, const TuningInput& input,
                          const std::function<void(std::int64_t bytes)>& progress) {
   if (!can_be_tuned(config)) return;
   const Config reduced = tuning_only(config);
-  for (bool settled = false; !settled && passes_ < kMostPasses;) {
+  for (bool settled = false; !settled && passes_ < kMaxPasses;) {
     Pass pass(reduced, tuning_);
     const bool whole = read_ = pass.read(reduced, input, progress);
     tuning_ = whole ? pass.tuning() : std::nullopt;

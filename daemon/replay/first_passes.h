@@ -24,11 +24,11 @@ struct TuningInput {
 /// the one before ended, the first with the design. It ends with the input, or when the tuning has
 /// held for kEnough windows with values: of an archive only the part up to its first minute of
 /// strong motion is read. No further pass follows when the tuning held for kHolds such windows, or
-/// ends where it began; kMostPasses at most. A tuning holds while no filter's corner moves by more
+/// ends where it began; kMaxPasses at most. A tuning holds while no filter's corner moves by more
 /// than kMoved, from which on the pipeline tunes anew.
 class FirstPasses {
  public:
-  static constexpr int kEnough = 12, kHolds = 3, kMostPasses = 4;
+  static constexpr int kEnough = 12, kHolds = 3, kMaxPasses = 4;
   static constexpr double kMoved = 0.1;
 
   /// progress: called with the bytes read so far; may be empty.

@@ -7,7 +7,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostNews = 10000;  // events that wait for their period's end
+constexpr std::size_t kMaxNews = 10000;  // events that wait for their period's end
 
 }  // namespace
 
@@ -40,7 +40,7 @@ bool HistoryOutput::put(std::int64_t, const std::string& channel,
   // A longest period at a time: each is summed up once, and not with every one in it.
   const SummaryBatch& waits = intake_.batch();
   const auto most = static_cast<std::size_t>(longest_s() / settings_.summary_s.front());
-  const bool full = waits.periods.size() > most || waits.events.size() > kMostNews;
+  const bool full = waits.periods.size() > most || waits.events.size() > kMaxNews;
   return full ? store() : error_.empty();
 }
 

@@ -8,12 +8,12 @@ namespace framewatch::daemon {
 namespace {
 
 /// A larger jump is a node or a logger that was started anew, not a loss.
-constexpr std::int64_t kMostLost = 1'000'000;
+constexpr std::int64_t kMaxLost = 1'000'000;
 
 /// newest - oldest - 1 when that is a plausible loss, else -1.
 std::int64_t between(std::int64_t oldest, std::int64_t newest) {
   std::int64_t step = 0;
-  if (__builtin_sub_overflow(newest, oldest, &step) || step < 1 || step > kMostLost) return -1;
+  if (__builtin_sub_overflow(newest, oldest, &step) || step < 1 || step > kMaxLost) return -1;
   return step - 1;
 }
 
@@ -49,7 +49,7 @@ void LogSurvey::count_samples(const drivers::LogEvent& event) {
 
 void LogSurvey::damaged(const drivers::LogDamage& damage, bool truncated) {
   open_ = true;
-  if (lost_.size() == kMostStretches) {
+  if (lost_.size() == kMaxStretches) {
     LostStretch& last = lost_.back();
     last.damage.bytes += damage.bytes;
     ++last.places;

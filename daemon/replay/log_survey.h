@@ -26,7 +26,7 @@ struct LostStretch {
 /// Counts, event by event, what a log contains and what is lost in it.
 class LogSurvey {
  public:
-  static constexpr std::size_t kMostStretches = 10'000;  ///< the last holds all that come after
+  static constexpr std::size_t kMaxStretches = 10'000;  ///< the last holds all that come after
 
   void intact(const drivers::LogEvent& event);
   void damaged(const drivers::LogDamage& damage, bool truncated);

@@ -13,7 +13,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostPerPlot = 24;  ///< parameters beside each other
+constexpr std::size_t kMaxPerPlot = 24;  ///< parameters beside each other
 
 constexpr const char* kKindName[] = {"frame stiffness", "floor-panel stiffness", "frame damping",
                                      "floor-panel damping"};
@@ -128,10 +128,10 @@ std::string figure_10_section(const SessionReport& r) {
   std::string out = "<h2>Identified stiffness and damping</h2>\n";
   for (int kind = 0; kind < 4; ++kind) {
     const std::vector<std::size_t> all = of_kind(r, kind);
-    for (std::size_t from = 0; from < all.size(); from += kMostPerPlot) {
+    for (std::size_t from = 0; from < all.size(); from += kMaxPerPlot) {
       const std::vector<std::size_t> shown(
           all.begin() + static_cast<std::ptrdiff_t>(from),
-          all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), from + kMostPerPlot)));
+          all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), from + kMaxPerPlot)));
       std::string caption = fmt::format(
           "{}: left the means, a bar's whisker being one standard error of a window; right a "
           "boxplot per parameter (median, quartiles, adjacent values, outliers as +), of ",

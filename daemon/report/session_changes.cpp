@@ -22,8 +22,8 @@ using estimator::WindowValue;
 
 constexpr double kTimeStep_s = 0.1;
 constexpr int kFewestWindows = 4;
-constexpr double kTemperatureErrors = 3;     // of a slope, that are no change
-constexpr double kMostByTemperature = 0.05;  // beyond nothing is judged
+constexpr double kTemperatureErrors = 3;    // of a slope, that are no change
+constexpr double kMaxByTemperature = 0.05;  // beyond nothing is judged
 /// A loss in one story may show in its group's value by so much less than in its stiffness.
 constexpr double kGroupShows = 1.5;
 
@@ -235,7 +235,7 @@ std::vector<JudgedElement> judged_elements(const SessionEstimates& s) {
     // Of the difference between two halves.
     const double errors = 2 * estimator::kChangeErrors * mean.std_error / mean.value;
     const double least = least_change(s, p), temperature = by_temperature(s, p);
-    if (!(errors < 2 * least) || temperature > kMostByTemperature) continue;
+    if (!(errors < 2 * least) || temperature > kMaxByTemperature) continue;
     const estimator::Parameter parameter = parameter_of(s.table, p);
     const bool group = parameter.last_story > parameter.story;
     const double shows = (std::max(least, errors) + temperature) * (group ? kGroupShows : 1);
@@ -247,7 +247,7 @@ std::vector<JudgedElement> judged_elements(const SessionEstimates& s) {
 std::string why_not_judged(const SessionEstimates& s) {
   std::size_t hidden = 0;
   for (std::size_t p = 0; p < s.parameters(); ++p)
-    if (is_stiffness(s, p) && by_temperature(s, p) > kMostByTemperature) ++hidden;
+    if (is_stiffness(s, p) && by_temperature(s, p) > kMaxByTemperature) ++hidden;
   return hidden == 0 ? ""
                      : fmt::format(
                            "{} stiffnesses are not judged, because the building has another "

@@ -15,7 +15,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kMostValues = 1LL << 26;
+constexpr std::int64_t kMaxValues = 1LL << 26;
 
 /// Sample sets by their place on the common grid.
 class Collector {
@@ -44,7 +44,7 @@ class Collector {
     }
     const std::int64_t row = set.index - first_index_;
     const auto count = static_cast<std::int64_t>(axes().size());
-    too_long_ = too_long_ || row < 0 || (row + 1) * count > kMostValues;
+    too_long_ = too_long_ || row < 0 || (row + 1) * count > kMaxValues;
     if (too_long_) return;
     const auto at = static_cast<std::size_t>(row * count);
     if (kept_.size() < at + set.accel.size()) kept_.resize(at + set.accel.size(), estimator::kNaN);
@@ -131,7 +131,7 @@ std::optional<SessionMotion> read_session_motion(const Config& config,
   }
   collector.finish();
   if (collector.too_long())
-    problems.push_back(fmt::format("the raw samples span more than {} values", kMostValues));
+    problems.push_back(fmt::format("the raw samples span more than {} values", kMaxValues));
   SessionMotion out{config.pipeline.options.rate_hz, collector.first_us(), collector.axes(),
                     collector.accel(), survey.notes()};
   if (out.accel.rows() < 2) problems.push_back("the raw samples hold no motion");

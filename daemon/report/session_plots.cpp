@@ -11,8 +11,8 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostHistories = 48, kMostLoops = 32;
-constexpr Eigen::Index kMostLoopPoints = 1000;
+constexpr std::size_t kMaxHistories = 48, kMaxLoops = 32;
+constexpr Eigen::Index kMaxLoopPoints = 1000;
 
 std::vector<double> window_times(const SessionReport& r) {
   std::vector<double> out;
@@ -105,7 +105,7 @@ std::string histories_section(const SessionReport& r) {
     for (std::size_t p = 0; p < r.estimates.parameters(); ++p) {
       const int kind = r.estimates.table.kind[p];
       if (is_stiffness_kind(kind) != stiffness) continue;
-      if (plots.size() < kMostHistories)
+      if (plots.size() < kMaxHistories)
         plots.push_back(history(r, p, t));
       else
         ++left_out;
@@ -168,7 +168,7 @@ void add_loop(const SessionReport& r, const FrameLoop& loop, std::size_t stage, 
               SvgPlot& plot) {
   std::vector<double> d, f;
   const auto stride =
-      std::max<std::size_t>(1, loop.drift_m.size() / static_cast<std::size_t>(kMostLoopPoints));
+      std::max<std::size_t>(1, loop.drift_m.size() / static_cast<std::size_t>(kMaxLoopPoints));
   for (std::size_t i = 0; i < loop.drift_m.size(); i += stride) {
     d.push_back(1e3 * loop.drift_m[i]);
     f.push_back(loop.force_n[i]);
@@ -221,7 +221,7 @@ std::string loops_section(const SessionReport& r) {
   if (shown.empty()) return out;
   std::vector<std::string> plots;
   const std::vector<FrameLoop>& frames = shown.front()->loops.loops;
-  for (std::size_t i = 0; i < std::min(frames.size(), kMostLoops); ++i) {
+  for (std::size_t i = 0; i < std::min(frames.size(), kMaxLoops); ++i) {
     SvgPlot plot(frames[i].name, {"story drift, mm"}, {"force, N"}, 242, 210);
     int color = 0;
     for (const StageLoops* of : shown) add_loop(r, of->loops.loops[i], of->stage, color++, plot);
@@ -233,7 +233,7 @@ std::string loops_section(const SessionReport& r) {
                                  "over story drift, above {:g} Hz; dashed: the identified "
                                  "stiffness (median).{}",
                                  spans, r.config->pipeline.options.high_pass_hz,
-                                 frames.size() > kMostLoops ? " The first frames only." : "")) +
+                                 frames.size() > kMaxLoops ? " The first frames only." : "")) +
          tables;
 }
 

@@ -18,7 +18,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostEvents = 100, kMostNamed = 3, kMostInChart = 40;
+constexpr std::size_t kMaxEvents = 100, kMaxNamed = 3, kMaxInChart = 40;
 constexpr double kRounding = 1e-9;
 
 std::string capital(std::string text) {
@@ -124,7 +124,7 @@ std::string change_chart(const SessionReport& r) {
   std::sort(shown.begin(), shown.end());
   shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
   for (const std::size_t p : shown) {
-    if (names.categories.size() == kMostInChart) break;
+    if (names.categories.size() == kMaxInChart) break;
     const ParameterSummary a = summarise(r.estimates, p, before->whole),
                            b = summarise(r.estimates, p, after->whole);
     if (!std::isfinite(a.mean) || !std::isfinite(b.mean)) continue;
@@ -154,13 +154,13 @@ std::string change_chart(const SessionReport& r) {
 std::string recovery_sentence(const SessionReport& r) {
   const std::vector<ElementChange> recoveries = largest_first(r.recoveries);
   std::string out = "While the motion died away ";
-  for (std::size_t i = 0; i < std::min(recoveries.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(recoveries.size(), kMaxNamed); ++i)
     out += fmt::format("{}{}{} by {:.1f} % (+-{:.1f} %)", i == 0 ? "" : ", ",
                        element_words(r.estimates.table, recoveries[i].parameter),
                        i == 0 ? " grew stiffer again" : "", 100 * recoveries[i].ratio,
                        error_percent(recoveries[i]));
-  if (recoveries.size() > kMostNamed)
-    out += fmt::format(", and {} more", recoveries.size() - kMostNamed);
+  if (recoveries.size() > kMaxNamed)
+    out += fmt::format(", and {} more", recoveries.size() - kMaxNamed);
   return out +
          ": frames soften while they move strongly and recover, which is no change of the "
          "building.";
@@ -267,10 +267,10 @@ std::string verdict_sentence(const SessionReport& r) {
         "their stiffness, and the loss of {:.0f} % of a frame would have shown.",
         r.judged.size(), stiffnesses(r), std::ceil(100 * shows(r) - kRounding));
   std::string out;
-  for (std::size_t i = 0; i < std::min(changes.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(changes.size(), kMaxNamed); ++i)
     out += (i == 0 ? "" : "; ") + what(r, changes[i]) + ", " + since(r, changes[i].since_us);
-  if (changes.size() > kMostNamed)
-    out += fmt::format("; and {} more changes", changes.size() - kMostNamed);
+  if (changes.size() > kMaxNamed)
+    out += fmt::format("; and {} more changes", changes.size() - kMaxNamed);
   return capital(out) + ".";
 }
 
@@ -316,7 +316,7 @@ std::string verdict_section(const SessionReport& r) {
   if (!rest.empty()) out += "<p>" + html_text(rest) + "</p>\n";
   out += change_chart(r);
   const std::vector<ElementChange> changes = largest_first(r.changes);
-  for (std::size_t i = 0; i < std::min(changes.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(changes.size(), kMaxNamed); ++i)
     if (changes[i].measured()) out += change_history(r, changes[i]);
   return out + change_table(r);
 }
@@ -324,7 +324,7 @@ std::string verdict_section(const SessionReport& r) {
 std::string events_section(const SessionReport& r) {
   std::vector<std::vector<std::string>> rows;
   for (const event_t& e : r.estimates.events) {
-    if (rows.size() == kMostEvents) break;
+    if (rows.size() == kMaxEvents) break;
     rows.push_back({fmt::format("{:.2f}", session_seconds(r, e.time_us)),
                     word(kEventStates, e.state), word(kSeverities, e.severity), html_text(e.place),
                     html_text(e.message)});
@@ -336,8 +336,8 @@ std::string events_section(const SessionReport& r) {
   }
   return "<h2>Events</h2>\n<p>As they were announced while it was measured.</p>\n" +
          html_table({"time, s", "state", "severity", "place", "what"}, rows) +
-         (r.estimates.events.size() > kMostEvents
-              ? fmt::format("<p>{} more.</p>\n", r.estimates.events.size() - kMostEvents)
+         (r.estimates.events.size() > kMaxEvents
+              ? fmt::format("<p>{} more.</p>\n", r.estimates.events.size() - kMaxEvents)
               : std::string());
 }
 

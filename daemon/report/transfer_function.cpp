@@ -19,7 +19,7 @@ constexpr double kSegment_s = 20, kShortest_s = 4, kLowest_hz = 0.3;
 // Of peaks: share of the largest's power that the model's lowest mode has, and a measured one that
 // is looked at; how far from the model's that may lie; likeness of shapes that are of one mode.
 constexpr double kFundamental = 0.1, kMinor = 0.02, kNear = 1.6, kAlike = 0.8;
-constexpr Index kMostUnknowns = 100;
+constexpr Index kMaxUnknowns = 100;
 
 /// Mean of the axes that `wanted` picks.
 template <typename Wanted>
@@ -232,7 +232,7 @@ TransferFunction quotient(const Signals& s, const estimator::Structure& structur
   const Index bins = size / 2 + 1;
   const double step_hz = rate_hz / static_cast<double>(size), highest_hz = 0.4 * rate_hz;
   ModelSpectra model;
-  if (theta.size() > 0 && structure.degrees_of_freedom() <= kMostUnknowns)
+  if (theta.size() > 0 && structure.degrees_of_freedom() <= kMaxUnknowns)
     model = model_spectra(structure, theta, s.direction, bins, step_hz, highest_hz);
   const bool has_model = model.top.rows() > 0;
   Eigen::VectorXd taper(size);
@@ -256,7 +256,7 @@ TransferFunction quotient(const Signals& s, const estimator::Structure& structur
 
 Eigen::MatrixXd floors_of(const estimator::Structure& s, const SessionMotion& m, Index from,
                           Index to, const Eigen::VectorXd& base_x, const Eigen::VectorXd& base_y) {
-  if (s.degrees_of_freedom() > kMostUnknowns) return Eigen::MatrixXd(to - from, 0);
+  if (s.degrees_of_freedom() > kMaxUnknowns) return Eigen::MatrixXd(to - from, 0);
   Eigen::MatrixXd out(to - from, s.degrees_of_freedom());
   int found = 0;
   for (std::size_t a = 0; a < m.axes.size(); ++a) {

@@ -48,9 +48,9 @@ bool connect_to(const drivers::Descriptor& file, const std::string& path) {
 CommandAnswer exchange(const drivers::Descriptor& file, const std::string& path,
                        const CommandPacket& command) {
   const std::vector<std::uint8_t> bytes = packet_bytes(command);
-  if (bytes.size() > CommandPacket::kMostBytes)
-    return {false, fmt::format("a command has {} bytes at most", CommandPacket::kMostBytes), {}};
-  std::vector<std::uint8_t> in(CommandPacket::kMostBytes + 1);
+  if (bytes.size() > CommandPacket::kMaxBytes)
+    return {false, fmt::format("a command has {} bytes at most", CommandPacket::kMaxBytes), {}};
+  std::vector<std::uint8_t> in(CommandPacket::kMaxBytes + 1);
   if (::send(file.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL) < 0)
     return {false, fmt::format("{}: {}", path, std::strerror(errno)), {}};
   const ssize_t got = ::recv(file.get(), in.data(), in.size(), 0);

@@ -19,7 +19,7 @@ std::vector<std::uint8_t> packet_bytes(const CommandPacket& packet) {
 
 std::optional<CommandPacket> packet_of(std::span<const std::uint8_t> bytes) {
   const auto end = std::find(bytes.begin(), bytes.end(), std::uint8_t{0});
-  if (end == bytes.end() || end == bytes.begin() || bytes.size() > CommandPacket::kMostBytes)
+  if (end == bytes.end() || end == bytes.begin() || bytes.size() > CommandPacket::kMaxBytes)
     return std::nullopt;
   if (end - bytes.begin() > std::ptrdiff_t{drivers::kLongestLcmChannel}) return std::nullopt;
   return CommandPacket{{bytes.begin(), end}, {end + 1, bytes.end()}};

@@ -12,7 +12,7 @@ namespace framewatch::daemon {
 /// A command to a running daemon, or its answer: an LCM message under the name of its channel
 /// without the prefix. It travels as one packet: the name, a zero byte, the message.
 struct CommandPacket {
-  static constexpr std::size_t kMostBytes = 65536;  ///< of a packet
+  static constexpr std::size_t kMaxBytes = 65536;  ///< of a packet
   static constexpr const char* kRefused = "REFUSED";
 
   std::string channel;  ///< kRefused: the bytes are a sentence that says why

@@ -26,7 +26,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::int64_t kListenAgain_us = 5'000'000;
-constexpr int kMostAccepts = 64;  // in one look
+constexpr int kMaxAccepts = 64;  // in one look
 
 std::string with_errno(const std::string& path) {
   return fmt::format("{}: {}", path, std::strerror(errno));
@@ -50,7 +50,7 @@ CommandSocket::CommandSocket(const Config& config, const std::string& service, H
       path_(command_path(directory_, config, service)),
       service_(service),
       handler_(std::move(handler)),
-      buffer_(CommandPacket::kMostBytes + 1) {
+      buffer_(CommandPacket::kMaxBytes + 1) {
   listen(steady_clock_us());
 }
 
@@ -90,7 +90,7 @@ std::string CommandSocket::open() {
   const auto* const named = reinterpret_cast<const sockaddr*>(&address);
   // Nobody can connect before listen(), so the mode is right when the first one does.
   if (socket_.get() < 0 || ::bind(socket_.get(), named, sizeof address) != 0 ||
-      ::chmod(path_.c_str(), 0660) != 0 || ::listen(socket_.get(), kMostConnections) != 0)
+      ::chmod(path_.c_str(), 0660) != 0 || ::listen(socket_.get(), kMaxConnections) != 0)
     return with_errno(path_);
   return "";
 }
@@ -107,7 +107,7 @@ void CommandSocket::look(std::int64_t now_us) {
 }
 
 void CommandSocket::accept(std::int64_t now_us) {
-  for (int i = 0; i < kMostAccepts && make_room(); ++i) {
+  for (int i = 0; i < kMaxAccepts && make_room(); ++i) {
     const int file = ::accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
     if (file < 0) return;
     Connection& c = connections_.emplace_back();
@@ -122,7 +122,7 @@ void CommandSocket::accept(std::int64_t now_us) {
 }
 
 bool CommandSocket::make_room() {
-  if (connections_.size() < kMostConnections) return true;
+  if (connections_.size() < kMaxConnections) return true;
   for (auto at = connections_.begin(); at != connections_.end(); ++at)
     if (at->command.channel.empty()) {
       connections_.erase(at);

@@ -17,7 +17,7 @@ namespace framewatch::daemon {
 /// Who may connect, the file system decides; who did is what the kernel says. Never waits.
 class CommandSocket {
  public:
-  static constexpr std::size_t kMostConnections = 16;      ///< the oldest silent one makes room
+  static constexpr std::size_t kMaxConnections = 16;       ///< the oldest silent one makes room
   static constexpr std::int64_t kPatience_us = 3'000'000;  ///< with a silent one
 
   /// The answer to a command of this user.

@@ -11,7 +11,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kMostBytes = 4096;
+constexpr std::int64_t kMaxBytes = 4096;
 
 std::string file_of(const std::string& state_path) {
   return state_path + ".starts";
@@ -30,7 +30,7 @@ StartCount count_start(const std::string& state_path, std::string& problem) {
   std::int64_t running = 0;
   std::string unread;
   std::istringstream file(
-      drivers::read_whole_file(file_of(state_path), kMostBytes, unread).value_or(""));
+      drivers::read_whole_file(file_of(state_path), kMaxBytes, unread).value_or(""));
   std::string key;
   for (std::int64_t value = 0; file >> key >> value;) {
     if (key == "starts") count.starts = value;

@@ -11,10 +11,10 @@ namespace framewatch::daemon {
 namespace {
 
 // Beyond these a person should look before the table moves.
-constexpr double kMostWhite = 2;        // rms over that of its noise; beyond it the building moves
-constexpr double kMostNoise = 3;        // times the configured density
-constexpr double kMostOffset_mps2 = 1;  // 6 degrees of tilt
-constexpr double kMostMissing_ratio = 0.01;
+constexpr double kMaxWhite = 2;        // rms over that of its noise; beyond it the building moves
+constexpr double kMaxNoise = 3;        // times the configured density
+constexpr double kMaxOffset_mps2 = 1;  // 6 degrees of tilt
+constexpr double kMaxMissing_ratio = 0.01;
 constexpr double kNearRange = 0.9;
 
 }  // namespace
@@ -97,15 +97,15 @@ std::string ChannelCheck::problem(std::size_t a, const ChannelResult& r) const {
   if (r.samples == 0) return r.saturated > 0 ? "saturated: every sample" : "no samples";
   if (r.saturated > 0) return fmt::format("saturated: {} samples", r.saturated);
   if (r.stuck > 0 || r.rms == 0) return "its value stands still";
-  if (static_cast<double>(r.missing) > kMostMissing_ratio * static_cast<double>(sets_))
+  if (static_cast<double>(r.missing) > kMaxMissing_ratio * static_cast<double>(sets_))
     return fmt::format("{:.1f} % of its samples are missing",
                        100 * static_cast<double>(r.missing) / static_cast<double>(sets_));
   if (r.range > 0 && r.peak > kNearRange * r.range)
     return fmt::format("{:.0f} % of its range is used", 100 * r.peak / r.range);
-  const bool moves = r.rms > kMostWhite * r.noise_density * std::sqrt(rate_hz_ / 2);
-  if (!moves && configured > 0 && r.noise_density > kMostNoise * configured)
+  const bool moves = r.rms > kMaxWhite * r.noise_density * std::sqrt(rate_hz_ / 2);
+  if (!moves && configured > 0 && r.noise_density > kMaxNoise * configured)
     return fmt::format("noise {:.1f} times what is configured", r.noise_density / configured);
-  if (std::abs(r.offset) > kMostOffset_mps2)
+  if (std::abs(r.offset) > kMaxOffset_mps2)
     return fmt::format("rests at {:+.2f} m/s^2: not level, or an offset to configure", r.offset);
   return "";
 }

@@ -17,14 +17,14 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kCheck_s = 3, kMostBefore_s = 62;  // the longest pre-trigger and its slack
-constexpr std::size_t kMostBeforeBytes = std::size_t{64} << 20;
+constexpr double kCheck_s = 3, kMaxBefore_s = 62;  // the longest pre-trigger and its slack
+constexpr std::size_t kMaxBeforeBytes = std::size_t{64} << 20;
 constexpr std::int64_t kAfter_us = 500'000;       // estimates of the last samples are on their way
 constexpr std::int64_t kSilence_us = 10'000'000;  // over its length, of a session without samples
 constexpr std::int64_t kTroubleEvery_us = 10'000'000;
-constexpr std::size_t kMostVerb = 40;  // bytes of one that is not known
+constexpr std::size_t kMaxVerb = 40;  // bytes of one that is not known
 constexpr double kSlack_s = 0.1;
-constexpr double kTapOverRest = 8, kLeastTap_mps2 = 0.05;
+constexpr double kTapOverRest = 8, kMinTap_mps2 = 0.05;
 
 bool has_lcm_axes(const Config& config) {
   return std::any_of(config.sources.begin(), config.sources.end(),
@@ -59,7 +59,7 @@ Recorder::Recorder(const Config& config, std::string sessions, Ended ended)
       check_(acquisition_.axes(), config.pipeline.options.rate_hz),
       taps_(config.pipeline.axes.size(), config.pipeline.options.rate_hz),
       trigger_axes_(axes_that_trigger(config.pipeline.axes)),
-      before_(kMostBefore_s, kMostBeforeBytes),
+      before_(kMaxBefore_s, kMaxBeforeBytes),
       polarity_(config.pipeline.axes.size(), 0) {}
 
 std::vector<std::string> Recorder::channels() const {
@@ -120,8 +120,8 @@ void Recorder::keep(const estimator::SampleSet& set) {
 void Recorder::look_for_tap(const std::vector<double>& distance) {
   std::vector<double> threshold;
   for (const ChannelResult& r : check_results_)
-    threshold.push_back(std::max(kTapOverRest * r.rms, kLeastTap_mps2));
-  threshold.resize(distance.size(), kLeastTap_mps2);
+    threshold.push_back(std::max(kTapOverRest * r.rms, kMinTap_mps2));
+  threshold.resize(distance.size(), kMinTap_mps2);
   const auto tap = taps_.push(distance, threshold);
   if (!tap) return;
   if (tap->axis < 0) {
@@ -202,7 +202,7 @@ void Recorder::obey(const session_command_t& c, const std::string& user, std::in
   else if (c.verb == "arm" || c.verb == "start")
     refused_ = begin(request, now_us, user);
   else
-    refused_ = "no such command: " + printable(c.verb, kMostVerb);
+    refused_ = "no such command: " + printable(c.verb, kMaxVerb);
   if (refused_.empty()) log(LogLevel::notice, fmt::format("{}, says {}", c.verb, user));
 }
 

@@ -39,7 +39,7 @@ std::string write_csv(const std::string& path, const drivers::Record& record) {
 
 std::string write_mat(const std::string& path, const drivers::Record& record) {
   const std::size_t channels = record.names.size(), instants = record.time_s.size();
-  if (channels * instants * sizeof(double) > MatFile::kMostBytes)
+  if (channels * instants * sizeof(double) > MatFile::kMaxBytes)
     return "a variable of a MATLAB 5 file holds at most 2 GiB";
   std::vector<double> values(channels * instants);
   for (std::size_t c = 0; c < channels; ++c)

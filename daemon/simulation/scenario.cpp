@@ -23,7 +23,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kMostChanged = 1e7;  // every change has a value of every parameter
+constexpr double kMaxChanged = 1e7;  // every change has a value of every parameter
 constexpr std::array kSections = {"truth", "motion", "sensors", "sensor", "change", "effect"};
 
 /// The file in three parts: top keys, sections of the scenario, the rest (the building).
@@ -159,12 +159,12 @@ class ScenarioReader {
     }
     std::stable_sort(changes.begin(), changes.end(),
                      [](const Change& a, const Change& b) { return a.at_s < b.at_s; });
-    if (static_cast<double>(changes.size()) * static_cast<double>(s.truth.size()) > kMostChanged) {
+    if (static_cast<double>(changes.size()) * static_cast<double>(s.truth.size()) > kMaxChanged) {
       problems_.push_back({{},
                            fmt::format("change: {} changes of a building of {} parameters: at "
                                        "most {:.0f} are simulated",
                                        changes.size(), s.truth.size(),
-                                       kMostChanged / static_cast<double>(s.truth.size()))});
+                                       kMaxChanged / static_cast<double>(s.truth.size()))});
       return;
     }
     Eigen::VectorXd theta = s.truth;

@@ -13,7 +13,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kMostSamples = 2e7;  // 160 MB, and there are several copies
+constexpr double kMaxSamples = 2e7;  // 160 MB, and there are several copies
 constexpr std::initializer_list<const char*> kSeededKeys = {"ground_frequency_hz",
                                                             "ground_damping_ratio",
                                                             "high_pass_hz",
@@ -73,11 +73,11 @@ estimator::PlanMotion read_motion(ConfigSection& s, const std::string& directory
   estimator::GroundMotion motion = s.given("file") ? recorded(s, directory) : seeded(s, seed);
   if (motion.accel.empty()) return {};
   const double rest_samples = s.number("start_s") / motion.step_s;
-  if (!(rest_samples + static_cast<double>(motion.accel.size()) <= kMostSamples)) {
+  if (!(rest_samples + static_cast<double>(motion.accel.size()) <= kMaxSamples)) {
     s.problem("start_s",
               fmt::format("{:g} s of rest are {:.3g} samples of this motion, a {:g} s: "
                           "it may have {:.0f} with them",
-                          s.number("start_s"), rest_samples, motion.step_s, kMostSamples));
+                          s.number("start_s"), rest_samples, motion.step_s, kMaxSamples));
     return {};
   }
   const auto rest = static_cast<std::size_t>(std::llround(rest_samples));

@@ -12,14 +12,14 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMostReports = 50;
+constexpr std::size_t kMaxReports = 50;
 
 }  // namespace
 
 std::string event_reports_json(const std::string& folder) {
   const std::vector<std::string> names = event_report_names(folder);
   Json out = Json::array();
-  for (auto name = names.rbegin(); name != names.rend() && out.size() < kMostReports; ++name)
+  for (auto name = names.rbegin(); name != names.rend() && out.size() < kMaxReports; ++name)
     if (const auto s = event_report_summary(folder, *name))
       out.push_back({{"name", s->name},
                      {"verdict", color_word(s->color)},

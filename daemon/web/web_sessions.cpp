@@ -18,7 +18,7 @@ namespace framewatch::daemon {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::size_t kMostShown = 200;
+constexpr std::size_t kMaxShown = 200;
 
 /// As session_folder_name() makes them: nothing that leads elsewhere.
 bool is_session_name(const std::string& name) {
@@ -38,7 +38,7 @@ std::string sessions_json(const std::string& folder) {
   std::sort(names.begin(), names.end(), std::greater<>());
   Json out = Json::array();
   for (const std::string& name : names) {
-    if (out.size() == kMostShown) break;
+    if (out.size() == kMaxShown) break;
     std::string why;
     const auto text = read_served_file(folder, {name, kSessionJson});
     const auto s = text ? parse_session(*text, why) : std::nullopt;

@@ -11,11 +11,11 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr int kMostCutOff = 1000;
+constexpr int kMaxCutOff = 1000;
 
 /// Under the first name that is free.
 std::string renamed(const std::string& partial, const std::string& path) {
-  for (int n = 1; n <= kMostCutOff; ++n) {
+  for (int n = 1; n <= kMaxCutOff; ++n) {
     const std::string kept = path + ".cut-off-" + std::to_string(n);
     if (::renameat2(AT_FDCWD, partial.c_str(), AT_FDCWD, kept.c_str(), RENAME_NOREPLACE) == 0)
       return kept;

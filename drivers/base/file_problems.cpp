@@ -8,7 +8,7 @@ void FileProblems::add(std::int64_t line, const std::string& message) {
   if (full()) return;
   problems_->push_back({line > 0 ? fmt::format("{}:{}", path_, line) : path_, message});
   ++count_;
-  if (full()) problems_->push_back({path_, fmt::format("only the first {} are listed", kMost)});
+  if (full()) problems_->push_back({path_, fmt::format("only the first {} are listed", kMax)});
 }
 
 std::string show_text(std::string_view text) {

@@ -10,10 +10,10 @@
 
 namespace framewatch::drivers {
 
-/// Collects the problems of one file, the first kMost of them.
+/// Collects the problems of one file, the first kMax of them.
 class FileProblems {
  public:
-  static constexpr int kMost = 20;
+  static constexpr int kMax = 20;
 
   FileProblems(std::string path, std::vector<Problem>& problems)
       : path_(std::move(path)), problems_(&problems) {}
@@ -21,7 +21,7 @@ class FileProblems {
   /// Line 0 is the file as a whole.
   void add(std::int64_t line, const std::string& message);
   bool any() const { return count_ > 0; }
-  bool full() const { return count_ >= kMost; }
+  bool full() const { return count_ >= kMax; }
   const std::string& path() const { return path_; }
 
  private:

@@ -15,7 +15,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::int64_t kMostOfGzread = std::int64_t{1} << 20;
+constexpr std::int64_t kMaxOfGzread = std::int64_t{1} << 20;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ std::int64_t GzipInput::read(void* to, std::int64_t bytes) {
   std::int64_t done = 0;
   while (file_ != nullptr && error_.empty() && done < bytes) {
     errno = 0;
-    const std::int64_t wanted = std::min(bytes - done, kMostOfGzread);
+    const std::int64_t wanted = std::min(bytes - done, kMaxOfGzread);
     const z_off_t before = gzoffset(file_);
     const int got = gzread(file_, static_cast<char*>(to) + done, static_cast<unsigned int>(wanted));
     count_bytes_read(gzoffset(file_) - before);

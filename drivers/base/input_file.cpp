@@ -17,7 +17,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::int64_t kMostAtOnce = std::int64_t{1} << 20;
+constexpr std::int64_t kMaxAtOnce = std::int64_t{1} << 20;
 
 std::string why_not_regular(mode_t mode) {
   if (S_ISREG(mode)) return {};
@@ -96,7 +96,7 @@ std::optional<std::string> read_whole_file(const std::string& path, std::int64_t
   InputFile file(path);
   std::string text;
   while (file.error().empty()) {
-    const std::int64_t had = std::ssize(text), wanted = std::min(kMostAtOnce, most_bytes + 1 - had);
+    const std::int64_t had = std::ssize(text), wanted = std::min(kMaxAtOnce, most_bytes + 1 - had);
     text.resize(static_cast<std::size_t>(had + wanted));
     const std::int64_t got = file.read(text.data() + had, wanted, had);
     text.resize(static_cast<std::size_t>(had + std::max<std::int64_t>(got, 0)));

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::int64_t kEstablished = 8;  // messages in order that make a sequence
 constexpr std::int64_t kSuspect = 20;     // against 1 that a message in order takes away
-constexpr std::int64_t kConvicted = 60, kMostSuspicion = 100;
-constexpr std::int64_t kMostTime_us = 4'000'000'000'000'000'000;  // sums do not overflow
+constexpr std::int64_t kConvicted = 60, kMaxSuspicion = 100;
+constexpr std::int64_t kMaxTime_us = 4'000'000'000'000'000'000;  // sums do not overflow
 constexpr double kBuffered_s = 10;  // that a network may hold messages back
 
 double seconds(std::int64_t from_us, std::int64_t to_us) {
@@ -25,7 +25,7 @@ std::uint64_t& SequenceCounter::Track::digest_of(std::int64_t sequence) {
 
 SequenceCounter::Verdict SequenceCounter::see(const Message& message) {
   Message m = message;
-  m.arrival_us = std::clamp(m.arrival_us, -kMostTime_us, kMostTime_us);
+  m.arrival_us = std::clamp(m.arrival_us, -kMaxTime_us, kMaxTime_us);
   gives_held_ = false;
   if (!started_) return follow(m);
   follow_clock(m.arrival_us);
@@ -158,7 +158,7 @@ SequenceCounter::Verdict SequenceCounter::follow(const Message& m) {
 }
 
 void SequenceCounter::suspect(const Message& m) {
-  suspicion_ = std::min(suspicion_ + kSuspect, kMostSuspicion);
+  suspicion_ = std::min(suspicion_ + kSuspect, kMaxSuspicion);
   if (suspicion_ >= kConvicted) mixed_until_us_ = m.arrival_us + kHold_us;
 }
 

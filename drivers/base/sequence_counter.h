@@ -63,11 +63,11 @@ class SequenceCounter {
   void archive(Archive& a) {
     for (std::int64_t* count :
          {&received, &duplicates, &conflicts, &reordered, &leaps, &others, &run_})
-      a.within(*count, 0, a.kMostCount);
-    for (std::int64_t* count : {&lost, &backwards}) a.within(*count, -a.kMostCount, a.kMostCount);
+      a.within(*count, 0, a.kMaxCount);
+    for (std::int64_t* count : {&lost, &backwards}) a.within(*count, -a.kMaxCount, a.kMaxCount);
     for (std::int64_t* time :
          {&pending_.time_us, &pending_.arrival_us, &apart_until_us_, &mixed_until_us_})
-      a.within(*time, -2 * a.kMostCount, 2 * a.kMostCount);
+      a.within(*time, -2 * a.kMaxCount, 2 * a.kMaxCount);
     a(started_, has_former_, leap_was_backwards_, track_, former_);
     a(has_pending_, pending_.sequence, pending_.digest, leapt_from_, leapt_to_);
     a.within(suspicion_, 0, 1000);
@@ -88,7 +88,7 @@ class SequenceCounter {
     void archive(Archive& a) {
       a(newest, seen, digest);
       for (std::int64_t* time : {&time_us, &arrival_us})
-        a.within(*time, -2 * a.kMostCount, 2 * a.kMostCount);
+        a.within(*time, -2 * a.kMaxCount, 2 * a.kMaxCount);
     }
   };
 

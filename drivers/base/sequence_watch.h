@@ -32,7 +32,7 @@ class SequenceWatch {
     template <typename Archive>
     void archive(Archive& a) {
       for (std::int64_t* count : {&received, &lost, &duplicates, &leaps, &contests})
-        a.within(*count, -a.kMostCount, a.kMostCount);
+        a.within(*count, -a.kMaxCount, a.kMaxCount);
     }
   };
   struct News {

@@ -27,7 +27,7 @@ class Trouble {
   template <typename Archive>
   void archive(Archive& a) {
     a(raised_);
-    a.within(bad_us_, -2 * a.kMostCount, 2 * a.kMostCount);
+    a.within(bad_us_, -2 * a.kMaxCount, 2 * a.kMaxCount);
   }
 
  private:

@@ -64,7 +64,7 @@ class CanIntake {
   template <typename Archive>
   void archive(Archive& a) {
     a(steps_, nodes_, buses_, bus_counters_, resamplers_, ranges_, newest_stamp_us_, absurd_);
-    a.within(next_look_us_, -2 * a.kMostCount, 2 * a.kMostCount);
+    a.within(next_look_us_, -2 * a.kMaxCount, 2 * a.kMaxCount);
   }
 
  private:

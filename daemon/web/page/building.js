@@ -1,6 +1,6 @@
 'use strict';
 // The building in 3D: frames as walls between floors, panels as floors, moved by what the floors do.
-const kMostExaggeration = 2000;
+const kMaxExaggeration = 2000;
 class Building {
   constructor(canvas, plan, onChoose) {
     this.canvas = canvas;
@@ -126,7 +126,7 @@ class Building {
     const across = Math.hypot(this.xs.at(-1), this.ys.at(-1)) * 1.25;
     this.zoom = Math.min(w / across, h / (this.zs.at(-1) * Math.cos(this.tilt) + across * Math.sin(this.tilt)) / 1.02);
     // What hardly moves is not blown up until its noise looks like an earthquake.
-    this.factor = this.still || this.settling ? 0 : Math.min(kMostExaggeration, this.extent * 0.13 / Math.max(this.largest, 1e-9));
+    this.factor = this.still || this.settling ? 0 : Math.min(kMaxExaggeration, this.extent * 0.13 / Math.max(this.largest, 1e-9));
     this.shapes = this.faces.map((f, k) => {
       const points = f.at.map(a => this.at(...a));
       return {k, i: f.i, points, depth: points.reduce((s, p) => s + p[2], 0)};

@@ -15,11 +15,11 @@ estimator::SampleSet with_every_floor(estimator::SampleSet set, const estimator:
 }
 
 MotionRows::MotionRows(double rate_hz)
-    : stride_(std::max(1, static_cast<int>(std::ceil(rate_hz / kMostRate_hz)))) {}
+    : stride_(std::max(1, static_cast<int>(std::ceil(rate_hz / kMaxRate_hz)))) {}
 
 void MotionRows::push(const estimator::SampleSet& instant) {
   if (instant.index % stride_ != 0) return;
-  if (count_ == kMostRows) {
+  if (count_ == kMaxRows) {
     ++left_out_;
     return;
   }

@@ -15,11 +15,11 @@ estimator::SampleSet with_every_floor(estimator::SampleSet set,
                                       const estimator::StoryResponse& response);
 
 /// Collects calibrated instants for the page's next "motion" event: every stride-th one, so that at
-/// most kMostRate_hz go to the page.
+/// most kMaxRate_hz go to the page.
 class MotionRows {
  public:
-  static constexpr double kMostRate_hz = 200;
-  static constexpr std::size_t kMostRows = 200;  ///< of one event; more are left out and counted
+  static constexpr double kMaxRate_hz = 200;
+  static constexpr std::size_t kMaxRows = 200;  ///< of one event; more are left out and counted
 
   /// rate_hz: of the instants.
   explicit MotionRows(double rate_hz);

@@ -27,7 +27,7 @@ std::string PageAlarms::note_own(const event_t& e) {
 std::string PageAlarms::put(const event_t& e) {
   events_[e.id] = e;
   if (e.state == event_state::cleared) acknowledged_here_.erase(e.id);
-  if (events_.size() > kMost) {
+  if (events_.size() > kMax) {
     // A raised one would be brought back by the next service_t.
     auto gone = std::find_if(events_.begin(), events_.end(), [](const auto& known) {
       return known.second.state == event_state::cleared;

@@ -22,7 +22,7 @@ namespace framewatch::daemon {
 /// those and no others.
 class PageAlarms {
  public:
-  static constexpr std::size_t kMost = 1000;  ///< beyond, a cleared one is forgotten
+  static constexpr std::size_t kMax = 1000;  ///< beyond, a cleared one is forgotten
 
   /// Events that were stored before the page's server began, in order of time. Those that are
   /// raised are so until `framewatch run` says which still are.

@@ -18,7 +18,7 @@ PageCommands::~PageCommands() {
 
 bool PageCommands::add(PageCommand command) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (waiting_.size() == kMost) return false;
+  if (waiting_.size() == kMax) return false;
   waiting_.push_back(std::move(command));
   news_.notify_one();
   return true;

@@ -23,7 +23,7 @@ struct PageCommand {
 /// its own: a daemon that does not answer delays nothing but commands.
 class PageCommands {
  public:
-  static constexpr std::size_t kMost = 16;  ///< that wait
+  static constexpr std::size_t kMax = 16;  ///< that wait
 
   using Give = std::function<CommandAnswer(const std::string& service, const CommandPacket&)>;
   /// Called in that thread with the problem, when no daemon took the command.

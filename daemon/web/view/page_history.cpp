@@ -45,7 +45,7 @@ void PageHistory::estimate(const window_estimate_t& e) {
   }
   rows_.push_back(std::move(row));
   const std::size_t most =
-      std::max<std::size_t>(2, kMostValues / std::max<std::size_t>(1, e.value.size()));
+      std::max<std::size_t>(2, kMaxValues / std::max<std::size_t>(1, e.value.size()));
   while (rows_.size() > most ||
          static_cast<double>(e.window_end_us - rows_.front().end_us) > 1e6 * kMost_s)
     rows_.pop_front();

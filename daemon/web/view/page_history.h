@@ -19,7 +19,7 @@ namespace framewatch::daemon {
 class PageHistory {
  public:
   static constexpr double kMost_s = 300, kEvery_s = 0.5, kMotion_s = 10;
-  static constexpr std::size_t kMostValues = 100'000;  ///< of all windows together
+  static constexpr std::size_t kMaxValues = 100'000;  ///< of all windows together
 
   /// `config` must outlive this.
   explicit PageHistory(const estimator::PipelineConfig& config);

@@ -86,7 +86,7 @@ void read_samples(const Config& config, std::int64_t newest_us, StoredHistory& o
                   std::vector<std::string>& notes) {
   const std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;
   const double rate_hz = config.pipeline.options.rate_hz * static_cast<double>(axes.size());
-  const double most_s = std::min(PageHistory::kMost_s, StoredHistory::kMostSamples / rate_hz);
+  const double most_s = std::min(PageHistory::kMost_s, StoredHistory::kMaxSamples / rate_hz);
   const std::int64_t from_us = newest_us - static_cast<std::int64_t>(1e6 * most_s);
   std::vector<int> axis_of;  // by the log's channel; -1: of another configuration
   const RawVisitor visitor{
@@ -97,7 +97,7 @@ void read_samples(const Config& config, std::int64_t newest_us, StoredHistory& o
             if (axes[a].name == names[i]) axis_of[i] = static_cast<int>(a);
       },
       [&](const RawCount& c) {
-        const bool full = out.samples.size() >= 2 * StoredHistory::kMostSamples;
+        const bool full = out.samples.size() >= 2 * StoredHistory::kMaxSamples;
         if (full || c.count == drivers::kNoCount || axis_of[c.channel] < 0) return;
         out.samples.push_back({estimator::from_microseconds(c.time_us), axis_of[c.channel],
                                c.count * c.resolution_mps2});
@@ -121,7 +121,7 @@ StoredHistory stored_history(const Config& config, std::vector<std::string>& not
       out.estimates = stored_estimates(store, config, *newest_us);
       read_samples(config, *newest_us, out, notes);
     }
-    out.events = store.events(-kEver_us, kEver_us, StoredHistory::kMostEvents);
+    out.events = store.events(-kEver_us, kEver_us, StoredHistory::kMaxEvents);
     problem = store.problem();
   }
   if (!problem.empty()) notes.push_back(directory + ": " + problem);

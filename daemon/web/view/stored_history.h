@@ -15,8 +15,8 @@ namespace framewatch::daemon {
 /// What `framewatch run` has stored ([history]) of what the page shows, for a page whose server was
 /// started anew.
 struct StoredHistory {
-  static constexpr std::size_t kMostEvents = 200;
-  static constexpr std::size_t kMostSamples = 2'000'000;  ///< of many sensors fewer minutes
+  static constexpr std::size_t kMaxEvents = 200;
+  static constexpr std::size_t kMaxSamples = 2'000'000;  ///< of many sensors fewer minutes
 
   /// Of every period of the last minutes, and of older ones that have the newest value of a
   /// parameter: its means as the estimate of a window that ends with it, in order of time.

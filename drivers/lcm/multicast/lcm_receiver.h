@@ -58,7 +58,7 @@ class LcmReceiver {
   void fail() { failed_ = true; }
 
  private:
-  static constexpr std::size_t kMostQueuedBytes = std::size_t{128} << 20;
+  static constexpr std::size_t kMaxQueuedBytes = std::size_t{128} << 20;
 
   void work();
   void datagram(const Datagram& datagram);

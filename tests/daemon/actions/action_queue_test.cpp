@@ -94,10 +94,10 @@ TEST(ActionQueue, IsBoundedAndLosesTheLeastSevere) {
   ActionQueue queue;
   queue.configure({});
   int lost = queue.put(event(0, event_state::raised, severity::warning), false, 0);
-  for (std::size_t i = 1; i <= 2 * ActionQueue::kMost; ++i)
+  for (std::size_t i = 1; i <= 2 * ActionQueue::kMax; ++i)
     lost += queue.put(event(static_cast<std::int64_t>(i)), false, 0);
-  EXPECT_EQ(queue.waiting(), ActionQueue::kMost);
-  EXPECT_EQ(lost, static_cast<int>(ActionQueue::kMost) + 1);
+  EXPECT_EQ(queue.waiting(), ActionQueue::kMax);
+  EXPECT_EQ(lost, static_cast<int>(ActionQueue::kMax) + 1);
   EXPECT_EQ(queue.take(0).value_or(event_t{}).id, 1);
 }
 

@@ -49,7 +49,7 @@ TEST(SvgPlot, NanBreaksALine) {
 }
 
 TEST(SvgPlot, LongLinesKeepTheirExtremesAndStaySmall) {
-  constexpr std::size_t kMostBytes = 60'000;
+  constexpr std::size_t kMaxBytes = 60'000;
   std::vector<double> x, y;
   for (int i = 0; i < 500'000; ++i) {
     x.push_back(i);
@@ -58,7 +58,7 @@ TEST(SvgPlot, LongLinesKeepTheirExtremesAndStaySmall) {
   SvgPlot plot("", {"x", 0, 500'000}, {"y", -10, 10}, 640, 280);
   plot.add({"", 0, SvgMark::line, x, y});
   const std::string svg = plot.svg();
-  EXPECT_LT(svg.size(), kMostBytes);
+  EXPECT_LT(svg.size(), kMaxBytes);
   SvgPlot without("", {"x", 0, 500'000}, {"y", -10, 10}, 640, 280);
   y[123'456] = 0;
   without.add({"", 0, SvgMark::line, x, y});

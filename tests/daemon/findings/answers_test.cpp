@@ -132,7 +132,7 @@ TEST_F(AnswersTest, SilenceIsNoBelief) {
 }
 
 TEST_F(AnswersTest, OfATallBuildingTheStoriesThatSwayedMostAreNamed) {
-  constexpr int kStories = 12, kMost = 7;
+  constexpr int kStories = 12, kMax = 7;
   estimator::Structure& s = config_.pipeline.structure;
   s.stories = kStories;
   s.story_height.assign(kStories, 3.0);
@@ -141,7 +141,7 @@ TEST_F(AnswersTest, OfATallBuildingTheStoriesThatSwayedMostAreNamed) {
   shake.peak = {config_.pipeline.axes.size(), static_cast<std::size_t>(s.degrees_of_freedom())};
   for (int story = 1; story <= kStories; ++story)
     shake.peak.drift_m[static_cast<std::size_t>(s.dof(story, 0))] =
-        0.03 / (1 + std::abs(story - kMost));
+        0.03 / (1 + std::abs(story - kMax));
   known_.newest = known_.strongest = &shake;
   const Answer told = answer(2);
   ASSERT_GE(told.more.size(), 7U);

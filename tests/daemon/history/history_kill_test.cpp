@@ -24,7 +24,7 @@ namespace framewatch::daemon {
 namespace history_kill_test {
 
 // Limits.
-constexpr double kMostLost_s = 1;  // of raw samples, at a kill
+constexpr double kMaxLost_s = 1;  // of raw samples, at a kill
 /// From the start to the first sample that is recorded: of the whole storm, which has the machine
 /// to itself, and among other tests.
 constexpr double kLongestRestart_s = 3, kLongestAmongOthers_s = 30;
@@ -120,7 +120,7 @@ TEST(KillStorm, LosesASecondOfRawSamplesAtMostAndNothingCommitted) {
     ASSERT_FALSE(counts.empty());
     const double lost_s = 1e-6 * static_cast<double>(newest_us - counts.back().time_us);
     worst_lost_s = std::max(worst_lost_s, lost_s);
-    EXPECT_LE(lost_s, kMostLost_s) << "kill " << kill;
+    EXPECT_LE(lost_s, kMaxLost_s) << "kill " << kill;
 
     const auto now = committed(history, true);
     for (const auto& [start_us, windows] : before) {

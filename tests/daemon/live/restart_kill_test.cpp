@@ -20,8 +20,8 @@ namespace restart_kill_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 60s;        // for what takes some seconds on a machine with time
-constexpr double kMostLost_s = 1;  // of raw samples, at a kill: half a second and its way here
+constexpr auto kSoon = 60s;       // for what takes some seconds on a machine with time
+constexpr double kMaxLost_s = 1;  // of raw samples, at a kill: half a second and its way here
 
 constexpr auto kShakenBefore = 3s;
 constexpr auto kAway = 1s;  // a shorter absence is not told
@@ -77,7 +77,7 @@ TEST(RestartKill, TheReportSpansTheWholeEarthquakeAndSaysWhenNobodyListened) {
   EXPECT_EQ(unheard["message"].get<std::string>().find("Nobody listened from "), 0u) << unheard;
   // All that was stored is known, and not only what the state had.
   EXPECT_NEAR(1e-6 * static_cast<double>(unheard["from_us"].get<std::int64_t>() - heard_us), 0,
-              kMostLost_s * kSpeed);
+              kMaxLost_s * kSpeed);
   EXPECT_NE(report["verdict"], "green");
 }
 

@@ -18,7 +18,7 @@ namespace first_passes_test {
 
 constexpr double kFirstFull_s = 8.5;  // settling, a window, the filters' delay
 constexpr double kArchive_s = 120;    // longer than the minute of motion that a pass takes
-constexpr double kMostRead = 0.8;     // share of the archive
+constexpr double kMaxRead = 0.8;      // share of the archive
 
 class FirstPassesOf : public test::ReplayFixture {
  protected:
@@ -104,7 +104,7 @@ TEST_F(FirstPassesOf, OfAnArchiveOnlyTheFirstMinuteOfMotionIsRead) {
   EXPECT_TRUE(first.tuning()->found_right);
   EXPECT_EQ(first.passes(), 1);
   EXPECT_LT(static_cast<double>(read),
-            kMostRead * static_cast<double>(std::filesystem::file_size(archive)));
+            kMaxRead * static_cast<double>(std::filesystem::file_size(archive)));
 }
 
 TEST_F(FirstPassesOf, InputThatCannotBeReadGivesNone) {

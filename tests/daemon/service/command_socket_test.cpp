@@ -280,7 +280,7 @@ TEST_F(Commands, AHundredSilentConnectionsDelayNobody) {
     held += ::recv(file, &byte, 1, MSG_DONTWAIT) < 0 ? 1 : 0;
     ::close(file);
   }
-  EXPECT_LE(held, static_cast<int>(CommandSocket::kMostConnections));
+  EXPECT_LE(held, static_cast<int>(CommandSocket::kMaxConnections));
 }
 
 TEST_F(Commands, WhatIsNoCommandIsCountedAndLeft) {
@@ -288,7 +288,7 @@ TEST_F(Commands, WhatIsNoCommandIsCountedAndLeft) {
   serve(*socket);
   const std::vector<std::string> junk = {
       "no zero byte", std::string("\0no channel", 11), std::string(64, 'x') + '\0',
-      "YES" + std::string(CommandPacket::kMostBytes, '\0'), std::string(150'000, '\xff')};
+      "YES" + std::string(CommandPacket::kMaxBytes, '\0'), std::string(150'000, '\xff')};
   for (const std::string& bytes : junk) {
     const int file = connect();
     ASSERT_GE(file, 0);
@@ -298,7 +298,7 @@ TEST_F(Commands, WhatIsNoCommandIsCountedAndLeft) {
     ::close(file);
   }
   EXPECT_EQ(commands_, 0);
-  std::vector<std::uint8_t> most(CommandPacket::kMostBytes - 4, 7);
+  std::vector<std::uint8_t> most(CommandPacket::kMaxBytes - 4, 7);
   EXPECT_EQ(ask("YES", most).bytes, most);
   most.push_back(7);
   EXPECT_NE(ask("YES", most).problem.find("65536 bytes at most"), std::string::npos);

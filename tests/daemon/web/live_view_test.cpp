@@ -155,8 +155,8 @@ TEST(PageCommands, MoreThanCanWaitAreRefused) {
       [](const PageCommand&, const std::string&) {});
   int taken = 0;
   for (int i = 0; i < 100; ++i) taken += commands.add({"run", {"X", {}}, i}) ? 1 : 0;
-  EXPECT_GE(taken, static_cast<int>(PageCommands::kMost));
-  EXPECT_LE(taken, static_cast<int>(PageCommands::kMost) + 1);
+  EXPECT_GE(taken, static_cast<int>(PageCommands::kMax));
+  EXPECT_LE(taken, static_cast<int>(PageCommands::kMax) + 1);
   go.set_value();
   EXPECT_TRUE(test::comes_true([&] { return given == taken; }, std::chrono::seconds(30)));
 }

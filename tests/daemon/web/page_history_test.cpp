@@ -77,7 +77,7 @@ TEST_F(PageHistoryTest, AWindowThatComesLateFillsItsRow) {
 TEST_F(PageHistoryTest, IsBoundedWhateverTheBuilding) {
   const std::vector<double> many(2000, 1.0);
   for (std::int64_t i = 0; i < 600; ++i) history_.estimate(estimate_at(1'000'000 * i, many));
-  EXPECT_EQ(json::parse(history_.json(0))["rows"].size(), PageHistory::kMostValues / many.size());
+  EXPECT_EQ(json::parse(history_.json(0))["rows"].size(), PageHistory::kMaxValues / many.size());
   for (std::int64_t i = 0; i < 6000; ++i) history_.motion("{}", i, 20);
   EXPECT_LE(json::parse(history_.json(0))["motion"].size(), 20 * PageHistory::kMotion_s + 1);
 }

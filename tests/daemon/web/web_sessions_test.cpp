@@ -91,15 +91,15 @@ TEST(WebSessions, ReadNeitherPipesNorDevicesNorWhatIsHuge) {
   ASSERT_EQ(::mkfifo(report("pipe").c_str(), 0600), 0);
   ASSERT_EQ(::mkfifo((s.sessions + "/pipe/session.json").c_str(), 0600), 0);
   test::write_file(report("huge"), "");
-  fs::resize_file(report("huge"), kMostServedBytes + 1);
+  fs::resize_file(report("huge"), kMaxServedBytes + 1);
   fs::create_directory(report("folder"));
   for (const char* path :
        {"pipe/report.html", "pipe/session.json", "huge/report.html", "folder/report.html"})
     EXPECT_FALSE(session_document(s.sessions, path)) << path;
   EXPECT_EQ(nlohmann::json::parse(sessions_json(s.sessions)).size(), 1u);
-  fs::resize_file(report("huge"), kMostServedBytes);
+  fs::resize_file(report("huge"), kMaxServedBytes);
   EXPECT_EQ(session_document(s.sessions, "huge/report.html").value().content.size(),
-            kMostServedBytes);
+            kMaxServedBytes);
 }
 
 }  // namespace web_sessions_test
