@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -6,11 +6,11 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/toml_document.h"
+#include "daemon/config/keys/section.h"
+#include "daemon/config/keys/suggest.h"
 #include "daemon/config/toml_file.h"
-#include "daemon/documents/toml_document.h"
-#include "daemon/keys/section.h"
-#include "daemon/keys/suggest.h"
-#include "drivers/base/input_file.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {
 namespace {

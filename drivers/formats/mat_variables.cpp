@@ -9,8 +9,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/input_file.h"
-#include "drivers/base/unpack_limit.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/unpack_limit.h"
 #include "drivers/formats/hdf5_guard.h"
 #include "drivers/formats/mat_layout.h"
 #include "drivers/formats/mat_signature.h"

@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/line_reader.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/line_reader.h"
+#include "drivers/files/number_text.h"
 #include "drivers/formats/record_formats.h"
 #include "drivers/formats/table_header.h"
 #include "drivers/formats/table_text.h"

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/input_file.h"
-#include "drivers/base/trial_process.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/trial_process.h"
 #include "drivers/formats/mat_signature.h"
 #include "drivers/formats/mat_variables.h"
 #include "drivers/formats/record_formats.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/base/trouble.h"
+#include "drivers/files/trouble.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/axis_binding.h"
 #include "drivers/lcm/heard_node.h"

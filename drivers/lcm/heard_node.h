@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "drivers/base/sequence_counter.h"
-#include "drivers/base/sequence_watch.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/bound_sender.h"
+#include "drivers/lcm/sequence_counter.h"
+#include "drivers/lcm/sequence_watch.h"
 
 namespace framewatch::drivers {
 

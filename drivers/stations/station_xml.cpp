@@ -12,8 +12,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/gzip_input.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/gzip_input.h"
+#include "drivers/files/number_text.h"
 #include "drivers/records/accel_unit.h"
 #include "drivers/records/time_text.h"
 

@@ -15,9 +15,9 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/base/workers.h"
-#include "daemon/history/history_files.h"
-#include "daemon/history/raw_history_reader.h"
-#include "daemon/replay/replay_survey.h"
+#include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/raw_history_reader.h"
+#include "daemon/tools/replay/replay_survey.h"
 
 namespace framewatch::fleet {
 namespace {

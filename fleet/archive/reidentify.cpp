@@ -5,10 +5,10 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/estimation/estimation.h"
-#include "daemon/replay/first_passes.h"
-#include "daemon/replay/history_output.h"
-#include "daemon/replay/replay_survey.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "daemon/tools/replay/first_passes.h"
+#include "daemon/tools/replay/history_output.h"
+#include "daemon/tools/replay/replay_survey.h"
 
 namespace framewatch::fleet {
 namespace {

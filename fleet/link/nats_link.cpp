@@ -14,7 +14,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 #include "fleet/link/certificate_age.h"
 #include "fleet/link/nats_objects.h"
 

@@ -9,7 +9,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/random_id.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "fleet/message/subject.h"
 #include "fleet/serve/journal.h"
 #include "fleet/view/building_view.h"

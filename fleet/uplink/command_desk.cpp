@@ -8,7 +8,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::fleet {

@@ -10,7 +10,7 @@
 #include <framewatch/acknowledge_t.hpp>
 
 #include "daemon/base/log.h"
-#include "daemon/keys/fleet_options.h"
+#include "daemon/config/keys/fleet_options.h"
 #include "fleet/message/message.h"
 #include "fleet/uplink/sent_store.h"
 

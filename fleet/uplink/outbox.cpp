@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "daemon/base/clocks.h"
-#include "daemon/events/event_words.h"
-#include "daemon/history/history_files.h"
-#include "daemon/history/history_schema.h"
+#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/history_schema.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <framewatch/event_t.hpp>
 
-#include "daemon/documents/sqlite_file.h"
+#include "daemon/base/sqlite_file.h"
 #include "fleet/message/key.h"
 #include "fleet/uplink/sent_store.h"
 

@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/damaged_database.h"
 #include "daemon/base/log.h"
-#include "daemon/documents/damaged_database.h"
-#include "daemon/history/history_schema.h"
+#include "daemon/monitor/history/history_schema.h"
 
 namespace framewatch::fleet {
 namespace {

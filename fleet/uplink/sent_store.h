@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/documents/sqlite_file.h"
+#include "daemon/base/sqlite_file.h"
 #include "fleet/message/key.h"
 
 namespace framewatch::fleet {

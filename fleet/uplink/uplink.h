@@ -13,8 +13,8 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/uplink_status_t.hpp>
 
-#include "daemon/keys/fleet_options.h"
-#include "daemon/keys/history_options.h"
+#include "daemon/config/keys/fleet_options.h"
+#include "daemon/config/keys/history_options.h"
 #include "fleet/link/link.h"
 #include "fleet/uplink/command_desk.h"
 #include "fleet/uplink/newest_messages.h"

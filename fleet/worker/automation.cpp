@@ -10,8 +10,8 @@
 
 #include <framewatch/service_t.hpp>
 
-#include "daemon/events/event_json.h"
-#include "daemon/events/event_words.h"
+#include "daemon/monitor/events/event_json.h"
+#include "daemon/monitor/events/event_words.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::fleet {

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "drivers/lcm/message_check.h"
 #include "drivers/lcm/message_types.h"
 #include "fleet/message/key.h"

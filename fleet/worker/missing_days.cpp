@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -2,8 +2,8 @@
 // own messages must be good ones.
 #include <cmath>
 
-#include "daemon/estimation/estimation.h"
-#include "drivers/base/encoded.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/message_types.h"
 #include "tests/fuzz/example_building.h"

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 #include "drivers/lcm/multicast/fragment_assembly.h"
 #include "drivers/lcm/multicast/multicast_socket.h"
 

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 
 namespace framewatch::drivers {
 namespace {

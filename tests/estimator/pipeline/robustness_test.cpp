@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_study.h"
-#include "daemon/lab/excitation_study.h"
+#include "daemon/tools/lab/accuracy_study.h"
+#include "daemon/tools/lab/excitation_study.h"
 #include "tests/support/paper_buildings.h"
 
 namespace framewatch::estimator {

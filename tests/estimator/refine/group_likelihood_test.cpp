@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/few_sensors.h"
+#include "daemon/tools/lab/few_sensors.h"
 #include "estimator/refine/max_likelihood.h"
 #include "estimator/structure/group_design.h"
 

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
+#include "daemon/tools/lab/accuracy_trial.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/support/noisy_stretch.h"
 #include "tests/support/paper_buildings.h"

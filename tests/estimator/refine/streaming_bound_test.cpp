@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_study.h"
+#include "daemon/tools/lab/accuracy_study.h"
 
 namespace framewatch::estimator {
 namespace streaming_bound_test {

@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
-#include "daemon/lab/paper_buildings.h"
+#include "daemon/tools/lab/accuracy_trial.h"
+#include "daemon/tools/lab/paper_buildings.h"
 #include "estimator/identify/groups/layout_prediction.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/simulate/linear_response.h"
