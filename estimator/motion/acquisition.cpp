@@ -1,7 +1,6 @@
 #include "estimator/motion/acquisition.h"
 
 #include <cmath>
-#include <utility>
 
 #include "estimator/numeric/nan.h"
 
@@ -32,13 +31,12 @@ double whole_delay_s(double delay_s, double rate_hz) {
 }
 
 Acquisition::Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOptions& options,
-                         Sink sink, bool lone_spikes)
+                         bool lone_spikes)
     : axes_(axes),
       merger_(static_cast<int>(axes.size()), options.rate_hz, options.lateness_s),
       guard_(guarded_axes(axes), options.rate_hz, lone_spikes),
       calibration_(axes),
-      filler_(axes_to_repair(axes, options.fill_single_losses)),
-      sink_(std::move(sink)) {
+      filler_(axes_to_repair(axes, options.fill_single_losses)) {
   for (SensorAxis& axis : axes_) {
     bound_.push_back(sample_bound(axis));
     const double whole = whole_delay_s(axis.delay, options.rate_hz);
@@ -48,7 +46,7 @@ Acquisition::Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOpt
   calibrated_.accel.resize(axes.size());
 }
 
-void Acquisition::push(const AccelSample& raw) {
+void Acquisition::take(const AccelSample& raw) {
   const auto a = static_cast<std::size_t>(raw.axis);
   AccelSample sample = raw;
   sample.accel *= axes_[a].scale;
@@ -57,29 +55,41 @@ void Acquisition::push(const AccelSample& raw) {
     sample.accel = kNaN;  // the merger counts it as rejected
   }
   sample.time -= whole_delay_[a];
-  const bool taken = merger_.push(sample);
-  drain();
-  if (taken) return;
-  (void)merger_.push(sample);
-  drain();
+  if (!merger_.push(sample)) waiting_ = sample;
 }
 
-void Acquisition::finish() {
+void Acquisition::end() {
   merger_.finish();
-  drain();
-  while (const SampleSet* set = guard_.drain()) guarded(*set);
-  while (const SampleSet* set = filler_.drain()) sink_(*set);
+  ending_ = Ending::guard;
 }
 
-void Acquisition::drain() {
-  while (const SampleSet* set = merger_.next())
-    if (const SampleSet* sound = guard_.push(*set)) guarded(*sound);
+const SampleSet* Acquisition::next() {
+  for (;;) {
+    const SampleSet* guarded = nullptr;
+    if (const SampleSet* merged = merger_.next()) {
+      guarded = guard_.push(*merged);
+    } else if (waiting_) {
+      (void)merger_.push(*waiting_);
+      waiting_.reset();
+    } else if (ending_ == Ending::guard) {
+      guarded = guard_.drain();
+      if (guarded == nullptr) ending_ = Ending::filler;
+    } else if (ending_ == Ending::filler) {
+      const SampleSet* last = filler_.drain();
+      if (last == nullptr) ending_ = Ending::no;
+      return last;
+    } else {
+      return nullptr;
+    }
+    if (guarded == nullptr) continue;
+    if (const SampleSet* set = repaired(*guarded)) return set;
+  }
 }
 
-void Acquisition::guarded(const SampleSet& set) {
-  calibrated_ = set;
+const SampleSet* Acquisition::repaired(const SampleSet& guarded) {
+  calibrated_ = guarded;
   calibration_.apply(calibrated_.accel);
-  if (const SampleSet* repaired = filler_.push(calibrated_)) sink_(*repaired);
+  return filler_.push(calibrated_);
 }
 
 std::vector<AxisCounters> Acquisition::counters() const {

@@ -4,9 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/guessed_design.h"
-#include "estimator/identify/groups/axis_motion.h"
 #include "estimator/identify/groups/group_tuning.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/regressor_tuning.h"
@@ -20,12 +18,6 @@ constexpr int kBlocks = BatchMeans::kBlocks;  // per window
 /// Of the main window: rows enough for standard errors, but for the first of a start.
 constexpr double kWarm = 0.75 * BatchMeans::kFewest / BatchMeans::kBlocks;
 
-std::unique_ptr<MotionSource> motion_source(const Structure& structure, const FloorLayout& layout,
-                                            const std::vector<SensorAxis>& axes) {
-  if (layout.grouped()) return std::make_unique<AxisMotion>(static_cast<int>(axes.size()));
-  return std::make_unique<Deformations>(structure, layout, axes);
-}
-
 }  // namespace
 
 SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
@@ -35,7 +27,12 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       matched_(options_.variant == Variant::matched || table.grouped()),
       table_(table),
       layout_(config_.structure, table_, config_.axes),
-      motion_source_(motion_source(config_.structure, layout_, config_.axes)),
+      deformations_(layout_.grouped()
+                        ? nullptr
+                        : std::make_unique<Deformations>(config_.structure, layout_, config_.axes)),
+      axis_motion_(layout_.grouped()
+                       ? std::make_unique<AxisMotion>(static_cast<int>(config_.axes.size()))
+                       : nullptr),
       triple_(triple_of(options_, layout_.grouped(), 0)),
       high_pass_(options_.high_pass_hz, options_.rate_hz),
       blocks_(kBlocks),
@@ -44,7 +41,7 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       other_blocks_(blocks_of(options_.other_windows_s, options_.rate_hz, block_rows_)),
       integrator_(triples_of(options_, layout_.grouped(), config_.axes), high_pass_),
       noise_(config_.axes, options_.rate_hz),
-      ring_(*motion_source_,
+      ring_(motion_source(),
             SelfTuning::ring_rows(kept_beside(options_, layout_.grouped()) +
                                   longest_window(block_rows_, other_blocks_) + triple_.length())),
       drift_(config_, table_, layout_, block_rows_,
@@ -94,9 +91,8 @@ std::unique_ptr<RowTuning> SlidingWindowEstimator::make_tuning(
     return std::make_unique<GroupTuning>(config_, options, table_, layout_,
                                          GroupDesign{design, config_.bending_nmprad}, triple_,
                                          high_pass_);
-  return std::make_unique<RegressorTuning>(structure, layout_,
-                                           static_cast<const Deformations&>(*motion_source_),
-                                           options, triple_, high_pass_, design);
+  return std::make_unique<RegressorTuning>(structure, layout_, *deformations_, options, triple_,
+                                           high_pass_, design);
 }
 
 std::unique_ptr<TunedRegression> SlidingWindowEstimator::make_regression(
@@ -180,7 +176,7 @@ void SlidingWindowEstimator::advance(const std::vector<double>& accel, Time time
   last_time_ = time;
   integrator_.push(accel);
   noise_.push(accel);
-  motion_source_->compute(integrator_, ring_.push());
+  motion_source().compute(integrator_, ring_.push());
   drift_.push(ring_.at(ring_.end() - 1));
   if (layout_.grouped()) follow_axes(ring_.at(ring_.end() - 1).known);
   due_ = ++since_hop_ >= hop_rows_;

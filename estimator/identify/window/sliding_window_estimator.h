@@ -4,9 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/motion_source.h"
 #include "estimator/identify/estimate/boxplot.h"
 #include "estimator/identify/estimate/estimate.h"
+#include "estimator/identify/groups/axis_motion.h"
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/element_drift.h"
 #include "estimator/identify/window/held_bending.h"
@@ -124,6 +126,10 @@ class SlidingWindowEstimator {
   void follow_axes(const std::vector<std::uint8_t>& known);
   RowTuning::Known identified() const;
   void regression_exchanged();
+  MotionSource& motion_source() {
+    if (deformations_) return *deformations_;
+    return *axis_motion_;
+  }
   /// The filters are right, as far as is known.
   bool tuned() const { return self_tuning_ == nullptr || self_tuning_->tuned(); }
   std::unique_ptr<RowTuning> make_tuning(const EstimatorOptions& options) const;
@@ -136,7 +142,8 @@ class SlidingWindowEstimator {
   bool matched_;  ///< the variant
   ParameterTable table_;
   FloorLayout layout_;
-  std::unique_ptr<MotionSource> motion_source_;
+  std::unique_ptr<Deformations> deformations_;  ///< null with groups of stories
+  std::unique_ptr<AxisMotion> axis_motion_;     ///< null without
   DerivativeTriple triple_;
   HighPass high_pass_;
   int blocks_, block_rows_, hop_rows_;

@@ -193,14 +193,17 @@ TEST(Force, WhoseChannelDiesEndsTheEstimatesUntilItIsBack) {
       .segment(from, to - from)
       .setConstant(std::numeric_limits<double>::quiet_NaN());
   std::vector<WindowEstimate> windows;
-  Pipeline pipeline(record.config, [&](const WindowEstimate& e) {
+  const auto take = [&](const WindowEstimate& e) {
     if (e.window == 0) windows.push_back(e);
-  });
+  };
+  Pipeline pipeline(record.config);
   for (Eigen::Index i = 0; i < record.samples.rows(); ++i)
     for (Eigen::Index a = 0; a < record.samples.cols(); ++a)
       if (std::isfinite(record.samples(i, a)))
-        pipeline.push({from_microseconds(10'000 * i), static_cast<int>(a), record.samples(i, a)});
-  pipeline.finish();
+        each_main_window(pipeline.push({from_microseconds(10'000 * i), static_cast<int>(a),
+                                        record.samples(i, a)}),
+                         take);
+  each_main_window(pipeline.finish(), take);
   int before = 0, meanwhile = 0, after = 0;
   for (const WindowEstimate& w : windows) {
     const auto end = static_cast<int>(to_microseconds(w.end) / 10'000);

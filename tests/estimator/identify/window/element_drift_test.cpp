@@ -40,15 +40,17 @@ PipelineConfig two_stories() {
 /// time on.
 WindowEstimate last_of(const std::vector<double>& peaks, int lost = -1) {
   WindowEstimate last;
-  Pipeline pipeline(two_stories(), [&](const WindowEstimate& e) { last = e; });
+  const auto take = [&](const WindowEstimate& e) { last = e; };
+  Pipeline pipeline(two_stories());
   for (int i = 0; i < 30 * kRate_hz; ++i)
     for (int a = 0; a < 3; ++a) {
       const double phase = std::sin(2 * M_PI * kHz * i / kRate_hz);
       const double accel = peaks[static_cast<std::size_t>(a)] * phase;
       const bool gone = a == lost && i > 15 * kRate_hz;
-      pipeline.push({from_microseconds(10'000 * i), a, gone ? kNaN : accel});
+      each_main_window(pipeline.push({from_microseconds(10'000 * i), a, gone ? kNaN : accel}),
+                       take);
     }
-  pipeline.finish();
+  each_main_window(pipeline.finish(), take);
   return last;
 }
 

@@ -56,16 +56,17 @@ class LongWindows : public testing::Test {
                 ? 1
                 : 0;
     };
-    Pipeline pipeline(config, keep, keep);
+    Pipeline pipeline(config);
     for (int t = 0; t < instants; ++t) {
       if (alter) alter(building, t);
       const Eigen::VectorXd& accel = building.next();
       for (int a = 0; a < accel.size(); ++a)
         if (!delivered || delivered(t, a))
-          pipeline.push(
-              {from_microseconds(10'000LL * t), a, t == spike_at_ && a == 7 ? kSpike : accel[a]});
+          each_window(pipeline.push({from_microseconds(10'000LL * t), a,
+                                     t == spike_at_ && a == 7 ? kSpike : accel[a]}),
+                      keep);
     }
-    pipeline.finish();
+    each_window(pipeline.finish(), keep);
     return out;
   }
   /// Deviations of the frames' stiffness over their standard errors.

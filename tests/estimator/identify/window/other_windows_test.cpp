@@ -59,10 +59,11 @@ TEST(OtherWindows, FourASecondEachFromTheSameBlocks) {
   const Shaken b(daemon::table1(), daemon::table1_theta(), kDuration_s);
   std::map<int, std::vector<WindowEstimate>> given;
   const auto keep = [&](const WindowEstimate& e) { given[e.window].push_back(e); };
-  Pipeline pipeline(b.config, keep, keep);
+  Pipeline pipeline(b.config);
   for (int t = 0; t < b.accel.rows(); ++t)
-    for (int a = 0; a < b.accel.cols(); ++a) pipeline.push(test::sample_at(b.accel, 100, t, a));
-  pipeline.finish();
+    for (int a = 0; a < b.accel.cols(); ++a)
+      each_window(pipeline.push(test::sample_at(b.accel, 100, t, a)), keep);
+  each_window(pipeline.finish(), keep);
 
   const std::vector<int> rows = pipeline.other_window_rows();
   ASSERT_EQ(rows, (std::vector<int>{100, 250, 1000}));
@@ -174,7 +175,7 @@ TEST(MeasuredNoise, IsFoundAndUsedWhenNobodyConfiguredIt) {
     truth.push_back(axis.noise_density);
     axis.noise_density = 0;
   }
-  Pipeline pipeline(b.config, [](const WindowEstimate&) {});
+  Pipeline pipeline(b.config);
   for (int t = 0; t < b.accel.rows(); ++t)
     for (int a = 0; a < b.accel.cols(); ++a) pipeline.push(test::sample_at(b.accel, 100, t, a));
   pipeline.finish();
