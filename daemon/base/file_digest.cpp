@@ -8,7 +8,7 @@
 
 #include <glib.h>
 
-#include "drivers/base/input_file.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -10,8 +10,8 @@
 #include <exception>
 
 #include "daemon/base/exit_code.h"
-#include "drivers/base/caught.h"
-#include "drivers/base/partial_file.h"
+#include "drivers/files/caught.h"
+#include "drivers/files/partial_file.h"
 
 namespace framewatch::daemon {
 namespace {

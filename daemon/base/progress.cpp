@@ -9,8 +9,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/bytes_read.h"
-#include "drivers/base/caught.h"
+#include "drivers/files/bytes_read.h"
+#include "drivers/files/caught.h"
 
 namespace framewatch::daemon {
 namespace {

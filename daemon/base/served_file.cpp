@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -19,7 +19,7 @@ bool is_plain_name(const std::string& name) {
 
 bool is_servable(const struct stat& file) {
   return S_ISREG(file.st_mode) && file.st_size >= 0 &&
-         static_cast<std::uint64_t>(file.st_size) <= kMostServedBytes;
+         static_cast<std::uint64_t>(file.st_size) <= kMaxServedBytes;
 }
 
 /// Opens the folder of the last name; false when it is none, or a link.

@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/base/exit_code.h"
-#include "daemon/documents/record_file_arguments.h"
-#include "drivers/base/standard_streams.h"
-#include "drivers/base/unpack_limit.h"
+#include "daemon/base/record_file_arguments.h"
+#include "drivers/files/standard_streams.h"
+#include "drivers/files/unpack_limit.h"
 #include "drivers/records/record_options.h"
 
 namespace framewatch::daemon {

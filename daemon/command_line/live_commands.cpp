@@ -1,13 +1,13 @@
 #include <CLI/CLI.hpp>
 
-#include "daemon/actions/acknowledge_command.h"
-#include "daemon/actions/tell_command.h"
 #include "daemon/command_line/command_list.h"
-#include "daemon/commands/selftest_command.h"
-#include "daemon/commands/status_command.h"
-#include "daemon/demo/demo_command.h"
-#include "daemon/live/run_command.h"
-#include "daemon/web/serve_command.h"
+#include "daemon/monitor/actions/acknowledge_command.h"
+#include "daemon/monitor/actions/tell_command.h"
+#include "daemon/monitor/live/run_command.h"
+#include "daemon/page/findings/status_command.h"
+#include "daemon/page/web/serve_command.h"
+#include "daemon/tools/commands/selftest_command.h"
+#include "daemon/tools/demo/demo_command.h"
 
 namespace framewatch::daemon {
 

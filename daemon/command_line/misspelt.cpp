@@ -5,7 +5,7 @@
 
 #include "daemon/base/printable.h"
 #include "daemon/command_line/option_entries.h"
-#include "daemon/keys/suggest.h"
+#include "daemon/config/keys/suggest.h"
 
 namespace framewatch::daemon {
 namespace {

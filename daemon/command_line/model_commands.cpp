@@ -1,11 +1,11 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/command_line/command_list.h"
-#include "daemon/commands/check_command.h"
-#include "daemon/diagnosis/adopt_command.h"
-#include "daemon/diagnosis/diagnose_command.h"
-#include "daemon/init/init_command.h"
-#include "daemon/lab/reproduce_command.h"
+#include "daemon/tools/commands/check_command.h"
+#include "daemon/tools/diagnosis/adopt_command.h"
+#include "daemon/tools/diagnosis/diagnose_command.h"
+#include "daemon/tools/init/init_command.h"
+#include "daemon/tools/lab/reproduce_command.h"
 
 namespace framewatch::daemon {
 

@@ -1,11 +1,11 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/command_line/command_list.h"
-#include "daemon/commands/convert_command.h"
-#include "daemon/history/history_command.h"
-#include "daemon/report/report_command.h"
-#include "daemon/session/record_command.h"
-#include "daemon/simulation/simulate_command.h"
+#include "daemon/monitor/history/history_command.h"
+#include "daemon/tools/commands/convert_command.h"
+#include "daemon/tools/report/report_command.h"
+#include "daemon/tools/session/record_command.h"
+#include "daemon/tools/simulation/simulate_command.h"
 
 namespace framewatch::daemon {
 

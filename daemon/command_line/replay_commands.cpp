@@ -1,10 +1,10 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/command_line/command_list.h"
-#include "daemon/replay/diff_command.h"
-#include "daemon/replay/refine_command.h"
-#include "daemon/replay/repair_command.h"
-#include "daemon/replay/replay_command.h"
+#include "daemon/tools/replay/diff_command.h"
+#include "daemon/tools/replay/refine_command.h"
+#include "daemon/tools/replay/repair_command.h"
+#include "daemon/tools/replay/replay_command.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -6,11 +6,11 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/toml_document.h"
+#include "daemon/config/keys/section.h"
+#include "daemon/config/keys/suggest.h"
 #include "daemon/config/toml_file.h"
-#include "daemon/documents/toml_document.h"
-#include "daemon/keys/section.h"
-#include "daemon/keys/suggest.h"
-#include "drivers/base/input_file.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -18,9 +18,9 @@ namespace {
 /// Why these are no points of a curve; empty: they are.
 std::string problem_of(const std::vector<double>& amplitudes, const std::vector<double>& values,
                        const std::vector<double>& errors) {
-  constexpr std::size_t kMost = estimator::AmplitudeBins::kBins;
-  if (amplitudes.size() > kMost)
-    return fmt::format("{} amplitudes, at most {}", amplitudes.size(), kMost);
+  constexpr std::size_t kMax = estimator::AmplitudeBins::kBins;
+  if (amplitudes.size() > kMax)
+    return fmt::format("{} amplitudes, at most {}", amplitudes.size(), kMax);
   if (values.size() != amplitudes.size() || errors.size() != amplitudes.size())
     return fmt::format(
         "{} amplitudes, {} values and {} standard errors: value_at_amplitude and "

@@ -7,8 +7,8 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/keys/fields.h"
-#include "daemon/keys/section_table.h"
+#include "daemon/config/keys/fields.h"
+#include "daemon/config/keys/section_table.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/toml_document.h"
+#include "daemon/config/keys/option_table.h"
 #include "daemon/config/sections/settings.h"
-#include "daemon/documents/toml_document.h"
-#include "daemon/keys/option_table.h"
 
 namespace framewatch::daemon {
 

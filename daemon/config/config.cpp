@@ -5,10 +5,10 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/config/baseline_file.h"
 #include "daemon/config/gap_model.h"
+#include "daemon/config/keys/fields.h"
+#include "daemon/config/plausibility/doubted_building.h"
 #include "daemon/config/read_config.h"
-#include "daemon/keys/fields.h"
-#include "daemon/plausibility/doubted_building.h"
-#include "drivers/base/standard_streams.h"
+#include "drivers/files/standard_streams.h"
 
 namespace framewatch::daemon {
 namespace {

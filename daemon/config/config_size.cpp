@@ -44,11 +44,10 @@ std::string size_words(double bytes) {
 }  // namespace
 
 std::string simulated_size_problem(const estimator::Structure& structure) {
-  if (structure.degrees_of_freedom() <= kMostSimulatedFreedoms) return {};
+  if (structure.degrees_of_freedom() <= kMaxSimulatedFreedoms) return {};
   return fmt::format(
       "{} stories of {} frames have {} degrees of freedom, a building of at most {} is simulated",
-      structure.stories, structure.frames(), structure.degrees_of_freedom(),
-      kMostSimulatedFreedoms);
+      structure.stories, structure.frames(), structure.degrees_of_freedom(), kMaxSimulatedFreedoms);
 }
 
 void check_size(const TomlValue& document, const Config& config,
@@ -61,7 +60,7 @@ void check_size(const TomlValue& document, const Config& config,
   const estimator::PipelineSize size = estimator::pipeline_size(c);
   const double segments = segment_bytes(config);
   const double total = size.bytes() + segments;
-  if (total <= kMostConfigBytes) return;
+  if (total <= kMaxConfigBytes) return;
   double longest_s = std::max(o.window_s, o.long_window_s);
   for (const double s : o.other_windows_s) longest_s = std::max(longest_s, s);
   const bool slow_filter = 1 / o.high_pass_hz > longest_s;
@@ -84,7 +83,7 @@ void check_size(const TomlValue& document, const Config& config,
                    "channels, {:g} Hz, windows of {:g} s to {:g} s, high_pass_hz {:g}, "
                    "boxplot_windows {}, lateness_s {:g})",
                    most.section, most.key, size_words(total), size_words(most.bytes),
-                   size_words(kMostConfigBytes), c.structure.stories, c.structure.frames(),
+                   size_words(kMaxConfigBytes), c.structure.stories, c.structure.frames(),
                    c.structure.panels(), c.axes.size(), o.rate_hz, o.window_s, longest_s,
                    o.high_pass_hz, o.boxplot_windows, o.lateness_s)});
 }

@@ -3,17 +3,17 @@
 #include <string>
 #include <vector>
 
+#include "daemon/base/toml_document.h"
 #include "daemon/config/sections/settings.h"
-#include "daemon/documents/toml_document.h"
 
 namespace framewatch::daemon {
 
 /// Most memory that a configuration may ask for, bytes: 300 stories of 3x3 bays take 1.1 GiB.
-inline constexpr double kMostConfigBytes = 1.25 * 1024 * 1024 * 1024;
+inline constexpr double kMaxConfigBytes = 1.25 * 1024 * 1024 * 1024;
 
 /// Most degrees of freedom of a building that is simulated: of its dense matrices 640 of them take
 /// seconds.
-inline constexpr int kMostSimulatedFreedoms = 640;
+inline constexpr int kMaxSimulatedFreedoms = 640;
 
 /// Why a building is too large to be simulated; empty when it is not.
 std::string simulated_size_problem(const estimator::Structure& structure);

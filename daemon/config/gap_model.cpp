@@ -3,11 +3,11 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
+#include "daemon/base/toml_document.h"
 #include "daemon/config/axis_names.h"
 #include "daemon/config/read_config.h"
 #include "daemon/config/toml_file.h"
-#include "daemon/documents/toml_document.h"
-#include "drivers/base/input_file.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {
 namespace {

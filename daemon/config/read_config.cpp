@@ -6,11 +6,11 @@
 #include <fmt/core.h>
 
 #include "daemon/config/config_size.h"
+#include "daemon/config/keys/section_table.h"
+#include "daemon/config/keys/suggest.h"
 #include "daemon/config/sections/can_reader.h"
 #include "daemon/config/sections/effects.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section_table.h"
-#include "daemon/keys/suggest.h"
 
 namespace framewatch::daemon {
 namespace {

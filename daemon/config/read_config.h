@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "daemon/base/toml_document.h"
 #include "daemon/config/sections/settings.h"
-#include "daemon/documents/toml_document.h"
 
 namespace framewatch::daemon {
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/documents/toml_document.h"
+#include "daemon/base/toml_document.h"
 
 namespace framewatch::daemon {
 

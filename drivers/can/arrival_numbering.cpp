@@ -8,10 +8,10 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr double kOnTime = 0.25;          ///< of a period after it is due
-constexpr int kEndOfPause = 2;            ///< frames on time that end a pause
-constexpr std::size_t kMostWaiting = 64;  ///< frames that wait
-constexpr double kNextTolerance = 0.5;    ///< of a period, by which the next frame may seem early
+constexpr double kOnTime = 0.25;         ///< of a period after it is due
+constexpr int kEndOfPause = 2;           ///< frames on time that end a pause
+constexpr std::size_t kMaxWaiting = 64;  ///< frames that wait
+constexpr double kNextTolerance = 0.5;   ///< of a period, by which the next frame may seem early
 constexpr double kGridTolerance = 0.05;
 
 }  // namespace
@@ -31,7 +31,7 @@ void ArrivalNumbering::add(double since, double tolerance) {
   on_time_ = on_time && !frames_.empty() ? on_time_ + 1 : 0;
   frames_.push_back({latest, repeated});
   different_ += !repeated;
-  unambiguous_ = unambiguous_ || on_time_ >= kEndOfPause || frames_.size() >= kMostWaiting;
+  unambiguous_ = unambiguous_ || on_time_ >= kEndOfPause || frames_.size() >= kMaxWaiting;
 }
 
 bool ArrivalNumbering::confirm(std::int64_t number) {

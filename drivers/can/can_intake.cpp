@@ -11,7 +11,7 @@ namespace {
 /// Of the node's period: how soon the rest of a sample must follow the frame that opens it.
 constexpr double kAttachWindow = 0.5;
 constexpr std::int64_t kLook_us = 1'000'000;
-constexpr std::int64_t kMostStamp_us = 4'000'000'000'000'000'000;  // sums do not overflow
+constexpr std::int64_t kMaxStamp_us = 4'000'000'000'000'000'000;  // sums do not overflow
 
 double modulus_of(const CanNodeMap& node) {
   const CanMessageMap& opens = node.messages.front();
@@ -146,7 +146,7 @@ void CanIntake::notice(const CanNotice& notice) const {
 /// Judges the numbers of every node.
 void CanIntake::look(std::int64_t stamp_us) {
   using Kind = CanNotice::Kind;
-  next_look_us_ = std::clamp(stamp_us, -kMostStamp_us, kMostStamp_us) + kLook_us;
+  next_look_us_ = std::clamp(stamp_us, -kMaxStamp_us, kMaxStamp_us) + kLook_us;
   for (std::size_t n = 0; n < nodes_.size(); ++n) {
     const CanNodeCounters c = node(n);
     const bool counts = map_.nodes[n].timing != CanTiming::period;

@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/base/sequence_counter.h"
-#include "drivers/base/sequence_watch.h"
 #include "drivers/can/can_map.h"
 #include "drivers/can/can_notice.h"
 #include "drivers/can/can_status.h"
@@ -15,6 +13,8 @@
 #include "drivers/can/resampler.h"
 #include "drivers/can/stream_timer.h"
 #include "drivers/can/sync_matcher.h"
+#include "drivers/lcm/sequence_counter.h"
+#include "drivers/lcm/sequence_watch.h"
 #include "estimator/motion/sample.h"
 
 namespace framewatch::drivers {
@@ -64,7 +64,7 @@ class CanIntake {
   template <typename Archive>
   void archive(Archive& a) {
     a(steps_, nodes_, buses_, bus_counters_, resamplers_, ranges_, newest_stamp_us_, absurd_);
-    a.within(next_look_us_, -2 * a.kMostCount, 2 * a.kMostCount);
+    a.within(next_look_us_, -2 * a.kMaxCount, 2 * a.kMaxCount);
   }
 
  private:

@@ -1,8 +1,8 @@
 #include "drivers/can/can_log.h"
 
-#include "drivers/base/file_problems.h"
-#include "drivers/base/line_reader.h"
 #include "drivers/can/candump_line.h"
+#include "drivers/files/file_problems.h"
+#include "drivers/files/line_reader.h"
 
 namespace framewatch::drivers {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/problem.h"
-#include "drivers/base/text_output.h"
 #include "drivers/can/can_frame.h"
+#include "drivers/files/problem.h"
+#include "drivers/files/text_output.h"
 #include "drivers/records/record.h"
 
 namespace framewatch::drivers {

@@ -12,7 +12,7 @@ constexpr double kEarliest_us =
     -5'000;                             ///< before the clock model: nothing comes before it is sent
 constexpr double kLatest_us = 30'000;   ///< after it, on a busy bus
 constexpr double kSame_us = 20'000;     ///< by which the lateness of held frames may differ
-constexpr double kMostLate_us = 2e6;    ///< of a late frame, unless `patience_us` is longer
+constexpr double kMaxLate_us = 2e6;     ///< of a late frame, unless `patience_us` is longer
 constexpr std::int64_t kNoJump = 3;     ///< numbers
 constexpr double kStall_us = 1e6;       ///< lateness of frames that follow an outage, and
 constexpr double kStallOfWrap = 0.125;  ///< of the counter's range: a restart looks like more
@@ -49,7 +49,7 @@ bool StreamTimer::fits(double late_us) const {
 }
 
 double StreamTimer::most_late_us() const {
-  return std::max(kMostLate_us, settings_.patience_us);
+  return std::max(kMaxLate_us, settings_.patience_us);
 }
 
 /// Whether no restart is needed to explain the frame: the sender or the adapter was held up, the

@@ -13,7 +13,7 @@ constexpr double kWindow = 0.95;
 constexpr double kPatience_us = 30e6;
 constexpr int kAgreeing =
     5;  ///< frames in a row with which a node's counter is taken to have begun anew
-constexpr std::size_t kMostUnassigned = 8;
+constexpr std::size_t kMaxUnassigned = 8;
 
 StreamTimer::Settings settings_of(const CanBusMap& bus) {
   return {bus.sync_overflow > 0 ? CanTiming::counter : CanTiming::period, bus.sync_period_us,
@@ -131,7 +131,7 @@ bool SyncMatcher::belongs_to_sync(Stream& s, const Arrived& arrived) {
 void SyncMatcher::keep_unassigned(Stream& s) {
   for (auto* arrived : {&s.first, &s.last}) {
     if (!*arrived) continue;
-    if (s.unassigned.size() == kMostUnassigned) {
+    if (s.unassigned.size() == kMaxUnassigned) {
       s.unassigned.erase(s.unassigned.begin());
       ++s.late;
     }

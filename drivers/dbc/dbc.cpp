@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/file_problems.h"
-#include "drivers/base/number_text.h"
 #include "drivers/dbc/dbc_scanner.h"
+#include "drivers/files/file_problems.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {
 namespace {

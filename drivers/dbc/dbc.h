@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/problem.h"
 #include "drivers/can/can_field.h"
+#include "drivers/files/problem.h"
 #include "drivers/records/record.h"
 
 namespace framewatch::drivers {

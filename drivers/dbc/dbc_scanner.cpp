@@ -3,7 +3,7 @@
 #include <charconv>
 #include <system_error>
 
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {
 namespace {

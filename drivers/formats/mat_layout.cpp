@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "drivers/base/unpack_limit.h"
+#include "drivers/files/unpack_limit.h"
 #include "drivers/formats/mat_signature.h"
 
 namespace framewatch::drivers {
@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kMatrix = 14, kCompressed = 15;
 constexpr std::uint32_t kObjectClass = 3, kSparseClass = 5, kFunctionClass = 16, kOpaqueClass = 17;
 constexpr int kDeepestArray = 16;
-constexpr std::int64_t kMostInflated = std::int64_t{1} << 29;
+constexpr std::int64_t kMaxInflated = std::int64_t{1} << 29;
 constexpr std::int64_t kInflateBytes = 1 << 16;
 
 /// Bytes of an element in a file, or of one that was unpacked into memory.
@@ -96,7 +96,7 @@ class MatLayout {
 };
 
 std::optional<std::string> inflated(InputFile& input, const MatElement& packed) {
-  const std::int64_t most = std::min(kMostInflated, unpack_limit(input.size()));
+  const std::int64_t most = std::min(kMaxInflated, unpack_limit(input.size()));
   z_stream stream{};
   if (inflateInit(&stream) != Z_OK) return std::nullopt;
   std::string from(static_cast<std::size_t>(kInflateBytes), '\0'), out, to = from;

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "drivers/base/input_file.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::drivers {
 

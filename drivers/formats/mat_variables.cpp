@@ -9,8 +9,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/input_file.h"
-#include "drivers/base/unpack_limit.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/unpack_limit.h"
 #include "drivers/formats/hdf5_guard.h"
 #include "drivers/formats/mat_layout.h"
 #include "drivers/formats/mat_signature.h"
@@ -19,7 +19,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::size_t kMostVariables = 10'000;
+constexpr std::size_t kMaxVariables = 10'000;
 constexpr int kDeepestStruct = 8;
 
 struct FreeVariable {
@@ -82,7 +82,7 @@ struct MatFileReader::State {
   /// False where structs are too deep or too many.
   bool list(matvar_t* v, const std::string& name, int depth, std::vector<MatVariable>& out) const {
     if (v == nullptr) return true;
-    if (depth > kDeepestStruct || out.size() >= kMostVariables) return false;
+    if (depth > kDeepestStruct || out.size() >= kMaxVariables) return false;
     // Of a damaged struct libmatio has names and no fields.
     const bool has_fields = v->class_type == MAT_C_STRUCT && v->data != nullptr;
     if (has_fields && elements_of(*v) == 1) {
@@ -151,7 +151,7 @@ std::optional<std::vector<MatVariable>> MatFileReader::variables(FileProblems& p
     state_->tops.emplace_back(v);
     if (state_->list(v, v->name != nullptr ? v->name : "?", 1, out)) continue;
     problems.add(0, fmt::format("more than {} variables, or structs in one another deeper than {}",
-                                kMostVariables, kDeepestStruct));
+                                kMaxVariables, kDeepestStruct));
     return std::nullopt;
   }
   if (state_->tops.size() < state_->told) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/file_problems.h"
+#include "drivers/files/file_problems.h"
 
 struct _mat_t;
 struct matvar_t;

@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/line_reader.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/line_reader.h"
+#include "drivers/files/number_text.h"
 #include "drivers/formats/record_formats.h"
 #include "drivers/formats/table_header.h"
 #include "drivers/formats/table_text.h"
@@ -18,7 +18,7 @@ namespace {
 using Cells = std::vector<std::string>;
 
 /// Slower than this nobody samples a building, so that seconds would be a wrong guess.
-constexpr double kLeastRateOfSeconds_hz = 5;
+constexpr double kMinRateOfSeconds_hz = 5;
 /// In days, as spreadsheets count since 1900, samples are nearer than this (9 s).
 constexpr double kStepOfDays = 1e-4;
 
@@ -155,7 +155,7 @@ class TableReader {
     auto record = builder_.finish();
     if (record) say_forces(*record);
     if (!record || !columns_.time || columns_.time_unit_said || stamps_) return record;
-    if (record->rate_hz < kLeastRateOfSeconds_hz || record->rate_hz > 1e4) {
+    if (record->rate_hz < kMinRateOfSeconds_hz || record->rate_hz > 1e4) {
       problems_.add(layout_.header_line,
                     fmt::format("{}: the header does not say the unit, and in seconds it would be "
                                 "{:g} Hz: declare it with --time-unit s, ms, us or ns",

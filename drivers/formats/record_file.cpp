@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "drivers/base/line_reader.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/line_reader.h"
+#include "drivers/files/number_text.h"
 #include "drivers/formats/record_formats.h"
 #include "drivers/formats/record_signature.h"
 #include "drivers/formats/table_text.h"

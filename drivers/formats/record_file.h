@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/problem.h"
+#include "drivers/files/problem.h"
 #include "drivers/records/record.h"
 #include "drivers/records/record_options.h"
 

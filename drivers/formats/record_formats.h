@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "drivers/base/file_problems.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/records/record.h"
 #include "drivers/records/record_options.h"
 

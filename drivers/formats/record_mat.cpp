@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/input_file.h"
-#include "drivers/base/trial_process.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/trial_process.h"
 #include "drivers/formats/mat_signature.h"
 #include "drivers/formats/mat_variables.h"
 #include "drivers/formats/record_formats.h"
@@ -18,8 +18,8 @@ namespace {
 
 /// The name that says, as in a table, that times are in s and channels in m/s^2.
 constexpr std::string_view kOwnTimeOfMat = "time_s";
-constexpr double kLeastRateOfMatSeconds_hz = 5, kMostRateOfMatSeconds_hz = 1e4;
-constexpr std::size_t kMostListed = 20;
+constexpr double kMinRateOfMatSeconds_hz = 5, kMaxRateOfMatSeconds_hz = 1e4;
+constexpr std::size_t kMaxListed = 20;
 
 /// A column of a table that a MATLAB file would be: a vector, or one line of a matrix.
 struct MatColumn {
@@ -128,9 +128,9 @@ class MatTable {
       return;
     }
     const bool across = fits_down || fits_across ? fits_across : v.columns > v.rows;
-    if (width > kMostChannels) {
+    if (width > kMaxChannels) {
       problems_.add(0, fmt::format("{}: {}: more than {} channels", show_text(v.name), v.shape,
-                                   kMostChannels));
+                                   kMaxChannels));
       return;
     }
     if (across)
@@ -174,15 +174,15 @@ class MatTable {
 
   std::string contents() const {
     std::string out;
-    for (std::size_t i = 0; i < std::min(kMostListed, variables_.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kMaxListed, variables_.size()); ++i)
       out += fmt::format("{}{} ({})", i > 0 ? ", " : "", show_text(variables_[i].name),
                          variables_[i].shape);
-    if (variables_.size() > kMostListed)
-      out += fmt::format(" and {} more", variables_.size() - kMostListed);
+    if (variables_.size() > kMaxListed)
+      out += fmt::format(" and {} more", variables_.size() - kMaxListed);
     return out.empty() ? "nothing" : out;
   }
 
-  static constexpr std::size_t kMostChannels = 10'000;
+  static constexpr std::size_t kMaxChannels = 10'000;
   std::vector<MatVariable> variables_;
   RecordOptions options_;
   FileProblems& problems_;
@@ -197,7 +197,7 @@ double sample_of(const MatColumn& c, std::size_t i) {
 
 /// Times whose unit nobody said are seconds where that is what a sensor samples at.
 void check_seconds(const std::string& title, Record& record, FileProblems& problems) {
-  if (record.rate_hz < kLeastRateOfMatSeconds_hz || record.rate_hz > kMostRateOfMatSeconds_hz)
+  if (record.rate_hz < kMinRateOfMatSeconds_hz || record.rate_hz > kMaxRateOfMatSeconds_hz)
     problems.add(0,
                  fmt::format("{}: the file does not say the unit, and in seconds it would be {:g} "
                              "Hz: declare it with --time-unit s, ms, us or ns (of days, save "

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "drivers/base/file_problems.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/records/record_options.h"
 
 namespace framewatch::drivers {

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/line_reader.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/line_reader.h"
+#include "drivers/files/number_text.h"
 #include "drivers/formats/record_formats.h"
 #include "drivers/records/record_builder.h"
 

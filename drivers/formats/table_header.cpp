@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_options.h"

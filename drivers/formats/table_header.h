@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/file_problems.h"
+#include "drivers/files/file_problems.h"
 
 namespace framewatch::drivers {
 

@@ -6,7 +6,7 @@
 #include <framewatch/accel_t.hpp>
 #include <framewatch/message_layouts.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kLook_us = 1'000'000;
 constexpr std::int64_t kMovable_us = 10'000'000;  // silence after which a table may bind elsewhere
-constexpr std::size_t kMostHeard = 4096;          // nodes, beyond those that are bound
+constexpr std::size_t kMaxHeard = 4096;           // nodes, beyond those that are bound
 
 /// Never 0.
 std::uint64_t digest_of(const SensorNodeSample& sample) {
@@ -75,7 +75,7 @@ IntakeResult AccelIntake::table(const std::string& stream, const void* data, std
 }
 
 void AccelIntake::forget_unbound() {
-  if (heard_.size() <= kMostHeard + node_of_axis_.size()) return;
+  if (heard_.size() <= kMaxHeard + node_of_axis_.size()) return;
   std::erase_if(heard_, [this](const auto& heard) {
     const bool bound = binding_.axes_of(heard.first.first, heard.first.second) != nullptr;
     for (const HeardNode*& node : node_of_axis_)

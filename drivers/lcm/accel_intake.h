@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/base/trouble.h"
+#include "drivers/files/trouble.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/axis_binding.h"
 #include "drivers/lcm/heard_node.h"
@@ -70,10 +70,10 @@ class AccelIntake {
     for (std::int64_t* count :
          {&counters_.messages, &counters_.foreign, &counters_.malformed, &counters_.duplicate,
           &counters_.other_sender, &counters_.elsewhere, &counters_.renamed})
-      a.within(*count, 0, a.kMostCount);
+      a.within(*count, 0, a.kMaxCount);
     for (std::int64_t* number : {&lost_, &backwards_, &next_look_us_})
-      a.within(*number, -2 * a.kMostCount, 2 * a.kMostCount);
-    a.within(nodes_heard_, 0, HeardNode::kMostNodes);
+      a.within(*number, -2 * a.kMaxCount, 2 * a.kMaxCount);
+    a.within(nodes_heard_, 0, HeardNode::kMaxNodes);
     a(binding_, contradicted_);
     std::vector<std::pair<std::string, std::int32_t>> places;
     for (const auto& [place, node] : heard_) places.push_back(place);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/problem.h"
+#include "drivers/files/problem.h"
 #include "drivers/lcm/accel_messages.h"
 #include "drivers/records/record.h"
 

@@ -190,8 +190,8 @@ std::optional<LogContents> log_contents(const std::string& path, std::vector<Pro
       path,
       [&](const LogEvent& event) {
         ++contents.events;
-        constexpr std::size_t kMostChannels = 100'000;
-        if (kinds.size() < kMostChannels)
+        constexpr std::size_t kMaxChannels = 100'000;
+        if (kinds.size() < kMaxChannels)
           kinds.emplace(event.channel, fingerprint(event.data).value_or(0));
         return true;
       },

@@ -9,7 +9,7 @@
 
 #include <framewatch/channel_table_t.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 
 namespace framewatch::drivers {
 

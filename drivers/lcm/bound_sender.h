@@ -28,8 +28,8 @@ class BoundSender {
   void archive(Archive& a) {
     a(bound_.address, bound_.port, other_.address, other_.port, other_was_last_);
     for (std::int64_t* time : {&arrival_us_, &contested_until_us_})
-      a.within(*time, -2 * a.kMostCount, 2 * a.kMostCount);
-    for (std::int64_t* count : {&others, &contests}) a.within(*count, 0, a.kMostCount);
+      a.within(*time, -2 * a.kMaxCount, 2 * a.kMaxCount);
+    for (std::int64_t* count : {&others, &contests}) a.within(*count, 0, a.kMaxCount);
   }
 
  private:

@@ -4,15 +4,15 @@
 
 #include <framewatch/channel_table_t.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 
 namespace framewatch::drivers {
 
 std::int32_t count_of(double accel_mps2, double resolution_mps2) {
   if (std::isnan(accel_mps2)) return kNoCount;
   const double counts = std::round(accel_mps2 / resolution_mps2);
-  if (counts >= kMostCount) return kMostCount;
-  if (counts <= -double{kMostCount}) return -kMostCount;
+  if (counts >= kMaxCount) return kMaxCount;
+  if (counts <= -double{kMaxCount}) return -kMaxCount;
   return static_cast<std::int32_t>(counts);
 }
 

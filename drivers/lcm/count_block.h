@@ -18,7 +18,7 @@ inline constexpr const char* kCountsTableChannel = "COUNTS_CHANNELS";
 
 /// Counts with a meaning of their own: no valid value; beyond the range.
 inline constexpr std::int32_t kNoCount = INT32_MIN;
-inline constexpr std::int32_t kMostCount = INT32_MAX;
+inline constexpr std::int32_t kMaxCount = INT32_MAX;
 
 /// Collects samples for one accel_counts_t.
 class CountBlock {

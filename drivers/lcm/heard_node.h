@@ -3,16 +3,16 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "drivers/base/sequence_counter.h"
-#include "drivers/base/sequence_watch.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/bound_sender.h"
+#include "drivers/lcm/sequence_counter.h"
+#include "drivers/lcm/sequence_watch.h"
 
 namespace framewatch::drivers {
 
 /// What was heard of one sensor node on one LCM channel.
 struct HeardNode {
-  static constexpr double kMostNodes = 1e6;  ///< ever heard
+  static constexpr double kMaxNodes = 1e6;  ///< ever heard
   explicit HeardNode(double rate_hz) : counter(rate_hz) {}
 
   SequenceCounter counter;
@@ -42,9 +42,9 @@ struct HeardNode {
   void archive(Archive& a) {
     a(held.time, held.sequence, held.node, held.accel_abs_mps2);
     a(counter, sender, watch, axis, in_input);
-    a.within(order, 0, kMostNodes);
-    a.within(withheld, 0, a.kMostCount);
-    a.within(unheard, 0, a.kMostCount);
+    a.within(order, 0, kMaxNodes);
+    a.within(withheld, 0, a.kMaxCount);
+    a.within(unheard, 0, a.kMaxCount);
   }
 };
 

@@ -5,9 +5,9 @@
 #include <functional>
 #include <string>
 
-#include "drivers/base/sequence_watch.h"
 #include "drivers/lcm/channel_table.h"
 #include "drivers/lcm/multicast/lcm_sender.h"
+#include "drivers/lcm/sequence_watch.h"
 
 namespace framewatch::drivers {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/base/input_file.h"
-#include "drivers/base/partial_file.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/partial_file.h"
 #include "drivers/lcm/log_scan.h"
 #include "drivers/lcm/overlap_scan.h"
 

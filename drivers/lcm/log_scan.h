@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include "drivers/base/file_window.h"
-#include "drivers/base/input_file.h"
+#include "drivers/files/file_window.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::drivers {
 

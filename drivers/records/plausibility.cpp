@@ -9,7 +9,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr double kLeastRate_hz = 1, kMostRate_hz = 1e4;
+constexpr double kMinRate_hz = 1, kMaxRate_hz = 1e4;
 
 std::string place_in(const Record& record, const std::string& path, std::size_t row) {
   const bool known = row < record.lines.size() && record.lines[row] > 0;
@@ -35,7 +35,7 @@ std::vector<std::string> implausible(
       ++count;
     }
     if (count == 0) continue;
-    if (std::abs(values[worst]) > kMostValue) {
+    if (std::abs(values[worst]) > kMaxValue) {
       problems.push_back(
           {place_in(record, path, worst),
            fmt::format("{}: {:g} is no acceleration", record.names[c], values[worst])});
@@ -49,7 +49,7 @@ std::vector<std::string> implausible(
                            range.scale * values[worst]);
     doubts.push_back(doubt);
   }
-  if (record.rate_hz < kLeastRate_hz || record.rate_hz > kMostRate_hz)
+  if (record.rate_hz < kMinRate_hz || record.rate_hz > kMaxRate_hz)
     doubts.push_back(
         fmt::format("{}: {:g} s from sample to sample, {:g} Hz: is the time in seconds?", path,
                     1 / record.rate_hz, record.rate_hz));

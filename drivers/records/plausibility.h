@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/problem.h"
+#include "drivers/files/problem.h"
 #include "drivers/records/record.h"
 
 namespace framewatch::drivers {
@@ -16,11 +16,11 @@ struct PlausibleRange {
 };
 
 /// Values larger than this are refused: neither m/s^2 nor a converter's counts.
-inline constexpr double kMostValue = 1e12;
+inline constexpr double kMaxValue = 1e12;
 
 /// What a person should look at before the record is used, a line each: for each axis the first
 /// value beyond its range at file:line, how many there are and the largest; a rate outside 1 Hz to
-/// 10 kHz, which other times than seconds give. Values beyond kMostValue are problems instead.
+/// 10 kHz, which other times than seconds give. Values beyond kMaxValue are problems instead.
 std::vector<std::string> implausible(
     const Record& record, const std::string& path,
     const std::function<PlausibleRange(const std::string& name)>& range_of,

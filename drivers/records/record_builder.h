@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/file_problems.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/records/record.h"
 
 namespace framewatch::drivers {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/text_output.h"
+#include "drivers/files/text_output.h"
 
 namespace framewatch::drivers {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "drivers/base/file_problems.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/file_problems.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/file_problems.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/records/record_options.h"
 #include "drivers/stations/station_xml.h"
 

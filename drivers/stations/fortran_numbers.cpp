@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "drivers/records/record_builder.h"
 
 namespace framewatch::drivers {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/base/file_problems.h"
-#include "drivers/base/line_reader.h"
+#include "drivers/files/file_problems.h"
+#include "drivers/files/line_reader.h"
 
 namespace framewatch::drivers {
 

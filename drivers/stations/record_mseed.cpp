@@ -13,7 +13,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/gzip_input.h"
+#include "drivers/files/gzip_input.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_merge.h"
 #include "drivers/stations/count_meanings.h"
@@ -23,7 +23,7 @@
 namespace framewatch::drivers {
 namespace {
 
-constexpr double kLeastRate_hz = 1e-4, kSameRate = 1e-3;
+constexpr double kMinRate_hz = 1e-4, kSameRate = 1e-3;
 
 struct FreeSeedRecord {
   void operator()(MSRecord* record) const { msr_free(&record); }
@@ -152,7 +152,7 @@ std::optional<SeedContents> read_traces(const RecordOptions& options, FileProble
       ++without_samples[name];
       continue;
     }
-    if (!(record->samprate > kLeastRate_hz && record->samprate <= RecordBuilder::kMaxRateHz))
+    if (!(record->samprate > kMinRate_hz && record->samprate <= RecordBuilder::kMaxRateHz))
       problems.add(0, fmt::format("{}: {:g} Hz is no rate, in the record before byte {}", name,
                                   record->samprate, records.offset()));
     count += piece.values.size();

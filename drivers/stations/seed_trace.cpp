@@ -17,10 +17,10 @@ namespace {
 
 /// Times without blockette 1001 are multiples of this.
 constexpr double kTimeResolution_us = 100;
-constexpr double kMostSlackSteps = 0.4;
+constexpr double kMaxSlackSteps = 0.4;
 /// What the clock may be off its rate over a gap.
 constexpr double kDriftOverGap = 1e-4;
-constexpr std::size_t kMostGapsNoted = 10;
+constexpr std::size_t kMaxGapsNoted = 10;
 
 std::string time_text_of(double time_us) {
   std::array<char, 64> text{};
@@ -43,7 +43,7 @@ class TraceJoiner {
         step_us_(1e6 / trace.rate_hz),
         slack_steps_(
             std::min(std::max(RecordBuilder::kStepTolerance, kTimeResolution_us / step_us_),
-                     kMostSlackSteps)),
+                     kMaxSlackSteps)),
         problems_(problems) {}
 
   void add(SeedPiece piece) {
@@ -83,7 +83,7 @@ class TraceJoiner {
   }
 
   void begin_run_after_gap(double due_us, double start_us, SeedPiece piece) {
-    if (gap_count_++ < kMostGapsNoted)
+    if (gap_count_++ < kMaxGapsNoted)
       gaps_.push_back(fmt::format("a gap of {:.6g} s from {} on", 1e-6 * (start_us - due_us),
                                   time_text_of(due_us)));
     begin_run(start_us, std::move(piece));

@@ -12,16 +12,16 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/gzip_input.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/gzip_input.h"
+#include "drivers/files/number_text.h"
 #include "drivers/records/accel_unit.h"
 #include "drivers/records/time_text.h"
 
 namespace framewatch::drivers {
 namespace {
 
-constexpr std::int64_t kMostBytes = std::int64_t{64} << 20;
-constexpr std::size_t kDeepest = 32, kMostChannels = 100'000, kLongestText = 1000;
+constexpr std::int64_t kMaxBytes = std::int64_t{64} << 20;
+constexpr std::size_t kDeepest = 32, kMaxChannels = 100'000, kLongestText = 1000;
 
 /// Without the prefix of its namespace.
 std::string_view local_name(std::string_view name) {
@@ -59,8 +59,7 @@ class StationXmlReader {
       const std::int64_t got = file.read(bytes.data(), std::ssize(bytes));
       if (got < 0) problems_.add(0, file.error());
       all += got;
-      if (all > kMostBytes)
-        problems_.add(0, fmt::format("is longer than {} MiB", kMostBytes >> 20));
+      if (all > kMaxBytes) problems_.add(0, fmt::format("is longer than {} MiB", kMaxBytes >> 20));
       if (problems_.any()) break;
       ended = got < std::ssize(bytes);
       if (XML_Parse(parser_.get(), bytes.data(), static_cast<int>(got), ended) ==
@@ -107,8 +106,8 @@ class StationXmlReader {
     if (is_at({"Network"})) network_ = attribute("code");
     if (is_at({"Network", "Station"})) station_ = attribute("code");
     if (!is_at({"Network", "Station", "Channel"})) return;
-    if (channels_.size() >= kMostChannels)
-      return stop(fmt::format("has over {} channels", kMostChannels));
+    if (channels_.size() >= kMaxChannels)
+      return stop(fmt::format("has over {} channels", kMaxChannels));
     StationXmlChannel& channel = channels_.emplace_back();
     channel.line = line();
     channel.name = fmt::format("{}.{}.{}.{}", trimmed(network_), trimmed(station_),

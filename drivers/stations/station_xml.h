@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/base/file_problems.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/records/axis_header.h"
 
 namespace framewatch::drivers {

@@ -23,7 +23,7 @@ class DrivingAxes {
   void archive(Archive& a) {
     std::vector<std::uint8_t> present = present_, seen = seen_;
     a(present, seen);
-    a.within(steady_, 0, a.kMostCount);
+    a.within(steady_, 0, a.kMaxCount);
     if constexpr (Archive::kReading)
       if (!restore(present, seen)) a.refuse();
   }

@@ -22,7 +22,7 @@ struct GapNews {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a.within(id, -2 * a.kMostCount, 2 * a.kMostCount);
+    a.within(id, -2 * a.kMaxCount, 2 * a.kMaxCount);
     a.within(state, 0, static_cast<double>(AlarmState::changed));
     a(found, since);
     a.finite(excess);
@@ -45,7 +45,7 @@ class GapAlarm {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a.within(seconds_, 0, a.kMostCount);
+    a.within(seconds_, 0, a.kMaxCount);
     a(raised_, since_, shown_, news_);
   }
 

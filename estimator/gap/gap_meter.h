@@ -38,7 +38,7 @@ class GapMeter {
     template <typename Archive>
     void archive(Archive& a) {
       a.finite(difference, measured);
-      a.within(count, 0, a.kMostCount);
+      a.within(count, 0, a.kMaxCount);
     }
   };
   void compare(const std::vector<double>& noise_variance);

@@ -144,7 +144,7 @@ void GapMonitor::learn(const WindowEstimate& estimate, const Eigen::VectorXd& be
 }
 
 void GapMonitor::name_place(GapNews& news) const {
-  constexpr double kErrors = 3, kLeast = 0.03;
+  constexpr double kErrors = 3, kMin = 0.03;
   news.parameter = -1;
   const Baseline seen = since_gap_.so_far();
   double most = kErrors;
@@ -153,7 +153,7 @@ void GapMonitor::name_place(GapNews& news) const {
     if (!seen.knows(at) || has_law_[at]) continue;
     const double ratio = seen.value[at] / theta_[p] - 1;
     const double error = std::hypot(seen.std_error[at], theta_error_[at]) / theta_[p];
-    if (std::abs(ratio) < kLeast || !(std::abs(ratio) > most * error)) continue;
+    if (std::abs(ratio) < kMin || !(std::abs(ratio) > most * error)) continue;
     most = std::abs(ratio) / error;
     news.parameter = p;
     news.ratio = ratio;

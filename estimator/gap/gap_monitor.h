@@ -53,7 +53,7 @@ class GapMonitor {
     if constexpr (Archive::kReading) {
       take_inputs();
       for (const double value : theta)
-        if (!(value > 0 && value < a.kMost)) return a.refuse();
+        if (!(value > 0 && value < a.kMax)) return a.refuse();
       if (modelled && !has_model() && theta.size() == static_cast<std::size_t>(table_.size()))
         adopt(model_of(Eigen::Map<const Eigen::VectorXd>(theta.data(), table_.size())));
     }
@@ -82,7 +82,7 @@ class GapMonitor {
       a(correction, filter, running, noise, meter, held);
       a.within(newest, 0, RunningModel::kDelay);  // of kDelay + 1 instants
       a.finite(settled_s);
-      a.within(expected_index, -1, a.kMostCount);
+      a.within(expected_index, -1, a.kMaxCount);
     }
   };
   /// Delay of every input's samples beside the axes' own, of all that show it; instants.

@@ -9,13 +9,13 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kLeastChange = 0.05;
+constexpr double kMinChange = 0.05;
 constexpr double kEnough = 1.0 / 3;  // of learn_s
 
 }  // namespace
 
 ModelLearner::ModelLearner(int parameters, int elements, double learn_s)
-    : elements_(static_cast<std::size_t>(elements)), learn_s_(learn_s), joined_(kMost) {
+    : elements_(static_cast<std::size_t>(elements)), learn_s_(learn_s), joined_(kMax) {
   for (JoinedWindow& s : joined_) {
     s.value.assign(static_cast<std::size_t>(parameters), kNaN);
     s.std_error = s.value;
@@ -55,7 +55,7 @@ std::vector<WindowValue> ModelLearner::values(std::size_t p) const {
 }
 
 void ModelLearner::add(const WindowEstimate& e) {
-  if (count_ == kMost) join_neighbors();
+  if (count_ == kMax) join_neighbors();
   JoinedWindow& s = joined_[count_++];
   s.start = e.start;
   s.end = e.end;
@@ -68,7 +68,7 @@ void ModelLearner::add(const WindowEstimate& e) {
 }
 
 void ModelLearner::join_neighbors() {
-  for (std::size_t i = 0; i < kMost / 2; ++i) {
+  for (std::size_t i = 0; i < kMax / 2; ++i) {
     const JoinedWindow &a = joined_[2 * i], &b = joined_[2 * i + 1];
     JoinedWindow both = a;
     both.end = b.end;
@@ -82,7 +82,7 @@ void ModelLearner::join_neighbors() {
     }
     joined_[i] = std::move(both);
   }
-  count_ = kMost / 2;
+  count_ = kMax / 2;
 }
 
 void ModelLearner::keep(std::size_t from, std::size_t to) {
@@ -94,7 +94,7 @@ void ModelLearner::keep(std::size_t from, std::size_t to) {
 std::optional<ChangePoint> ModelLearner::change() const {
   std::optional<ChangePoint> first;
   for (std::size_t p = 0; p < elements_; ++p)
-    if (const auto found = find_change(values(p), kLeastChange))
+    if (const auto found = find_change(values(p), kMinChange))
       if (!first || found->errors() > first->errors()) first = found;
   return first;
 }

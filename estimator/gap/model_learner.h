@@ -28,12 +28,12 @@ class ModelLearner {
   template <typename Archive>
   void archive(Archive& a) {
     a(windows_, joined_);
-    a.within(count_, 0, kMost);
+    a.within(count_, 0, kMax);
     a(complete_);
   }
 
  private:
-  static constexpr std::size_t kMost = 64, kConfirming = 2;
+  static constexpr std::size_t kMax = 64, kConfirming = 2;
   /// A window, or neighbors joined to make room.
   struct JoinedWindow {
     Time start{}, end{};
@@ -43,11 +43,11 @@ class ModelLearner {
     template <typename Archive>
     void archive(Archive& a) {
       a(start, end, value, std_error);
-      a.within(length_s, 0, a.kMostCount);
+      a.within(length_s, 0, a.kMaxCount);
       if constexpr (Archive::kReading)
         for (const std::vector<double>* of : {&value, &std_error})
           for (const double v : *of)
-            if (!std::isnan(v) && !(std::abs(v) <= a.kMost)) return a.refuse();
+            if (!std::isnan(v) && !(std::abs(v) <= a.kMax)) return a.refuse();
     }
   };
   std::vector<WindowValue> values(std::size_t parameter) const;

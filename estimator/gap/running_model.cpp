@@ -15,7 +15,7 @@ namespace {
 constexpr double kLongestStep_s = 1e-3;
 constexpr double kBias_s = 150;  ///< far slower than any motion
 constexpr double kLeft = 0.01;   ///< of a free vibration, after the time to settle
-constexpr double kLeastSettle_s = 2, kMostSettle_s = 120;
+constexpr double kMinSettle_s = 2, kMaxSettle_s = 120;
 
 std::unique_ptr<DrivenBuilding> building_of(const Structure& structure, const ParameterTable& table,
                                             const GapModel& model, const Inputs& inputs,
@@ -40,7 +40,7 @@ double settle_time(const Structure& structure, const ParameterTable& table,
     c += theta[i + table.elements()];
   }
   const double decay = c / k * w1 * w1 / 2;
-  return std::clamp(-std::log(kLeft) / decay, kLeastSettle_s, kMostSettle_s);
+  return std::clamp(-std::log(kLeft) / decay, kMinSettle_s, kMaxSettle_s);
 }
 
 }  // namespace

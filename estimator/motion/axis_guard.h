@@ -88,9 +88,9 @@ class AxisGuard {
     void archive(Archive& a) {
       a.finite(last, step, smallest_step, lowest, highest);
       for (double* mean : {&motion, &strongest, &own, &others, &predicted})
-        a.within(*mean, 0, a.kMost);
-      a.within(run, 0, a.kMostCount);
-      a.within(finer, 0, a.kMostCount);
+        a.within(*mean, 0, a.kMax);
+      a.within(run, 0, a.kMaxCount);
+      a.within(finer, 0, a.kMaxCount);
       a(seen, clips_at, clips_below, still, paused, after_clip);
     }
   };

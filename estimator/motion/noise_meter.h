@@ -41,10 +41,10 @@ class NoiseMeter {
 
     template <typename Archive>
     void archive(Archive& a) {
-      for (long* number : {&measured, &beyond}) a.within(*number, 0, a.kMostCount);
+      for (long* number : {&measured, &beyond}) a.within(*number, 0, a.kMaxCount);
       for (int* number : {&filled, &still}) a.within(*number, 0, 1000);
       a.within(tainted, 0, 1000);
-      a.within(power, 0, a.kMost);
+      a.within(power, 0, a.kMax);
     }
   };
   double rate_hz_;

@@ -40,7 +40,7 @@ struct SampleSet {
   template <typename Archive>
   void archive(Archive& a) {
     a(time);
-    a.within(index, 0, a.kMostCount);
+    a.within(index, 0, a.kMaxCount);
     a(accel);
   }
 };

@@ -22,7 +22,7 @@ struct AxisCounters {
   void archive(Archive& a) {
     for (std::int64_t* count :
          {&received, &missing, &late, &repaired, &stuck, &clipped, &rejected, &absurd})
-      a.within(*count, 0, a.kMostCount);
+      a.within(*count, 0, a.kMaxCount);
   }
 };
 
@@ -54,11 +54,11 @@ class SampleMerger {
     a.within(silent_count_, 0, static_cast<double>(silent_.size()));
     a(counters_, anchored_, finishing_);
     a.finite(phase_us_, stray_time_us_);
-    for (std::int64_t* number : {&origin_, &first_open_}) a.within(*number, 0, a.kMostCount);
+    for (std::int64_t* number : {&origin_, &first_open_}) a.within(*number, 0, a.kMaxCount);
     const auto ahead = static_cast<double>(open_.size() + static_cast<std::size_t>(lateness_));
     a.within(newest_, static_cast<double>(first_open_ - 1),
              static_cast<double>(first_open_) + ahead);
-    a.within(strays_, 0, a.kMostCount);
+    a.within(strays_, 0, a.kMaxCount);
   }
 
  private:

@@ -59,7 +59,7 @@ void SpikeGuard::see(int axis, double value, double finest) {
   a.held[0] = value;
   a.doubtful <<= 1;
   a.back <<= 1;
-  a.least_step = finest > 0 ? std::max(kLeastStep, finest) : kNeverChanged;
+  a.least_step = finest > 0 ? std::max(kMinStep, finest) : kNeverChanged;
   a.still = std::min(a.still + 1, kNeverStirred);
   if (a.seen == second_ && std::abs(value - a.last) > kStirred * std::max(a.step, a.least_step))
     a.still = 0;
@@ -108,7 +108,7 @@ SpikeGuard::Decided SpikeGuard::decide(int axis) {
   if (is_value && beyond(a, value, kBack)) {
     const bool rises = a.out == 2 && (value - a.last) / (a.held[1] - a.last) > kRises;
     a.rings = a.rings || a.back != 0 || !far || rises;
-    a.violent = a.violent || std::abs(value - a.last) > kMostAlone;
+    a.violent = a.violent || std::abs(value - a.last) > kMaxAlone;
     a.doubtful |= kNewest;
   } else if (is_value) {
     a.back |= kNewest;

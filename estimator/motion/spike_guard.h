@@ -14,7 +14,7 @@ namespace framewatch::estimator {
 /// extremes of its axis, by a step kAbrupt times the one before. It is sound after all when another
 /// axis has made a step of kStirred of its own mean ones, as in an onset, a tap or an impact,
 /// within kLookAhead instants; or when the axis rings: the samples that follow are smaller, or back
-/// where the axis was before and out again, none of them by more than kMostAlone. Otherwise it is
+/// where the axis was before and out again, none of them by more than kMaxAlone. Otherwise it is
 /// absurd, and so are those that follow until they are back, for kLongest_s at most: what stays is
 /// another bias. Nothing is in doubt before an axis has been seen for a second. docs/equations.md,
 /// absurd samples.
@@ -22,9 +22,9 @@ class SpikeGuard {
  public:
   static constexpr int kLookAhead = 4;
   static constexpr double kFar = 30, kAbrupt = 8, kStirred = 6, kBack = 6;
-  static constexpr double kLeastStep = 1e-6;  ///< m/s^2: a smaller mean step is taken for this
-  static constexpr double kMostAlone = 20;    ///< m/s^2: rings without another axis
-  static constexpr int kStirring = 10;        ///< instants for which a large step counts
+  static constexpr double kMinStep = 1e-6;  ///< m/s^2: a smaller mean step is taken for this
+  static constexpr double kMaxAlone = 20;   ///< m/s^2: rings without another axis
+  static constexpr int kStirring = 10;      ///< instants for which a large step counts
   static constexpr double kLongest_s = 1.2, kPeriod_s = 2;
 
   SpikeGuard(int axes, double rate_hz);

@@ -6,7 +6,7 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kMostSweeps = 30;  // a dozen rows need six
+constexpr int kMaxSweeps = 30;  // a dozen rows need six
 constexpr double kNegligible = 1e-17;
 
 }  // namespace
@@ -41,7 +41,7 @@ void JacobiEigen::compute(const double* matrix, int size) {
       scale += a(i, j) * a(i, j);
     }
   }
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double off = 0;
     for (int p = 0; p < size; ++p)
       for (int q = p + 1; q < size; ++q) off += a(p, q) * a(p, q);

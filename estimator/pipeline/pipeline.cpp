@@ -34,7 +34,7 @@ class Pipeline::Implementation {
   template <typename Archive>
   void archive(Archive& a) {
     a(acquisition_, estimator_);
-    for (std::int64_t* count : {&sets_, &windows_}) a.within(*count, 0, a.kMostCount);
+    for (std::int64_t* count : {&sets_, &windows_}) a.within(*count, 0, a.kMaxCount);
   }
 
   const ParameterTable& table() const { return table_; }

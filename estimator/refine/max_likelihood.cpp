@@ -20,9 +20,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kHalvings = 12;
-constexpr double kLeastSnr = 10;         ///< of a frame stiffness' information over that of noise
-constexpr double kLeastCurvature = 0.2;  ///< of a step's information over that with noise
-constexpr double kLeastSignal = 1e-3;    ///< the same, of the standard errors
+constexpr double kMinSnr = 10;         ///< of a frame stiffness' information over that of noise
+constexpr double kMinCurvature = 0.2;  ///< of a step's information over that with noise
+constexpr double kMinSignal = 1e-3;    ///< the same, of the standard errors
 
 /// `information` minus its noise part, in no direction less than `least` times the whole.
 MatrixXd signal_part(const MatrixXd& information, const MatrixXd& noise_part, double least) {
@@ -116,7 +116,7 @@ class Refiner {
   }
 
   std::optional<VectorXd> step_at(const VectorXd& x, const LikelihoodPoint& point) {
-    MatrixXd curvature = signal_part(point.information, point.noise_part, kLeastCurvature);
+    MatrixXd curvature = signal_part(point.information, point.noise_part, kMinCurvature);
     curvature.diagonal() += pull();
     const Ldlt factor(curvature);
     if (!factor.good() || !factor.positive()) return std::nullopt;
@@ -137,11 +137,11 @@ class Refiner {
     for (int p = 0; p < table_.elements(); ++p)
       if (table_[p].kind == ParameterKind::frame_stiffness)
         best_snr = std::max(best_snr, point.information(p, p) / (level * point.noise_part(p, p)));
-    if (!(best_snr >= kLeastSnr)) {
+    if (!(best_snr >= kMinSnr)) {
       out.status = RefineStatus::quiet;
       return;
     }
-    const MatrixXd signal = signal_part(point.information, level * point.noise_part, kLeastSignal);
+    const MatrixXd signal = signal_part(point.information, level * point.noise_part, kMinSignal);
     MatrixXd curvature = signal, score = point.information;
     curvature.diagonal() += prior_ * level;
     score.diagonal() += prior_ * level;

@@ -37,10 +37,10 @@ class EveryFloor {
   template <typename Archive>
   void archive(Archive& a) {
     a(motion_, coming_);
-    a.within(unsettled_, 0, Archive::kMostCount);
+    a.within(unsettled_, 0, Archive::kMaxCount);
     for (std::int64_t* count : {&coming_in_, &coming_unsettled_})
-      a.within(*count, 0, Archive::kMostCount);
-    a.each_within(away_, 0, Archive::kMostCount);
+      a.within(*count, 0, Archive::kMaxCount);
+    a.each_within(away_, 0, Archive::kMaxCount);
   }
 
  private:

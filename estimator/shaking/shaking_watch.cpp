@@ -140,8 +140,8 @@ bool ShakingWatch::look_for_unheard(Time now) {
 
 void ShakingWatch::add_unheard(const Unheard& unheard) {
   if (!active_) unheard_count_ = 0;
-  if (unheard_count_ == kMostUnheard) {
-    Unheard& last = unheard_[kMostUnheard - 1];
+  if (unheard_count_ == kMaxUnheard) {
+    Unheard& last = unheard_[kMaxUnheard - 1];
     last.to = unheard.to;
     last.why = std::max(last.why, unheard.why);
     return;

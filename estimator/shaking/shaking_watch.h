@@ -19,7 +19,7 @@ class ShakingWatch {
   static constexpr double kShortest_s = 0.5, kLongest_s = 900;
   /// A time without samples that is told; in a shorter one no story drifts far.
   static constexpr double kUnheard_s = 0.5;
-  static constexpr std::size_t kMostUnheard = 8;  ///< of one strong motion; further ones join
+  static constexpr std::size_t kMaxUnheard = 8;  ///< of one strong motion; further ones join
 
   ShakingWatch(const PipelineConfig& config, const ShakingOptions& options);
 
@@ -41,7 +41,7 @@ class ShakingWatch {
     a(active_, start_, last_, response_, peak_, before_, first_, final_, after_, late_, during_,
       gap_);
     a(heard_any_, heard_, unheard_);
-    a.within(unheard_count_, 0, static_cast<double>(kMostUnheard));
+    a.within(unheard_count_, 0, static_cast<double>(kMaxUnheard));
     a.finite(unheard_calm_s_);
   }
 
@@ -79,8 +79,8 @@ class ShakingWatch {
   bool active_ = false, began_ = false;
   Time start_{}, last_{};
   bool heard_any_ = false;
-  Time heard_{};                               ///< the newest instant
-  std::array<Unheard, kMostUnheard> unheard_;  ///< while calm the newest one alone
+  Time heard_{};                              ///< the newest instant
+  std::array<Unheard, kMaxUnheard> unheard_;  ///< while calm the newest one alone
   std::size_t unheard_count_ = 0;
   double unheard_calm_s_ = 0;  ///< of the time since last_
   struct CameUp {

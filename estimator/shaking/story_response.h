@@ -71,7 +71,7 @@ class StoryResponse {
     template <typename Archive>
     void archive(Archive& a) {
       a.finite(mean, x1, x2, s1, s2, v1, v2, settled);
-      a.within(seen, 0, Archive::kMostCount);
+      a.within(seen, 0, Archive::kMaxCount);
     }
   };
   void advance(Motion& motion, double accel) const;
@@ -138,7 +138,7 @@ struct PeakResponse {
   template <typename Archive>
   void archive(Archive& a) {
     a(accel_mps2, drift_m, base_shear_n, slow_m, unseen_mps2, before_m_);
-    a.each_within(lately_mps2, 0, a.kMost);
+    a.each_within(lately_mps2, 0, a.kMax);
   }
 
  private:

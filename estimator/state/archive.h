@@ -40,7 +40,7 @@ class StateArchive {
   void operator()(T&... values) {
     (item(values), ...);
   }
-  /// Numbers, vectors and matrices of them, that are finite and within kMost.
+  /// Numbers, vectors and matrices of them, that are finite and within kMax.
   template <typename... T>
   void finite(T&... values) {
     (item(values), ...);
@@ -67,8 +67,8 @@ class StateArchive {
     self().block(values, true);
   }
 
-  static constexpr double kMost = 1e100;        ///< magnitude of any sum of squares of motion
-  static constexpr double kMostCount = 4.5e15;  ///< whole numbers: exact, and far from overflow
+  static constexpr double kMax = 1e100;        ///< magnitude of any sum of squares of motion
+  static constexpr double kMaxCount = 4.5e15;  ///< whole numbers: exact, and far from overflow
 
  private:
   Derived& self() { return static_cast<Derived&>(*this); }
@@ -106,7 +106,7 @@ class StateArchive {
   template <typename Clock, typename Duration>
   void item(std::chrono::time_point<Clock, Duration>& time) {
     std::int64_t ticks = time.time_since_epoch().count();
-    within(ticks, -2 * kMostCount, 2 * kMostCount);
+    within(ticks, -2 * kMaxCount, 2 * kMaxCount);
     time = std::chrono::time_point<Clock, Duration>(Duration(ticks));
   }
   template <int rows, int columns>
@@ -118,7 +118,7 @@ class StateArchive {
       return self().refuse();
     for (Eigen::Index i = 0; i < matrix.size(); ++i) self().plain(matrix.data()[i]);
   }
-  static bool all_finite(double value) { return std::abs(value) <= kMost; }
+  static bool all_finite(double value) { return std::abs(value) <= kMax; }
   template <int rows, int columns>
   static bool all_finite(const Eigen::Matrix<double, rows, columns>& matrix) {
     for (Eigen::Index i = 0; i < matrix.size(); ++i)

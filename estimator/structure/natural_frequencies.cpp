@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kDense = 200;  // degrees of freedom up to which dense algebra is as quick
 constexpr int kVectors = 8;
-constexpr int kMostIterations = 200;
+constexpr int kMaxIterations = 200;
 constexpr double kConverged = 1e-14;
 
 }  // namespace
@@ -48,7 +48,7 @@ double lowest_frequency_hz(const Structure& s, const ParameterTable& table,
       x(i, c) = std::cos(static_cast<double>((2 * c + 1) * i) / static_cast<double>(x.rows())) +
                 (i % kVectors == c ? 1 : 0);
   double lowest = 0;
-  for (int iteration = 0; iteration < kMostIterations; ++iteration) {
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     x = solver.solve(mass * x);
     const RealEigen small =
         generalized_eigen(x.transpose() * (stiffness * x), x.transpose() * (mass * x));

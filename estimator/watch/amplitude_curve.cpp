@@ -162,7 +162,7 @@ double RecentAmplitude::remembered(std::size_t i, double time_s) const {
 void RecentAmplitude::push(double time_s, double amplitude_m) {
   if (count_ > 0 && time_s < time_s_[count_ - 1]) return;
   while (count_ > 0 && amplitude_[count_ - 1] <= amplitude_m) --count_;
-  if (count_ == kMost) {  // the one that counts least of those but the newest
+  if (count_ == kMax) {  // the one that counts least of those but the newest
     std::size_t least = 0;
     for (std::size_t i = 1; i < count_; ++i)
       if (remembered(i, time_s) < remembered(least, time_s)) least = i;

@@ -101,7 +101,7 @@ class AmplitudeBins {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a.within(count, 0, a.kMostCount);
+      a.within(count, 0, a.kMaxCount);
       a.finite(weight, log, off, log_square, off_square, log_off);
     }
   };
@@ -115,7 +115,7 @@ class RecentAmplitude {
  public:
   /// An amplitude counts in full for so long, then kHolds_s over its age.
   static constexpr double kHolds_s = 20;
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMax = 8;
 
   /// One that comes late, before the last one, is left out.
   void push(double time_s, double amplitude_m);
@@ -126,7 +126,7 @@ class RecentAmplitude {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a.within(count_, 0, static_cast<double>(kMost));
+    a.within(count_, 0, static_cast<double>(kMax));
     a.finite(time_s_, amplitude_);
   }
 
@@ -134,7 +134,7 @@ class RecentAmplitude {
   double remembered(std::size_t i, double time_s) const;
 
   std::size_t count_ = 0;  ///< the newest last, each smaller than those before it
-  std::array<double, kMost> time_s_{}, amplitude_{};
+  std::array<double, kMax> time_s_{}, amplitude_{};
 };
 
 }  // namespace framewatch::estimator

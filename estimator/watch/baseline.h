@@ -89,7 +89,7 @@ class BaselineLearner {
     template <typename Archive>
     void archive(Archive& a) {
       a(complete);
-      a.within(count, 0, a.kMostCount);
+      a.within(count, 0, a.kMaxCount);
       a.within(with_amplitude, 0, count);
       a(bins);
       a.finite(learned_s, weight, value, square, first, degc_weight, degc);

@@ -178,7 +178,7 @@ void ChangeBook::remember(const std::vector<Explained>& explained) {
   for (std::size_t p = 0; p < elements_; ++p) any = any || shown(p);
   if (!any) return;
   const std::size_t place = histories_[window].add(judged_.start, judged_.end);
-  if (place == WindowHistory::kMost) return;
+  if (place == WindowHistory::kMax) return;
   const std::size_t main = is_long(window) ? window : 0;
   const auto put = [&](std::size_t element, double off, double own, double common) {
     UsualScatter& scatter = scatter_[window * (elements_ + 1) + element];

@@ -67,7 +67,7 @@ class ChangeBook {
   template <typename Archive>
   void archive(Archive& a) {
     a(detectors_, of_all_, histories_, scatter_, records_, gate_);
-    a.within(last_id_, 0, a.kMostCount);
+    a.within(last_id_, 0, a.kMaxCount);
     for (const Record& r : records_)
       if (r.detector >= detectors_.size()) a.refuse();
   }
@@ -83,10 +83,10 @@ class ChangeBook {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a.within(id, 0, a.kMostCount);
+      a.within(id, 0, a.kMaxCount);
       a.within(state, 0, static_cast<double>(ChangeState::measured));
       a(parameter, change, detector, young, size, until, found, first);
-      a.within(behind_s, 0, a.kMostCount);
+      a.within(behind_s, 0, a.kMaxCount);
     }
   };
   std::size_t all() const { return elements_; }  ///< index of what everything has in common

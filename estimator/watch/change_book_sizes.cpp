@@ -8,7 +8,7 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kLeastBehind_s = 2;  // length of the windows that a first number takes
+constexpr double kMinBehind_s = 2;  // length of the windows that a first number takes
 constexpr double kOfLeak = 0.5;   // standard error of what a change moves others by, over the most
 constexpr double kWait = 0.3;     // of its length, that a longer window may begin later
 constexpr double kSharper = 0.7;  // of the error told: a smaller one is told, too
@@ -16,7 +16,7 @@ constexpr double kMovedFar = 3;   // the same where the new size is less exact
 constexpr double kMoved = 2;      // errors told that a size moves by before it is told again
 constexpr double kRefuted = 4;    // lengths of main windows behind a change that is none
 constexpr double kRefined = 2;    // the same until its time is found no more
-constexpr double kLeastBefore = 0.005;  // a value before a change may be off by, relative
+constexpr double kMinBefore = 0.005;  // a value before a change may be off by, relative
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void ChangeBook::find_time(Record& r) {
     longest = std::max(longest, h.end(oldest) - h.start(oldest));
   }
   if (times_.empty()) return;
-  const double before = std::hypot(kLeastBefore, baseline_error(r.detector, element));
+  const double before = std::hypot(kMinBefore, baseline_error(r.detector, element));
   const auto time = time_of_change(times_, element, before, r.first - longest, judged_.end,
                                    shortest / ChangeDetector::kPhases);
   if (!time) return;
@@ -73,7 +73,7 @@ void ChangeBook::size_anew(Record& r) {
     r.until = h->end(at);
   }
   const WindowHistory& oldest = histories_[is_long(r.detector) ? r.detector : 0];
-  r.young = oldest.size() < WindowHistory::kMost || oldest.start(0) < r.change.earliest;
+  r.young = oldest.size() < WindowHistory::kMax || oldest.start(0) < r.change.earliest;
 }
 
 /// The next window to size by: the one that begins first, or a longer one that begins soon after.
@@ -147,7 +147,7 @@ bool ChangeBook::is_none(const Record& r) const {
 }
 
 bool ChangeBook::worth_a_number(const Record& r, const Change& now) const {
-  return r.size.known() && r.behind_s >= kLeastBehind_s &&
+  return r.size.known() && r.behind_s >= kMinBehind_s &&
          std::abs(now.ratio) >= kWorth * now.std_error && now.ratio * r.change.ratio > 0;
 }
 

@@ -7,13 +7,13 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr Time kLongAgo{SensorClock::duration(-8'000'000'000'000'000)};
-constexpr double kFreedom = 19;         // of a window's standard error, from 20 blocks
-constexpr double kMemory_s = 15;        // of the usual standard error
-constexpr double kMostOfUsual = 1.5;    // that a single one counts with
-constexpr double kBaselineErrors = 3;   // that a value may be off by permanently
-constexpr double kMostOfThreshold = 2;  // a sum is limited to that
-constexpr double kConvincing_s = 4;     // a shorter window alone convinces nobody:
-constexpr double kShortWindow = 0.6;    // most that it adds, of the threshold
+constexpr double kFreedom = 19;        // of a window's standard error, from 20 blocks
+constexpr double kMemory_s = 15;       // of the usual standard error
+constexpr double kMaxOfUsual = 1.5;    // that a single one counts with
+constexpr double kBaselineErrors = 3;  // that a value may be off by permanently
+constexpr double kMaxOfThreshold = 2;  // a sum is limited to that
+constexpr double kConvincing_s = 4;    // a shorter window alone convinces nobody:
+constexpr double kShortWindow = 0.6;   // most that it adds, of the threshold
 constexpr std::array<double, ChangeDetector::kSizes> kSizesOfLeast = {1, 2, 4, 16};
 
 double log_likelihood(double z, double freedom) {
@@ -72,7 +72,7 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   const double window_s = std::chrono::duration<double>(e.end - e.start).count();
   double& usual = parameter.usual_error;
   // Windows across a change have large errors; they must not hide the next ones.
-  const double most = kMostOfUsual * usual;
+  const double most = kMaxOfUsual * usual;
   const double share =
       std::max(window_s / kPhases / kMemory_s, 1 / static_cast<double>(++parameter.errors));
   usual += std::min(1.0, share) * ((usual == 0 ? error : std::min(error, most)) - usual);
@@ -90,7 +90,7 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
   for (const int sign : {-1, 1}) {
     const double threshold = sign < 0 ? threshold_ : kGain * threshold_;
     const double most_gain =
-        (window_s < kConvincing_s ? kShortWindow : kMostOfThreshold) * threshold;
+        (window_s < kConvincing_s ? kShortWindow : kMaxOfThreshold) * threshold;
     const double toward = sign * z;
     const double unchanged = likelihood(toward - std::clamp(toward, 0.0, tolerance));
     for (int size = 0; size < kSizes; ++size) {
@@ -103,7 +103,7 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
         continue;
       }
       if (track.sum == 0) track.since = e.start;
-      track.sum = std::min(track.sum + gain, kMostOfThreshold * threshold);
+      track.sum = std::min(track.sum + gain, kMaxOfThreshold * threshold);
       track.weight += 1 / (scale * scale);
       track.off += off / (scale * scale);
       if (parameter.sign != 0 || track.sum <= threshold) continue;

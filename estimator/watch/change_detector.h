@@ -92,7 +92,7 @@ class ChangeDetector {
     template <typename Archive>
     void archive(Archive& a) {
       a.finite(usual_error, back);
-      a.within(errors, 0, a.kMostCount);
+      a.within(errors, 0, a.kMaxCount);
       a.within(sign, -1, 1);
       a.within(phase, 0, kSeries - 1);
       a.within(size, 0, kSizes - 1);

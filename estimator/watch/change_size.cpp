@@ -23,7 +23,7 @@ double ChangeSize::excess() const {
   if (mean_.count == 0) return 1;
   const double scatter = std::max(mean_.square - mean_.sum * mean_.sum / mean_.weight, 0.0);
   return std::max((kPriorWindows + scatter) / (kPriorWindows + mean_.count - 1),
-                  mean_.count < kFewWindows ? 1.0 : kLeastExcess);
+                  mean_.count < kFewWindows ? 1.0 : kMinExcess);
 }
 
 double ChangeSize::std_error() const {

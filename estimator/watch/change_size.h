@@ -14,7 +14,7 @@ class ChangeSize {
   /// The scatter of a few windows says little of their errors: the errors count as so many windows
   /// that scatter as they say.
   static constexpr double kPriorWindows = 4;
-  static constexpr double kLeastExcess = 0.5;
+  static constexpr double kMinExcess = 0.5;
 
   /// Deviation of a window that overlaps none before, relative to the baseline, and its standard
   /// error > 0. common_error >= 0: of what all windows have in common, which no mean makes smaller.
@@ -28,13 +28,13 @@ class ChangeSize {
   /// Only while known(); the standard error is without that of the baseline.
   double ratio() const { return mean_.sum / mean_.weight; }
   double std_error() const;
-  /// Variance of the windows over what their errors say, >= kLeastExcess.
+  /// Variance of the windows over what their errors say, >= kMinExcess.
   double excess() const;
 
   template <typename Archive>
   void archive(Archive& a) {
     for (Mean* m : {&mean_, &aside_}) {
-      a.within(m->count, 0, a.kMostCount / 1e7);
+      a.within(m->count, 0, a.kMaxCount / 1e7);
       a.finite(m->weight, m->sum, m->square, m->common);
     }
   }

@@ -18,7 +18,7 @@ constexpr double kTimeFreedom = 10;  // of Student's distribution: a wild window
 /// same all the time.
 constexpr double kShareError = 0.2;
 constexpr double kLengthsInCommon = 2;  // windows of different length have their motion in common
-constexpr std::size_t kMostInstants = 100;
+constexpr std::size_t kMaxInstants = 100;
 
 /// Least squares of y = from + share * step, `from` drawn to 0.
 struct Fit {
@@ -85,10 +85,10 @@ std::optional<ChangeTime> time_of_change(std::span<const WindowHistory* const> h
                                          std::size_t parameter, double before_error, Time from,
                                          Time to, SensorClock::duration step) {
   const auto least =
-      SensorClock::duration((to - from).count() / static_cast<SensorClock::rep>(kMostInstants - 1));
+      SensorClock::duration((to - from).count() / static_cast<SensorClock::rep>(kMaxInstants - 1));
   step = std::max({step, least, SensorClock::duration(1)});
   const Division division(histories, parameter, before_error);
-  std::array<double, kMostInstants + 1> cost{};
+  std::array<double, kMaxInstants + 1> cost{};
   std::size_t count = 0, best = 0;
   for (Time at = from; at <= to && count < cost.size(); at += step, ++count) {
     cost[count] = division.objection(at);

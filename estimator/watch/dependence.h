@@ -98,7 +98,7 @@ class DependenceLearner {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a.within(count, 0, a.kMostCount);
+      a.within(count, 0, a.kMaxCount);
       a.finite(first, first_degc, first_log, normal, right, square);
     }
   };

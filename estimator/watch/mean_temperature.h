@@ -33,7 +33,7 @@ class MeanTemperature {
 
     template <typename Archive>
     void archive(Archive& a) {
-      for (std::int64_t* n : {&number, &count}) a.within(*n, -a.kMostCount, a.kMostCount);
+      for (std::int64_t* n : {&number, &count}) a.within(*n, -a.kMaxCount, a.kMaxCount);
       a.finite(sum);
     }
   };

@@ -26,7 +26,7 @@ constexpr double kBendPerDecade = 0.3;
 /// Beyond a law's misfit expected by chance, in standard deviations of it.
 constexpr double kMisfit = 3;
 /// A part of the record that is fitted alone has this many points at least.
-constexpr std::size_t kLeastPoints = 4;
+constexpr std::size_t kMinPoints = 4;
 
 double seconds_from_to(Time from, Time to) {
   return std::chrono::duration<double>(to - from).count();
@@ -199,8 +199,8 @@ Recovery::Fit Recovery::fit_newest(const std::vector<Point>& points) {
   const double excess = Recovery::excess(points, whole);
   whole = fit(points, 0, excess);
   Fit best = whole;
-  for (std::size_t from = 0; from + kLeastPoints <= points.size(); ++from) {
-    if (points.back().log - points[from].log < kLeastSpan) break;
+  for (std::size_t from = 0; from + kMinPoints <= points.size(); ++from) {
+    if (points.back().log - points[from].log < kMinSpan) break;
     best = from == 0 ? whole : fit(points, from, excess);
     if (best.freedom <= 0) break;
     const double expected = best.freedom, scatter = std::sqrt(2 * expected);
@@ -283,7 +283,7 @@ void Recovery::judge(const Fit& fit, RecoveryLaw& law) const {
     return is(RecoveryVerdict::not_known, RecoveryReason::few_windows);
   if (law.loss + kErrors * law.std_error < least_change_)
     return is(RecoveryVerdict::recovered, RecoveryReason::none);
-  if (span < kLeastSpan) return is(RecoveryVerdict::not_known, RecoveryReason::short_time);
+  if (span < kMinSpan) return is(RecoveryVerdict::not_known, RecoveryReason::short_time);
   const double later = std::log10(law.later_s);
   if (stays > 0 && fit.loss(later) > kErrors * fit.error(later)) {
     law.stays = stays;

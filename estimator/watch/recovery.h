@@ -78,7 +78,7 @@ class Recovery {
  public:
   static constexpr double kErrors = 3;       ///< standard errors at which something is excluded
   static constexpr std::size_t kFewest = 4;  ///< windows that a law needs
-  static constexpr double kLeastSpan = 0.5;  ///< decades of time that a law needs
+  static constexpr double kMinSpan = 0.5;    ///< decades of time that a law needs
   static constexpr double kYear_s = 31'557'600;
   static constexpr double kMotion_s = 900;  ///< no strong motion is longer
   /// The finding is renewed so long after the strong motion, s.
@@ -130,7 +130,7 @@ class Recovery {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a.within(count, 0, a.kMostCount);
+      a.within(count, 0, a.kMaxCount);
       a.finite(weight, log, off, amplitude, baseline, log_square, log_off, off_square);
     }
   };

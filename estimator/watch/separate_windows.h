@@ -35,8 +35,8 @@ class SeparateWindows {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a.within(count_, 0, a.kMostCount);
-    a.within(seconds_, 0, a.kMostCount);
+    a.within(count_, 0, a.kMaxCount);
+    a.within(seconds_, 0, a.kMaxCount);
     a(end_);
   }
 

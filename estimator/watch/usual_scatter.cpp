@@ -9,7 +9,7 @@ namespace {
 constexpr double kGroupPrior = 3;                  // groups without slow changes
 constexpr double kMemory = 60, kGroupMemory = 20;  // windows, groups of them
 constexpr double kPrior = 5;                       // windows that scatter as their errors say
-constexpr double kMostSquare = 25;                 // squared errors that a wild one counts as
+constexpr double kMaxSquare = 25;                  // squared errors that a wild one counts as
 
 }  // namespace
 
@@ -19,7 +19,7 @@ void UsualScatter::push(Time start, Time end, double off, double error) {
   if (windows_ > 0) {
     const double step = off - last_off_;
     const double square =
-        std::min(step * step / (error * error + last_error_ * last_error_), kMostSquare);
+        std::min(step * step / (error * error + last_error_ * last_error_), kMaxSquare);
     excess_ += (square - excess_) / std::min(kPrior + static_cast<double>(windows_), kMemory);
   }
   ++windows_;

@@ -11,14 +11,14 @@ namespace framewatch::estimator {
 /// windows of one length that do not overlap (docs/equations.md (43)).
 class UsualScatter {
  public:
-  static constexpr double kLeastExcess = 0.35;
+  static constexpr double kMinExcess = 0.35;
 
   /// Deviation from the baseline, relative, and its standard error > 0. A window that overlaps the
   /// one before is left out.
   void push(Time start, Time end, double off, double std_error);
 
-  /// Variance from window to window over what the errors say, >= kLeastExcess.
-  double excess() const { return excess_ > kLeastExcess ? excess_ : kLeastExcess; }
+  /// Variance from window to window over what the errors say, >= kMinExcess.
+  double excess() const { return excess_ > kMinExcess ? excess_ : kMinExcess; }
   /// Standard deviation of slow changes, relative to the baseline, >= 0.
   double slow() const;
 
@@ -26,8 +26,8 @@ class UsualScatter {
   void archive(Archive& a) {
     a(until_);
     a.within(group_, 0, kGroup);
-    a.within(windows_, 0, a.kMostCount);
-    a.within(groups_, 0, a.kMostCount);
+    a.within(windows_, 0, a.kMaxCount);
+    a.within(groups_, 0, a.kMaxCount);
     a.finite(last_off_, last_error_, excess_, weight_, sum_, slow_, chance_);
   }
 

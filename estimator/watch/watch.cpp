@@ -12,7 +12,7 @@ namespace {
 
 /// A frame's stiffness that is known to less says nothing of a change that matters, and how well it
 /// is known is itself known badly.
-constexpr double kMostErrorRatio = 0.035;
+constexpr double kMaxErrorRatio = 0.035;
 /// Windows shorter than this share of their length, after a start, have errors from few blocks.
 constexpr double kWhole = 0.98;
 
@@ -20,14 +20,14 @@ constexpr double kWhole = 0.98;
 constexpr double kOfGroup = 0.5;
 constexpr double kSeconds = 3600, kHoursPerYear = 8766;
 constexpr double kBinsPerWindow = 20, kBin_s = 60;  // of the temperature's means
-constexpr double kMostBendingError = 0.1;           // relative, of windows to learn from
+constexpr double kMaxBendingError = 0.1;            // relative, of windows to learn from
 
 /// A design off by its tolerance may not bias a value by more than this share of the least relevant
 /// change. For a panel that is one or two standard errors of its values, so that a bias common to
 /// all windows must be allowed for; for a frame it is many.
-constexpr double kMostBias_k = 0.1, kMostBias_g = 0.25;
+constexpr double kMaxBias_k = 0.1, kMaxBias_g = 0.25;
 /// The same in long windows, whose baseline has the same bias.
-constexpr double kMostBiasQuiet = 0.4;
+constexpr double kMaxBiasQuiet = 0.4;
 
 DependenceOptions quiet_options(const WatchOptions& o) {
   return {kSeconds * o.quiet_learn_hours, o.temperature, o.amplitude};
@@ -62,9 +62,9 @@ std::vector<Watched> watched_parameters(const ParameterTable& table, const Watch
     const ParameterKind kind = table[static_cast<int>(p)].kind;
     const bool group = table[static_cast<int>(p)].last_story > table[static_cast<int>(p)].story;
     if (kind == ParameterKind::frame_stiffness)
-      out[p] = watched((group ? kOfGroup : 1) * o.least_change_k, kMostBias_k, kind, 0);
+      out[p] = watched((group ? kOfGroup : 1) * o.least_change_k, kMaxBias_k, kind, 0);
     if (kind == ParameterKind::panel_stiffness)
-      out[p] = watched(o.least_change_g, kMostBias_g, kind, kMostBias_g);
+      out[p] = watched(o.least_change_g, kMaxBias_g, kind, kMaxBias_g);
   }
   return out;
 }
@@ -111,18 +111,18 @@ void Watch::begin() {
 
 void Watch::begin_quiet() {
   std::vector<Watched> watched = watched_;
-  for (Watched& w : watched) w.most_bias *= kMostBiasQuiet / kMostBias_k;
+  for (Watched& w : watched) w.most_bias *= kMaxBiasQuiet / kMaxBias_k;
   book_.begin_long(quiet_baseline_, watched);
 }
 
 const WindowEstimate& Watch::certain(const WindowEstimate& e) {
   bool all = true;
   for (std::size_t p = 0; p < watched_.size(); ++p)
-    all = all && !(e.std_error[p] > kMostErrorRatio * e.value[p] && stiffness_of_frames_[p] != 0);
+    all = all && !(e.std_error[p] > kMaxErrorRatio * e.value[p] && stiffness_of_frames_[p] != 0);
   if (all) return e;
   certain_ = e;
   for (std::size_t p = 0; p < watched_.size(); ++p) {
-    if (stiffness_of_frames_[p] == 0 || !(e.std_error[p] > kMostErrorRatio * e.value[p])) continue;
+    if (stiffness_of_frames_[p] == 0 || !(e.std_error[p] > kMaxErrorRatio * e.value[p])) continue;
     certain_.reason[p] = Observability::quiet;
     certain_.value[p] = certain_.std_error[p] = kNaN;
   }
@@ -150,7 +150,7 @@ const std::vector<Alarm>& Watch::push(const WindowEstimate& given) {
 /// Stiffnesses that were identified with another bending cannot be compared later.
 bool Watch::bending_known(const WindowEstimate& e) const {
   return std::all_of(bending_.begin(), bending_.end(), [&](std::size_t p) {
-    return e.std_error[p] <= kMostBendingError * e.value[p];
+    return e.std_error[p] <= kMaxBendingError * e.value[p];
   });
 }
 

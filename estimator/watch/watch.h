@@ -118,7 +118,7 @@ class Watch {
 
     template <typename Archive>
     void archive(Archive& a) {
-      a.within(count, 0, a.kMostCount);
+      a.within(count, 0, a.kMaxCount);
       a.finite(sum);
     }
   };

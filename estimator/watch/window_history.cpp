@@ -7,11 +7,11 @@ namespace framewatch::estimator {
 
 WindowHistory::WindowHistory(std::size_t parameters)
     : parameters_(parameters),
-      start_(kMost),
-      end_(kMost),
-      off_(kMost * parameters, 0.0F),
-      std_error_(kMost * parameters, 0.0F),
-      common_error_(kMost * parameters, 0.0F) {}
+      start_(kMax),
+      end_(kMax),
+      off_(kMax * parameters, 0.0F),
+      std_error_(kMax * parameters, 0.0F),
+      common_error_(kMax * parameters, 0.0F) {}
 
 /// Moves the windows from `from` on to `to`: by one place either way.
 void WindowHistory::move(std::size_t from, std::size_t to) {
@@ -30,8 +30,8 @@ void WindowHistory::move(std::size_t from, std::size_t to) {
 }
 
 std::size_t WindowHistory::add(Time start, Time end) {
-  if (count_ == kMost) {
-    if (end < end_[0]) return kMost;
+  if (count_ == kMax) {
+    if (end < end_[0]) return kMax;
     move(1, 0);
     --count_;
   }

@@ -7,11 +7,11 @@
 
 namespace framewatch::estimator {
 
-/// What the newest kMost windows of one length say of every parameter: its deviation from the
+/// What the newest kMax windows of one length say of every parameter: its deviation from the
 /// baseline. In order of time, whatever the order they came in. Bounded.
 class WindowHistory {
  public:
-  static constexpr std::size_t kMost = 40;
+  static constexpr std::size_t kMax = 40;
 
   explicit WindowHistory(std::size_t parameters);
 
@@ -22,7 +22,7 @@ class WindowHistory {
   };
 
   /// Adds a window without values, and gives its place; the oldest one is dropped when there are
-  /// kMost. A window that is older than all of kMost others is not added: gives kMost.
+  /// kMax. A window that is older than all of kMax others is not added: gives kMax.
   std::size_t add(Time start, Time end);
   void put(std::size_t place, std::size_t parameter, const Value& value);
   void clear() { count_ = 0; }
@@ -43,7 +43,7 @@ class WindowHistory {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a.within(count_, 0, static_cast<double>(kMost));
+    a.within(count_, 0, static_cast<double>(kMax));
     a(start_, end_);
     a.finite(off_, std_error_, common_error_);
   }
@@ -53,7 +53,7 @@ class WindowHistory {
 
   std::size_t parameters_, count_ = 0;
   std::vector<Time> start_, end_;
-  std::vector<float> off_, std_error_, common_error_;  ///< kMost x parameters; error 0: no value
+  std::vector<float> off_, std_error_, common_error_;  ///< kMax x parameters; error 0: no value
 };
 
 }  // namespace framewatch::estimator

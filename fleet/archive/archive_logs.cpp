@@ -15,9 +15,9 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/base/workers.h"
-#include "daemon/history/history_files.h"
-#include "daemon/history/raw_history_reader.h"
-#include "daemon/replay/replay_survey.h"
+#include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/raw_history_reader.h"
+#include "daemon/tools/replay/replay_survey.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kLongestRawLog_us = 86'400'000'000;  // it ends every day at least
-constexpr std::size_t kMostTasks = 100'000;
+constexpr std::size_t kMaxTasks = 100'000;
 constexpr std::int64_t kFollows_us = 2 * 3'600'000'000;  // a later one may not be the next
 constexpr std::int64_t kMargin_us = 10'000'000;  // after its end: windows are late, nodes uneven
 
@@ -134,7 +134,7 @@ std::vector<ArchiveTask> plan_tasks(const ArchivePlan& plan, const std::vector<A
   std::set<std::int64_t> starts;
   for (const ArchiveLog& log : logs)
     for (std::int64_t from_us = floor_to(log.start_us, length_us);
-         from_us < log.end_us && starts.size() < kMostTasks; from_us += length_us)
+         from_us < log.end_us && starts.size() < kMaxTasks; from_us += length_us)
       starts.insert(from_us);
   for (const std::int64_t from_us : starts) {
     ArchiveTask task;

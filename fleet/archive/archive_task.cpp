@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/documents/sqlite_file.h"
+#include "daemon/base/sqlite_file.h"
 
 namespace framewatch::fleet {
 namespace {

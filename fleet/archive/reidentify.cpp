@@ -5,16 +5,16 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/estimation/estimation.h"
-#include "daemon/replay/first_passes.h"
-#include "daemon/replay/history_output.h"
-#include "daemon/replay/replay_survey.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "daemon/tools/replay/first_passes.h"
+#include "daemon/tools/replay/history_output.h"
+#include "daemon/tools/replay/replay_survey.h"
 
 namespace framewatch::fleet {
 namespace {
 
 constexpr double kAfter_s = 10;  // until the last window of the task is out
-constexpr std::size_t kMostNotes = 20;
+constexpr std::size_t kMaxNotes = 20;
 
 daemon::ReplaySpan span_of(const ArchiveTask& task) {
   const auto length_us = static_cast<double>(task.to_us - task.warm_up_us);
@@ -53,8 +53,8 @@ Reidentified reidentify(const daemon::Config& config, const ArchiveTask& task,
     if (survey.problems().empty() && taken) survey.add(log);
   estimation.finish();
   out.notes = survey.notes();
-  if (out.notes.size() > kMostNotes) {
-    out.notes.resize(kMostNotes);
+  if (out.notes.size() > kMaxNotes) {
+    out.notes.resize(kMaxNotes);
     out.notes.push_back("what else is to be said is left out");
   }
   out.windows = estimation.windows();

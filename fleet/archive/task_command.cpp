@@ -17,7 +17,7 @@
 #include "daemon/base/process_usage.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
-#include "drivers/base/text_output.h"
+#include "drivers/files/text_output.h"
 #include "fleet/archive/archive_task.h"
 #include "fleet/archive/parameter_means.h"
 #include "fleet/archive/program_identity.h"

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "drivers/base/partial_file.h"
+#include "drivers/files/partial_file.h"
 
 namespace framewatch::fleet {
 namespace {

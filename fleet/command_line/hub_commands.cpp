@@ -8,7 +8,7 @@
 namespace framewatch::fleet {
 namespace {
 
-constexpr int kMostBuildings = 100'000;
+constexpr int kMaxBuildings = 100'000;
 
 void add_directory(CLI::App* command, std::string& directory) {
   command->add_option("--dir", directory, "of the hub's certificates, of buildings and users.conf")
@@ -44,7 +44,7 @@ void add_setup(daemon::CommandList& commands) {
       ->check(CLI::IsMember({1, 3, 5}))
       ->capture_default_str();
   command->add_option("--buildings", arguments.buildings, "that sizes are for")
-      ->check(CLI::Range(1, kMostBuildings))
+      ->check(CLI::Range(1, kMaxBuildings))
       ->capture_default_str();
   command->add_flag("--check", arguments.only_look, "only says what differs");
   commands.set_action(command, [&arguments] { return setup_command(arguments); });

@@ -17,7 +17,7 @@
 
 #include "daemon/base/child_process.h"
 #include "daemon/base/file_digest.h"
-#include "drivers/base/input_file.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::fleet {
 namespace {

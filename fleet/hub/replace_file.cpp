@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/partial_file.h"
+#include "drivers/files/partial_file.h"
 
 namespace framewatch::fleet {
 

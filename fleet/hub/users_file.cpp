@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "drivers/base/input_file.h"
+#include "drivers/files/input_file.h"
 #include "fleet/hub/replace_file.h"
 #include "fleet/message/subject.h"
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kOpenssl = "/usr/bin/openssl";
 constexpr std::chrono::milliseconds kPause{2};
-constexpr int kMostLooks = 1000;
+constexpr int kMaxLooks = 1000;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::string expired(const std::string& certificate) {
   auto process = daemon::ChildProcess::start(
       {"x509", "-in", certificate, "-noout", "-out", "/dev/null", "-checkend", "0"}, error,
       kOpenssl, "/dev/null");
-  for (int i = 0; process && i < kMostLooks; ++i) {
+  for (int i = 0; process && i < kMaxLooks; ++i) {
     if (const std::optional<int> status = process->ended())
       return *status == 1 ? fmt::format("{} expired, or the host's clock is wrong", certificate)
                           : "";

@@ -14,14 +14,14 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 #include "fleet/link/certificate_age.h"
 #include "fleet/link/nats_objects.h"
 
 namespace framewatch::fleet {
 namespace {
 
-constexpr std::int64_t kLeastWait_ms = 250, kMostWait_ms = 5000;
+constexpr std::int64_t kMinWait_ms = 250, kMaxWait_ms = 5000;
 // A line that is dead without a word shows within 12 s; oftener would cost more than what is sent.
 constexpr std::int64_t kPing_ms = 6000, kConnect_ms = 2000, kWrite_ms = 2000;
 constexpr int kPingsWithoutAnswer = 1;
@@ -74,7 +74,7 @@ struct NatsLink::State {
     auto& state = *static_cast<State*>(self);
     {
       const std::lock_guard<std::mutex> lock(state.mutex);
-      if (state.waiting.size() >= kMostWaiting) {
+      if (state.waiting.size() >= kMaxWaiting) {
         ++state.dropped;
         return;
       }
@@ -110,7 +110,7 @@ struct NatsLink::State {
   }
   static std::int64_t wait_before(natsConnection*, int, void*) {
     static thread_local std::mt19937 chance{std::random_device{}()};
-    return std::uniform_int_distribution<std::int64_t>(kLeastWait_ms, kMostWait_ms)(chance);
+    return std::uniform_int_distribution<std::int64_t>(kMinWait_ms, kMaxWait_ms)(chance);
   }
 };
 
@@ -226,7 +226,7 @@ std::vector<Message> NatsLink::take() {
   // renewed. A building that was let in again is not to wait for somebody to start it anew.
   const bool anew = state_->closed || now_us - state_->seen_us > kAnew_us;
   if (anew && now_us >= state_->open_again_us) {
-    state_->open_again_us = now_us + kMostWait_ms * 1000;
+    state_->open_again_us = now_us + kMaxWait_ms * 1000;
     state_->seen_us = now_us;
     (void)state_->close();
     if (const std::string problem = state_->connect(); !problem.empty()) {

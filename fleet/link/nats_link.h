@@ -17,7 +17,7 @@ struct NatsSettings {
 /// A line to NATS servers over TLS. Connections come back after 0.25 to 5 s at random.
 class NatsLink : public Link {
  public:
-  static constexpr std::size_t kMostWaiting = 8192;  ///< messages that take() has not fetched
+  static constexpr std::size_t kMaxWaiting = 8192;  ///< messages that take() has not fetched
 
   /// Null, with the reason, when certificate, key or authority cannot be used. No hub need be
   /// there.

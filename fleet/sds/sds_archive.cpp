@@ -17,8 +17,8 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/documents/miniseed_file.h"
-#include "drivers/base/input_file.h"
+#include "daemon/base/miniseed_file.h"
+#include "drivers/files/input_file.h"
 
 namespace framewatch::fleet {
 namespace {

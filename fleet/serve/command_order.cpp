@@ -8,9 +8,9 @@
 #include <framewatch/acknowledge_t.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/events/acknowledge_messages.h"
-#include "drivers/base/encoded.h"
-#include "drivers/base/number_text.h"
+#include "daemon/monitor/events/acknowledge_messages.h"
+#include "drivers/files/encoded.h"
+#include "drivers/files/number_text.h"
 #include "fleet/message/subject.h"
 
 namespace framewatch::fleet {

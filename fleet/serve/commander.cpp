@@ -10,13 +10,13 @@
 namespace framewatch::fleet {
 namespace {
 
-constexpr std::size_t kLongestAnswer = 500, kMostBytes = 65'536;
+constexpr std::size_t kLongestAnswer = 500, kMaxBytes = 65'536;
 constexpr const char* kNobody = "503";
 
 /// Empty: done; else why not.
 std::string answer_of(const Message& message) {
   if (message.header(header::kStatus) == kNobody) return "the building is away";
-  if (message.bytes.size() > kMostBytes) return "its answer is too long";
+  if (message.bytes.size() > kMaxBytes) return "its answer is too long";
   const auto document =
       nlohmann::json::parse(message.bytes.begin(), message.bytes.end(), nullptr, false);
   if (!document.is_object() || !document.contains("ok") || !document["ok"].is_boolean())
@@ -34,7 +34,7 @@ Commander::Commander(Link& link, std::function<void(const CommandResult&)> tell)
 
 bool Commander::give(CommandOrder order) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (orders_.size() >= kMostOrders) return false;
+  if (orders_.size() >= kMaxOrders) return false;
   orders_.push_back(std::move(order));
   return true;
 }

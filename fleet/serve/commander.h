@@ -26,7 +26,7 @@ struct CommandResult {
 /// does not answer in time, or is away, is a result too.
 class Commander {
  public:
-  static constexpr std::size_t kMostOrders = 64;
+  static constexpr std::size_t kMaxOrders = 64;
   static constexpr std::int64_t kWait_us = 10'000'000, kVoid_us = 30'000'000;
 
   /// `tell` gets each result once, on the thread of step(). Both must outlive this.

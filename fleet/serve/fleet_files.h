@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "daemon/web/web_files.h"
+#include "daemon/page/web/web_files.h"
 
 namespace framewatch::fleet {
 

@@ -9,7 +9,7 @@
 #include "daemon/base/file_digest.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/random_id.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "fleet/message/subject.h"
 #include "fleet/serve/journal.h"
 #include "fleet/view/building_view.h"
@@ -25,7 +25,7 @@ using nlohmann::json;
 
 constexpr const char* kJson = "application/json";
 constexpr std::size_t kVersionDigits = 16, kLongestParameter = 64;
-constexpr int kMostDays = 3660;
+constexpr int kMaxDays = 3660;
 constexpr std::int64_t kLatest_us = INT64_MAX / 4;
 
 PageAnswer refuse(unsigned code, const std::string& why) {
@@ -71,8 +71,8 @@ PageAnswer FleetPages::answer(const PageRequest& r) {
   const auto lent = pool_.lend();
   if (r.path == "/earthquakes.json") {
     const auto days = drivers::parse_integer(r.argument("days"));
-    if (!days || *days < 1 || *days > kMostDays)
-      return refuse(400, fmt::format("days must be 1 to {}", kMostDays));
+    if (!days || *days < 1 || *days > kMaxDays)
+      return refuse(400, fmt::format("days must be 1 to {}", kMaxDays));
     return view(earthquakes_json(*lent, static_cast<int>(*days)));
   }
   if (r.path == "/journal.json") {

@@ -10,12 +10,12 @@
 #include <fmt/core.h>
 
 #include "daemon/base/served_file.h"
-#include "daemon/web/connection_guard.h"
-#include "daemon/web/web_admission.h"
-#include "daemon/web/web_answer.h"
-#include "daemon/web/web_files.h"
-#include "daemon/web/web_socket.h"
-#include "drivers/base/caught.h"
+#include "daemon/page/web/connection_guard.h"
+#include "daemon/page/web/web_admission.h"
+#include "daemon/page/web/web_answer.h"
+#include "daemon/page/web/web_files.h"
+#include "daemon/page/web/web_socket.h"
+#include "drivers/files/caught.h"
 #include "fleet/serve/fleet_files.h"
 
 namespace framewatch::fleet {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "daemon/web/web_settings.h"
+#include "daemon/page/web/web_settings.h"
 #include "fleet/serve/fleet_pages.h"
 #include "fleet/serve/people.h"
 
@@ -15,7 +15,7 @@ struct FleetServerSettings {
 };
 
 /// Serves the page of many buildings on threads of its own. Admission is that of the page of one
-/// building (daemon/web/web_admission.h), with a token for each person.
+/// building (daemon/page/web/web_admission.h), with a token for each person.
 class FleetServer {
  public:
   static constexpr unsigned kThreads = 4;

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMostCommands = 200, kMostAnswers = 50;
+constexpr int kMaxCommands = 200, kMaxAnswers = 50;
 
 constexpr const char* kTargets =
     "SELECT id, name FROM building WHERE CASE WHEN $1 = 'all' THEN NOT retired ELSE name = $1 END"
@@ -67,11 +67,11 @@ bool note_result(Database& database, const CommandResult& result) {
 
 std::string journal_json(Database& database, const std::string& building) {
   const auto commands =
-      database.query(fmt::format(kCommands, sql_us("j.came"), kMostCommands), {building});
+      database.query(fmt::format(kCommands, sql_us("j.came"), kMaxCommands), {building});
   if (!commands) return json{{"problem", database.error()}}.dump();
   std::vector<std::string> requests;
   for (const Database::Row& row : *commands) requests.push_back(text_at(row, 0));
-  const auto answers = database.query(fmt::format(kAnswers, sql_us("came"), kMostAnswers),
+  const auto answers = database.query(fmt::format(kAnswers, sql_us("came"), kMaxAnswers),
                                       {sql_array(requests), building});
   if (!answers) return json{{"problem", database.error()}}.dump();
   json out = json::array();

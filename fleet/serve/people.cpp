@@ -7,8 +7,8 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/web/web_admission.h"
-#include "drivers/base/number_text.h"
+#include "daemon/page/web/web_admission.h"
+#include "drivers/files/number_text.h"
 #include "fleet/hub/replace_file.h"
 
 namespace framewatch::fleet {

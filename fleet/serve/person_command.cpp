@@ -6,9 +6,9 @@
 
 #include "daemon/base/exit_code.h"
 #include "daemon/base/file_digest.h"
-#include "daemon/web/web_socket.h"
-#include "drivers/base/input_file.h"
-#include "drivers/base/number_text.h"
+#include "daemon/page/web/web_socket.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/number_text.h"
 #include "fleet/hub/users_file.h"
 #include "fleet/sds/sds_archive.h"
 #include "fleet/serve/people.h"

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/utf8.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "fleet/store/fleet_schema.h"
 
 namespace framewatch::fleet {

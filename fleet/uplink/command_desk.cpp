@@ -8,7 +8,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::fleet {
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLongestRequest = 64, kLongestWho = 128, kMostChannels = 1000;
+constexpr std::size_t kLongestRequest = 64, kLongestWho = 128, kMaxChannels = 1000;
 constexpr std::int64_t kFarthest_us = 3600 * daemon::kSecond_us;  // of Fw-Until
 constexpr std::int64_t kLongestRaw_us = daemon::kDay_us;
 constexpr std::int64_t kLongestOther_us = 400 * daemon::kDay_us;
@@ -98,8 +98,8 @@ std::string CommandDesk::check(std::string_view verb, const Message& command,
   const auto& accept = settings_.accept;
   if (std::find(accept.begin(), accept.end(), verb) == accept.end())
     return "this building does not accept it ([fleet] accept)";
-  if (command.bytes.size() > kMostBytes)
-    return fmt::format("a command has {} bytes at most", kMostBytes);
+  if (command.bytes.size() > kMaxBytes)
+    return fmt::format("a command has {} bytes at most", kMaxBytes);
   if (!is_request(command.header(header::kRequest)))
     return "Fw-Request must be 1 to 64 of a-z, 0-9 and -";
   const std::string who = command.header(header::kWho);
@@ -140,22 +140,22 @@ std::string CommandDesk::raw(const Message& command) {
   const json document = document_of(command);
   const auto time = range_of(document, kLongestRaw_us, why);
   if (!time) return why;
-  RawRequest request{command.header(header::kRequest), *time, {}, kMostRaw_bytes};
+  RawRequest request{command.header(header::kRequest), *time, {}, kMaxRaw_bytes};
   if (const auto bytes = document.find("bytes"); bytes != document.end()) {
     if (!bytes->is_number_integer() || bytes->get<std::int64_t>() < 1)
       return "bytes must be a whole number above 0";
     request.most_bytes = std::min(request.most_bytes, bytes->get<std::int64_t>());
   }
   if (const auto channels = document.find("channels"); channels != document.end()) {
-    if (!channels->is_array() || channels->size() > kMostChannels)
+    if (!channels->is_array() || channels->size() > kMaxChannels)
       return "channels must be a list of names";
     for (const json& name : *channels) {
       if (!name.is_string()) return "channels must be a list of names";
       request.channels.push_back(name.get<std::string>());
     }
   }
-  if (store_.raw_requests().size() >= kMostRaw)
-    return fmt::format("{} requests for raw samples are open already", kMostRaw);
+  if (store_.raw_requests().size() >= kMaxRaw)
+    return fmt::format("{} requests for raw samples are open already", kMaxRaw);
   return store_.add_raw(request) ? "" : "it cannot be stored: " + store_.error();
 }
 

@@ -10,7 +10,7 @@
 #include <framewatch/acknowledge_t.hpp>
 
 #include "daemon/base/log.h"
-#include "daemon/keys/fleet_options.h"
+#include "daemon/config/keys/fleet_options.h"
 #include "fleet/message/message.h"
 #include "fleet/uplink/sent_store.h"
 
@@ -20,8 +20,8 @@ namespace framewatch::fleet {
 /// in the journal. An answer is JSON: {"ok": true} or {"ok": false, "why": "..."}.
 class CommandDesk {
  public:
-  static constexpr std::size_t kMostBytes = 65536, kMostRaw = 8;
-  static constexpr std::int64_t kMostRaw_bytes = 256'000'000;
+  static constexpr std::size_t kMaxBytes = 65536, kMaxRaw = 8;
+  static constexpr std::int64_t kMaxRaw_bytes = 256'000'000;
   /// Empty: the daemon has obeyed; else why not.
   using Acknowledge = std::function<std::string(const acknowledge_t& request)>;
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "daemon/documents/sqlite_file.h"
+#include "daemon/base/sqlite_file.h"
 
 namespace framewatch::fleet {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "daemon/base/clocks.h"
-#include "daemon/events/event_words.h"
-#include "daemon/history/history_files.h"
-#include "daemon/history/history_schema.h"
+#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/history_schema.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -106,7 +106,7 @@ std::string Outbox::look(SentStore& sent, Waiting& out) {
               return std::pair(a.key.start_us, a.key.period_s) >
                      std::pair(b.key.start_us, b.key.period_s);
             });
-  if (found.periods.size() > kMostPeriods) found.periods.resize(kMostPeriods);
+  if (found.periods.size() > kMaxPeriods) found.periods.resize(kMaxPeriods);
   out = std::move(found);
   version_ = version_now;
   return {};
@@ -129,12 +129,12 @@ void Outbox::look_for_events(SentStore& sent, Waiting& out) {
     if (more && key_of(known) == key) continue;
     ++out.event_count;
     keys.push_back(std::move(key));
-    if (keys.size() < 2 * kMostEvents) continue;
-    std::nth_element(keys.begin(), keys.begin() + kMostEvents, keys.end(), older);
-    keys.resize(kMostEvents);
+    if (keys.size() < 2 * kMaxEvents) continue;
+    std::nth_element(keys.begin(), keys.begin() + kMaxEvents, keys.end(), older);
+    keys.resize(kMaxEvents);
   }
   std::sort(keys.begin(), keys.end(), older);
-  if (keys.size() > kMostEvents) keys.resize(kMostEvents);
+  if (keys.size() > kMaxEvents) keys.resize(kMaxEvents);
   SqliteStatement row = file_.prepare(std::string(kEventColumns) +
                                       " WHERE kind = ? AND id = ? AND time_us = ? AND state = ?");
   for (const EventKey& k : keys) {
@@ -165,7 +165,7 @@ void Outbox::look_for_periods(SentStore& sent, std::int64_t period_s, const Time
     while (more && known.integer(0) > start_us) more = known.row();
     if (more && known.integer(0) == start_us && (!closed || known.integer(1) == windows)) continue;
     ++out.period_count;
-    if (kept++ < kMostPeriods) out.periods.push_back({{period_s, start_us}, windows});
+    if (kept++ < kMaxPeriods) out.periods.push_back({{period_s, start_us}, windows});
   }
 }
 
@@ -175,7 +175,7 @@ std::vector<TimeRange> Outbox::wanted_minutes(SentStore& sent) {
       "SELECT since_us, time_us FROM event WHERE severity >= ? AND state = ?"
       " ORDER BY time_us DESC LIMIT ?");
   s.bind(1, std::int64_t{daemon::severity::warning});
-  s.bind(2, std::int64_t{daemon::event_state::raised}).bind(3, SentStore::kMostRanges);
+  s.bind(2, std::int64_t{daemon::event_state::raised}).bind(3, SentStore::kMaxRanges);
   while (s.row()) {
     out.push_back({s.integer(0) - kBeforeEvent_us, s.integer(0) + kAfterEvent_us});
     out.push_back({s.integer(1) - kBeforeEvent_us, s.integer(1) + kAfterEvent_us});

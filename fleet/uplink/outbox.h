@@ -7,7 +7,7 @@
 
 #include <framewatch/event_t.hpp>
 
-#include "daemon/documents/sqlite_file.h"
+#include "daemon/base/sqlite_file.h"
 #include "fleet/message/key.h"
 #include "fleet/uplink/sent_store.h"
 
@@ -30,7 +30,7 @@ struct Waiting {
 /// Reads the history that `framewatch run` writes, and never writes it.
 class Outbox {
  public:
-  static constexpr std::size_t kMostEvents = 1024, kMostPeriods = 1024;
+  static constexpr std::size_t kMaxEvents = 1024, kMaxPeriods = 1024;
 
   /// directory: of the history. summary_s: its periods, ascending; those of the first go to the hub
   /// on request and around events, if there are others.

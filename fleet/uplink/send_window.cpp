@@ -7,7 +7,7 @@
 namespace framewatch::fleet {
 namespace {
 
-constexpr int kMostDoublings = 5;
+constexpr int kMaxDoublings = 5;
 
 }  // namespace
 
@@ -17,7 +17,7 @@ bool SendWindow::silent(std::int64_t now_us) const {
 }
 
 bool SendWindow::takes(std::int64_t now_us) const {
-  return open_.size() < kMostMessages && bytes_ < kMostBytes && !silent(now_us);
+  return open_.size() < kMaxMessages && bytes_ < kMaxBytes && !silent(now_us);
 }
 
 void SendWindow::add(Outgoing outgoing, std::int64_t now_us) {
@@ -37,7 +37,7 @@ std::vector<std::int64_t> SendWindow::due(std::int64_t now_us) {
     if (open.due_us <= now_us) {
       out.push_back(number);
       sent_again_ += open.sent > 0 ? 1 : 0;
-      const std::int64_t again_us = kAgain_us << std::min(open.sent++, kMostDoublings);
+      const std::int64_t again_us = kAgain_us << std::min(open.sent++, kMaxDoublings);
       open.due_us = now_us + (quiet ? kOldest_us : std::min(again_us, kSeldom_us));
     }
     if (quiet && !open.refused) break;

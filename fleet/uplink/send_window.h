@@ -29,7 +29,7 @@ struct Outgoing {
 /// never set.
 class SendWindow {
  public:
-  static constexpr std::size_t kMostMessages = 512, kMostBytes = std::size_t{4} << 20;
+  static constexpr std::size_t kMaxMessages = 512, kMaxBytes = std::size_t{4} << 20;
   static constexpr std::int64_t kAgain_us = 2'000'000, kSilent_us = 1'500'000,
                                 kOldest_us = 1'000'000, kSeldom_us = 60'000'000;
 

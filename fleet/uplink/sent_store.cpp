@@ -7,9 +7,9 @@
 
 #include <fmt/core.h>
 
+#include "daemon/base/damaged_database.h"
 #include "daemon/base/log.h"
-#include "daemon/documents/damaged_database.h"
-#include "daemon/history/history_schema.h"
+#include "daemon/monitor/history/history_schema.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -154,7 +154,7 @@ bool SentStore::want_minutes(const TimeRange& time) {
     daemon::SqliteStatement bound = file_.prepare(
         "DELETE FROM wanted WHERE (from_us, to_us) NOT IN"
         " (SELECT from_us, to_us FROM wanted ORDER BY from_us DESC LIMIT ?)");
-    return bound.bind(1, kMostRanges).run();
+    return bound.bind(1, kMaxRanges).run();
   });
 }
 
@@ -173,7 +173,7 @@ bool SentStore::note(const JournalEntry& entry) {
     if (!put.bind(5, entry.outcome).run()) return false;
     daemon::SqliteStatement bound =
         file_.prepare("DELETE FROM journal WHERE number <= (SELECT max(number) FROM journal) - ?");
-    return bound.bind(1, kMostJournal).run();
+    return bound.bind(1, kMaxJournal).run();
   });
 }
 

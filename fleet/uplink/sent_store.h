@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "daemon/documents/sqlite_file.h"
+#include "daemon/base/sqlite_file.h"
 #include "fleet/message/key.h"
 
 namespace framewatch::fleet {
@@ -47,7 +47,7 @@ struct SentPeriod {
 /// return false; error() says why.
 class SentStore {
  public:
-  static constexpr std::int64_t kMostJournal = 10'000, kMostRanges = 1000;
+  static constexpr std::int64_t kMaxJournal = 10'000, kMaxRanges = 1000;
 
   /// Opens, or makes, the database; a damaged one is set aside and a new one begun, after which
   /// everything is sent again. Empty, or why not.

@@ -5,7 +5,7 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/summary_t.hpp>
 
-#include "daemon/documents/sqlite_file.h"
+#include "daemon/base/sqlite_file.h"
 #include "fleet/message/key.h"
 
 namespace framewatch::fleet {

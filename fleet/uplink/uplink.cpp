@@ -8,8 +8,8 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
 #include "daemon/base/process_usage.h"
-#include "drivers/base/encoded.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/encoded.h"
+#include "drivers/files/number_text.h"
 #include "drivers/lcm/message_check.h"
 #include "fleet/message/subject.h"
 #include "fleet/uplink/inventory.h"
@@ -55,7 +55,7 @@ void Uplink::heard(std::string_view channel, std::span<const std::uint8_t> bytes
   if (channel != "EVENT") return;
   auto event = drivers::decoded<event_t>(bytes);
   if (!event) return;
-  if (live_.size() >= kMostLive) {
+  if (live_.size() >= kMaxLive) {
     live_.pop_front();  // the history has it
     ++lost_live_;
     look_again_ = true;
@@ -234,7 +234,7 @@ bool Uplink::add_event(const event_t& event, Instant now) {
 /// One period; false when none may go now.
 bool Uplink::fill_periods(Instant now) {
   if (next_period_ >= waiting_.periods.size() ||
-      window_.summaries() >= SendWindow::kMostMessages / 2)
+      window_.summaries() >= SendWindow::kMaxMessages / 2)
     return false;
   const ClosedPeriod& period = waiting_.periods[next_period_];
   const std::int64_t longest_s = settings_.history.summary_s.back();

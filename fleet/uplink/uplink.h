@@ -13,8 +13,8 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/uplink_status_t.hpp>
 
-#include "daemon/keys/fleet_options.h"
-#include "daemon/keys/history_options.h"
+#include "daemon/config/keys/fleet_options.h"
+#include "daemon/config/keys/history_options.h"
 #include "fleet/link/link.h"
 #include "fleet/uplink/command_desk.h"
 #include "fleet/uplink/newest_messages.h"
@@ -41,7 +41,7 @@ struct UplinkSettings {
 /// LCM at once; obeys commands. All of it in one thread, by step(). docs/fleet.md has the rules.
 class Uplink {
  public:
-  static constexpr std::size_t kMostLive = 1024;  ///< events of LCM that wait
+  static constexpr std::size_t kMaxLive = 1024;  ///< events of LCM that wait
   /// Acknowledgements that a hub may lose with its power.
   static constexpr std::int64_t kAgainAfterLoss_us = 600'000'000;
   static constexpr double kOlder_hz = 4;  ///< summaries of earlier hours
@@ -79,7 +79,7 @@ class Uplink {
     return clock_us_ + (now.steady_us - begun_.steady_us);
   }
   bool waits_for_store() const {
-    return !store_trouble_.empty() && unstored_keys_.size() > kMostLive;
+    return !store_trouble_.empty() && unstored_keys_.size() > kMaxLive;
   }
 
   const UplinkSettings settings_;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "daemon/events/event_words.h"
+#include "daemon/monitor/events/event_words.h"
 
 namespace framewatch::fleet {
 namespace {

@@ -23,8 +23,8 @@ using daemon::kSecond_us;
 using nlohmann::json;
 
 constexpr std::int64_t kTogether_us = 60 * kSecond_us;
-constexpr std::size_t kLeastTogether = 3, kMostEarthquakes = 50;
-constexpr int kMostEvents = 20'000;
+constexpr std::size_t kMinTogether = 3, kMaxEarthquakes = 50;
+constexpr int kMaxEvents = 20'000;
 
 constexpr const char* kComparedBuildings =
     "SELECT id, name, title, place FROM building"
@@ -137,8 +137,8 @@ std::string earthquake_json(Database& database, const EarthquakeRequest& r) {
   using R = EarthquakeRequest;
   const ComparedTime minutes{60, t - R::kBefore_us, t, t + R::kSettle_us, t + R::kAfter_us};
   const ComparedTime tens{600, t - R::kLongBefore_us, t, t + R::kSettle_us, t + R::kLongAfter_us};
-  if (!reader.read(buildings, minutes, R::kLeastPeriods) ||
-      !reader.read(buildings, tens, R::kLeastPeriods) || !reader.read(buildings, tens, 1) ||
+  if (!reader.read(buildings, minutes, R::kMinPeriods) ||
+      !reader.read(buildings, tens, R::kMinPeriods) || !reader.read(buildings, tens, 1) ||
       !reader.read(buildings, minutes, 1) ||
       !take_records(database, t - kTogether_us, t + R::kLongAfter_us, buildings))
     return json{{"problem", database.error()}}.dump();
@@ -160,7 +160,7 @@ std::string earthquake_json(Database& database, const EarthquakeRequest& r) {
 
 std::string earthquakes_json(Database& database, int days) {
   const auto rows =
-      database.query(fmt::format(kShaken, kMostEvents), {std::to_string(days * daemon::kDay_us)});
+      database.query(fmt::format(kShaken, kMaxEvents), {std::to_string(days * daemon::kDay_us)});
   if (!rows) return json{{"problem", database.error()}}.dump();
   std::vector<std::pair<std::int64_t, std::int64_t>> shaken;  // since_us, building
   for (const Database::Row& row : *rows)
@@ -172,7 +172,7 @@ std::string earthquakes_json(Database& database, int days) {
     std::set<std::int64_t> together;
     for (; to < shaken.size() && shaken[to].first - shaken[from].first <= kTogether_us; ++to)
       together.insert(shaken[to].second);
-    if (together.size() < kLeastTogether) {
+    if (together.size() < kMinTogether) {
       ++from;
       continue;
     }
@@ -182,7 +182,7 @@ std::string earthquakes_json(Database& database, int days) {
     from = to;
   }
   std::reverse(out.begin(), out.end());
-  while (out.size() > kMostEarthquakes) out.erase(out.size() - 1);
+  while (out.size() > kMaxEarthquakes) out.erase(out.size() - 1);
   return out.dump();
 }
 

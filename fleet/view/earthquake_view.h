@@ -14,7 +14,7 @@ struct EarthquakeRequest {
   static constexpr std::int64_t kAfter_us = 720'000'000;   ///< of minutes, after the time
   static constexpr std::int64_t kLongBefore_us = 7'200'000'000;  ///< where there are no minutes
   static constexpr std::int64_t kLongAfter_us = 3'600'000'000;
-  static constexpr int kLeastPeriods = 3;  ///< before and after, that a finer length needs
+  static constexpr int kMinPeriods = 3;  ///< before and after, that a finer length needs
 
   std::int64_t time_us = 0;  ///< sensor time
   std::string building;      ///< every value of this one alone; empty: every building, in short

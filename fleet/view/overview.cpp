@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMostNewEvents = 1000;  // of a building after its heartbeat
+constexpr int kMaxNewEvents = 1000;  // of a building after its heartbeat
 
 constexpr const char* kHeartbeats =
     "SELECT b.id, b.name, b.title, b.place, b.latitude, b.longitude, {}, {}, n.content, {}"
@@ -123,7 +123,7 @@ Overview read_overview(Database& database, const std::string& only) {
     index[integer_at(row, 0)] = out.buildings.size();
     out.buildings.push_back(std::move(state));
   }
-  const auto events = database.query(fmt::format(kNewEvents, kMostNewEvents), {only});
+  const auto events = database.query(fmt::format(kNewEvents, kMaxNewEvents), {only});
   const auto orders = events ? database.query(kOrdered) : std::nullopt;
   const auto acknowledged = orders ? database.query(kAcknowledged) : std::nullopt;
   if (!acknowledged) {

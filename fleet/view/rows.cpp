@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::fleet {
 namespace {

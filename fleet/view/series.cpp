@@ -45,7 +45,7 @@ int best_period(Database& database, const SeriesRequest& r) {
   if (!rows || rows->empty()) return 600;
   for (const Database::Row& row : *rows)
     if ((r.to_us - r.from_us) / (integer_at(row, 0) * kSecond_us) <=
-        static_cast<std::int64_t>(SeriesRequest::kMostPoints))
+        static_cast<std::int64_t>(SeriesRequest::kMaxPoints))
       return static_cast<int>(integer_at(row, 0));
   return static_cast<int>(integer_at(rows->back(), 0));
 }
@@ -91,7 +91,7 @@ std::string series_json(Database& database, const SeriesRequest& r) {
     unit = text_at(row, 6);
     points.push_back(p);
   }
-  const std::size_t of = points.size() / SeriesRequest::kMostPoints + 1;
+  const std::size_t of = points.size() / SeriesRequest::kMaxPoints + 1;
   json t = json::array(), windows = t, median = t, q1 = t, q3 = t, error = t;
   for (std::size_t from = 0; from < points.size(); from += of) {
     const Point p =

@@ -10,8 +10,8 @@
 
 #include <framewatch/service_t.hpp>
 
-#include "daemon/events/event_json.h"
-#include "daemon/events/event_words.h"
+#include "daemon/monitor/events/event_json.h"
+#include "daemon/monitor/events/event_words.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::fleet {
@@ -19,13 +19,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMostRaised = 100;
+constexpr std::size_t kMaxRaised = 100;
 
 Message message(const std::string& building, const char* what, const std::string& text) {
   return {fmt::format("framewatch.{}.{}", building, what), "", {}, {text.begin(), text.end()}};
 }
 
-/// The most severe first; of more than kMostRaised the others are counted alone.
+/// The most severe first; of more than kMaxRaised the others are counted alone.
 std::string state_json(const std::string& building, const service_t& s) {
   std::vector<std::size_t> order(s.event_id.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -33,7 +33,7 @@ std::string state_json(const std::string& building, const service_t& s) {
     return s.event_severity[a] > s.event_severity[b];
   });
   json raised = json::array();
-  for (std::size_t n = 0; n < std::min(order.size(), kMostRaised); ++n) {
+  for (std::size_t n = 0; n < std::min(order.size(), kMaxRaised); ++n) {
     const std::size_t i = order[n];
     raised.push_back({{"id", s.event_id[i]},
                       {"since_us", s.event_since_us[i]},

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 #include "drivers/lcm/message_check.h"
 #include "drivers/lcm/message_types.h"
 #include "fleet/message/key.h"
@@ -17,8 +17,8 @@
 namespace framewatch::fleet {
 namespace {
 
-constexpr std::size_t kMostBytes = 4 << 20;  // unpacked
-constexpr std::int64_t kMostPieces = 100'000;
+constexpr std::size_t kMaxBytes = 4 << 20;  // unpacked
+constexpr std::int64_t kMaxPieces = 100'000;
 constexpr std::size_t kLongestWhy = 1000;
 constexpr std::size_t kDigestDigits = 64;
 
@@ -65,7 +65,7 @@ class Judgement {
       return refuse(fmt::format("its key names {}, its subject {}", key->building, building_));
     type_ = message_.header(header::kType);
     std::string why;
-    auto content = unpacked(message_, kMostBytes, why);
+    auto content = unpacked(message_, kMaxBytes, why);
     if (!content) return refuse(why);
     content_ = std::move(*content);
     if (kind_ == "event") return event();
@@ -143,7 +143,7 @@ class Judgement {
     const std::string request = kind_.substr(4);
     if (!is_request_name(request)) return refuse("its request has no name of a-z, 0-9 and -");
     const bool says_why_none = piece == 0 && pieces == 0;
-    if (!piece || !pieces || *piece < 0 || *pieces > kMostPieces ||
+    if (!piece || !pieces || *piece < 0 || *pieces > kMaxPieces ||
         (*piece >= *pieces && !says_why_none))
       return refuse("its number is none of a piece");
     if (says_why_none && content_.size() > kLongestWhy)

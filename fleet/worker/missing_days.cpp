@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::fleet {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kFormat = "framewatch.inventory/1";
-constexpr std::size_t kMostDays = 400, kMostPeriods = 16;
+constexpr std::size_t kMaxDays = 400, kMaxPeriods = 16;
 constexpr std::int64_t kLatest_us = INT64_MAX / 4;
 
 std::optional<std::int64_t> count_of(const json& object, const char* name) {
@@ -28,7 +28,7 @@ std::optional<InventoryDay> day_of(const json& object) {
   const auto from_us = count_of(object, "from_us"), events = count_of(object, "events");
   const auto periods = object.find("periods");
   if (!from_us || *from_us < -kLatest_us || *from_us > kLatest_us || !events ||
-      periods == object.end() || !periods->is_object() || periods->size() > kMostPeriods)
+      periods == object.end() || !periods->is_object() || periods->size() > kMaxPeriods)
     return std::nullopt;
   InventoryDay out{*from_us, {*events, {}}};
   for (const auto& [period, count] : periods->items()) {
@@ -53,7 +53,7 @@ std::vector<InventoryDay> inventory_days(std::string_view text) {
   const json document = json::parse(text.begin(), text.end(), nullptr, false);
   if (!document.is_object() || document.value("format", json()) != kFormat) return {};
   const auto days = document.find("days");
-  if (days == document.end() || !days->is_array() || days->size() > kMostDays) return {};
+  if (days == document.end() || !days->is_array() || days->size() > kMaxDays) return {};
   std::vector<InventoryDay> out;
   for (const json& one : *days) {
     auto day = day_of(one);

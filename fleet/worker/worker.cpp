@@ -39,7 +39,7 @@ void Worker::step(const WorkerTime& now) {
     for (Consumer& consumer : consumers_) consumer.asked_us = 0;  // requests went with the line
   for (Message& message : link_.take()) take(std::move(message), now);
   const bool due = !waiting_.empty() &&
-                   (waiting_.size() >= kMostMessages || now.steady_us - since_us_ >= kLongest_us);
+                   (waiting_.size() >= kMaxMessages || now.steady_us - since_us_ >= kLongest_us);
   if (due) store(now);
   if (now.steady_us < pause_until_us_) return;
   compare_inventories(now);
@@ -50,7 +50,7 @@ void Worker::step(const WorkerTime& now) {
 }
 
 void Worker::ask(Consumer& consumer, std::int64_t steady_us) {
-  if (waiting_.size() + kAskedAtOnce > 2 * kMostMessages) return;
+  if (waiting_.size() + kAskedAtOnce > 2 * kMaxMessages) return;
   const std::string request =
       fmt::format("{{\"batch\":{},\"expires\":{}}}", kAskedAtOnce, kPull_us * 1000);
   const std::string subject = fmt::format("{}{}.{}", kNext, consumer.stream, consumer.name);
@@ -165,7 +165,7 @@ void Worker::store_one_by_one(std::size_t within, std::vector<ReceivedFlood> flo
 void Worker::note_inventories(const FleetBatch& batch, std::int64_t steady_us) {
   if (!missing_) return;
   for (const ReceivedNewest& newest : batch.newest)
-    if (newest.kind == "inventory" && to_compare_.size() < kMostCompared)
+    if (newest.kind == "inventory" && to_compare_.size() < kMaxCompared)
       to_compare_.insert({newest.building, steady_us + kBeforeCompared_us});
 }
 
@@ -177,7 +177,7 @@ void Worker::compare_inventories(const WorkerTime& now) {
   const std::string building = due->first;
   to_compare_.erase(due);
   const auto days = missing_(building);
-  for (std::size_t i = 0; days && i < std::min(days->size(), kMostResent_days); ++i)
+  for (std::size_t i = 0; days && i < std::min(days->size(), kMaxResent_days); ++i)
     ask_again(building, (*days)[i], now);
 }
 

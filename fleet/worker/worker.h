@@ -36,12 +36,12 @@ struct WorkerTime {
 /// the consumers.
 class Worker {
  public:
-  static constexpr std::size_t kMostMessages = 500;     ///< of a batch
+  static constexpr std::size_t kMaxMessages = 500;      ///< of a batch
   static constexpr std::int64_t kLongest_us = 500'000;  ///< that one is collected
   static constexpr std::int64_t kPull_us = 5'000'000;   ///< that the hub holds a request
   /// After an inventory came, until it is compared: what is under way has then arrived.
   static constexpr std::int64_t kBeforeCompared_us = 1'800'000'000;
-  static constexpr std::size_t kMostResent_days = 5, kMostCompared = 20'000;  ///< of one; waiting
+  static constexpr std::size_t kMaxResent_days = 5, kMaxCompared = 20'000;  ///< of one; waiting
   static constexpr std::int64_t kShortestPause_us = 1'000'000, kLongestPause_us = 30'000'000;
 
   struct Counters {

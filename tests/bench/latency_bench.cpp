@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "daemon/live/run_command.h"
+#include "daemon/monitor/live/run_command.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/lcm_source.h"
 #include "tests/bench/cpu_clock.h"

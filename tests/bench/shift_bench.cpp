@@ -27,7 +27,7 @@ namespace {
 constexpr int kWindow = 500;
 constexpr int kShifts = 200;            // of an alternative, at most
 constexpr int kSteadyFrom = 1000;       // instants; warm-up and first tuning are over on most
-constexpr double kMostOfOne_s = 8;      // of an alternative; longer ones are cut short or skipped
+constexpr double kMaxOfOne_s = 8;       // of an alternative; longer ones are cut short or skipped
 constexpr double kDenseRate = 1.5e10;   // floating-point operations a second, to foresee that
 constexpr double kUnblockedRate = 2e9;  // the same of Eigen's LDLT and numpy's SVD
 constexpr double kBudget_us = 10'000;   // of a shift at 100 Hz
@@ -182,9 +182,9 @@ Result run_dense(Method method, const std::vector<Make>& builds, const DenseInpu
                  double flops, double rate) {
   const double foreseen_s = flops / rate;
   int counted = kWindow;
-  if (method == Method::naive && foreseen_s > kMostOfOne_s)
-    counted = std::max(1, static_cast<int>(kWindow * kMostOfOne_s / foreseen_s));
-  if (method != Method::naive && foreseen_s > kMostOfOne_s) return {};
+  if (method == Method::naive && foreseen_s > kMaxOfOne_s)
+    counted = std::max(1, static_cast<int>(kWindow * kMaxOfOne_s / foreseen_s));
+  if (method != Method::naive && foreseen_s > kMaxOfOne_s) return {};
   Result best;
   for (const Make make : builds) {
     const auto way = make(method, input.pattern());
@@ -204,7 +204,7 @@ Result run_dense(Method method, const std::vector<Make>& builds, const DenseInpu
 }
 
 Result run_numpy(int equations, int parameters, double flops) {
-  if (flops / kUnblockedRate / 2 > kMostOfOne_s) return {};
+  if (flops / kUnblockedRate / 2 > kMaxOfOne_s) return {};
   const std::string command = "OPENBLAS_NUM_THREADS=1 /usr/bin/python3 " FRAMEWATCH_SOURCE_DIR
                               "/tests/bench/numpy_lstsq.py " +
                               std::to_string(kWindow * equations) + " " +

@@ -9,7 +9,7 @@ const [program, browserPath, configs] = process.argv.slice(2);
 // Limits.
 const kPatience = {timeout: 60000}; // of whatever a busy machine may take
 const kDrop_s = 60, kPlayed_s = 900, // ended when they have been looked at
-   kDrop_ratio = -0.15, kMostOff = 0.02, kSharp = 0.6, kLate_s = 20;
+   kDrop_ratio = -0.15, kMaxOff = 0.02, kSharp = 0.6, kLate_s = 20;
 const kDamaged = 'kx_1_y2', kDead = 'F1-X2';
 
 const children = [], failures = [];
@@ -89,7 +89,7 @@ async function damaged(page) {
   await pause(1500);
   const [now, event] = await page.evaluate(() => [framewatch.told.findings[0], [...framewatch.alarms.values()].find(a => a.id === framewatch.told.findings[0].id)]);
   console.log(`first ${first.ratio} +- ${first.error}, now ${now.ratio} +- ${now.error}`);
-  expect(Math.abs(now.ratio - kDrop_ratio) < kMostOff, 'damaged: the size is right');
+  expect(Math.abs(now.ratio - kDrop_ratio) < kMaxOff, 'damaged: the size is right');
   expect(now.ratio === event.value && now.error === event.error, 'damaged: finding and event have one number');
   const size = (await answer(page, 0)).match(/has lost ([\d.]+ %)/)[1];
   const texts = await Promise.all(['#findings', '#alarms', '#chosen'].map(id => page.textContent(id)));

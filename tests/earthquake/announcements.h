@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/estimation/estimation.h"
+#include "daemon/monitor/estimation/estimation.h"
 
 namespace framewatch::earthquake {
 

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kMassOff = 0.02, kProfileOff = 0.05;  // standard deviations
 constexpr double kDesignOff = 0.15;                    // at most
-constexpr double kLeastLoss = 0.05, kMostLoss = 0.40, kUniformLoss = 0.05;
+constexpr double kMinLoss = 0.05, kMaxLoss = 0.40, kUniformLoss = 0.05;
 // Of the slow softening. Slip scatters from window to window: more than this and no baseline is
 // learned within kLearned_s.
-constexpr double kLeastSoftening = 0.05, kMostSoftening = 0.20, kSlipOfThat = 0.4;
+constexpr double kMinSoftening = 0.05, kMaxSoftening = 0.20, kSlipOfThat = 0.4;
 constexpr double kTwoElements = 1.0 / 3, kApart = 0.5;  // shares of cases
-constexpr double kLeastApart_s = 2, kMostApart_s = 8;
+constexpr double kMinApart_s = 2, kMaxApart_s = 8;
 constexpr double kLoud = 2.5;
 // Levels of the ground's motion and until when they last, s.
 constexpr double kAmbient = 0.02, kCoda = 0.5;
@@ -65,12 +65,12 @@ void draw_losses(estimator::Random& random, ChangeCase& out) {
     return;
   }
   const bool two = random.uniform() < kTwoElements, apart = random.uniform() < kApart;
-  const double later_s = at_s + (apart ? between_of(random, kLeastApart_s, kMostApart_s) : 0);
+  const double later_s = at_s + (apart ? between_of(random, kMinApart_s, kMaxApart_s) : 0);
   for (const double time_s : {at_s, later_s}) {
     const auto drawn =
         static_cast<std::ptrdiff_t>(random.uniform() * static_cast<double>(frames.size()));
-    out.losses.push_back({time_s, frames[static_cast<std::size_t>(drawn)],
-                          between_of(random, kLeastLoss, kMostLoss)});
+    out.losses.push_back(
+        {time_s, frames[static_cast<std::size_t>(drawn)], between_of(random, kMinLoss, kMaxLoss)});
     frames.erase(frames.begin() + drawn);
     if (!two) break;
   }
@@ -89,7 +89,7 @@ ChangeCase change_case(ChangeKind kind, std::uint64_t seed, int number) {
   out.model_error = random.uniform() < 0.5;
   const double u = random.uniform();
   out.softening = u < 0.5 ? Softening::none : u < 0.75 ? Softening::slow : Softening::slipping;
-  out.amount = between_of(random, kLeastSoftening, kMostSoftening);
+  out.amount = between_of(random, kMinSoftening, kMaxSoftening);
   if (out.softening == Softening::slipping) out.amount *= kSlipOfThat;
   out.between = random.uniform() < 0.5;
   out.loud = random.uniform() < 0.5;

@@ -13,8 +13,8 @@
 namespace framewatch::earthquake {
 namespace {
 
-constexpr double kLeastCoverage = 0.92, kMostCoverage = 0.99, kMostNeighbours = 0.01;
-constexpr double kMostMoved = 0.05;  // share of elements whose size leaves two earlier errors
+constexpr double kMinCoverage = 0.92, kMaxCoverage = 0.99, kMaxNeighbours = 0.01;
+constexpr double kMaxMoved = 0.05;  // share of elements whose size leaves two earlier errors
 
 struct Line {
   std::string title;
@@ -243,7 +243,7 @@ std::vector<Demand> change_demands(const std::vector<ScoredCase>& cases, double 
     if (c.count() > 0)
       out.push_back(
           {fmt::format("{} after: {} hold the truth", time_name(kAfter_s[t]), with_error(c)),
-           c.ratio() >= kLeastCoverage && c.ratio() <= kMostCoverage});
+           c.ratio() >= kMinCoverage && c.ratio() <= kMaxCoverage});
   }
   int unchanged = 0, neighbours = 0;
   std::vector<double> delays;
@@ -253,11 +253,11 @@ std::vector<Demand> change_demands(const std::vector<ScoredCase>& cases, double 
     for (const ElementScore& e : c.score.changed) delays.push_back(e.delay_s);
   }
   out.push_back({fmt::format("false neighbours: {} of {}", neighbours, unchanged),
-                 neighbours < kMostNeighbours * unchanged});
+                 neighbours < kMaxNeighbours * unchanged});
   const Steadiness s = steadiness(scores, all);
   out.push_back({fmt::format("sizes that stay within two earlier errors: {} of {} elements",
                              s.steady, s.elements),
-                 s.elements > 0 && s.elements - s.steady <= kMostMoved * s.elements});
+                 s.elements > 0 && s.elements - s.steady <= kMaxMoved * s.elements});
   const double median_s = quantile(delays, 0.5);
   if (std::isfinite(most_delay_s))
     out.push_back({fmt::format("median time to the first announcement {} s, {:.2f} s at most",

@@ -144,13 +144,13 @@ TEST(Changes, FindAPlainLossAndItsSize) {
 
 /// Nothing is interrupted, nothing is noisy, the design is right: values are right.
 TEST(Interruptions, HaveExactValuesWhereNothingIsWrong) {
-  constexpr double kMostError = 1e-3;  // of the sampled motion, without noise
+  constexpr double kMaxError = 1e-3;  // of the sampled motion, without noise
   const InterruptionResult r = run_interruption({0, false, Interruption::none, 0, kSeed, 1e-6});
   for (const std::size_t window : {0U, 1U}) {
     EXPECT_LE(r.first[window].all_s, 0.2);  // 1-s windows are 0.2 s apart
     for (std::size_t t = 0; t < kErrorAt_s.size(); ++t) {
       ASSERT_EQ(r.error[window][t][stiffnesses].size(), 3U);
-      for (const double e : r.error[window][t][stiffnesses]) EXPECT_LT(e, kMostError);
+      for (const double e : r.error[window][t][stiffnesses]) EXPECT_LT(e, kMaxError);
     }
   }
 }

@@ -21,7 +21,7 @@ constexpr double kRate_hz = 100;
 constexpr double kDesignOff = 0.3;
 constexpr double kBuildUp_s = 0.2;               // the motion is strong at once
 constexpr double kEarliest_s = 8, kOver_s = 10;  // of strong motion before the instant
-constexpr double kLeastRest_s = 3, kMostRest_s = 5;
+constexpr double kMinRest_s = 3, kMaxRest_s = 5;
 constexpr double kWatched_s = 10.05;     // after the instant
 constexpr int kAway = 5;                 // seconds that a channel is away when it comes and goes
 constexpr int kEvery = 10;               // hops between values that are counted
@@ -52,7 +52,7 @@ Record make_record(const InterruptionCase& of, estimator::PipelineConfig& config
   Record out;
   estimator::Random random(of.seed, 11);
   const double start_s = kEarliest_s + kOver_s * random.uniform();
-  const double rest = kLeastRest_s + (kMostRest_s - kLeastRest_s) * random.uniform();
+  const double rest = kMinRest_s + (kMaxRest_s - kMinRest_s) * random.uniform();
   const int axis = static_cast<int>(random.uniform() * static_cast<double>(config.axes.size()));
   const bool at_rest = of.kind == Interruption::starts_at_rest;
   const double rest_s = at_rest ? std::round(rest * kRate_hz) / kRate_hz : 0;

@@ -12,7 +12,7 @@
 namespace framewatch::earthquake {
 namespace {
 
-constexpr double kLatest_s = 1.2, kLeastCoverage = 0.90, kMostCoverage = 0.99;
+constexpr double kLatest_s = 1.2, kMinCoverage = 0.90, kMaxCoverage = 0.99;
 constexpr double kAsOften = 0.05;  // share of cases or of time that an interruption may cost
 
 using Chosen = std::function<bool(const InterruptionCase&)>;
@@ -271,7 +271,7 @@ std::vector<Demand> interruption_demands(const std::vector<InterruptionCase>& ca
   const auto add = [&](const std::string& what, const Coverage& c) {
     if (c.count() == 0) return;
     out.push_back({fmt::format("{}: {} of {:.0f} values", what, with_error(c), c.count()),
-                   c.ratio() >= kLeastCoverage && c.ratio() <= kMostCoverage});
+                   c.ratio() >= kMinCoverage && c.ratio() <= kMaxCoverage});
   };
   for (int w = 0; w < kWindowLengths; ++w)
     for (int b = 1; b < static_cast<int>(kUntil_s.size()); ++b)

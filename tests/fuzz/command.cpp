@@ -2,8 +2,8 @@
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/session_command_t.hpp>
 
-#include "daemon/service/command_packet.h"
-#include "drivers/base/encoded.h"
+#include "daemon/monitor/service/command_packet.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/fuzz/targets.h"
 

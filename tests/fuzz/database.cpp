@@ -3,9 +3,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "daemon/history/history_command.h"
-#include "daemon/history/history_files.h"
-#include "daemon/history/summary_store.h"
+#include "daemon/monitor/history/history_command.h"
+#include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/summary_store.h"
 #include "tests/drivers/lcm/example_messages.h"
 #include "tests/fuzz/scratch.h"
 #include "tests/fuzz/targets.h"

@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <string_view>
 
-#include "daemon/metrics/metrics.h"
-#include "daemon/report/session_file.h"
-#include "daemon/web/view/live_view.h"
-#include "daemon/web/web_server.h"
-#include "daemon/web/web_socket.h"
+#include "daemon/page/metrics/metrics.h"
+#include "daemon/page/view/live_view.h"
+#include "daemon/page/web/web_server.h"
+#include "daemon/page/web/web_socket.h"
+#include "daemon/tools/report/session_file.h"
 #include "tests/fuzz/example_building.h"
 #include "tests/fuzz/message_sequence.h"
 #include "tests/fuzz/scratch.h"

@@ -1,9 +1,9 @@
 // An LCM event log, plain or compressed: whoever reads one.
 #include <cstdint>
 
-#include "daemon/estimates/session_estimates.h"
-#include "daemon/history/raw_history_reader.h"
-#include "daemon/replay/log_survey.h"
+#include "daemon/monitor/estimates/session_estimates.h"
+#include "daemon/monitor/history/raw_history_reader.h"
+#include "daemon/tools/replay/log_survey.h"
 #include "drivers/lcm/accel_log.h"
 #include "drivers/lcm/lcm_log.h"
 #include "tests/fuzz/message_sequence.h"

@@ -5,7 +5,7 @@
 
 #include <framewatch/message_layouts.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/message_types.h"
 #include "tests/drivers/lcm/example_messages.h"
 

@@ -3,10 +3,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/events/event_json.h"
-#include "daemon/history/history_overview.h"
-#include "daemon/web/view/page_json.h"
-#include "drivers/base/encoded.h"
+#include "daemon/monitor/events/event_json.h"
+#include "daemon/monitor/history/history_overview.h"
+#include "daemon/page/view/page_json.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/channel_table.h"
 #include "drivers/lcm/message_check.h"

@@ -32,8 +32,8 @@ void receive(Bytes input) {
     require_sound(*packet);
     if (packet->parts == 1) continue;
     const auto outcome = assembly.add(sender, *packet, channel, payload);
-    require(assembly.bytes() <= FragmentAssembly::kMostBytes, "memory that is bounded");
-    require(assembly.senders() <= FragmentAssembly::kMostSenders, "few senders");
+    require(assembly.bytes() <= FragmentAssembly::kMaxBytes, "memory that is bounded");
+    require(assembly.senders() <= FragmentAssembly::kMaxSenders, "few senders");
     if (outcome != FragmentAssembly::Outcome::whole) continue;
     require(channel == kWantedChannel && payload.size() == packet->message_bytes,
             "the message that was announced");

@@ -1,8 +1,8 @@
 // Messages one after the other, as `framewatch serve` hears them: the page and the metrics.
 #include <array>
 
-#include "daemon/metrics/metrics.h"
-#include "daemon/web/view/live_view.h"
+#include "daemon/page/metrics/metrics.h"
+#include "daemon/page/view/live_view.h"
 #include "tests/fuzz/example_building.h"
 #include "tests/fuzz/message_sequence.h"
 #include "tests/fuzz/targets.h"

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <set>
 
-#include "daemon/init/column_places.h"
+#include "daemon/tools/init/column_places.h"
 #include "drivers/formats/record_file.h"
 #include "tests/fuzz/scratch.h"
 #include "tests/fuzz/targets.h"

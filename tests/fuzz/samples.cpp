@@ -2,8 +2,8 @@
 // own messages must be good ones.
 #include <cmath>
 
-#include "daemon/estimation/estimation.h"
-#include "drivers/base/encoded.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/message_types.h"
 #include "tests/fuzz/example_building.h"
@@ -17,7 +17,7 @@ namespace {
 const std::vector<std::string> kSampleChannels{"ACCEL", "ACCEL_CHANNELS", "TEMPERATURE", "COUNTS",
                                                "OTHER"};
 
-constexpr int kMostInstants = 128;  ///< before and after the messages; a window has 50
+constexpr int kMaxInstants = 128;  ///< before and after the messages; a window has 50
 
 void estimate_messages(Bytes input) {
   Pieces pieces(input);
@@ -29,8 +29,8 @@ void estimate_messages(Bytes input) {
                 "a message of the channel's type");
       });
   ShakenNodes nodes;
-  const int before = pieces.take<std::uint8_t>() % kMostInstants;
-  const int after = pieces.take<std::uint8_t>() % kMostInstants;
+  const int before = pieces.take<std::uint8_t>() % kMaxInstants;
+  const int after = pieces.take<std::uint8_t>() % kMaxInstants;
   nodes.shake(before, [&](const auto& bytes) {
     (void)estimation.message("ACCEL", bytes.data(), bytes.size());
   });
@@ -45,7 +45,7 @@ void estimate_messages(Bytes input) {
 
 std::vector<std::string> sample_seeds() {
   std::vector<std::string> out;
-  for (const int shaken : {0, 30, kMostInstants - 1}) {
+  for (const int shaken : {0, 30, kMaxInstants - 1}) {
     PiecesWriter seed;
     seed.put(static_cast<std::uint8_t>(shaken)).put(static_cast<std::uint8_t>(shaken));
     const std::string messages = message_sequence(kSampleChannels, example_messages());

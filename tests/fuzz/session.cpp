@@ -1,5 +1,5 @@
 // session.json of a recorded session, as page and report read it.
-#include "daemon/report/session_file.h"
+#include "daemon/tools/report/session_file.h"
 #include "tests/fuzz/targets.h"
 
 namespace framewatch::test {

@@ -2,7 +2,7 @@
 // estimation goes on with it.
 #include <optional>
 
-#include "daemon/estimation/state_file.h"
+#include "daemon/monitor/estimation/state_file.h"
 #include "tests/fuzz/example_building.h"
 #include "tests/fuzz/shaken.h"
 #include "tests/fuzz/targets.h"

@@ -1,8 +1,8 @@
 // TOML files: configuration, scenario, expectation, baseline.
 #include "daemon/config/baseline_file.h"
 #include "daemon/config/gap_model.h"
-#include "daemon/replay/expectation.h"
-#include "daemon/simulation/scenario.h"
+#include "daemon/tools/replay/expectation.h"
+#include "daemon/tools/simulation/scenario.h"
 #include "estimator/structure/parameter_table.h"
 #include "tests/fuzz/example_building.h"
 #include "tests/fuzz/targets.h"

@@ -20,7 +20,7 @@ exit: 0 all holds, 1 something does not, 2 usage
 )";
 
 // Limits.
-constexpr double kMostGrowth_bytes = 1 << 20;
+constexpr double kMaxGrowth_bytes = 1 << 20;
 constexpr double kSumError = 1e-9;
 constexpr int kWindowsPerStep = 10;  // lost when the clock steps
 constexpr int kTwice = 2;
@@ -36,7 +36,7 @@ int judge(const SoakOptions& o, const SoakResult& r) {
   const double allowed = kTwice * o.alarms_per_year * o.days / kDaysPerYear;
   fmt::print("{} instants, {} samples, {:.0f} times real time\n", r.instants, r.samples,
              static_cast<double>(r.instants) / 100 / r.wall_s);
-  line(growth <= kMostGrowth_bytes,
+  line(growth <= kMaxGrowth_bytes,
        fmt::format("resident: {:.1f} MiB, {:+.2f} MiB at most after the first fifth",
                    r.resident.empty() ? 0 : static_cast<double>(r.resident.front()) / (1 << 20),
                    growth / (1 << 20)));

@@ -21,11 +21,11 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/process_usage.h"
-#include "daemon/estimation/estimation.h"
-#include "daemon/history/history.h"
-#include "daemon/history/history_files.h"
-#include "daemon/history/summary_query.h"
-#include "drivers/base/encoded.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "daemon/monitor/history/history.h"
+#include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/summary_query.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/support/history_fixture.h"
@@ -48,7 +48,7 @@ constexpr std::int64_t kTemperature = 100 * 120;
 // followed, and what the new log's queue has held is still little.
 constexpr std::int64_t kSettled = 30 * 100;
 constexpr std::chrono::minutes kPatience{1};
-constexpr std::int64_t kMostQueued = 1 << 20;
+constexpr std::int64_t kMaxQueued = 1 << 20;
 constexpr int kReadings = 10;
 constexpr std::chrono::milliseconds kBetweenReadings{100};
 
@@ -156,7 +156,7 @@ void Soak::step(std::int64_t i) {
   if (i % kTick == 0) {
     history_->tick(daemon::steady_clock_us());
     // At the pace of a building no disk is this far behind.
-    (void)test::comes_true([&] { return history_->status().raw_queue_bytes < kMostQueued; },
+    (void)test::comes_true([&] { return history_->status().raw_queue_bytes < kMaxQueued; },
                            kPatience);
   }
   look_at_memory(instant.time_us);

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kMinutes = 10;
 constexpr double kSumError = 1e-9;
-constexpr std::int64_t kMostGrowth_bytes = 3 << 20;  // SQLite's cache fills for longer
-constexpr std::int64_t kWindowsPerStep = 10;         // lost when the clock steps
-constexpr std::int64_t kRepeatedPerStep = 3;         // and told twice
+constexpr std::int64_t kMaxGrowth_bytes = 3 << 20;  // SQLite's cache fills for longer
+constexpr std::int64_t kWindowsPerStep = 10;        // lost when the clock steps
+constexpr std::int64_t kRepeatedPerStep = 3;        // and told twice
 
 TEST(Soak, LosesNothingAndRaisesNothing) {
   const test::TemporaryDirectory directory;
@@ -42,7 +42,7 @@ TEST(Soak, LosesNothingAndRaisesNothing) {
   EXPECT_EQ(r.alarms, 0);
   ASSERT_GE(r.resident.size(), 8u);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  EXPECT_LE(r.growth(), kMostGrowth_bytes);
+  EXPECT_LE(r.growth(), kMaxGrowth_bytes);
 #endif
   std::printf("resident:");
   for (const std::int64_t bytes : r.resident)

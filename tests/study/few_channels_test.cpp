@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "daemon/lab/few_sensors.h"
+#include "daemon/tools/lab/few_sensors.h"
 #include "estimator/diagnose/fit/diagnosis_input.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "drivers/base/text_output.h"
+#include "drivers/files/text_output.h"
 #include "tests/study/study_building.h"
 
 namespace framewatch::study {

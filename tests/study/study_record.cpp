@@ -9,9 +9,9 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/simulation/effect_json.h"
-#include "daemon/simulation/simulation_truth.h"
-#include "drivers/base/text_output.h"
+#include "daemon/tools/simulation/effect_json.h"
+#include "daemon/tools/simulation/simulation_truth.h"
+#include "drivers/files/text_output.h"
 #include "drivers/records/record_csv_writer.h"
 #include "estimator/simulate/channel_effects.h"
 #include "estimator/simulate/nonlinear_building.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/diagnosis/diagnose_command.h"
+#include "daemon/tools/diagnosis/diagnose_command.h"
 #include "tests/study/study_case.h"
 #include "tests/study/study_score.h"
 #include "tests/support/temporary.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/history/raw_history_reader.h"
+#include "daemon/monitor/history/raw_history_reader.h"
 
 namespace framewatch::test {
 

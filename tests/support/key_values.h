@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/keys/option_table.h"
+#include "daemon/config/keys/option_table.h"
 
 namespace framewatch::test {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "daemon/lab/accuracy_trial.h"
+#include "daemon/tools/lab/accuracy_trial.h"
 
 namespace framewatch::test {
 

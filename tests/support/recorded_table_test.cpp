@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "daemon/simulation/scenario.h"
-#include "daemon/simulation/simulation_output.h"
+#include "daemon/tools/simulation/scenario.h"
+#include "daemon/tools/simulation/simulation_output.h"
 
 namespace framewatch::test {
 

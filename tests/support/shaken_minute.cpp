@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "daemon/lab/accuracy_trial.h"
-#include "daemon/lab/paper_buildings.h"
+#include "daemon/tools/lab/accuracy_trial.h"
+#include "daemon/tools/lab/paper_buildings.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/sensor_model.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "daemon/lab/few_sensors.h"
+#include "daemon/tools/lab/few_sensors.h"
 
 namespace framewatch::test {
 namespace {

@@ -12,7 +12,7 @@
 
 namespace framewatch::test {
 
-/// The 20-story building of daemon/lab/few_sensors.h with sensors on every fifth floor, whose
+/// The 20-story building of daemon/tools/lab/few_sensors.h with sensors on every fifth floor, whose
 /// stories soften while they move and recover: k = k0 (1 - softening A / (A + usual)), A each
 /// story's running rms drift, which rises within kRise_s and falls within kFall_s. Central
 /// differences at 1 ms, another scheme than the estimator's and the linear simulation's. Groups of

@@ -1,7 +1,7 @@
 #include <algorithm>
 
+#include "daemon/config/keys/section.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section.h"
 
 namespace framewatch::daemon {
 namespace {

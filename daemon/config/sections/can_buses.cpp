@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/file_digest.h"
-#include "drivers/base/standard_streams.h"
+#include "drivers/files/standard_streams.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "daemon/config/keys/section.h"
 #include "daemon/config/sections/settings.h"
-#include "daemon/keys/section.h"
 #include "drivers/dbc/dbc.h"
 
 namespace framewatch::daemon {

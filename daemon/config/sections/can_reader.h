@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/config/keys/can_options.h"
 #include "daemon/config/sections/can_signals.h"
-#include "daemon/keys/can_options.h"
 
 namespace framewatch::daemon {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/keys/suggest.h"
+#include "daemon/config/keys/suggest.h"
 
 namespace framewatch::daemon {
 

@@ -8,10 +8,10 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config/keys/section.h"
+#include "daemon/config/keys/suggest.h"
+#include "daemon/config/keys/target.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section.h"
-#include "daemon/keys/suggest.h"
-#include "daemon/keys/target.h"
 #include "estimator/identify/groups/floor_coordinates.h"
 #include "estimator/structure/story_groups.h"
 

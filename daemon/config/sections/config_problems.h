@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/documents/toml_document.h"
+#include "daemon/base/toml_document.h"
 
 namespace framewatch::daemon {
 

@@ -3,8 +3,8 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config/keys/section.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "estimator/structure/parameter_table.h"
 

@@ -7,8 +7,8 @@
 
 #include <fmt/core.h>
 
-#include "daemon/keys/section.h"
-#include "daemon/keys/suggest.h"
+#include "daemon/config/keys/section.h"
+#include "daemon/config/keys/suggest.h"
 #include "estimator/structure/place_names.h"
 
 namespace framewatch::daemon {

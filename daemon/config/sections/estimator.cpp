@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
+#include "daemon/config/keys/section.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -21,10 +21,10 @@ estimator::EstimatorOptions read_estimator(const TomlValue& document,
   if (section.good("rate_hz") && section.good("high_pass_hz") && o.high_pass_hz >= o.rate_hz / 2)
     section.problem("high_pass_hz",
                     fmt::format("must be below half the sampling rate, {:g} Hz", o.rate_hz / 2));
-  constexpr double kLeastRows = 40;
-  if (section.good("rate_hz") && section.good("window_s") && o.window_s * o.rate_hz < kLeastRows)
+  constexpr double kMinRows = 40;
+  if (section.good("rate_hz") && section.good("window_s") && o.window_s * o.rate_hz < kMinRows)
     section.problem("window_s", fmt::format("must hold at least {:g} samples: >= {:g} s at {:g} Hz",
-                                            kLeastRows, kLeastRows / o.rate_hz, o.rate_hz));
+                                            kMinRows, kMinRows / o.rate_hz, o.rate_hz));
   if (section.good("window_s") && section.good("other_windows_s"))
     for (const double other_s : o.other_windows_s)
       if (other_s > kLongestOther * o.window_s)

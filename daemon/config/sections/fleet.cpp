@@ -4,14 +4,14 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config/keys/section.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/number_text.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kLongestBuilding = 32, kMostHubs = 16;
+constexpr std::size_t kLongestBuilding = 32, kMaxHubs = 16;
 constexpr std::array<std::string_view, 4> kCommands{"acknowledge", "raw", "resend", "minutes"};
 constexpr std::string_view kScheme = "tls://";
 
@@ -46,8 +46,8 @@ std::optional<FleetSettings> read_fleet(const TomlValue& document, bool has_hist
   if (section.given("building") && !is_building(out.building))
     section.problem("building", "must be 1 to 32 of a-z, 0-9 and -, and not all");
   if (section.given("hubs")) {
-    if (out.hubs.empty() || out.hubs.size() > kMostHubs)
-      section.problem("hubs", fmt::format("must be 1 to {} servers", kMostHubs));
+    if (out.hubs.empty() || out.hubs.size() > kMaxHubs)
+      section.problem("hubs", fmt::format("must be 1 to {} servers", kMaxHubs));
     for (const std::string& url : out.hubs)
       if (!is_hub(url)) section.problem("hubs", fmt::format("'{}' is not tls://HOST:PORT", url));
   }

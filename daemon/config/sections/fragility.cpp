@@ -5,9 +5,9 @@
 
 #include <fmt/core.h>
 
+#include "daemon/config/keys/section.h"
 #include "daemon/config/sections/hazus_limits.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section.h"
 
 namespace framewatch::daemon {
 namespace {

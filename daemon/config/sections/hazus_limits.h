@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "daemon/keys/event_report_options.h"
+#include "daemon/config/keys/event_report_options.h"
 
 namespace framewatch::daemon {
 

@@ -1,17 +1,17 @@
 #include <cmath>
 
+#include "daemon/config/keys/section.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr double kLongestFirst_s = 60;
-constexpr std::size_t kMostPeriods = 6;
+constexpr std::size_t kMaxPeriods = 6;
 
 /// Rule that the periods break; empty when they are good.
 std::string problem_of(const std::vector<double>& periods_s) {
-  if (periods_s.empty() || periods_s.size() > kMostPeriods) return "must be 1 to 6 periods";
+  if (periods_s.empty() || periods_s.size() > kMaxPeriods) return "must be 1 to 6 periods";
   if (periods_s.front() > kLongestFirst_s) return "must begin with at most 60 s";
   for (std::size_t i = 0; i < periods_s.size(); ++i) {
     if (periods_s[i] != std::floor(periods_s[i])) return "must be whole seconds";

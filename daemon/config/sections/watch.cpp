@@ -1,5 +1,5 @@
+#include "daemon/config/keys/section.h"
 #include "daemon/config/sections/sections.h"
-#include "daemon/keys/section.h"
 
 namespace framewatch::daemon {
 

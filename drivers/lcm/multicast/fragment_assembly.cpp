@@ -37,7 +37,7 @@ FragmentAssembly::Entry FragmentAssembly::entry_of(const LcmSender& sender,
     }
     give_up(entry);
   }
-  if (messages_.size() == kMostSenders) give_up(messages_.begin());
+  if (messages_.size() == kMaxSenders) give_up(messages_.begin());
   messages_.emplace_back();
   const Entry entry = std::prev(messages_.end());
   entry->sender = sender;
@@ -88,7 +88,7 @@ FragmentAssembly::Outcome FragmentAssembly::finish(Entry entry, std::string& cha
 FragmentAssembly::Outcome FragmentAssembly::add(const LcmSender& sender, const LcmPacket& packet,
                                                 std::string& channel,
                                                 std::vector<std::uint8_t>& payload) {
-  if (packet.message_bytes > kMostMessageBytes) return Outcome::refused;
+  if (packet.message_bytes > kMaxMessageBytes) return Outcome::refused;
   const Entry entry = entry_of(sender, packet);
   if (entry->kept.contains(packet.part)) return Outcome::refused;
   if (packet.part == 0 && !entry->unwanted) {
@@ -101,7 +101,7 @@ FragmentAssembly::Outcome FragmentAssembly::add(const LcmSender& sender, const L
   }
   if (++entry->parts_came == entry->parts) return finish(entry, channel, payload);
   const bool unwanted = entry->unwanted;
-  while (bytes_ > kMostBytes) give_up(messages_.begin());
+  while (bytes_ > kMaxBytes) give_up(messages_.begin());
   return unwanted ? Outcome::unwanted : Outcome::waits;
 }
 

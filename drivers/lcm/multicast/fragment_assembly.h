@@ -20,9 +20,9 @@ namespace framewatch::drivers {
 /// size that a packet claims.
 class FragmentAssembly {
  public:
-  static constexpr std::size_t kMostMessageBytes = std::size_t{16} << 20;
-  static constexpr std::size_t kMostBytes = std::size_t{64} << 20;  ///< of all senders
-  static constexpr std::size_t kMostSenders = 256;
+  static constexpr std::size_t kMaxMessageBytes = std::size_t{16} << 20;
+  static constexpr std::size_t kMaxBytes = std::size_t{64} << 20;  ///< of all senders
+  static constexpr std::size_t kMaxSenders = 256;
 
   /// What a part did.
   enum class Outcome { waits, whole, unwanted, refused };

@@ -17,7 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr int kPoll_ms = 1000, kAfterFailure_ms = 100;
 constexpr std::chrono::seconds kJoinAgain{5};
-constexpr std::size_t kMostSpare = 64, kMostSpareBytes = 65536;
+constexpr std::size_t kMaxSpare = 64, kMaxSpareBytes = 65536;
 
 void signal(int event) {
   const std::uint64_t one = 1;
@@ -101,7 +101,7 @@ void LcmReceiver::queue(std::string_view channel, std::span<const std::uint8_t> 
   const std::lock_guard<std::mutex> lock(mutex_);
   const auto queued = queued_.find(channel);
   if (queued == queued_.end()) return;
-  if (queued->second == capacity_ || queued_bytes_ + payload.size() > kMostQueuedBytes) {
+  if (queued->second == capacity_ || queued_bytes_ + payload.size() > kMaxQueuedBytes) {
     ++counters_.queue_full;
     return;
   }
@@ -123,7 +123,7 @@ void LcmReceiver::queue(std::string_view channel, std::span<const std::uint8_t> 
 bool LcmReceiver::take(ReceivedMessage& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (queue_.empty()) return false;
-  if (spare_.size() < kMostSpare && message.payload.capacity() <= kMostSpareBytes)
+  if (spare_.size() < kMaxSpare && message.payload.capacity() <= kMaxSpareBytes)
     spare_.push_back(std::move(message));
   message = std::move(queue_.front());
   queue_.pop_front();

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 #include "drivers/lcm/multicast/fragment_assembly.h"
 #include "drivers/lcm/multicast/multicast_socket.h"
 
@@ -58,7 +58,7 @@ class LcmReceiver {
   void fail() { failed_ = true; }
 
  private:
-  static constexpr std::size_t kMostQueuedBytes = std::size_t{128} << 20;
+  static constexpr std::size_t kMaxQueuedBytes = std::size_t{128} << 20;
 
   void work();
   void datagram(const Datagram& datagram);

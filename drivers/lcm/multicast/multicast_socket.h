@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 #include "drivers/lcm/multicast/lcm_sender.h"
 #include "drivers/lcm/multicast/own_addresses.h"
 

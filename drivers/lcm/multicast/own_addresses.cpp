@@ -9,20 +9,20 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 
 namespace framewatch::drivers {
 namespace {
 
 constexpr std::int64_t kReadAgain_us = 1'000'000;
 constexpr std::uint32_t kLoopback = 127;  // 127.0.0.0/8
-constexpr std::size_t kMostAddresses = 256;
+constexpr std::size_t kMaxAddresses = 256;
 
 }  // namespace
 
 /// By ioctl: getifaddrs needs a netlink socket, which the service may not open.
 void OwnAddresses::read() {
-  std::array<ifreq, kMostAddresses> all{};
+  std::array<ifreq, kMaxAddresses> all{};
   ifconf request{};
   request.ifc_len = static_cast<int>(sizeof all);
   request.ifc_req = all.data();

@@ -27,11 +27,11 @@ constexpr double kForceTail = 5e-4;  ///< of a measured force's power, below its
 constexpr double kHighest = 0.4;     ///< of the sampling rate
 /// Bins times equations^1.5, about the work of a fit: the band of a large building ends where it
 /// has so many, but includes the lowest modes.
-constexpr double kMostWork = 4e5;
+constexpr double kMaxWork = 4e5;
 constexpr double kLowestModes = 5;  ///< times the lowest natural frequency
 constexpr int kDesignFits = 2;      ///< of a building that has no design
-constexpr double kLeastOfGuess = 0.01;
-constexpr double kLeastSignal = 5;  ///< rms of a floor's motion in the band over its noise
+constexpr double kMinOfGuess = 0.01;
+constexpr double kMinSignal = 5;  ///< rms of a floor's motion in the band over its noise
 constexpr double kSlowLow = 0.1, kSlowHigh = 0.5;  ///< of the lowest natural frequency
 constexpr double kApart = 0.25;                    ///< of the lowest natural period
 constexpr double kAlike = 0.95, kLessAlike = 0.8;  ///< correlation; of that, without the delay
@@ -92,7 +92,7 @@ std::vector<RecordSegment> segments_of(const Structure& structure, const Plant& 
       noise[i] =
           plant.axes[static_cast<std::size_t>(i)].noise_density * std::sqrt(record.rate_hz / 2);
     const double low = (component.any() ? kComponentBandLow : kBandLow) * hz.front();
-    const double bins = kMostWork / std::pow(static_cast<double>(plant.equations()), 1.5);
+    const double bins = kMaxWork / std::pow(static_cast<double>(plant.equations()), 1.5);
     const double seconds = static_cast<double>(record.accel.rows() - record.lead) / record.rate_hz;
     const double most = std::max(low + bins / seconds, kLowestModes * hz.front());
     const double high = plant.unread.cols() > 0 ? highest_read_hz(plant) : kBandHigh * hz.back();
@@ -147,7 +147,7 @@ std::optional<DiagnosisInput> diagnosis_input(const Structure& structure,
     if (theta.size() == 0) break;
     for (int p = 0; p < table.size(); ++p)
       if (const auto at = out->plant.table.find(table[p].name))
-        design[p] = std::max(theta[*at], kLeastOfGuess * design[p]);
+        design[p] = std::max(theta[*at], kMinOfGuess * design[p]);
     out = input_of();
   }
   return out;
@@ -156,7 +156,7 @@ std::optional<DiagnosisInput> diagnosis_input(const Structure& structure,
 SegmentFault fault_of(const Plant& plant, const RecordSegment& segment,
                       const ComponentTest& component) {
   if (segment.bins() < kFewestBins) return SegmentFault::too_short;
-  if (!component.any() && !(signal_ratio(plant, segment) > kLeastSignal))
+  if (!component.any() && !(signal_ratio(plant, segment) > kMinSignal))
     return SegmentFault::no_excitation;
   return SegmentFault::none;
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStiffer[] = {1, 1.6, 2.5, 4}, kNarrower[] = {1, 0.9, 0.8};
 /// Forces of friction that are tried, of the spring's largest.
-constexpr double kLeastForce = 0.02, kNextForce = M_SQRT2;
+constexpr double kMinForce = 0.02, kNextForce = M_SQRT2;
 constexpr std::size_t kForces = 14, kStarts = 2;
 constexpr double kSticks = 3e-3;  ///< of the largest rate: below it friction holds
 constexpr double kSmoother = 3;
@@ -88,7 +88,7 @@ std::vector<FitResult> friction_starts(const Fitter& fitter, const Model& from) 
     model.theta[i] = factor * plant.design[i];
   friction.parameters[FrictionIndex::v0].value = std::log(kSticks * friction.rate);
   friction.parameters[FrictionIndex::fc].value =
-      kLeastForce * model.theta[element] * friction.deformation;
+      kMinForce * model.theta[element] * friction.deformation;
   std::vector<FitResult> tried;
   for (std::size_t i = 0; i < kForces; ++i) {
     tried.push_back(as_it_runs(fitter, model, {}));

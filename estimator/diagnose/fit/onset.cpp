@@ -9,7 +9,7 @@ namespace {
 constexpr double kFirstStep = 0.01;  ///< of the record
 constexpr int kOnsetSteps = 1;       ///< of a fit that tells whether an onset is better
 constexpr int kSettlingSteps = 4;    ///< when the onsets are known
-constexpr double kLeastGain = 1;     ///< of the misfit
+constexpr double kMinGain = 1;       ///< of the misfit
 
 /// Replaces the fit by one with another onset if that is better; whether it was.
 bool moved(const Fitter& fitter, std::size_t record, double onset_s, FitResult& fit) {
@@ -21,7 +21,7 @@ bool moved(const Fitter& fitter, std::size_t record, double onset_s, FitResult& 
   if (onset == std::max(0.0, onset_s)) return false;
   onset = std::max(0.0, onset_s);
   FitResult other = fitter.fit(model, fit.motion, options);
-  if (!other.good || other.cost > fit.cost - kLeastGain) return false;
+  if (!other.good || other.cost > fit.cost - kMinGain) return false;
   fit = std::move(other);
   return true;
 }

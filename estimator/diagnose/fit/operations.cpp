@@ -19,9 +19,9 @@ Operations::Operations(const MatrixXd& mass, const MatrixXd& stiffness, const Ma
       damping_(damping),
       additions_(std::move(additions)),
       w_(std::move(w)) {
-  constexpr Index kMostKept = 1'000'000;  // numbers
+  constexpr Index kMaxKept = 1'000'000;  // numbers
   const Index bins = w_.size();
-  if (mass_.size() * bins > kMostKept) return;
+  if (mass_.size() * bins > kMaxKept) return;
   for (Index b = 0; b < bins; ++b) kept_.push_back(made(b));
 }
 

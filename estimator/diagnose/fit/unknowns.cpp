@@ -9,10 +9,10 @@ namespace {
 using Kind = Unknown::Kind;
 
 constexpr double kTightK = 0.6, kTightG = 1.0, kTightC = 3.0;  ///< weak priors, relative
-constexpr double kMostSigmas = 4;  ///< of masses, gains and clocks from their declared values
+constexpr double kMaxSigmas = 4;  ///< of masses, gains and clocks from their declared values
 /// Of the design's stiffness or damping. Structures dissipate; and a mode that neither dissipates
 /// nor is driven from the base would have no noise in its equation.
-constexpr double kLeast = 0.02;
+constexpr double kMin = 0.02;
 constexpr double kLooseGain = 0.05, kLooseClock_s = 1e-3;  ///< units
 constexpr double kAny = std::numeric_limits<double>::infinity();
 
@@ -27,7 +27,7 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
       const auto scale = [&](int element) { return plant.design[first + element]; };
       const int at = group.elements.front();
       out.push_back({Kind::theta, first + at, 0, 0, scale(at), first == 0 ? kTightK : kTightC, 1.0,
-                     kLeast, kAny});
+                     kMin, kAny});
       for (std::size_t i = 1; i < group.elements.size(); ++i)
         out.back().tied.emplace_back(first + group.elements[i], scale(group.elements[i]));
     }
@@ -36,11 +36,11 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
     if (panel && plant.stiff_floors) continue;
     const double sigma = (p < elements ? (panel ? kTightG : kTightK) : kTightC);
     const double scale = plant.design[p];
-    out.push_back({Kind::theta, p, 0, 0, scale, sigma, 1.0, kLeast, kAny});
+    out.push_back({Kind::theta, p, 0, 0, scale, sigma, 1.0, kMin, kAny});
   }
   if (tolerances.mass > 0)
     for (int i = 0; i < static_cast<int>(plant.equations()); ++i)
-      out.push_back({Kind::mass, i, 0, 0, tolerances.mass, 1.0, 0.0, -kMostSigmas, kMostSigmas});
+      out.push_back({Kind::mass, i, 0, 0, tolerances.mass, 1.0, 0.0, -kMaxSigmas, kMaxSigmas});
   const auto freed = [](const std::vector<int>& list, int axis) {
     for (const int i : list)
       if (i == axis) return true;
@@ -49,8 +49,8 @@ std::vector<Unknown> unknowns_of(const Plant& plant, const Model& model,
   // An axis error that is an effect has neither prior nor bounds.
   const auto add_axis = [&](Kind kind, int axis, bool loose, double scale, double centre) {
     out.push_back(loose ? Unknown{kind, axis, 0, 0, scale, 0.0, centre, -kAny, kAny}
-                        : Unknown{kind, axis, 0, 0, scale, 1.0, centre, centre - kMostSigmas,
-                                  centre + kMostSigmas});
+                        : Unknown{kind, axis, 0, 0, scale, 1.0, centre, centre - kMaxSigmas,
+                                  centre + kMaxSigmas});
   };
   for (int a = 0; a < static_cast<int>(plant.axis_count()); ++a) {
     const bool loose = freed(model.free_gain, a);

@@ -12,7 +12,7 @@ using S = SliderIndex;
 constexpr double kSharp = 20;          ///< exponent above which hysteresis is computed as bilinear
 constexpr double kLongestSlide = 0.1;  ///< of z per integration step, in units of dy
 constexpr double kYielded = 1e-12;  ///< change of z below which the rest of a step changes nothing
-constexpr double kMostSlides = 5000;
+constexpr double kMaxSlides = 5000;
 /// Share of the first slope from which a law that yields comes to its end as a linear one does, and
 /// from which longer steps do.
 constexpr double kNearlyYielded = 1e-3, kYields = 0.1;
@@ -129,7 +129,7 @@ double HystereticStep::end(const LawValues& values, double d_now) {
     return std::clamp(z_ + travel, -most, most);
   const Slope slope(values, shape_);
   const double direction = travel > 0 ? 1.0 : -1.0;
-  const double longest = std::max(kLongestSlide, std::abs(travel) / kMostSlides);
+  const double longest = std::max(kLongestSlide, std::abs(travel) / kMaxSlides);
   double z = z_, at = d_ / dy;
   Begin& first = travel > 0 ? up_ : down_;
   if (!first.known) {
@@ -190,7 +190,7 @@ void turn(std::vector<double>& memory, double z, double d, double d_now) {
 double asymptotic_z(const LawValues& values, const std::vector<double>& memory, double z, double d,
                     double d_now) {
   using A = AsymptoteIndex;
-  constexpr double kHalf = 0.15, kLeastSharpness = 0.3, kNoWay = 1e-9;
+  constexpr double kHalf = 0.15, kMinSharpness = 0.3, kNoWay = 1e-9;
   std::vector<double> now = memory;
   turn(now, z, d, d_now);
   const double direction = now[kDirection], dy = values.p[A::dy];
@@ -199,9 +199,8 @@ double asymptotic_z(const LawValues& values, const std::vector<double>& memory, 
   const double corner = now[kReversal_m] + way * dy;
   const double beyond =
       std::abs((direction > 0 ? now[kLargest_m] : now[kSmallest_m]) - corner) / dy;
-  const double sharpness =
-      std::max(values.p[A::sharpness] * (1 - values.p[A::loss] * beyond / (kHalf + beyond)),
-               kLeastSharpness);
+  const double sharpness = std::max(
+      values.p[A::sharpness] * (1 - values.p[A::loss] * beyond / (kHalf + beyond)), kMinSharpness);
   const double x = std::max((d_now - now[kReversal_m]) / (way * dy), 0.0);
   const double bent = x > 1 ? 1 / std::pow(1 + std::pow(1 / x, sharpness), 1 / sharpness)
                             : x / std::pow(1 + std::pow(x, sharpness), 1 / sharpness);

@@ -19,7 +19,7 @@ constexpr int kTimesBeside = 3, kStepsBeside = 6, kTimesCells = 10;
 constexpr double kSameCorner = 0.15;  ///< relative difference
 constexpr double kNoiseBeside = 2;    ///< spread_of() of noise
 constexpr double kOutlier = 3;        ///< standard deviations of a cell of noise
-constexpr double kMostCells = 0.6;    ///< that are noise at least
+constexpr double kMaxCells = 0.6;     ///< that are noise at least
 
 /// What is left beside arbitrary signals at a place.
 std::vector<NoiseCell> cells_beside(const Fitter& fitter, const Localisation& place) {
@@ -58,7 +58,7 @@ double corner_of_most(std::vector<NoiseCell>& cells) {
     std::vector<double> sorted;
     for (const NoiseCell& c : all) sorted.push_back(excess(c));
     std::sort(sorted.begin(), sorted.end());
-    const auto most = static_cast<std::size_t>(kMostCells * static_cast<double>(sorted.size()));
+    const auto most = static_cast<std::size_t>(kMaxCells * static_cast<double>(sorted.size()));
     const double limit = std::max(kOutlier, sorted[most]);
     cells.clear();
     std::copy_if(all.begin(), all.end(), std::back_inserter(cells),

@@ -22,9 +22,9 @@ bool same_direction(const MatrixXd& a, const MatrixXd& b) {
 
 /// Whether the axes read most of a motion.
 bool is_read(const Plant& plant, const VectorXd& motion) {
-  constexpr double kMost = 0.5;
+  constexpr double kMax = 0.5;
   return plant.unread.cols() == 0 ||
-         (plant.read.transpose() * motion).squaredNorm() > kMost * motion.squaredNorm();
+         (plant.read.transpose() * motion).squaredNorm() > kMax * motion.squaredNorm();
 }
 
 /// Whether an element shares its factors with others: its own force cannot be told from theirs.

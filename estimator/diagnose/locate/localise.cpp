@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 constexpr double kConverged = 1e-3;  ///< change of the misfit, relative
 /// Lists that are processed in one pass over the bins: so many numbers of their squares, but a few.
-constexpr std::size_t kNumbersTogether = 8'000'000, kFewestTogether = 8, kMostTogether = 64;
+constexpr std::size_t kNumbersTogether = 8'000'000, kFewestTogether = 8, kMaxTogether = 64;
 /// Lists of a large building that are looked at closer than by their rough misfits.
 constexpr std::size_t kCloser = 64;
 
@@ -211,7 +211,7 @@ std::vector<Localisation> localise_once(const Fitter& fitter, const Linearised& 
   const auto numbers = static_cast<std::size_t>(squares.empty() ? 1 : squares.front().size());
   const bool large = fitter.plant().is_large();
   const std::size_t at_once =
-      large ? kCloser / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMostTogether);
+      large ? kCloser / 2 : std::clamp(kNumbersTogether / numbers, kFewestTogether, kMaxTogether);
   const std::size_t groups = (chosen.size() + at_once - 1) / at_once;
   run_all(parallel, static_cast<int>(groups), [&](int group) {
     const std::size_t first = static_cast<std::size_t>(group) * at_once;

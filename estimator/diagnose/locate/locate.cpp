@@ -12,16 +12,16 @@ namespace {
 constexpr std::size_t kPlaces = 5;     ///< iterated whatever their kind
 constexpr std::size_t kSingle = 3;     ///< of places of one direction, iterated too
 constexpr std::size_t kOfOneKind = 2;  ///< of places of the building or a floor, iterated too
-constexpr std::size_t kContenders = 3, kMostContenders = 5;
-constexpr std::size_t kMostAsLikely = 16;
+constexpr std::size_t kContenders = 3, kMaxContenders = 5;
+constexpr std::size_t kMaxAsLikely = 16;
 constexpr std::size_t kPairLeaders = 6, kPairs = 3;
 constexpr std::size_t kAxesOfPairs = 24;
-constexpr std::size_t kMostOfPairs = 150;  ///< places of a large building, best first
+constexpr std::size_t kMaxOfPairs = 150;  ///< places of a large building, best first
 constexpr int kSteps = 8, kPairSteps = 6;
-constexpr int kTrialSteps = 3;       ///< before the ratios are compared
-constexpr double kLeastNoise = 0.5;  ///< ratio that noise alone may have
-constexpr double kHardly = 0.5;      ///< of what chance may leave
-constexpr double kWideMargin = 2;    ///< times the margin: places above it then are not iterated on
+constexpr int kTrialSteps = 3;     ///< before the ratios are compared
+constexpr double kMinNoise = 0.5;  ///< ratio that noise alone may have
+constexpr double kHardly = 0.5;    ///< of what chance may leave
+constexpr double kWideMargin = 2;  ///< times the margin: places above it then are not iterated on
 
 void sort_by_ratio(std::vector<Localisation>& list) {
   std::stable_sort(list.begin(), list.end(),
@@ -102,7 +102,7 @@ bool leaves_nothing(const Fitter& fitter, const FitResult& now,
                     const std::vector<Localisation>& once) {
   if (once.empty()) return true;
   const double ratio = now.total_misfit() / fitter.expected(now.model);
-  const double excess = ratio - std::clamp(once.front().ratio, kLeastNoise, 1.0);
+  const double excess = ratio - std::clamp(once.front().ratio, kMinNoise, 1.0);
   return ratio < kNearNoise && excess < kHardly * chance_of(fitter, now.model);
 }
 
@@ -144,7 +144,7 @@ std::vector<Localisation> locate_pairs(const Fitter& fitter, const FitResult& no
                                        const std::vector<Localisation>& once,
                                        const Parallel& parallel) {
   std::vector<CandidatePlace> all = of_one_direction(once);
-  if (fitter.plant().is_large() && all.size() > kMostOfPairs) all.resize(kMostOfPairs);
+  if (fitter.plant().is_large() && all.size() > kMaxOfPairs) all.resize(kMaxOfPairs);
   std::vector<std::vector<CandidatePlace>> lists;
   // Two exchanged axes stand out among the axes, each for itself.
   std::vector<char> leading_axis(all.size(), 0);
@@ -178,7 +178,7 @@ std::vector<Localisation> as_likely(const Fitter& fitter, const FitResult& now,
     const bool seen = std::any_of(
         located.places.begin(), located.places.end(),
         [&](const Localisation& place) { return place.candidate_places.front().place == s.place; });
-    if (l.ratio > most || starts.size() >= kMostAsLikely) break;
+    if (l.ratio > most || starts.size() >= kMaxAsLikely) break;
     if (s.kind != CandidatePlace::Kind::element && !seen) starts.push_back(&l);
   }
   const double limit = located.places.front().ratio + chance;
@@ -206,7 +206,7 @@ std::vector<Localisation> contenders(const std::vector<Localisation>& places) {
     const bool moment = place.candidate_places.front().kind == CandidatePlace::Kind::rocking;
     if (place.ratio > (moment ? wide : limit)) continue;
     const bool another_kind = of_kind[place.candidate_places.front().kind]++ == 0;
-    const bool worth = out.size() < kContenders || (another_kind && out.size() < kMostContenders);
+    const bool worth = out.size() < kContenders || (another_kind && out.size() < kMaxContenders);
     if (worth || moment) out.push_back(place);
   }
   return out;

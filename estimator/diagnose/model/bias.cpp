@@ -16,18 +16,18 @@ using Eigen::VectorXd;
 /// Of the band's lower end in one mean: a Hann taper has its zeros from there on.
 constexpr double kPeriods = 2;
 constexpr Index kHops = 4;  ///< in one mean
-constexpr Index kLeastMeans = 23;
+constexpr Index kMinMeans = 23;
 /// Of the band's lower end in a record: in fewer, slow motion of the building is like a drift,
 /// unless that is large.
-constexpr double kLeastPeriods = 26, kFewPeriods = 6;
+constexpr double kMinPeriods = 26, kFewPeriods = 6;
 constexpr Index kFewMeans = 9;
-constexpr double kLeastShare = 0.02, kLargeShare = 0.04;  ///< of an axis' rms
-constexpr double kBeyondOthers = 5, kFarBeyond = 15;      ///< times the median of all axes
-constexpr double kSignificance = 30;                      ///< F of two parameters
+constexpr double kMinShare = 0.02, kLargeShare = 0.04;  ///< of an axis' rms
+constexpr double kBeyondOthers = 5, kFarBeyond = 15;    ///< times the median of all axes
+constexpr double kSignificance = 30;                    ///< F of two parameters
 constexpr double kOfFew = 3;         ///< the same where few means are far beyond the others'
 constexpr double kOnsetStep = 0.05;  ///< of the segment
 constexpr double kLatestOnset = 0.85;
-constexpr Index kMostCosines = 20;
+constexpr Index kMaxCosines = 20;
 constexpr double kFarBetter = 4;  ///< times less is left by a curve than by a ramp
 
 /// Tapered means over overlapping spans, one column per axis, and the middle of each span, s. The
@@ -105,7 +105,7 @@ void follow(const RecordSegment& s, const Means& means, Index axis, bool few, Fi
   const double seconds = s.seconds();
   const double span_s = kHops * (means.time[1] - means.time[0]);
   const auto apart = static_cast<Index>((few ? 1.5 : 1) * seconds / span_s);
-  const Index count = std::min({kMostCosines, apart, means.time.size() / 2 - 1});
+  const Index count = std::min({kMaxCosines, apart, means.time.size() / 2 - 1});
   if (count < 2) return;
   MatrixXd x = cosines(means.time, seconds, count);
   for (Index k = 1; k <= count; ++k)
@@ -156,7 +156,7 @@ std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index 
   const double periods = seconds * s.w[0] / (2 * M_PI);
   if (periods < kFewPeriods) return std::nullopt;
   Means means = means_of(s);
-  const bool few = periods < kLeastPeriods || means.time.size() < kLeastMeans;
+  const bool few = periods < kMinPeriods || means.time.size() < kMinMeans;
   if (means.time.size() < kFewMeans) return std::nullopt;
   remove_common(plant, means);
   const auto fitted = [&](Index a) {
@@ -175,7 +175,7 @@ std::optional<Ramp> find_ramp(const Plant& plant, const RecordSegment& s, Index 
       std::sqrt(s.accel.col(axis).squaredNorm() / static_cast<double>(s.accel.rows()));
   const bool stands_out =
       own.significance > (few ? kOfFew : kSignificance) &&
-      own.ramp.rms > (few ? kLargeShare : kLeastShare) * rms &&
+      own.ramp.rms > (few ? kLargeShare : kMinShare) * rms &&
       own.ramp.rms > (few ? kFarBeyond : kBeyondOthers) * others[others.size() / 2];
   return stands_out ? std::optional<Ramp>(own.ramp) : std::nullopt;
 }

@@ -18,13 +18,13 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kStepsPerPeriod = 30;
-constexpr int kFewestSteps = 2, kMostSteps = 12;  ///< a sample
+constexpr int kFewestSteps = 2, kMaxSteps = 12;  ///< a sample
 constexpr int kContactSteps = 4;     ///< in place of one: contacts come and go within it
 constexpr int kPrescribedSteps = 6;  ///< a sample: corners of laws lie between samples
 constexpr double kDiverged_m = 1e6;
 constexpr int kSweeps = 2;  ///< over several laws within a step
 constexpr int kGrows = 60, kIllinois = 60;
-constexpr double kRootPart = 1e-9, kLeastForce_n = 1e-12;
+constexpr double kRootPart = 1e-9, kMinForce_n = 1e-12;
 /// Of the slopes that are remembered: steps by steeper ones are too short where a law becomes soft.
 constexpr double kSteepest = -2, kFlattest = -0.5;
 
@@ -35,7 +35,7 @@ double root_near(const Miss& miss, double start, double& slope) {
   double before = start, value_before = miss(before);
   double f = before;
   const auto is_small = [&](double change) {
-    return std::abs(change) <= kRootPart * std::max({std::abs(f), std::abs(before), kLeastForce_n});
+    return std::abs(change) <= kRootPart * std::max({std::abs(f), std::abs(before), kMinForce_n});
   };
   if (is_small(value_before)) return start;
   f = before - value_before / slope;
@@ -187,13 +187,13 @@ class RunForces {
 int steps_per_sample(const Plant& plant, double rate_hz) {
   if (plant.prescribed) return kPrescribedSteps;
   return std::clamp(static_cast<int>(std::ceil(kStepsPerPeriod * plant.highest_hz / rate_hz)),
-                    kFewestSteps, kMostSteps);
+                    kFewestSteps, kMaxSteps);
 }
 
 int steps_of(const Model& model, int ratio) {
   const bool contact = std::any_of(model.effects.begin(), model.effects.end(),
                                    [](const ModelEffect& e) { return is_contact(e.form); });
-  return contact ? std::max(ratio, std::min(kContactSteps * ratio, kMostSteps)) : ratio;
+  return contact ? std::max(ratio, std::min(kContactSteps * ratio, kMaxSteps)) : ratio;
 }
 
 FreeRun free_run(const Plant& plant, const Model& model, const RecordSegment& segment,

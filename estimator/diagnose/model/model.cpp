@@ -9,7 +9,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kBendingStep = 0.1, kMostBending = 100;  ///< of the design's flexibility
+constexpr double kBendingStep = 0.1, kMaxBending = 100;  ///< of the design's flexibility
 
 }  // namespace
 
@@ -38,7 +38,7 @@ Model initial_model(const Plant& plant) {
     bending.place.kind = PlaceKind::building;
     bending.place.direction = along;
     bending.parameters = {
-        bounded_parameter(1 / stiffness, kBendingStep / stiffness, 0, kMostBending / stiffness)};
+        bounded_parameter(1 / stiffness, kBendingStep / stiffness, 0, kMaxBending / stiffness)};
     bending.parameters[0].sigma = bending.parameters[0].centre = 1 / stiffness;
     out.effects.push_back(bending);
   }

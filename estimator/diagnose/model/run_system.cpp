@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastMass_kg = 1e-9;  ///< of a resonator: its equation needs one
+constexpr double kMinMass_kg = 1e-9;  ///< of a resonator: its equation needs one
 
 /// at: coordinate of the resonator's mass.
 void add_resonator(const Plant& plant, const ModelEffect& e, Index at, RunSystem& out) {
@@ -25,9 +25,9 @@ void add_resonator(const Plant& plant, const ModelEffect& e, Index at, RunSystem
   VectorXd b = VectorXd::Zero(out.mass.rows());
   b.head(plant.equations()) = node_direction(plant, e.place.story, e.place.frame);
   b[at] = -1;
-  out.mass(at, at) = std::max(size, kLeastMass_kg);
-  out.stiffness += std::max(size, kLeastMass_kg) * wr * wr * b * b.transpose();
-  out.damping += std::max(size, kLeastMass_kg) * 2 * h * wr * b * b.transpose();
+  out.mass(at, at) = std::max(size, kMinMass_kg);
+  out.stiffness += std::max(size, kMinMass_kg) * wr * wr * b * b.transpose();
+  out.damping += std::max(size, kMinMass_kg) * 2 * h * wr * b * b.transpose();
 }
 
 void add_panels(const Plant& plant, const Model& model, const ModelEffect& e, RunSystem& out) {

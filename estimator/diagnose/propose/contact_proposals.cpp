@@ -13,8 +13,8 @@ namespace {
 
 using Eigen::VectorXcd;
 
-constexpr std::size_t kMostFrames = 4;  ///< whole frames that are tried in one direction
-constexpr double kFirstShare = 0.05;    ///< of the stiffness that a start takes at the peak
+constexpr std::size_t kMaxFrames = 4;  ///< whole frames that are tried in one direction
+constexpr double kFirstShare = 0.05;   ///< of the stiffness that a start takes at the peak
 /// Exponents that softening starts from: of the squared deformation, and soonest at the smallest.
 constexpr double kSoftens = 2, kSoftensSooner = 1.3;
 
@@ -115,7 +115,7 @@ void add_amplitude_proposals(const Fitter& fitter, const Localisation& place,
   std::vector<EffectPlace> places{building};
   const int count = building.direction == Direction::x ? s.n() : s.m();
   for (int f = 0; f < s.frames() && count > 1; ++f) {
-    if (s.direction(f) != building.direction || places.size() > kMostFrames) continue;
+    if (s.direction(f) != building.direction || places.size() > kMaxFrames) continue;
     EffectPlace frame;
     frame.kind = PlaceKind::whole_frame;
     frame.frame = f;

@@ -16,7 +16,7 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr int kCells = 15;
-constexpr int kLeastCount = 3;         ///< samples of a cell that is shown
+constexpr int kMinCount = 3;           ///< samples of a cell that is shown
 constexpr int kTimes = 8;              ///< supports of a stiffness that varies in time
 constexpr double kNearlyAll = 0.93;    ///< of the best share, that a simpler kind must explain
 constexpr double kKindFollows = 0.5;   ///< share below which no kind explains the force
@@ -265,8 +265,8 @@ class KindSearch {
     }
     for (Index i = 0; i < to.force_n.size(); ++i) {
       const int count = to.count.data()[i];
-      to.force_n.data()[i] = count < kLeastCount ? std::numeric_limits<double>::quiet_NaN()
-                                                 : to.force_n.data()[i] / count;
+      to.force_n.data()[i] = count < kMinCount ? std::numeric_limits<double>::quiet_NaN()
+                                               : to.force_n.data()[i] / count;
     }
   }
 

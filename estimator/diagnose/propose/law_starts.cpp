@@ -17,7 +17,7 @@ using Shape = std::vector<LawParameter>;
 
 constexpr double kBilinear = 40;  ///< exponent of hysteresis with a corner
 constexpr double kSmooth = 20;    ///< exponent below which hysteresis has none
-constexpr double kMostLoss = 5;
+constexpr double kMaxLoss = 5;
 
 std::vector<double> shrinking(double from, double to, double factor) {
   std::vector<double> out;
@@ -37,7 +37,7 @@ Shape hysteretic(const LawScale& s, double yield, double exponent, double beta) 
 }
 
 void add_losses(Shape& shape) {
-  for (int i = 0; i < 2; ++i) shape.push_back(held(0, 0.005, 0, kMostLoss));
+  for (int i = 0; i < 2; ++i) shape.push_back(held(0, 0.005, 0, kMaxLoss));
 }
 
 LawStarts bouc_wen(const LawScale& s, double exponent) {
@@ -85,7 +85,7 @@ LawStarts sliders(const LawScale& s) {
       out.shapes.push_back(
           {linear_parameter(1, 0.01 * s.stiffness),
            logarithmic_parameter(yield * s.deformation, 1e-4 * s.deformation, 5 * s.deformation),
-           bounded_parameter(spread, 0.02, 0, 0.98), held(0, 0.005, 0, kMostLoss)});
+           bounded_parameter(spread, 0.02, 0, 0.98), held(0, 0.005, 0, kMaxLoss)});
   return out;
 }
 

@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr std::size_t kMostSizes = 16;
+constexpr std::size_t kMaxSizes = 16;
 
 /// Transforms between a real signal and half of its spectrum. What is known of a size beforehand,
 /// which takes longer than a transform, is kept.
@@ -24,7 +24,7 @@ class Transforms {
 
   Eigen::FFT<double>& of(Index size) {
     if (std::find(sizes_.begin(), sizes_.end(), size) != sizes_.end()) return transform_;
-    if (sizes_.size() == kMostSizes) {
+    if (sizes_.size() == kMaxSizes) {
       transform_.impl().clear();
       sizes_.clear();
     }

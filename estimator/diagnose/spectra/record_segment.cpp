@@ -19,7 +19,7 @@ constexpr double kComponentLow =
 constexpr double kNoiseLow = 0.20;   ///< of the sampling rate
 constexpr double kNoiseHigh = 0.46;  ///< likewise
 constexpr double kQuietShare = 0.2;
-constexpr double kLeastVariance = 1e-16;  ///< (m/s^2)^2, for exact data
+constexpr double kMinVariance = 1e-16;  ///< (m/s^2)^2, for exact data
 
 /// Mean of the periodogram between the two shares of the sampling rate, per sample.
 double high_variance(const VectorXd& block, double low) {
@@ -51,7 +51,7 @@ double quiet_noise_variance(const VectorXd& accel, double rate_hz, double low) {
   std::vector<double> levels;
   for (Index at = 0; at + block <= accel.size(); at += block)
     levels.push_back(high_variance(accel.segment(at, block), low));
-  if (levels.empty()) return kLeastVariance;
+  if (levels.empty()) return kMinVariance;
   std::sort(levels.begin(), levels.end());
   const auto kept = std::max<std::size_t>(
       1, static_cast<std::size_t>(kQuietShare * static_cast<double>(levels.size())));
@@ -60,7 +60,7 @@ double quiet_noise_variance(const VectorXd& accel, double rate_hz, double low) {
   const double mean = log_sum / static_cast<double>(kept);
   // The quietest fifth of Gaussian estimates lies below their mean: 1.40 standard deviations.
   const double averaged = static_cast<double>(block) * (kNoiseHigh - low) / 1.94;
-  return std::max(kLeastVariance, mean / std::max(0.5, 1 - 1.40 / std::sqrt(averaged)));
+  return std::max(kMinVariance, mean / std::max(0.5, 1 - 1.40 / std::sqrt(averaged)));
 }
 
 RecordSegment make_segment(const Eigen::MatrixXd& record, double rate_hz, const VectorXd& noise,

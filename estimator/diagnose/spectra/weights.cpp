@@ -24,7 +24,7 @@ namespace {
 /// of value -j (odd) on each equation.
 constexpr int kPower[kEndTerms] = {-2, -1, 0, 1};
 constexpr double kSign[kEndTerms] = {1, 1, 1, -1};
-constexpr int kLeastPower = 2 * kPower[0], kPowers = 2 * kPower[kEndTerms - 1] - kLeastPower + 1;
+constexpr int kMinPower = 2 * kPower[0], kPowers = 2 * kPower[kEndTerms - 1] - kMinPower + 1;
 
 /// Sums over the bins of the metric's real part (even powers) or imaginary part (odd powers) times
 /// that power of the relative frequency.
@@ -43,7 +43,7 @@ class MetricMoments {
     const Eigen::Map<const Eigen::RowVectorXcd> row(metric.data(), n_ * n_);
     real_.row(waiting_).head(n_ * n_) = row.real();
     imaginary_.row(waiting_).head(n_ * n_) = row.imag();
-    double factor = std::pow(relative, kLeastPower);
+    double factor = std::pow(relative, kMinPower);
     for (Index p = 0; p < kPowers; ++p, factor *= relative)
       (p % 2 == 0 ? even_factor_ : odd_factor_)(p / 2, waiting_) = factor;
     if (++waiting_ == kTogether) add_waiting();
@@ -63,7 +63,7 @@ class MetricMoments {
 
   /// Products of the columns of two end terms.
   MatrixXd between(Index a, Index b) const {
-    const Index power = kPower[a] + kPower[b] - kLeastPower;
+    const Index power = kPower[a] + kPower[b] - kMinPower;
     const double* of_power = (power % 2 == 0 ? even_ : odd_).row(power / 2).data();
     const Eigen::Map<const MatrixXd> sum(of_power, n_, n_);
     const bool turned = a % 2 != 0 && b % 2 == 0;

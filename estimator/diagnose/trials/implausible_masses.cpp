@@ -14,8 +14,8 @@ constexpr double kExplained = 0.9;  ///< of the masses' excess cost, by one effe
 constexpr double kAsWell = 0.8;     ///< of the best one's gain: the effect remains ambiguous
 constexpr double kPromises = 0.5;   ///< of what is needed, by one step
 constexpr std::size_t kTried = 8;
-constexpr std::size_t kMostPlaces = 64;  ///< of a large building, likeliest first
-constexpr double kBeyond = 2;            ///< standard deviations of a frame's mass
+constexpr std::size_t kMaxPlaces = 64;  ///< of a large building, likeliest first
+constexpr double kBeyond = 2;           ///< standard deviations of a frame's mass
 
 /// Whether an extra mass lies within the tolerance of the masses of all its frames.
 bool is_tolerated(const Structure& s, const ModelEffect& effect, double sigma) {
@@ -34,7 +34,7 @@ std::vector<Proposal> promising(const TrialContext& context, const Located& loca
   std::vector<Proposal> all;
   std::size_t places = 0;
   for (Localisation place : located.once) {
-    if (plant.is_large() && places == kMostPlaces) break;
+    if (plant.is_large() && places == kMaxPlaces) break;
     place.model = context.now.model;
     const std::vector<Proposal> here = propose_linear(plant, place);
     places += !here.empty();

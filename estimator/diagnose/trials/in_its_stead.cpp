@@ -15,9 +15,9 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr std::size_t kMostRivals = 3;
-constexpr double kFarBehind = 4;     ///< times the cost of the law that was chosen
-constexpr double kLeastLeft = 0.02;  ///< of the design's stiffness
+constexpr std::size_t kMaxRivals = 3;
+constexpr double kFarBehind = 4;   ///< times the cost of the law that was chosen
+constexpr double kMinLeft = 0.02;  ///< of the design's stiffness
 
 struct Rival {
   Trial trial;
@@ -35,7 +35,7 @@ std::vector<const Trial*> rivals_of(const FoundEffect& effect) {
         t.model.effects.empty() || !t.model.effects.back().element_law())
       continue;
     out.push_back(&t);
-    if (out.size() == kMostRivals) break;
+    if (out.size() == kMaxRivals) break;
   }
   return out;
 }
@@ -65,8 +65,8 @@ bool choose_again(const TrialContext& context, FoundEffect& effect, FitResult& n
     const Trial& t = *others[static_cast<std::size_t>(i)];
     Model model = now.model;
     model.effects[index] = t.model.effects.back();
-    model.theta = (model.theta + t.model.theta - effect.chosen.model.theta)
-                      .cwiseMax(kLeastLeft * plant.design);
+    model.theta =
+        (model.theta + t.model.theta - effect.chosen.model.theta).cwiseMax(kMinLeft * plant.design);
     free_shapes(model);
     FitResult fit = fit_to_the_end(context.fitter, model, {});
     if (fit.good) all[static_cast<std::size_t>(i)] = {as_trial(fit), std::move(fit)};

@@ -18,7 +18,7 @@ constexpr double kClearly = 0.75;
 /// it did so.
 bool replaced_by(const Fitter& fitter, const Model& smaller, FitResult& now) {
   FitResult less = fit_to_the_end(fitter, smaller, now.motion);
-  if (!less.good || less.cost > now.cost + kLeastGain) return false;
+  if (!less.good || less.cost > now.cost + kMinGain) return false;
   now = std::move(less);
   return true;
 }

@@ -11,7 +11,7 @@
 namespace framewatch::estimator {
 
 /// Fall of the cost that is worth an effect.
-inline constexpr double kLeastGain = 50;
+inline constexpr double kMinGain = 50;
 
 inline constexpr int kEndSteps = 6;
 

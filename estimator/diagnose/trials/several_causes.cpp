@@ -20,15 +20,15 @@ namespace {
 /// Indices of laws, in the order in which a model has their effects.
 using Members = std::vector<std::size_t>;
 
-constexpr std::size_t kMostTried = 9, kFewestTried = 3, kMostCauses = 3;
-constexpr std::size_t kMostWork = 60;  ///< laws times equations
-constexpr std::size_t kKept = 3;       ///< sets of one size that lead to larger ones
-constexpr std::size_t kFinished = 6;   ///< that are fitted to their end
-constexpr double kTakes = 0.9;         ///< gap with one cause over that without any, at most
-constexpr double kTakesToo = 0.95;     ///< gap with one more: a tenth of the misfit's power
-constexpr double kNearly = 1.1;        ///< gap over the best's, of a set that does nearly as well
-constexpr double kLeastShare = 0.1;    ///< of the design, of a start's stiffness or damping
-constexpr double kLittle = 0.1;        ///< of the size that an effect has in its trial
+constexpr std::size_t kMaxTried = 9, kFewestTried = 3, kMaxCauses = 3;
+constexpr std::size_t kMaxWork = 60;  ///< laws times equations
+constexpr std::size_t kKept = 3;      ///< sets of one size that lead to larger ones
+constexpr std::size_t kFinished = 6;  ///< that are fitted to their end
+constexpr double kTakes = 0.9;        ///< gap with one cause over that without any, at most
+constexpr double kTakesToo = 0.95;    ///< gap with one more: a tenth of the misfit's power
+constexpr double kNearly = 1.1;       ///< gap over the best's, of a set that does nearly as well
+constexpr double kMinShare = 0.1;     ///< of the design, of a start's stiffness or damping
+constexpr double kLittle = 0.1;       ///< of the size that an effect has in its trial
 constexpr int kScreenSteps = 4, kJointSteps = 5, kNoneSteps = 8;
 
 struct CauseSet {
@@ -54,7 +54,7 @@ bool yields_otherwise(const TrialContext& c, const Trial& fitted, const Trial& o
 /// Laws that may be causes, best first, one of every name and place.
 std::vector<const Trial*> possible(const TrialContext& c, const std::vector<Trial>& tried) {
   const auto equations = static_cast<std::size_t>(c.fitter.plant().equations());
-  const std::size_t most = std::clamp(kMostWork / equations, kFewestTried, kMostTried);
+  const std::size_t most = std::clamp(kMaxWork / equations, kFewestTried, kMaxTried);
   std::vector<const Trial*> out;
   for (const Trial& t : tried) {
     const bool otherwise = std::any_of(out.begin(), out.end(),
@@ -101,7 +101,7 @@ Model extended(const TrialContext& c, const Model& model, const Trial& t, Start 
     out.mass_change = t.model.mass_change;
   } else if (start == Start::changed) {
     out.theta = (out.theta + t.model.theta - c.now.model.theta)
-                    .cwiseMax(kLeastShare * c.fitter.plant().design);
+                    .cwiseMax(kMinShare * c.fitter.plant().design);
   }
   return out;
 }
@@ -122,7 +122,7 @@ class Selection {
     none_ = judged({}, judged_fit(train_, starts, kNoneSteps, context_.parallel).model);
     CauseSet best = none_;
     std::vector<CauseSet> kept{none_};
-    for (std::size_t size = 1; size <= kMostCauses && !kept.empty(); ++size) {
+    for (std::size_t size = 1; size <= kMaxCauses && !kept.empty(); ++size) {
       context_.progress("several causes together");
       kept = larger(kept);
       const auto leads =

@@ -7,8 +7,8 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kFarOff = 10;     ///< misfit over the expected, below which labels are not doubted
-constexpr double kMostLeft = 0.3;  ///< of the cost, with the right labels
+constexpr double kFarOff = 10;    ///< misfit over the expected, below which labels are not doubted
+constexpr double kMaxLeft = 0.3;  ///< of the cost, with the right labels
 constexpr std::size_t kLabelsFitted = 6;
 constexpr int kLabelSteps = 8;
 constexpr double kTurned = -2;  ///< relative error of the gain of a channel that is turned
@@ -97,7 +97,7 @@ std::vector<Trial> wrong_labels(const TrialContext& c) {
   if (trials.size() > kLabelsFitted) trials.resize(kLabelsFitted);
   fit_on(c, kLabelSteps, trials);
   std::erase_if(trials, [](const Trial& t) { return !(t.cost < 1e300); });
-  if (trials.empty() || trials.front().cost > kMostLeft * c.now.cost) return {};
+  if (trials.empty() || trials.front().cost > kMaxLeft * c.now.cost) return {};
   for (Trial& t : trials) t.fraction = (c.now.cost - t.cost) / std::max(c.now.cost - expected, 1.0);
   return trials;
 }

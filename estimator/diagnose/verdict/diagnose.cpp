@@ -34,7 +34,7 @@ using Eigen::MatrixXcd;
 
 constexpr int kPolishSteps = 6, kBackSteps = 8;
 constexpr double kTakesSome = 0.95;  ///< gap with a law over that without
-constexpr double kMostGone = 0.1;    ///< of the misfit beyond noise, that is left
+constexpr double kMaxGone = 0.1;     ///< of the misfit beyond noise, that is left
 
 class Diagnoser {
  public:
@@ -104,7 +104,7 @@ class Diagnoser {
       const Model less = with_first(now.model, out_.effects, out_.effects.size() - 1, plant_);
       FitResult fitted = fit_to_the_end(fitter_, less, now.motion);
       if (!fitted.good) return;
-      const bool needless = fitted.cost < now.cost + kLeastGain;
+      const bool needless = fitted.cost < now.cost + kMinGain;
       if (!needless && !takes_nothing(fitter_, now.model, fitted.model, options_.parallel)) return;
       out_.effects.pop_back();
       now = std::move(fitted);
@@ -204,7 +204,7 @@ class Diagnoser {
 
   /// Causes that take most of the misfit let the place of another show itself.
   bool find_beside_several(FitResult& now) {
-    if (plant_.is_large() || search_.ratio(now) - 1 > kMostGone * (out_.ratio_before - 1))
+    if (plant_.is_large() || search_.ratio(now) - 1 > kMaxGone * (out_.ratio_before - 1))
       return false;
     const Diagnosis before = out_;
     const double corner_hz = segments_.front().corner_hz;

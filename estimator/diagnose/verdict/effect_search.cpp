@@ -29,12 +29,12 @@ constexpr int kStepsBack = 8;
 constexpr std::size_t kLeadLaws = 3;  ///< laws beside which another is looked for
 constexpr double kLeadTakes = 0.3;    ///< of the misfit that a free place takes
 constexpr double kTogether = 0.97;    ///< of the misfit beyond noise, that two explain
-constexpr double kMostOfRest = 0.8;   ///< of what is left beside the first, by the second
-constexpr double kColoured = 1.05, kMostColoured = 3;  ///< ratios of places beside which noise is
+constexpr double kMaxOfRest = 0.8;    ///< of what is left beside the first, by the second
+constexpr double kColoured = 1.05, kMaxColoured = 3;  ///< ratios of places beside which noise is
 
 /// Reduction of the cost that is more than chance.
 double needed_of(const Fitter& fitter, const Model& model) {
-  return std::max(kLeastGain, kSignificant * std::sqrt(fitter.expected(model)));
+  return std::max(kMinGain, kSignificant * std::sqrt(fitter.expected(model)));
 }
 
 /// Of trials, best first, those beside which another effect may be.
@@ -160,7 +160,7 @@ bool EffectSearch::holds(const TrialContext& context, double bound, double neede
   const Trial& best = trials.front();
   return best.outcome == TrialOutcome::fitted &&
          before_lead_ - best.cost > kTogether * (before_lead_ - bound) &&
-         best.fraction > kMostOfRest && !worsens(best, context.now, needed);
+         best.fraction > kMaxOfRest && !worsens(best, context.now, needed);
 }
 
 void EffectSearch::complete(FitResult& now) {
@@ -186,7 +186,7 @@ void EffectSearch::fit_with_corner(double corner_hz, FitResult& now) {
 void EffectSearch::colour_by_place(FitResult& now, Located& located) {
   const Plant& plant = fitter_.plant();
   if (plant.unread.cols() > 0 || plant.equations() < 2 || located.places.empty() ||
-      located.places.front().ratio < kColoured || located.places.front().ratio > kMostColoured ||
+      located.places.front().ratio < kColoured || located.places.front().ratio > kMaxColoured ||
       !colour_beside(fitter_, segments_, located.places.front()))
     return;
   by_place_ = true;

@@ -11,7 +11,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr double kMostValue = 1e100;  // magnitude
+constexpr double kMaxValue = 1e100;  // magnitude
 
 std::size_t round_up(std::size_t value, std::size_t step) {
   return (value + step - 1) / step * step;
@@ -56,7 +56,7 @@ double BoxplotWindow::quartile(std::size_t q) const {
 bool BoxplotWindow::consistent() const {
   if (next_ > 0 && next_ >= ring_.size()) return false;
   std::vector<double> sorted = ring_;
-  if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return !(v >= -kMostValue); }))
+  if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return !(v >= -kMaxValue); }))
     return false;
   std::sort(sorted.begin(), sorted.end());
   sorted.resize(sorted_.size(), kNone);

@@ -73,9 +73,9 @@ struct WindowEstimate {
   template <typename Archive>
   void archive(Archive& a) {
     a(start, end);
-    a.within(sequence, -1, a.kMostCount);
+    a.within(sequence, -1, a.kMaxCount);
     a.within(status, 0, static_cast<double>(WindowStatus::nothing_identifiable));
-    a.within(rows, 0, a.kMostCount);
+    a.within(rows, 0, a.kMaxCount);
     a(residual_ratio, value, std_error);
     a.each_within(reason, 0, static_cast<double>(Observability::channel_lost));
     a(snr, amplitude, prior_share, noise_share, last_value, last_std_error, last_end, boxplot,

@@ -38,7 +38,7 @@ struct ModelFit {
   template <typename Archive>
   void archive(Archive& a) {
     a(start, end);
-    a.within(sequence, -1, a.kMostCount);
+    a.within(sequence, -1, a.kMaxCount);
     a(misfit, design_error, misfit_error, corner_error, error);
     a.each_within(word, 0, static_cast<double>(FitWord::does_not_fit));
   }

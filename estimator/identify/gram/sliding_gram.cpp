@@ -9,7 +9,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr int kSpansPerLength = 5;
-constexpr double kMostEnergy = 1e60;  // of a block, in squares of noise: beyond any motion
+constexpr double kMaxEnergy = 1e60;  // of a block, in squares of noise: beyond any motion
 
 }  // namespace
 
@@ -84,7 +84,7 @@ bool SlidingGram::sane() const {
     const double* row = newest + floor.offset;
     for (int i = 0; i < floor.front; ++i) {
       const int begin = packed_row_begin(i);
-      if (!(row[i - begin] < kMostEnergy)) return false;
+      if (!(row[i - begin] < kMaxEnergy)) return false;
       row += floor.stride - begin;
     }
   }

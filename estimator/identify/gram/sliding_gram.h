@@ -109,11 +109,11 @@ class SlidingGram {
   }
   template <typename Archive>
   void archive(Archive& a) {
-    a.within(pushed_, 0, a.kMostCount);
+    a.within(pushed_, 0, a.kMaxCount);
     a.finite(current_, middle_, next_middle_, blocks_ring_, suffixes_, stored_rows_);
     a(spans_, forward_);
     a.each_within(stored_counts_, 0, most_rows_);
-    a.each_within(middle_instants_, 0, a.kMostCount);
+    a.each_within(middle_instants_, 0, a.kMaxCount);
     a.each_within(counts_, 0, block_rows_);
     oldest_ = zero_.data();
   }

@@ -37,7 +37,7 @@ class FloorMotion {
   template <typename Archive>
   void archive(Archive& a) {
     for (Eigen::Index i = 0; i < theta_.size(); ++i)
-      a.within(theta_[i], std::numeric_limits<double>::min(), a.kMost);
+      a.within(theta_[i], std::numeric_limits<double>::min(), a.kMax);
     a.each_within(present_, 0, 1);
     if constexpr (Archive::kReading) form();
     for (Inner& inner : inner_) a.finite(inner.state, inner.input_before);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kHighestMode_hz = 20;
 /// Of an inner set, for each pair of its ends: with 4 the rest, taken as rigid, changes stiffnesses
 /// by 1e-5, with 3 by 2e-4, and what a shift costs does not grow with the stories of a group.
-constexpr int kFewestModes = 3, kMostModes = 4;
+constexpr int kFewestModes = 3, kMaxModes = 4;
 
 std::vector<double> by_columns(const Eigen::MatrixXd& m) {
   return {m.data(), m.data() + m.size()};
@@ -137,7 +137,7 @@ class Builder {
         const double over_w2 = eigen.values[m];
         const bool low = over_w2 * std::pow(2 * M_PI * kHighestMode_hz, 2) > 1;
         if (!(over_w2 > 1e-12 * eigen.values[size - 1]) ||
-            (modes_ == InnerModes::few && modes >= kMostModes * pairs) ||
+            (modes_ == InnerModes::few && modes >= kMaxModes * pairs) ||
             (!low && modes >= kFewestModes * pairs))
           break;
         set.w2[modes] = 1 / over_w2;

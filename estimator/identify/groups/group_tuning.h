@@ -65,13 +65,13 @@ class GroupTuning : public RowTuning {
   template <typename Archive>
   void members(Archive& a) {
     for (Eigen::Index i = 0; i < theta0_.size(); ++i)
-      a.within(theta0_[i], std::numeric_limits<double>::min(), a.kMost);
+      a.within(theta0_[i], std::numeric_limits<double>::min(), a.kMax);
     for (Eigen::Index i = 0; i < ratios_.theta.size(); ++i)
-      a.within(ratios_.theta[i], std::numeric_limits<double>::min(), a.kMost);
-    a.each_within(ratios_.std_error, 0, a.kMost);
+      a.within(ratios_.theta[i], std::numeric_limits<double>::min(), a.kMax);
+    a.each_within(ratios_.std_error, 0, a.kMax);
     a.finite(noise_density_);
     a.each_within(present_, 0, 1);
-    a.within(tuned_parts_, 0, a.kMostCount);
+    a.within(tuned_parts_, 0, a.kMaxCount);
     if constexpr (Archive::kReading) restore();
   }
   /// Everything that follows from the parameters, as far as it had been tuned.
@@ -128,8 +128,8 @@ class GroupFilter : public RowFilter {
  private:
   template <typename Archive>
   void members(Archive& a) {
-    a.within(settle_, 0, a.kMostCount);
-    a.within(settling_, 0, a.kMostCount);
+    a.within(settle_, 0, a.kMaxCount);
+    a.within(settling_, 0, a.kMaxCount);
     a.finite(rows_);
     if constexpr (Archive::kReading) start();
     a(chain_, past_, starting_);

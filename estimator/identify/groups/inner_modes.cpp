@@ -42,7 +42,7 @@ Eigen::MatrixXd shapes_of(const InnerSet& set, int measured, double hinge_factor
 
 Eigen::MatrixXd inner_shapes(const InnerSet& set, int measured) {
   const Eigen::Index n = set.mass.rows();
-  if (n <= kMostInner) return Eigen::MatrixXd::Identity(n, n);
+  if (n <= kMaxInner) return Eigen::MatrixXd::Identity(n, n);
   const bool hinges = std::any_of(set.springs.begin(), set.springs.end(),
                                   [](const InnerSpring& s) { return s.hinge; });
   Eigen::MatrixXd all = shapes_of(set, measured, 1);

@@ -22,7 +22,7 @@ struct InnerSet {
 };
 
 /// A set of at most so many coordinates is kept as it is.
-inline constexpr int kMostInner = 40;
+inline constexpr int kMaxInner = 40;
 
 /// Shapes, orthonormal columns, whose sums are the set's motions: all of them, or the lowest modes
 /// with the ends held and the static shapes under motion of the ends, for hinges as designed, a

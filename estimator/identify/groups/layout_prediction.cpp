@@ -22,7 +22,7 @@ using Eigen::MatrixXd;
 
 constexpr double kHighest_hz = 25, kGroundHighPass_hz = 0.25;
 /// Distance of frequencies: a share of the frequency, as modes are as narrow, within bounds.
-constexpr double kStepRatio = 0.02, kLeastStep_hz = 0.02, kMostStep_hz = 0.3;
+constexpr double kStepRatio = 0.02, kMinStep_hz = 0.02, kMaxStep_hz = 0.3;
 constexpr double kNotLinear = 0.15;  // of the size of a loss of 20 to 40 % of a story
 constexpr double kDetected = 4;      // standard errors of a difference
 
@@ -33,8 +33,8 @@ struct Frequency {
 
 std::vector<Frequency> frequencies(const ExpectedShaking& shaking) {
   std::vector<Frequency> out;
-  for (double hz = kLeastStep_hz; hz < kHighest_hz; hz += out.back().step_hz)
-    out.push_back({hz, std::clamp(kStepRatio * hz, kLeastStep_hz, kMostStep_hz)});
+  for (double hz = kMinStep_hz; hz < kHighest_hz; hz += out.back().step_hz)
+    out.push_back({hz, std::clamp(kStepRatio * hz, kMinStep_hz, kMaxStep_hz)});
   const double wg = 2 * M_PI * shaking.ground_frequency_hz, wc = 2 * M_PI * kGroundHighPass_hz;
   double sum = 0;
   for (Frequency& f : out) {

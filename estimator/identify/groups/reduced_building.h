@@ -45,7 +45,7 @@ struct ReducedBuilding {
 /// The building as the axes flagged in `present` see it. table: of groups. rows() is 0 where the
 /// base is not measured in a direction that is measured above, and while a force is missing. Groups
 /// between which a floor is not present become one, unless keep_groups. Inner floors that move
-/// together, more than kMostInner of them, are described by their lowest modes with the ends held.
+/// together, more than kMaxInner of them, are described by their lowest modes with the ends held.
 /// Source: Craig and Bampton, AIAA J. 6 (1968), 1313.
 ReducedBuilding reduced_building(const Structure& structure, const std::vector<SensorAxis>& axes,
                                  const ParameterTable& table, const GroupDesign& design,

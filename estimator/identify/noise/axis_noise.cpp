@@ -7,7 +7,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kChanged = 2;
-constexpr double kLeast = 1e-3;  // of the noisiest axis: nothing is noise-free
+constexpr double kMin = 1e-3;  // of the noisiest axis: nothing is noise-free
 
 }  // namespace
 
@@ -27,7 +27,7 @@ bool AxisNoise::densities(std::vector<double>& out) const {
     out[a] = given_[a] > 0 ? given_[a] : meter_.density(static_cast<int>(a));
     largest = std::max(largest, out[a]);
   }
-  for (double& density : out) density = std::max(density, kLeast * largest);
+  for (double& density : out) density = std::max(density, kMin * largest);
   return true;
 }
 

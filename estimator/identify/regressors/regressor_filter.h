@@ -48,7 +48,7 @@ class RegressorFilter : public RowFilter {
  private:
   template <typename Archive>
   void members(Archive& a) {
-    a.within(settle_, 0, a.kMostCount);
+    a.within(settle_, 0, a.kMaxCount);
     a.each_within(known_, 0, 1);
     a.finite(rows_);
     for (int floor = 0; floor < layout_->floors(); ++floor) {
@@ -58,7 +58,7 @@ class RegressorFilter : public RowFilter {
       if (!f.some_known.fits(*layout_, floor)) a.refuse();
       a.finite(f.s1, f.s2);
       a(f.past, f.starting);
-      a.within(f.settling, 0, a.kMostCount);
+      a.within(f.settling, 0, a.kMaxCount);
       f.rows = floor_rows_from(floor, origin == 2 ? 2 : 1);
     }
   }

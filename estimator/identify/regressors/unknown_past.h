@@ -41,9 +41,9 @@ class UnknownPast {
 
   template <typename Archive>
   void archive(Archive& a) {
-    a.within(equations_, 0, kMostEquations);
-    a.within(instants_, 0, a.kMostCount);
-    if (!(equations_ >= 0 && equations_ <= kMostEquations)) equations_ = 0;
+    a.within(equations_, 0, kMaxEquations);
+    a.within(instants_, 0, a.kMaxCount);
+    if (!(equations_ >= 0 && equations_ <= kMaxEquations)) equations_ = 0;
     if constexpr (Archive::kReading)
       if (equation_.size() < static_cast<std::size_t>(equations_))
         equation_.resize(static_cast<std::size_t>(equations_));
@@ -51,8 +51,8 @@ class UnknownPast {
   }
 
  private:
-  static constexpr int kMostEquations = 512;  ///< of a floor: beyond any building
-  static constexpr int kMostPoles = 128;      ///< pairs of an equation, likewise
+  static constexpr int kMaxEquations = 512;  ///< of a floor: beyond any building
+  static constexpr int kMaxPoles = 128;      ///< pairs of an equation, likewise
   struct Equation {
     std::vector<PolePair> poles;
     std::vector<double> now, before;  ///< the shapes at this instant and the one before
@@ -63,10 +63,10 @@ class UnknownPast {
   template <typename Archive>
   void archive(Archive& a, Equation& e) {
     auto poles = static_cast<int>(e.poles.size());
-    a.within(poles, 0, kMostPoles);
+    a.within(poles, 0, kMaxPoles);
     if constexpr (Archive::kReading) {
       if (!a.good()) return;
-      e.poles.resize(static_cast<std::size_t>(poles >= 0 && poles <= kMostPoles ? poles : 0));
+      e.poles.resize(static_cast<std::size_t>(poles >= 0 && poles <= kMaxPoles ? poles : 0));
       resize(e);
     }
     for (PolePair& pair : e.poles) a.finite(pair.a1, pair.a2);

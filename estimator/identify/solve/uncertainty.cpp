@@ -19,7 +19,7 @@ double student(double n) {
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
 }
 
-constexpr double kLeastDegrees = 1.5;  // the expansion's end: beyond it nothing is published
+constexpr double kMinDegrees = 1.5;  // the expansion's end: beyond it nothing is published
 
 /// Variance of a sum of so many scores over the sum of their squares about their mean.
 double spread_of(int blocks) {
@@ -127,7 +127,7 @@ double BatchMeans::widening(int floor, int position, int blocks) const {
     squares += information * information;
   }
   const double counting = squares > 0 ? sum * sum / squares : 1;
-  return student(std::max(counting - 1, kLeastDegrees)) / student(kBlocks - 1) *
+  return student(std::max(counting - 1, kMinDegrees)) / student(kBlocks - 1) *
          std::sqrt(spread_of(blocks) / spread_of(kBlocks));
 }
 

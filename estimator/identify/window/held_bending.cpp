@@ -6,10 +6,10 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kMostError = 0.5;  // relative, of a window that counts
-constexpr double kSurprise = 2;     // times the error of a step
+constexpr double kMaxError = 0.5;  // relative, of a window that counts
+constexpr double kSurprise = 2;    // times the error of a step
 constexpr double kTiny = 1e-300;
-constexpr double kLeastStep = 0.6, kMostStep = 1.6;  // per window
+constexpr double kMinStep = 0.6, kMaxStep = 1.6;  // per window
 
 EstimatorOptions of_bending(EstimatorOptions options) {
   options.long_window_s = std::max(HeldBending::kWindow_s, 2 * options.window_s);
@@ -36,7 +36,7 @@ double HeldBending::detuning(const WindowSolution& solution) const {
   for (const int u : stiffnesses_) {
     const double ratio = solution.solver().solution()[static_cast<std::size_t>(u)];
     if (solution.shown(u))
-      out = std::max(out, std::abs(std::log(std::clamp(ratio, kLeastStep, kMostStep))));
+      out = std::max(out, std::abs(std::log(std::clamp(ratio, kMinStep, kMaxStep))));
   }
   return out;
 }
@@ -52,11 +52,11 @@ bool HeldBending::advance(const LongWindow::Context& context) {
   for (Held& h : held_) {
     const auto u = static_cast<std::size_t>(h.unknown);
     // A model that misfits by some share is wrong by about that share.
-    const double error = std::max(std::hypot(solution.std_error()[u], misfit), kLeast);
+    const double error = std::max(std::hypot(solution.std_error()[u], misfit), kMin);
     const double with_tuning = std::hypot(error, off);
-    if (!solver.usable(h.unknown) || !(with_tuning < kMostError)) continue;
+    if (!solver.usable(h.unknown) || !(with_tuning < kMaxError)) continue;
     // The equations are linear in it near the tuning only.
-    const double ratio = std::clamp(solver.solution()[u], kLeastStep, kMostStep);
+    const double ratio = std::clamp(solver.solution()[u], kMinStep, kMaxStep);
     const double value = ratio * context.regression->tuning().theta0()[h.parameter];
     const double step = std::log(value / h.value);
     double variance = h.std_error * h.std_error + kDrift * kDrift;
@@ -64,7 +64,7 @@ bool HeldBending::advance(const LongWindow::Context& context) {
     if (step * step > kSurprise * kSurprise * (variance + error * error)) variance = step * step;
     const double before = 1 / variance, now = 1 / (with_tuning * with_tuning);
     h.value *= std::exp(step * now / (before + now));
-    h.std_error = std::max(1 / std::sqrt(before + now), kLeast);
+    h.std_error = std::max(1 / std::sqrt(before + now), kMin);
     changed = true;
   }
   if (changed) window_.begin_anew();

@@ -19,7 +19,7 @@ class HeldBending {
  public:
   static constexpr double kWindow_s = 10;
   /// Relative: of the least error, and of what it may move from one such window to the next.
-  static constexpr double kLeast = 0.02, kDrift = 0.01;
+  static constexpr double kMin = 0.02, kDrift = 0.01;
 
   /// design: theta order, SI.
   HeldBending(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
@@ -48,8 +48,8 @@ class HeldBending {
   void archive(Archive& a, TunedRegression& regression) {
     window_.archive(a, regression);
     for (Held& h : held_) {
-      a.within(h.value, std::numeric_limits<double>::min(), a.kMost);
-      a.within(h.std_error, kLeast, 1);
+      a.within(h.value, std::numeric_limits<double>::min(), a.kMax);
+      a.within(h.std_error, kMin, 1);
     }
   }
 

@@ -42,11 +42,11 @@ class LateWindows {
   template <typename Archive>
   void archive(Archive& a, TunedRegression& regression) {
     a(running_);
-    a.within(estimate_.sequence, -1, a.kMostCount);
+    a.within(estimate_.sequence, -1, a.kMaxCount);
     if (!running_) return;
     if (regression.resting()) a.refuse();
     a(drift_, estimate_);
-    a.within(until_, 0, a.kMostCount);
+    a.within(until_, 0, a.kMaxCount);
     a.within(since_hop_, 0, hop_rows_);
     series_.archive(a, regression);
   }

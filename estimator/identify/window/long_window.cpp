@@ -14,13 +14,13 @@ constexpr double kUsualStep = 0.002;       // by which the usual energy follows,
 constexpr std::size_t kAddAtOnce = 65536;  // doubles per instant
 constexpr int kStepsPerInstant = 4;
 /// An hour's average may be of motion that no ordinary window would be read from.
-constexpr double kLeastSnr = 1.3, kMostError_k = 0.1, kMostError_g = 0.5, kMostError_c = 0.5;
+constexpr double kMinSnr = 1.3, kMaxError_k = 0.1, kMaxError_g = 0.5, kMaxError_c = 0.5;
 
 EstimatorOptions lenient(EstimatorOptions o, bool noise_configured) {
-  if (noise_configured) o.min_snr = kLeastSnr;
-  o.max_error_k = kMostError_k;
-  o.max_error_g = kMostError_g;
-  o.max_error_c = kMostError_c;
+  if (noise_configured) o.min_snr = kMinSnr;
+  o.max_error_k = kMaxError_k;
+  o.max_error_g = kMaxError_g;
+  o.max_error_c = kMaxError_c;
   return o;
 }
 
@@ -131,8 +131,8 @@ double LongWindow::weight(const double* block) {
     usual *= now > usual ? 1 + kUsualStep : 1 - kUsualStep;
     return now > 0 ? std::min(1.0, most * usual / now) : 1.0;
   };
-  const double motion = limited(energy(block, false), usual_, kMostOfUsual);
-  const double misfit = limited(energy(block, true), usual_misfit_, kMostOfUsualMisfit);
+  const double motion = limited(energy(block, false), usual_, kMaxOfUsual);
+  const double misfit = limited(energy(block, true), usual_misfit_, kMaxOfUsualMisfit);
   return std::min(motion, misfit * misfit);  // what does not fit at all counts for nothing
 }
 

@@ -12,15 +12,15 @@ namespace framewatch::estimator {
 /// whole blocks: it identifies what moves too weakly for an ordinary window. Five windows per
 /// length. docs/equations.md (47).
 ///
-/// A block whose response has more than kMostOfUsual times the usual energy is scaled down to that,
+/// A block whose response has more than kMaxOfUsual times the usual energy is scaled down to that,
 /// so that one strong motion, a single piece without a spread, does not dominate the hour. A block
-/// whose residual under the last solution has more than kMostOfUsualMisfit times the usual energy,
+/// whose residual under the last solution has more than kMaxOfUsualMisfit times the usual energy,
 /// a sensor's spike for instance, is scaled down by the square of the excess. The equations hold
 /// with any weights. Nearly all of the expected sensor noise is subtracted, because over an hour
 /// its sum is hardly random any more.
 class LongWindow {
  public:
-  static constexpr double kMostOfUsual = 10, kMostOfUsualMisfit = 4, kCompensatedShare = 0.98;
+  static constexpr double kMaxOfUsual = 10, kMaxOfUsualMisfit = 4, kCompensatedShare = 0.98;
 
   /// options.long_window_s: at least that of BatchMeans::kBlocks blocks. window: of its estimates.
   /// Without configured noise the gate is that of ordinary windows: measured noise is too inexact
@@ -76,10 +76,10 @@ class LongWindow {
              ring_rows_);
     a(begins_, end_, since_);
     a.within(blocks_, 0, piece_blocks_ - 1);
-    a.within(pieces_, 0, a.kMostCount);
+    a.within(pieces_, 0, a.kMaxCount);
     a.within(work_, 0, static_cast<double>(Work::errors));
     a.within(added_, 0, static_cast<double>(ring_.size()));
-    a.within(left_out_, 0, a.kMostCount);
+    a.within(left_out_, 0, a.kMaxCount);
     a.any_size(known_);
     solution_.archive(a, regression.rows(), *this);
     a(estimate_);

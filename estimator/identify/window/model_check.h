@@ -59,7 +59,7 @@ class ModelCheck {
     a.each_within(misfits_, 0, kMisfits);
     a.each_within(spreads_, 0, kSpreads);
     a.within(blocks_, 0, kEvery);
-    a.within(pause_left_, 0, a.kMostCount);
+    a.within(pause_left_, 0, a.kMaxCount);
   }
 
  private:

@@ -45,13 +45,13 @@ class OtherCorner {
   template <typename Archive>
   void archive(Archive& a) {
     a(*tuning_);
-    a.within(next_part_, 0, a.kMostCount);
+    a.within(next_part_, 0, a.kMaxCount);
     a(resting_);
     if (!resting_) a(*rows_filter_);
     a.finite(sum_);
-    a.each_within(instants_, 0, a.kMostCount);
+    a.each_within(instants_, 0, a.kMaxCount);
     a.within(count_, 0, rows_);
-    a.within(settling_, 0, a.kMostCount);
+    a.within(settling_, 0, a.kMaxCount);
     solution_.archive(a, *rows_filter_, *this);
   }
   // Blocks of batch means, of which there are none.

@@ -48,7 +48,7 @@ class OtherWindows {
       a(window.estimate);
     }
     a.within(current_, 0, count());
-    a.within(rows_, 0, a.kMostCount);
+    a.within(rows_, 0, a.kMaxCount);
     a(solved_, end_);
   }
 

@@ -5,12 +5,12 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kMostPasses = 6;    // of tuning before the first estimate
+constexpr int kMaxPasses = 6;     // of tuning before the first estimate
 constexpr double kDetuned = 0.1;  // change of a filter's corner that asks for re-tuning
-constexpr int kLeastFloors = 4;   // checked or tuned per instant
+constexpr int kMinFloors = 4;     // checked or tuned per instant
 /// Instants a newly tuned regression takes in per instant of input: many for a small building, so
 /// that it starts soon, and few for a large one, so that no shift is late.
-constexpr int kMostCatchUp = 8, kLeastCatchUp = 2;
+constexpr int kMaxCatchUp = 8, kMinCatchUp = 2;
 constexpr double kCatchUpWork = 6e5;  // entries of the floors' fronts, per instant
 
 }  // namespace
@@ -24,14 +24,14 @@ SelfTuning::SelfTuning(const FloorLayout& layout, const ParameterTable& table,
       blocks_(blocks),
       fill_(fill),
       parts_per_instant_(
-          layout.grouped() ? 1 : std::max(kLeastFloors, (layout.floors() + blocks - 1) / blocks)),
+          layout.grouped() ? 1 : std::max(kMinFloors, (layout.floors() + blocks - 1) / blocks)),
       noise_known_(noise_known),
       noise_(standby_->tuning().noise_density()),
       work_(table.size()),
       next_theta0_(Eigen::VectorXd::Zero(table.size())) {
   const double front = layout.most_front();
   catch_up_per_instant_ = static_cast<int>(std::clamp<double>(
-      kCatchUpWork / (layout.floors() * front * front), kLeastCatchUp, kMostCatchUp));
+      kCatchUpWork / (layout.floors() * front * front), kMinCatchUp, kMaxCatchUp));
 }
 
 void SelfTuning::start_tuned(std::unique_ptr<TunedRegression>& active, const Tuning& tuning) {
@@ -117,7 +117,7 @@ void SelfTuning::check_floors(TunedRegression& active) {
     detuning_ = std::max(detuning_, active.tuning().detuning(next_part_++, next_theta0_));
   if (next_part_ < layout_.floors()) return;
   phase_ = Phase::idle;
-  if ((detuning_ <= kDetuned && !noise_differs_) || passes_ >= kMostPasses) {
+  if ((detuning_ <= kDetuned && !noise_differs_) || passes_ >= kMaxPasses) {
     tuned_ = true;
     passes_ = 0;
     return;

@@ -75,8 +75,8 @@ class SelfTuning {
     a(lending_);
     a.within(phase_, 0, static_cast<double>(Phase::lent));
     if (phase_ == Phase::catching_up && standby_->resting()) a.refuse();
-    for (int* number : {&next_part_, &passes_, &since_check_}) a.within(*number, 0, a.kMostCount);
-    a.within(retunes_, 0, a.kMostCount);
+    for (int* number : {&next_part_, &passes_, &since_check_}) a.within(*number, 0, a.kMaxCount);
+    a.within(retunes_, 0, a.kMaxCount);
     a.finite(detuning_, noise_, next_theta0_);
   }
 

@@ -70,18 +70,18 @@ class SlidingWindowEstimator {
     a(integrator_, noise_, ring_, drift_, *active_);
     if (self_tuning_) a(*self_tuning_);
     series_.archive(a, *active_);
-    a.within(late_until_, 0, a.kMostCount);
+    a.within(late_until_, 0, a.kMaxCount);
     if (late_) late_->archive(a, self_tuning_->standby());
     archive_long(a);
     if (bending_) bending_->archive(a, *active_);
     if (check_) a(*check_);
     a(boxplots_, estimate_);
     a.each_within(seen_axes_, 0, 1);
-    a.within(axes_steady_rows_, 0, a.kMostCount);
-    a.within(expected_index_, -1, a.kMostCount);
+    a.within(axes_steady_rows_, 0, a.kMaxCount);
+    a.within(expected_index_, -1, a.kMaxCount);
     a(last_time_);
     a.within(since_hop_, 0, hop_rows_);
-    a.within(interruptions_, 0, a.kMostCount);
+    a.within(interruptions_, 0, a.kMaxCount);
     if (active_->next() != ring_.end() || active_->resting()) a.refuse();
   }
 

@@ -36,7 +36,7 @@ class MotionRing {
   template <typename Archive>
   void archive(Archive& a) {
     a(sets_);
-    a.within(next_, 0, a.kMostCount);
+    a.within(next_, 0, a.kMaxCount);
   }
 
  private:
@@ -88,7 +88,7 @@ class TunedRegression {
     if (resting_) return;
     a(*entering_, *delayed_, sums_, counting_);
     for (std::int64_t* number : {&next_, &delayed_next_, &counted_from_})
-      a.within(*number, 0, a.kMostCount);
+      a.within(*number, 0, a.kMaxCount);
   }
 
  private:

@@ -17,7 +17,7 @@ constexpr double kHeld = 0.01;  // relative width of the prior of what is held
 constexpr double kRounding = 1e-12;
 constexpr int kFirstPasses = 5;  // to a level of noise that no longer changes
 /// Of groups, whose residual is the model's as a rule: known noise is no higher than that.
-constexpr double kMostOfKnownNoise = 2;
+constexpr double kMaxOfKnownNoise = 2;
 
 }  // namespace
 
@@ -128,7 +128,7 @@ bool WindowSolution::shown(int unknown) const {
 }
 
 double WindowSolution::gate_level() const {
-  return layout_.grouped() && noise_known_ ? std::min(noise_scale_, kMostOfKnownNoise)
+  return layout_.grouped() && noise_known_ ? std::min(noise_scale_, kMaxOfKnownNoise)
                                            : noise_scale_;
 }
 

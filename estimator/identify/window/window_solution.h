@@ -97,8 +97,8 @@ class WindowSolution {
     a.finite(share_error_);
     a(misfit_);
     a.finite(misfit_error_);
-    for (Unknown& unknown : unknowns_) a.within(unknown.prior, 0, a.kMost);
-    for (double& centre : centre_) a.within(centre, 0, a.kMost);
+    for (Unknown& unknown : unknowns_) a.within(unknown.prior, 0, a.kMax);
+    for (double& centre : centre_) a.within(centre, 0, a.kMax);
     a.finite(doubt_);
     a(solver_, prior_, warm_, known_, place_known_, errors_known_, solved_, noise_known_, fresh_,
       overcompensated_);

@@ -42,7 +42,7 @@ TEST(Printable, IsBoundedAndDoesNotChangeItsOwnText) {
   EXPECT_EQ(printable("abcdefg", 6), "abc...");
   EXPECT_EQ(printable("abc\xc3\xa9\xc3\xa9", 7), "abcé\xc3\xa9");
   EXPECT_EQ(printable("abc\xc3\xa9\xc3\xa9", 6), "abc...");  // no half of a character
-  EXPECT_LE(printable(std::string(1'000'000, '\x1b')).size(), kMostPrinted);
+  EXPECT_LE(printable(std::string(1'000'000, '\x1b')).size(), kMaxPrinted);
   std::string every;
   for (int i = 0; i < 100'000; ++i) every += static_cast<char>((i * 7919) >> 3);
   const std::string once = printable(every, 1'000'000);
@@ -51,7 +51,7 @@ TEST(Printable, IsBoundedAndDoesNotChangeItsOwnText) {
 }
 
 TEST(Printable, LinesOfOnesOwnStay) {
-  const std::string longer(3 * kMostPrinted, 'x');
+  const std::string longer(3 * kMaxPrinted, 'x');
   EXPECT_EQ(printable_lines("a\n" + longer), "a\n" + longer);
   EXPECT_EQ(printable_lines("a\n\x1b"
                             "b\n"),

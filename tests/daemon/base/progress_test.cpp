@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/base/input_file.h"
+#include "drivers/files/input_file.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::daemon {

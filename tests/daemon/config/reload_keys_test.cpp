@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config/changes.h"
-#include "daemon/keys/section_table.h"
+#include "daemon/config/keys/section_table.h"
 #include "tests/support/config_fixture.h"
 #include "tests/support/key_values.h"
 

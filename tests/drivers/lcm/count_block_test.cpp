@@ -37,10 +37,10 @@ TEST(CountBlock, HoldsWhatWasAddedInItsOrder) {
 }
 
 TEST(CountBlock, ValuesBeyondTheRangeAreNotTakenForOthers) {
-  EXPECT_EQ(count_of(1e9, kStep), kMostCount);
-  EXPECT_EQ(count_of(-1e9, kStep), -kMostCount);
-  EXPECT_EQ(count_of(std::numeric_limits<double>::infinity(), kStep), kMostCount);
-  EXPECT_EQ(count_of(2147.483646, kStep), kMostCount - 1);
+  EXPECT_EQ(count_of(1e9, kStep), kMaxCount);
+  EXPECT_EQ(count_of(-1e9, kStep), -kMaxCount);
+  EXPECT_EQ(count_of(std::numeric_limits<double>::infinity(), kStep), kMaxCount);
+  EXPECT_EQ(count_of(2147.483646, kStep), kMaxCount - 1);
   EXPECT_EQ(count_of(estimator::kNaN, kStep), kNoCount);
 }
 

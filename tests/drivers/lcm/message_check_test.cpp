@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "tests/drivers/lcm/example_messages.h"
 
 namespace framewatch::drivers {

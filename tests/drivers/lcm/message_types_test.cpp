@@ -8,7 +8,7 @@
 #include <framewatch/accel_t.hpp>
 #include <framewatch/message_layouts.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/channel_table.h"
 #include "drivers/lcm/lcm_log.h"

@@ -6,7 +6,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/status_t.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::drivers {

@@ -126,9 +126,9 @@ TEST(SampleMerger, TimeRunningBackwardsAnchorsAnew) {
   Bench b;
   for (int i = 0; i < 20; ++i) b.both(1000 + i);
   for (int i = 0; i < 20; ++i) b.both(i);
-  const int kMost = 10;  // samples that may be lost before the new time is believed
-  EXPECT_GE(b.out.size(), 40u - kMost / 2);
-  EXPECT_LE(b.counters(0).rejected + b.counters(1).rejected, kMost);
+  const int kMax = 10;  // samples that may be lost before the new time is believed
+  EXPECT_GE(b.out.size(), 40u - kMax / 2);
+  EXPECT_LE(b.counters(0).rejected + b.counters(1).rejected, kMax);
   for (std::size_t i = 1; i < b.out.size(); ++i) EXPECT_GT(b.out[i].index, b.out[i - 1].index);
   EXPECT_EQ(b.out.back().time, from_microseconds(kStart + 19 * kStep));
   EXPECT_GT(b.out[20].index, 20) << "a jump: readers see the interruption";

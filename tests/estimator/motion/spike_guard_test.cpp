@@ -154,8 +154,8 @@ TEST(SpikeGuard, MotionAfterAStuckSecondIsSound) {
 
 TEST(SampleBound, StandsOnScaledValuesAboutTheOffset) {
   SensorAxis axis;
-  EXPECT_TRUE(sample_bound(axis).holds(-kMostAccel));
-  EXPECT_FALSE(sample_bound(axis).holds(std::nextafter(kMostAccel, 1e3)));
+  EXPECT_TRUE(sample_bound(axis).holds(-kMaxAccel));
+  EXPECT_FALSE(sample_bound(axis).holds(std::nextafter(kMaxAccel, 1e3)));
   EXPECT_FALSE(sample_bound(axis).holds(std::nan("")));
   EXPECT_FALSE(sample_bound(axis).holds(5e-324));
   EXPECT_TRUE(sample_bound(axis).holds(-0.0));

@@ -1,6 +1,6 @@
 // No sample of any bit pattern, and no second of them, on any one channel, moves a published value
 // by more than its standard error for longer than its window lasts, or silences it for longer than
-// kMostSilence_s, and every one that no sensor can have measured is counted.
+// kMaxSilence_s, and every one that no sensor can have measured is counted.
 
 #include <gtest/gtest.h>
 
@@ -22,13 +22,13 @@
 namespace framewatch::estimator {
 namespace absurd_samples_test {
 
-constexpr double kMostSilence_s = 10;
+constexpr double kMaxSilence_s = 10;
 constexpr double kAfterWindow_s = 1;  // what filters remember of the time before a window
 /// Standard errors, at any time: by 25 repaired samples in every window, or by a second of a
 /// channel that is not there, of which a window of the other samples knows nothing.
-constexpr double kMostMovedByLosses = 2;
+constexpr double kMaxMovedByLosses = 2;
 /// Standard errors of windows of other lengths, whose errors are of the main window's blocks.
-constexpr double kMostMovedOfOthers = 4;
+constexpr double kMaxMovedOfOthers = 4;
 constexpr double kRate_hz = 100;
 constexpr int kFirst = 20 * static_cast<int>(kRate_hz);  // instant: everything is published
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -115,7 +115,7 @@ class AbsurdSamples : public testing::TestWithParam<bool> {
         const double moved_s = first_moved_s.try_emplace({key.first, p}, end_s).first->second;
         const WindowEstimate& now = found->second;
         longest = std::max(longest, (end_s - moved_s) / (now.rows / kRate_hz));
-        const double moved = errors / (key.first == 0 ? most_moved : kMostMovedOfOthers);
+        const double moved = errors / (key.first == 0 ? most_moved : kMaxMovedOfOthers);
         if (moved > 1 && moved > worst)
           ADD_FAILURE() << "window " << key.first << " that ends at " << end_s << " s, parameter "
                         << p << ": " << clean.value[p] << " became " << now.value[p] << " +- "
@@ -123,7 +123,7 @@ class AbsurdSamples : public testing::TestWithParam<bool> {
         worst = std::max(worst, moved);
       }
     }
-    EXPECT_LE(silence, kMostSilence_s);
+    EXPECT_LE(silence, kMaxSilence_s);
     EXPECT_LE(longest, 1 + 1e-6) << "lengths of its window";
     RecordProperty("longest", std::to_string(longest));
     RecordProperty("worst", std::to_string(worst));
@@ -160,7 +160,7 @@ TEST_P(AbsurdSamples, BeyondTheBoundChangeNothingAtAll) {
        {static_cast<double>(std::numeric_limits<std::int32_t>::max()),
         static_cast<double>(std::numeric_limits<std::int32_t>::min()),
         static_cast<double>(std::numeric_limits<float>::max()),
-        std::numeric_limits<double>::infinity(), std::nextafter(kMostAccel, 1e3)})
+        std::numeric_limits<double>::infinity(), std::nextafter(kMaxAccel, 1e3)})
     values.push_back(value);
   constexpr int kApart = 20;  // instants
   shake(static_cast<double>(values.size()) * kApart / kRate_hz + 1);
@@ -170,7 +170,7 @@ TEST_P(AbsurdSamples, BeyondTheBoundChangeNothingAtAll) {
                        static_cast<int>(i % static_cast<std::size_t>(accel_.cols())),
                        {values[i]}});
   const Said said = run(attacks);
-  expect_unmoved(said, attacks, false, kMostMovedByLosses);
+  expect_unmoved(said, attacks, false, kMaxMovedByLosses);
   EXPECT_EQ(absurd(said), static_cast<std::int64_t>(values.size()));
   EXPECT_EQ(said.counters.interruptions, 0);
 }
@@ -209,7 +209,7 @@ TEST_P(AbsurdSamples, ASecondOfThemLeavesNoTrace) {
   for (std::size_t i = 0; i < rows.size(); ++i)
     attacks.push_back({kFirst + kApart_s * static_cast<int>(kRate_hz) * static_cast<int>(i),
                        static_cast<int>(i % static_cast<std::size_t>(accel_.cols())), rows[i]});
-  expect_unmoved(run(attacks), attacks, true, kMostMovedByLosses);
+  expect_unmoved(run(attacks), attacks, true, kMaxMovedByLosses);
 }
 
 /// Stamps of one channel that are off, once or for a second, silence nothing for long.
@@ -241,7 +241,7 @@ TEST_P(AbsurdSamples, StampsOfOneChannelSilenceNothingForLong) {
       pipeline.push(sample);
     }
   pipeline.finish();
-  EXPECT_LE(silence, kMostSilence_s);
+  EXPECT_LE(silence, kMaxSilence_s);
   const AxisCounters c = pipeline.counters().axes[kAxis];
   EXPECT_GT(c.rejected + c.late, 500);
 }

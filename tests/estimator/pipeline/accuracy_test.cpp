@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
+#include "daemon/tools/lab/accuracy_trial.h"
 #include "tests/support/paper_buildings.h"
 
 namespace framewatch::estimator {

@@ -3,18 +3,18 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_study.h"
-#include "daemon/lab/excitation_study.h"
+#include "daemon/tools/lab/accuracy_study.h"
+#include "daemon/tools/lab/excitation_study.h"
 #include "tests/support/paper_buildings.h"
 
 namespace framewatch::estimator {
 namespace robustness_test {
 
-constexpr double kMostWrong = 0.05;         // of the published k off by more than 5 %
-constexpr double kMostChangeByBias = 1e-4;  // of any k
-constexpr double kSilence_h = 0.1;          // of nothing but noise; reproduce listens for an hour
+constexpr double kMaxWrong = 0.05;         // of the published k off by more than 5 %
+constexpr double kMaxChangeByBias = 1e-4;  // of any k
+constexpr double kSilence_h = 0.1;         // of nothing but noise; reproduce listens for an hour
 constexpr double kRandomMedian[] = {0.005, 0.05, 0.03};  // k, G, c of random buildings, 1 % noise
-constexpr double kLeastCoverage = 0.85;  // few motions and overlapping windows: a coarse check
+constexpr double kMinCoverage = 0.85;  // few motions and overlapping windows: a coarse check
 
 class Silence : public testing::TestWithParam<bool> {};
 
@@ -32,7 +32,7 @@ TEST(Excitation, FewPublishedStiffnessesAreWrong) {
   const daemon::ExcitationSweep sweep = daemon::study_excitation(
       "Table 1", test::table1(), test::table1_theta(), true, 2, daemon::Workers(1));
   ASSERT_GT(sweep.published(0), 500);
-  EXPECT_LE(sweep.wrong_ratio(0), kMostWrong);
+  EXPECT_LE(sweep.wrong_ratio(0), kMaxWrong);
   // all of them at 1 % noise, none when the noise is three times the motion or more
   EXPECT_EQ(sweep.levels[1].published[0], sweep.levels[1].all[0]);
   for (const daemon::ExcitationLevel& level : sweep.levels) {
@@ -43,7 +43,7 @@ TEST(Excitation, FewPublishedStiffnessesAreWrong) {
 }
 
 TEST(Bias, LeavesStiffnessesAlone) {
-  EXPECT_LT(daemon::change_by_bias(test::table1(), test::table1_theta(), 1), kMostChangeByBias);
+  EXPECT_LT(daemon::change_by_bias(test::table1(), test::table1_theta(), 1), kMaxChangeByBias);
 }
 
 TEST(RandomBuildings, AreIdentifiedLikeThePapers) {
@@ -51,7 +51,7 @@ TEST(RandomBuildings, AreIdentifiedLikeThePapers) {
   for (int kind = 0; kind < 3; ++kind) {
     const daemon::ErrorStatistics& s = row.of(daemon::Method::matched, kind);
     EXPECT_LT(s.quantile(0.5), kRandomMedian[kind]) << kind;
-    EXPECT_GT(s.coverage_ratio(), kLeastCoverage) << kind;
+    EXPECT_GT(s.coverage_ratio(), kMinCoverage) << kind;
   }
 }
 

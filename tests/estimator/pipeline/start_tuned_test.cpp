@@ -15,9 +15,9 @@ namespace start_tuned_test {
 
 constexpr int kRows = 500;  // of a whole window
 constexpr double kRate_hz = 100, kSeconds = 25;
-constexpr double kSoft = 0.4;        // design over truth
-constexpr double kSooner_s = 1;      // at least, than a pipeline that has to find its tuning
-constexpr double kMostError = 0.02;  // of a frame's stiffness in the first windows; noise 1 %
+constexpr double kSoft = 0.4;       // design over truth
+constexpr double kSooner_s = 1;     // at least, than a pipeline that has to find its tuning
+constexpr double kMaxError = 0.02;  // of a frame's stiffness in the first windows; noise 1 %
 
 struct Tower {
   Tower() : structure(test::table1()), table(structure) {
@@ -74,7 +74,7 @@ TEST(StartTuned, PublishesFromTheFirstFullWindowOn) {
   ASSERT_TRUE(first.tuning && first.tuning->found_right);
   const Seen second = run(first.tuning);
   EXPECT_LT(second.first_s, first.first_s - kSooner_s);
-  EXPECT_LT(second.worst, kMostError);
+  EXPECT_LT(second.worst, kMaxError);
 }
 
 TEST(StartTuned, WhatWasNotFoundRightIsOnlyWhereItBegins) {

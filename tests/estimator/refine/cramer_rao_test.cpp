@@ -36,11 +36,11 @@ double median_of_stiffness(const CramerRaoBound& bound) {
 
 TEST(CramerRao, TableOneAtOnePercentIsNearThePrototypes) {
   // Prototypes on other motions: 0.055 % and 0.09 %.
-  constexpr double kLeast = 0.0004, kMost = 0.0012;
+  constexpr double kMin = 0.0004, kMax = 0.0012;
   const CramerRaoBound b = bound(table1(0.01));
   ASSERT_EQ(b.status, SegmentStatus::good);
-  EXPECT_GT(median_of_stiffness(b), kLeast);
-  EXPECT_LT(median_of_stiffness(b), kMost);
+  EXPECT_GT(median_of_stiffness(b), kMin);
+  EXPECT_LT(median_of_stiffness(b), kMax);
 }
 
 TEST(CramerRao, IsProportionalToTheNoise) {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/few_sensors.h"
+#include "daemon/tools/lab/few_sensors.h"
 #include "estimator/refine/max_likelihood.h"
 #include "estimator/structure/group_design.h"
 
@@ -80,7 +80,7 @@ TEST(GroupLikelihood, ExactMotionGivesTheTruth) {
 
 TEST(GroupLikelihood, ErrorsAreThoseItStates) {
   constexpr int kDraws = 12;
-  constexpr double kLeast = 0.6, kMost = 1.5;  // of 72 errors over their standard error
+  constexpr double kMin = 0.6, kMax = 1.5;  // of 72 errors over their standard error
   double stiffness = 0, damping = 0;
   for (int seed = 1; seed <= kDraws; ++seed) {
     TallTrial trial = six_stories();
@@ -94,10 +94,10 @@ TEST(GroupLikelihood, ErrorsAreThoseItStates) {
     damping += z.tail(3).squaredNorm() / (3 * kDraws);
     EXPECT_TRUE((r.bound.array() < 1.5 * r.std_error.array()).all());
   }
-  EXPECT_GT(std::sqrt(stiffness), kLeast);
-  EXPECT_LT(std::sqrt(stiffness), kMost);
-  EXPECT_GT(std::sqrt(damping), kLeast);
-  EXPECT_LT(std::sqrt(damping), kMost);
+  EXPECT_GT(std::sqrt(stiffness), kMin);
+  EXPECT_LT(std::sqrt(stiffness), kMax);
+  EXPECT_GT(std::sqrt(damping), kMin);
+  EXPECT_LT(std::sqrt(damping), kMax);
 }
 
 TEST(GroupLikelihood, ATallBuildingIsWithinTheErrorsOfItsTable) {

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
+#include "daemon/tools/lab/accuracy_trial.h"
 #include "estimator/structure/natural_frequencies.h"
 #include "tests/support/noisy_stretch.h"
 #include "tests/support/paper_buildings.h"
@@ -75,7 +75,7 @@ TEST(MaxLikelihood, ExactMotionGivesTheTruth) {
 TEST(MaxLikelihood, ScatterIsTheBound) {
   // GIVEN one motion and 60 draws of 2 % noise: a scatter is known to 9 % of itself
   constexpr int kDraws = 60;
-  constexpr double kLeast = 0.75, kMost = 1.4;  // of each parameter
+  constexpr double kMin = 0.75, kMax = 1.4;  // of each parameter
   const Building b = two_stories();
   const auto segment = test::exact_stretch(b.structure, b.truth, test::oblique_motion(2), 0.02);
   const CramerRaoBound bound =
@@ -98,8 +98,8 @@ TEST(MaxLikelihood, ScatterIsTheBound) {
   }
   // THEN scatter and stated errors are the bound, and the 95 % intervals hold
   for (Eigen::Index p = 0; p < b.truth.size(); ++p) {
-    EXPECT_GT(std::sqrt(square[p]), kLeast) << p;
-    EXPECT_LT(std::sqrt(square[p]), kMost) << p;
+    EXPECT_GT(std::sqrt(square[p]), kMin) << p;
+    EXPECT_LT(std::sqrt(square[p]), kMax) << p;
     EXPECT_LT(std::abs(mean[p]), 0.6) << p;
     EXPECT_NEAR(stated[p], 1, 0.25) << p;
   }

@@ -3,21 +3,21 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_study.h"
+#include "daemon/tools/lab/accuracy_study.h"
 
 namespace framewatch::estimator {
 namespace streaming_bound_test {
 
 constexpr int kMotions = 3;
-constexpr double kMost = 2.0;   // three motions only; 1.6 is held over twenty
-constexpr double kLeast = 0.7;  // lower would mean that the bound is wrong
+constexpr double kMax = 2.0;  // three motions only; 1.6 is held over twenty
+constexpr double kMin = 0.7;  // lower would mean that the bound is wrong
 
 TEST(StreamingBound, TableOneStiffnessIsWithinTwiceTheBound) {
   const daemon::AccuracyRow row =
       daemon::study_accuracy(daemon::accuracy_cases().front(), kMotions, daemon::Workers(1));
   const double ratio = row.of(daemon::Method::matched, 0).quantile(0.5) / row.least_median(0);
-  EXPECT_LT(ratio, kMost);
-  EXPECT_GT(ratio, kLeast);
+  EXPECT_LT(ratio, kMax);
+  EXPECT_GT(ratio, kMin);
 }
 
 }  // namespace streaming_bound_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/tall_buildings.h"
+#include "daemon/tools/lab/tall_buildings.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/shaking/shaking_watch.h"
 #include "estimator/shaking/story_drift.h"
@@ -25,7 +25,7 @@ namespace drift_coverage_test {
 
 constexpr double kRate_hz = 100, kNormal95 = 1.96;
 constexpr double kFirst_s = 60, kSecond_s = 60;  // the first teaches the stiffness
-constexpr double kLeastCoverage = 0.90, kMostCoverage = 0.99;
+constexpr double kMinCoverage = 0.90, kMaxCoverage = 0.99;
 
 /// Keeps the largest drifts of a building, at every fine step of its integration.
 class WatchedBuilding : public SimulatedBuilding {
@@ -223,8 +223,8 @@ TEST(DriftCoverage, StatedIntervalsHoldTheTruth) {
   }
   const double held = static_cast<double>(all.held) / all.stories;
   std::printf("| all | %d | %.1f %% | | | | %d |\n", all.stories, 100 * held, all.gaps);
-  EXPECT_GE(held, kLeastCoverage);
-  EXPECT_LE(held, kMostCoverage);
+  EXPECT_GE(held, kMinCoverage);
+  EXPECT_LE(held, kMaxCoverage);
 }
 
 }  // namespace drift_coverage_test

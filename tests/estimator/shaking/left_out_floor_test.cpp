@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/few_sensors.h"
+#include "daemon/tools/lab/few_sensors.h"
 
 namespace framewatch::estimator {
 namespace left_out_floor_test {

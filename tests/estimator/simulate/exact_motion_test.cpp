@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
+#include "daemon/tools/lab/accuracy_trial.h"
 #include "estimator/simulate/band_noise.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/structure/matrices.h"

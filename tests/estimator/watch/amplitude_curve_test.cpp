@@ -31,7 +31,7 @@ AmplitudeBins learned(std::uint64_t seed, int windows, double error) {
 
 TEST(AmplitudeCurve, FollowsALawWithinItsErrors) {
   constexpr int kDraws = 20, kPlaces = 10;
-  constexpr double kMostMissed = 0.02;  // of 3 errors
+  constexpr double kMaxMissed = 0.02;  // of 3 errors
   int missed = 0, places = 0;
   for (std::uint64_t seed = 1; seed <= kDraws; ++seed) {
     const AmplitudeCurve curve(1, kError / std::sqrt(200), learned(seed, 200, kError).points(1));
@@ -43,7 +43,7 @@ TEST(AmplitudeCurve, FollowsALawWithinItsErrors) {
       EXPECT_LT(e.std_error, 0.005);
     }
   }
-  EXPECT_LE(missed, kMostMissed * places);
+  EXPECT_LE(missed, kMaxMissed * places);
 }
 
 TEST(AmplitudeCurve, BeyondWhatWasLearnedTheErrorGrowsTowardSoftening) {

@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
-#include "daemon/lab/paper_buildings.h"
+#include "daemon/tools/lab/accuracy_trial.h"
+#include "daemon/tools/lab/paper_buildings.h"
 #include "estimator/identify/groups/layout_prediction.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/simulate/linear_response.h"
@@ -27,13 +27,13 @@ namespace change_record_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Of stated 95 % intervals, at every second after the announcement.
-constexpr double kLeastCovered = 0.92;
+constexpr double kMinCovered = 0.92;
 /// Share of elements that did not change and are flagged.
-constexpr double kMostNeighbours = 0.01;
+constexpr double kMaxNeighbours = 0.01;
 /// The same of groups that soften with amplitude: beside a loss the others soften in another way.
-constexpr double kMostNeighboursSoftening = 0.03;
+constexpr double kMaxNeighboursSoftening = 0.03;
 /// Share of values that lie within two of every earlier error.
-constexpr double kLeastSteady = 0.95;
+constexpr double kMinSteady = 0.95;
 
 /// FRAMEWATCH_CHANGE_RUNS: cases of each kind of building.
 int wanted_runs() {
@@ -84,9 +84,9 @@ struct Tally {
   static double most_of(double probability, int draws) {
     return probability * draws + 2 * std::sqrt(probability * draws) + 1;
   }
-  void expect(double neighbours = kMostNeighbours) const {
-    EXPECT_GE(covered, kLeastCovered * looks);
-    EXPECT_LE(pairs - steady, most_of(1 - kLeastSteady, pairs));
+  void expect(double neighbours = kMaxNeighbours) const {
+    EXPECT_GE(covered, kMinCovered * looks);
+    EXPECT_LE(pairs - steady, most_of(1 - kMinSteady, pairs));
     EXPECT_LE(flagged, most_of(neighbours, others));
     EXPECT_EQ(grown, 0);
     EXPECT_EQ(before, 0);
@@ -340,7 +340,7 @@ TEST(ChangeRecord, HoldsOfGroupsThatSoftenWithAmplitude) {
   for (int run = 0; run < wanted_runs(); ++run)
     partial(static_cast<std::uint64_t>(300 + run), 0.15, tally);
   tally.print("groups that soften");
-  tally.expect(kMostNeighboursSoftening);
+  tally.expect(kMaxNeighboursSoftening);
 }
 
 }  // namespace change_record_test

@@ -53,7 +53,7 @@ TEST(ChangeSize, LeavesOutOneWildWindowAndFollowsTwo) {
 TEST(ChangeSize, AnAlarmIsReportedAgainAsItsErrorShrinks) {
   constexpr double kChange = -0.15, kFrom_s = 100, kEnd_s = 400, kShrinks = 2.5;
   constexpr SensorClock::duration kSame{2'500'000};  // the instant is found more sharply
-  constexpr std::size_t kMostNews = 12;
+  constexpr std::size_t kMaxNews = 12;
   Structure s;
   s.stories = 1;
   s.frames_x = {"y1"};
@@ -86,7 +86,7 @@ TEST(ChangeSize, AnAlarmIsReportedAgainAsItsErrorShrinks) {
       for (const Alarm& alarm : watch.push(e)) news.push_back(alarm);
     }
   ASSERT_GE(news.size(), 2u);
-  EXPECT_LE(news.size(), kMostNews);
+  EXPECT_LE(news.size(), kMaxNews);
   EXPECT_EQ(news.front().state, AlarmState::raised);
   const Change first = news.front().change, last = news.back().change;
   EXPECT_EQ(news.back().state, AlarmState::changed);

@@ -226,7 +226,7 @@ TEST(GroupWatch, RecoveryAfterStrongMotionIsNoChange) {
 }
 
 TEST(GroupWatch, ALastingLossIsFoundWhenTheMotionIsAsWeakAsBefore) {
-  constexpr double kLost = 0.35, kLatest_s = 210, kErrors = 2, kMostError = 0.3;
+  constexpr double kLost = 0.35, kLatest_s = 210, kErrors = 2, kMaxError = 0.3;
   const double of_group = 1 / (1 + 0.2 * (1 / (1 - kLost) - 1)) - 1;
   const Aftermath after = shaken(kLost);
   std::printf(
@@ -234,7 +234,7 @@ TEST(GroupWatch, ALastingLossIsFoundWhenTheMotionIsAsWeakAsBefore) {
       after.found_s, 100 * after.ratio, 100 * after.error, 100 * of_group, after.others);
   EXPECT_LT(after.found_s, kLatest_s);
   EXPECT_NEAR(after.ratio, of_group, kErrors * after.error);
-  EXPECT_LT(after.error, kMostError * std::abs(of_group));
+  EXPECT_LT(after.error, kMaxError * std::abs(of_group));
   EXPECT_EQ(after.others, 0);
 }
 

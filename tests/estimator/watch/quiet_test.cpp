@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
+#include "daemon/tools/lab/accuracy_trial.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/watch/watch.h"
 #include "tests/support/paper_buildings.h"

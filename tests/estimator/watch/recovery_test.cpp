@@ -18,9 +18,9 @@ namespace recovery_test {
 
 // Limits.
 constexpr int kRuns = 200;
-constexpr int kMostOutside = 20;  // of kRuns, of intervals of 95 %: 5 % are expected
-constexpr int kMostWrong = 0;     // verdicts that the truth contradicts
-constexpr int kLeastLastingDay = 190, kLeastRecoveringDay = 190;  // of kRuns, after a day
+constexpr int kMaxOutside = 20;  // of kRuns, of intervals of 95 %: 5 % are expected
+constexpr int kMaxWrong = 0;     // verdicts that the truth contradicts
+constexpr int kMinLastingDay = 190, kMinRecoveringDay = 190;  // of kRuns, after a day
 
 constexpr double kBaseline = 5e9;  // N/m
 constexpr double kWindow_s = 5, kLong_s = 3600, kDay_s = 86400;
@@ -132,11 +132,11 @@ TEST(Recovery, AFrameThatRecoversIsSaidToRecoverAndIsExpectedWhereItWillBe) {
   s.loss = recovers;
   for (const double until_s : {600.0, 3600.0, kDay_s}) {
     const Count c = count(s, until_s);
-    EXPECT_LE(c.loss_outside, kMostOutside) << until_s;
-    EXPECT_LE(c.later_outside, kMostOutside) << until_s;
-    EXPECT_LE(c.of(RecoveryVerdict::recovered), kMostWrong) << until_s;
+    EXPECT_LE(c.loss_outside, kMaxOutside) << until_s;
+    EXPECT_LE(c.later_outside, kMaxOutside) << until_s;
+    EXPECT_LE(c.of(RecoveryVerdict::recovered), kMaxWrong) << until_s;
   }
-  EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::recovering), kLeastRecoveringDay);
+  EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::recovering), kMinRecoveringDay);
 }
 
 TEST(Recovery, ALastingLossIsSaidToLastOnceRecoveryIsExcluded) {
@@ -144,12 +144,12 @@ TEST(Recovery, ALastingLossIsSaidToLastOnceRecoveryIsExcluded) {
   s.loss = stays;
   for (const double until_s : {60.0, 600.0, 3600.0, kDay_s}) {
     const Count c = count(s, until_s);
-    EXPECT_LE(c.loss_outside, kMostOutside) << until_s;
-    EXPECT_LE(c.of(RecoveryVerdict::recovered), kMostWrong) << until_s;
+    EXPECT_LE(c.loss_outside, kMaxOutside) << until_s;
+    EXPECT_LE(c.of(RecoveryVerdict::recovered), kMaxWrong) << until_s;
     // Three errors: one of 740 noises looks like a recovery.
     EXPECT_LE(c.of(RecoveryVerdict::recovering), 2) << until_s;
   }
-  EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::lasting), kLeastLastingDay);
+  EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::lasting), kMinLastingDay);
 }
 
 TEST(Recovery, WhatStopsRecoveringIsLasting) {
@@ -163,7 +163,7 @@ TEST(Recovery, WhatStopsRecoveringIsLasting) {
   const Count week = count(s, 7 * kDay_s);
   EXPECT_GE(week.of(RecoveryVerdict::lasting), 180);
   EXPECT_LE(week.of(RecoveryVerdict::recovering), 4);
-  EXPECT_LE(week.loss_outside, kMostOutside);
+  EXPECT_LE(week.loss_outside, kMaxOutside);
 }
 
 TEST(Recovery, AnIntactFrameThatIsSofterInStrongMotionHasNotRecoveredAndLostNothing) {
@@ -171,7 +171,7 @@ TEST(Recovery, AnIntactFrameThatIsSofterInStrongMotionHasNotRecoveredAndLostNoth
   for (const double until_s : {60.0, 600.0, kDay_s}) {
     const Count c = count(s, until_s);
     EXPECT_LE(c.of(RecoveryVerdict::lasting) + c.of(RecoveryVerdict::recovering), 1) << until_s;
-    EXPECT_LE(c.loss_outside, kMostOutside) << until_s;
+    EXPECT_LE(c.loss_outside, kMaxOutside) << until_s;
   }
   EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::recovered), 190);
 }
@@ -209,8 +209,8 @@ TEST(Recovery, IntervalsHoldAndNoVerdictIsWrong) {
           "loss outside %2d\n",
           c.name, until_s, n.of(RecoveryVerdict::not_known), n.of(RecoveryVerdict::recovering),
           n.of(RecoveryVerdict::lasting), n.of(RecoveryVerdict::recovered), n.loss_outside);
-      EXPECT_LE(n.loss_outside, kMostOutside) << c.name << ' ' << until_s;
-      EXPECT_EQ(n.of(c.wrong), kMostWrong) << c.name << ' ' << until_s;
+      EXPECT_LE(n.loss_outside, kMaxOutside) << c.name << ' ' << until_s;
+      EXPECT_EQ(n.of(c.wrong), kMaxWrong) << c.name << ' ' << until_s;
     }
 }
 

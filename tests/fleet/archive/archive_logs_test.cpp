@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/history/history_keeper.h"
-#include "daemon/history/raw_history.h"
+#include "daemon/monitor/history/history_keeper.h"
+#include "daemon/monitor/history/raw_history.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"

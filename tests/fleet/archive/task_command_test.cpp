@@ -11,11 +11,11 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/clocks.h"
+#include "daemon/base/sqlite_file.h"
 #include "daemon/config/config.h"
-#include "daemon/documents/sqlite_file.h"
-#include "daemon/estimation/estimation.h"
-#include "daemon/replay/history_output.h"
-#include "daemon/replay/replay_survey.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "daemon/tools/replay/history_output.h"
+#include "daemon/tools/replay/replay_survey.h"
 #include "fleet/archive/archive_logs.h"
 #include "fleet/archive/program_identity.h"
 #include "fleet/archive/task_lock.h"

@@ -7,7 +7,7 @@
 namespace framewatch::fleet {
 namespace message_test {
 
-constexpr std::size_t kMost = 1 << 20;
+constexpr std::size_t kMax = 1 << 20;
 
 Bytes repeated(std::size_t count) {
   Bytes out;
@@ -19,7 +19,7 @@ TEST(Message, WhatIsPackedComesBack) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{10}, std::size_t{100'000}}) {
     const Message m = packed("fw.up.a.event", "a/event/1", "event_t", repeated(size), "abc");
     std::string why;
-    const auto back = unpacked(m, kMost, why);
+    const auto back = unpacked(m, kMax, why);
     ASSERT_TRUE(back) << why;
     EXPECT_EQ(*back, repeated(size));
     EXPECT_EQ(m.header(header::kEncoding), size > 1000 ? "zstd" : "");
@@ -29,10 +29,10 @@ TEST(Message, WhatIsPackedComesBack) {
 }
 
 TEST(Message, WhatUnpacksToTooMuchIsRefusedBeforeMemoryIsTaken) {
-  const Message m = packed("s", "k", "raw", repeated(kMost + 1), "");
-  EXPECT_LT(m.bytes.size(), kMost / 10);
+  const Message m = packed("s", "k", "raw", repeated(kMax + 1), "");
+  EXPECT_LT(m.bytes.size(), kMax / 10);
   std::string why;
-  EXPECT_FALSE(unpacked(m, kMost, why));
+  EXPECT_FALSE(unpacked(m, kMax, why));
   EXPECT_NE(why.find("more than"), std::string::npos) << why;
 }
 
@@ -42,12 +42,12 @@ TEST(Message, DamagedBytesAndForeignEncodingsAreRefused) {
   std::string why;
   Message cut = m;
   cut.bytes.resize(cut.bytes.size() / 2);
-  EXPECT_FALSE(unpacked(cut, kMost, why));
+  EXPECT_FALSE(unpacked(cut, kMax, why));
   Message noise = m;
   noise.bytes.assign(100, 0x55);
-  EXPECT_FALSE(unpacked(noise, kMost, why));
+  EXPECT_FALSE(unpacked(noise, kMax, why));
   m.headers[header::kEncoding] = "lzma";
-  EXPECT_FALSE(unpacked(m, kMost, why));
+  EXPECT_FALSE(unpacked(m, kMax, why));
 }
 
 }  // namespace message_test

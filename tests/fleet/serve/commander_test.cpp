@@ -115,7 +115,7 @@ TEST_F(CommanderAtWork, NonsenseIsNoAnswer) {
 }
 
 TEST_F(CommanderAtWork, TooManyAreRefused) {
-  for (std::size_t i = 0; i < Commander::kMostOrders; ++i)
+  for (std::size_t i = 0; i < Commander::kMaxOrders; ++i)
     ASSERT_TRUE(commander_.give(order("ping")));
   EXPECT_FALSE(commander_.give(order("ping")));
 }

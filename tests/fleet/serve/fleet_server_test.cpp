@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/base/file_digest.h"
-#include "daemon/web/web_socket.h"
+#include "daemon/page/web/web_socket.h"
 #include "fleet/serve/fleet_pages.h"
-#include "tests/daemon/web/served.h"
+#include "tests/daemon/page/web/served.h"
 #include "tests/fleet/support/own_postgres.h"
 
 namespace framewatch::fleet {

@@ -1,6 +1,6 @@
 #include "fleet/uplink/command_desk.h"
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "tests/fleet/uplink/uplink_fixture.h"
 
 namespace framewatch::fleet {

@@ -4,7 +4,7 @@
 
 #include <framewatch/acknowledged_t.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "tests/fleet/uplink/uplink_fixture.h"
 
 namespace framewatch::fleet {

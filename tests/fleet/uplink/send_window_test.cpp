@@ -62,7 +62,7 @@ TEST(SendWindow, IsBoundedInMessagesAndBytes) {
   SendWindow w;
   int n = 0;
   while (w.takes(0)) w.add(numbered(++n), 0);
-  EXPECT_EQ(w.messages(), SendWindow::kMostMessages);
+  EXPECT_EQ(w.messages(), SendWindow::kMaxMessages);
   SendWindow heavy;
   while (heavy.takes(0)) heavy.add(numbered(++n, 1 << 20), 0);
   EXPECT_LE(heavy.messages(), 5U);

@@ -11,9 +11,9 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include "daemon/documents/sqlite_file.h"
-#include "daemon/history/history_files.h"
-#include "daemon/history/history_schema.h"
+#include "daemon/base/sqlite_file.h"
+#include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/history_schema.h"
 #include "fleet/link/link.h"
 #include "fleet/message/subject.h"
 #include "fleet/uplink/uplink.h"

@@ -2,7 +2,7 @@
 
 #include <framewatch/summary_t.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/fleet/uplink/uplink_fixture.h"
 

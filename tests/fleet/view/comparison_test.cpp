@@ -10,7 +10,7 @@ namespace comparison_test {
 
 // Limits.
 constexpr int kTables = 300, kStiffnesses = 100, kPeriods = 10;
-constexpr int kMostFalse = 30;          // tables of 300 with a loss that is none; 15 are meant
+constexpr int kMaxFalse = 30;           // tables of 300 with a loss that is none; 15 are meant
 constexpr double kTenThousand = 4.417;  // standard errors: 0.05 / 10000, one-sided
 
 Level level(const std::vector<float>& medians, float error) {
@@ -75,7 +75,7 @@ TEST(Comparison, ChanceAloneSeldomMakesALoss) {
     }
     falsely += loss ? 1 : 0;
   }
-  EXPECT_LE(falsely, kMostFalse);
+  EXPECT_LE(falsely, kMaxFalse);
 }
 
 }  // namespace comparison_test

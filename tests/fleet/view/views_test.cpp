@@ -11,7 +11,7 @@
 #include <framewatch/service_t.hpp>
 #include <framewatch/watch_t.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "fleet/store/fleet_store.h"
 #include "fleet/view/building_view.h"
 #include "fleet/view/earthquake_view.h"

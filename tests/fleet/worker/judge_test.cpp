@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/base/clocks.h"
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "fleet/message/key.h"
 #include "fleet/message/subject.h"
 #include "tests/fleet/worker/worker_fixture.h"

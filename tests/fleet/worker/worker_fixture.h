@@ -10,7 +10,7 @@
 #include <framewatch/parameter_table_t.hpp>
 #include <framewatch/summary_t.hpp>
 
-#include "drivers/base/encoded.h"
+#include "drivers/files/encoded.h"
 #include "fleet/link/link.h"
 #include "fleet/message/key.h"
 #include "fleet/message/subject.h"

@@ -187,7 +187,7 @@ TEST_F(WorkerTest, AsksABuildingForDaysOfWhichTheDatabaseHasLessThanItsInventory
   pass(60'000'000);
   EXPECT_TRUE(hub_.commands().empty());  // what is under way may still come
   pass(1'800'000'000);
-  ASSERT_EQ(hub_.commands().size(), Worker::kMostResent_days);
+  ASSERT_EQ(hub_.commands().size(), Worker::kMaxResent_days);
   const Message& asked = hub_.commands().front();
   EXPECT_EQ(asked.subject, "fw.down.kobe.resend");
   EXPECT_EQ(std::string(asked.bytes.begin(), asked.bytes.end()),
@@ -195,7 +195,7 @@ TEST_F(WorkerTest, AsksABuildingForDaysOfWhichTheDatabaseHasLessThanItsInventory
   EXPECT_EQ(asked.header(header::kWho), "worker");
   EXPECT_EQ(worker_.counters().resends, 5);
   pass(3'600'000'000);
-  EXPECT_EQ(hub_.commands().size(), Worker::kMostResent_days);  // once for an inventory
+  EXPECT_EQ(hub_.commands().size(), Worker::kMaxResent_days);  // once for an inventory
 }
 
 TEST_F(WorkerTest, AsksForNothingWhileTheDatabaseIsAwayOrHasEverything) {

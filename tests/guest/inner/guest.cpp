@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/simulation/scenario.h"
-#include "daemon/simulation/simulation.h"
+#include "daemon/tools/simulation/scenario.h"
+#include "daemon/tools/simulation/simulation.h"
 #include "drivers/can/can_encoder.h"
 #include "drivers/lcm/accel_messages.h"
 

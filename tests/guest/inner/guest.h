@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/estimation/estimation.h"
+#include "daemon/monitor/estimation/estimation.h"
 #include "drivers/can/can_source.h"
 
 namespace framewatch::test {

@@ -24,8 +24,8 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/process_usage.h"
 #include "daemon/base/stop_signal.h"
-#include "drivers/base/encoded.h"
-#include "drivers/base/number_text.h"
+#include "drivers/files/encoded.h"
+#include "drivers/files/number_text.h"
 #include "fleet/link/nats_link.h"
 #include "fleet/uplink/uplink.h"
 

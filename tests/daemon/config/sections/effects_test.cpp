@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/simulation/scenario.h"
-#include "daemon/simulation/simulation_truth.h"
+#include "daemon/tools/simulation/scenario.h"
+#include "daemon/tools/simulation/simulation_truth.h"
 #include "tests/support/example_effects.h"
 
 namespace framewatch::daemon {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "daemon/config/config.h"
+#include "daemon/config/keys/option_table.h"
 #include "daemon/config/sections/hazus_limits.h"
-#include "daemon/keys/option_table.h"
 #include "tests/support/config_fixture.h"
 
 namespace framewatch::daemon {

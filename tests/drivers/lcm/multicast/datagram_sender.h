@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "drivers/base/descriptor.h"
+#include "drivers/files/descriptor.h"
 #include "tests/drivers/lcm/multicast/lcm_packets.h"
 
 namespace framewatch::drivers {

@@ -94,7 +94,7 @@ TEST_F(Assembly, KeepsNothingOfUnwantedChannels) {
 
 TEST_F(Assembly, TakesMemoryForBytesThatCameOnly) {
   EXPECT_EQ(add(part(1, 1u << 28, 0, 0, 65535, kFirst)), Outcome::refused);
-  EXPECT_EQ(add(part(2, FragmentAssembly::kMostMessageBytes, 0, 0, 65535, kFirst)), Outcome::waits);
+  EXPECT_EQ(add(part(2, FragmentAssembly::kMaxMessageBytes, 0, 0, 65535, kFirst)), Outcome::waits);
   EXPECT_LT(assembly_.bytes(), 1000u);
 }
 
@@ -103,12 +103,12 @@ TEST_F(Assembly, IsBoundedWhateverComes) {
   const std::string body(60'000, 'x');
   for (std::uint32_t i = 0; i < 5000; ++i) {
     const LcmSender sender{i % 700, 1};
-    (void)add(part(1, FragmentAssembly::kMostMessageBytes,
+    (void)add(part(1, FragmentAssembly::kMaxMessageBytes,
                    static_cast<std::uint32_t>(random() % (15u << 20)), i % 65535, 65535,
                    i % 65535 == 0 ? kFirst : body),
               sender);
-    ASSERT_LE(assembly_.bytes(), FragmentAssembly::kMostBytes);
-    ASSERT_LE(assembly_.senders(), FragmentAssembly::kMostSenders);
+    ASSERT_LE(assembly_.bytes(), FragmentAssembly::kMaxBytes);
+    ASSERT_LE(assembly_.senders(), FragmentAssembly::kMaxSenders);
   }
   EXPECT_GT(assembly_.unfinished(), 0);
 }

@@ -26,7 +26,7 @@ VectorXd in_parts(const VectorXd& d) {
 }
 
 TEST(Yielding, WhatHasYieldedEndsWhereSmallStepsDo) {
-  constexpr double kMost = 5e-3;  // of the force
+  constexpr double kMax = 5e-3;  // of the force
   VectorXd d(400);
   for (Index i = 0; i < d.size(); ++i) {
     const auto t = static_cast<double>(i);
@@ -43,7 +43,7 @@ TEST(Yielding, WhatHasYieldedEndsWhereSmallStepsDo) {
       double most = 0;
       for (Index i = 0; i < d.size(); ++i)
         most = std::max(most, std::abs(force[i] - of_parts[kParts * i]) / p[1]);
-      EXPECT_LT(most, kMost) << static_cast<int>(form) << " " << exponent;
+      EXPECT_LT(most, kMax) << static_cast<int>(form) << " " << exponent;
     }
 }
 

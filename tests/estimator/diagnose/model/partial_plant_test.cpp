@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "daemon/lab/few_sensors.h"
+#include "daemon/tools/lab/few_sensors.h"
 #include "estimator/diagnose/fit/unknowns.h"
 #include "estimator/diagnose/locate/candidate_places.h"
 #include "estimator/diagnose/model/make_plant.h"

@@ -16,9 +16,9 @@ namespace element_proposals_test {
 
 using test::Recorded;
 
-constexpr int kFrame = 2;             // of 8e6 N/m; it deforms by about 16 mm, 0.2 m/s
-constexpr double kSizeOff = 0.4;      // of a start value: the scalar fit sees noisy motion
-constexpr double kLeastShare = 0.05;  // of the design, what a proposal leaves of a stiffness
+constexpr int kFrame = 2;           // of 8e6 N/m; it deforms by about 16 mm, 0.2 m/s
+constexpr double kSizeOff = 0.4;    // of a start value: the scalar fit sees noisy motion
+constexpr double kMinShare = 0.05;  // of the design, what a proposal leaves of a stiffness
 
 bool dissipates(LawForm form) {
   return is_hysteretic(form) || form == LawForm::friction || form == LawForm::power_damping;
@@ -165,7 +165,7 @@ TEST(ElementProposals, NoStiffnessIsProposedBelowTheLeastShare) {
   const std::vector<Proposal> proposals = frame.proposals();
   ASSERT_FALSE(proposals.empty());
   for (const Proposal& p : proposals)
-    EXPECT_GE(p.model.theta[element], 0.999 * kLeastShare * design) << name_of(p.kind);
+    EXPECT_GE(p.model.theta[element], 0.999 * kMinShare * design) << name_of(p.kind);
 }
 
 TEST(ElementProposals, LinearForceGoesToStiffnessAndDamping) {

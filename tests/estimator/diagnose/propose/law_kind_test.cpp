@@ -15,9 +15,9 @@ namespace law_kind_test {
 
 using test::Recorded;
 
-constexpr int kFrame = 2;             // of 8e6 N/m; it deforms by about 16 mm, 0.2 m/s
-constexpr double kLeastShare = 0.85;  // of the force beyond noise that its kind explains
-constexpr double kMostOf = 0.75;      // the same where the law is strong
+constexpr int kFrame = 2;           // of 8e6 N/m; it deforms by about 16 mm, 0.2 m/s
+constexpr double kMinShare = 0.85;  // of the force beyond noise that its kind explains
+constexpr double kMaxOf = 0.75;     // the same where the law is strong
 
 KindOfLaw kind_with(EffectKind kind, std::initializer_list<double> values) {
   Effect effect = make_effect(kind, test::in_frame(kFrame));
@@ -34,13 +34,13 @@ double share_of(const KindOfLaw& of, LawKind kind) {
 TEST(LawKind, IsFoundWithoutAFormula) {
   const KindOfLaw elastic = kind_with(EffectKind::cubic_stiffness, {2.25e10});
   EXPECT_STREQ(law_kind_word(elastic.kind), "elastic");
-  EXPECT_GT(share_of(elastic, LawKind::elastic), kLeastShare);
+  EXPECT_GT(share_of(elastic, LawKind::elastic), kMinShare);
   const KindOfLaw hysteretic = kind_with(EffectKind::bouc_wen, {4e6, 4e-3, 1, 0.5});
   EXPECT_STREQ(law_kind_word(hysteretic.kind), "hysteretic");
-  EXPECT_GT(share_of(hysteretic, LawKind::hysteretic), kLeastShare);
+  EXPECT_GT(share_of(hysteretic, LawKind::hysteretic), kMinShare);
   const KindOfLaw impact = kind_with(EffectKind::two_sided_gap, {8e6, 1e-2});
   EXPECT_STREQ(law_kind_word(impact.kind), "impact");
-  EXPECT_GT(share_of(impact, LawKind::impact), kLeastShare);
+  EXPECT_GT(share_of(impact, LawKind::impact), kMinShare);
   const KindOfLaw dissipative = kind_with(EffectKind::coulomb_friction, {1.26e4, 4e-3});
   EXPECT_STREQ(law_kind_word(dissipative.kind), "dissipative");
 }
@@ -97,11 +97,11 @@ TEST(LawKind, IsFoundOfLawsWithoutAName) {
                   grows = kind(Unnamed::Sort::grows), waves = kind(Unnamed::Sort::waves),
                   gives = kind(Unnamed::Sort::gives);
   EXPECT_STREQ(law_kind_word(tires.kind), "hysteretic");
-  EXPECT_GT(share_of(tires, LawKind::hysteretic), kLeastShare);
+  EXPECT_GT(share_of(tires, LawKind::hysteretic), kMinShare);
   EXPECT_STREQ(law_kind_word(slackens.kind), "hysteretic");
-  EXPECT_GT(share_of(slackens, LawKind::hysteretic), kLeastShare);
+  EXPECT_GT(share_of(slackens, LawKind::hysteretic), kMinShare);
   EXPECT_STREQ(law_kind_word(grows.kind), "dissipative");
-  EXPECT_GT(share_of(grows, LawKind::dissipative), kMostOf);
+  EXPECT_GT(share_of(grows, LawKind::dissipative), kMaxOf);
   EXPECT_STREQ(law_kind_word(waves.kind), "elastic") << "no contact";
   EXPECT_GT(share_of(waves, LawKind::elastic), share_of(waves, LawKind::impact) + 0.3);
   EXPECT_STREQ(law_kind_word(gives.kind), "elastic") << "softer beyond, no contact";

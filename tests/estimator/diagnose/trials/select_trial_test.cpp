@@ -14,7 +14,7 @@ namespace select_trial_test {
 using test::HandMade;
 
 // Shares of the excess that a trial has to take away.
-constexpr double kMost = 0.97, kMostWhereChanceIsLeft = 0.9, kNear = 0.005;
+constexpr double kMax = 0.97, kMaxWhereChanceIsLeft = 0.9, kNear = 0.005;
 constexpr double kExcess = 4000, kNeeded = 100;
 constexpr double kWorse = 1.02;  // misfit of a record, relative
 
@@ -87,14 +87,14 @@ TEST(AdoptTrials, ALawTakesMostOfTheExcessAway) {
     double share, needed;
     bool adopted;
   };
-  const double left = (1 - kMostWhereChanceIsLeft) * kExcess;
+  const double left = (1 - kMaxWhereChanceIsLeft) * kExcess;
   const Share all[] = {
-      {kMost + kNear, kNeeded, true},
-      {kMost - kNear, kNeeded, false},
+      {kMax + kNear, kNeeded, true},
+      {kMax - kNear, kNeeded, false},
       // The rest is within chance: less will do.
-      {kMost - kNear, left, true},
-      {kMostWhereChanceIsLeft + kNear, left, true},
-      {kMostWhereChanceIsLeft - kNear, 2 * left, false},
+      {kMax - kNear, left, true},
+      {kMaxWhereChanceIsLeft + kNear, left, true},
+      {kMaxWhereChanceIsLeft - kNear, 2 * left, false},
       {1.2, kNeeded, true},
       {-0.2, kNeeded, false},
   };

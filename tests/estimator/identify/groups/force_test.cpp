@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
-#include "daemon/lab/few_sensors.h"
+#include "daemon/tools/lab/accuracy_trial.h"
+#include "daemon/tools/lab/few_sensors.h"
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/simulate/applied_force.h"
 #include "estimator/simulate/ground_motion.h"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/few_sensors.h"
+#include "daemon/tools/lab/few_sensors.h"
 #include "estimator/identify/groups/layout_prediction.h"
 #include "estimator/pipeline/pipeline.h"
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/lab/accuracy_trial.h"
-#include "daemon/lab/paper_method.h"
+#include "daemon/tools/lab/accuracy_trial.h"
+#include "daemon/tools/lab/paper_method.h"
 #include "estimator/simulate/exact_motion.h"
 #include "tests/support/paper_buildings.h"
 

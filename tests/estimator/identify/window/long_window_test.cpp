@@ -17,13 +17,13 @@ namespace long_window_test {
 
 constexpr double kGround = 1e-4, kNoise = 7e-5;  // m/s^2/sqrt(Hz)
 constexpr double kLong_s = 200;
-constexpr int kWindow = 4;            // its index, behind four ordinary ones
-constexpr double kOff = 0.08;         // of the design
-constexpr double kMostErrors = 5;     // standard errors a value may be off by
-constexpr double kMostScatter = 1.4;  // rms of these
-constexpr double kMostError = 0.09;
-constexpr double kMostErrorOfOthers = 0.035;  // of what ordinary windows publish
-constexpr double kSpike = 1000;               // m/s^2
+constexpr int kWindow = 4;           // its index, behind four ordinary ones
+constexpr double kOff = 0.08;        // of the design
+constexpr double kMaxErrors = 5;     // standard errors a value may be off by
+constexpr double kMaxScatter = 1.4;  // rms of these
+constexpr double kMaxError = 0.09;
+constexpr double kMaxErrorOfOthers = 0.035;  // of what ordinary windows publish
+constexpr double kSpike = 1000;              // m/s^2
 
 struct DeliveryResult {
   std::vector<WindowEstimate> given;
@@ -41,7 +41,7 @@ class LongWindows : public testing::Test {
     for (int p = 0; p < table_.size(); ++p) config.design[p] *= p % 2 == 0 ? 1 + kOff : 1 - kOff;
     config.options.hop_s = 0.5;
     config.options.long_window_s = kLong_s;
-    config.options.max_error_k = kMostErrorOfOthers;
+    config.options.max_error_k = kMaxErrorOfOthers;
     test::RestlessBuilding building(structure_, truth_, axes_, 3);
     building.set_ground(kGround);
     building.set_noise(kNoise);
@@ -112,9 +112,9 @@ TEST_F(LongWindows, ShowWhatNoOtherWindowDoes) {
   double error = 0;
   const std::vector<double> off = deviations(e, &error);
   ASSERT_EQ(off.size(), frames_);
-  EXPECT_LT(rms(off), kMostScatter);
-  for (const double z : off) EXPECT_LT(std::abs(z), kMostErrors);
-  EXPECT_LT(error, kMostError);
+  EXPECT_LT(rms(off), kMaxScatter);
+  for (const double z : off) EXPECT_LT(std::abs(z), kMaxErrors);
+  EXPECT_LT(error, kMaxError);
 }
 
 TEST_F(LongWindows, OneStrongMomentDoesNotStandForAllOfIt) {
@@ -130,7 +130,7 @@ TEST_F(LongWindows, OneStrongMomentDoesNotStandForAllOfIt) {
   const std::vector<double> off = deviations(run.given.back(), &error);
   (void)deviations(calm.given.back(), &calm_error);
   ASSERT_EQ(off.size(), frames_);
-  EXPECT_LT(rms(off), kMostScatter);
+  EXPECT_LT(rms(off), kMaxScatter);
   EXPECT_GT(error, calm_error / 6);  // a hundred times less if it did
 }
 
@@ -140,7 +140,7 @@ TEST_F(LongWindows, ASpikeOfASensorIsNoMotion) {
   ASSERT_FALSE(run.given.empty());
   const std::vector<double> off = deviations(run.given.back());
   ASSERT_GE(off.size(), frames_ * 3 / 4);  // errors are larger, and near the limit
-  EXPECT_LT(rms(off), kMostScatter);
+  EXPECT_LT(rms(off), kMaxScatter);
 }
 
 TEST_F(LongWindows, ASensorThatIsGoneForAMomentIsLeftOutAndOneThatDiesCostsItsPlace) {
@@ -153,7 +153,7 @@ TEST_F(LongWindows, ASensorThatIsGoneForAMomentIsLeftOutAndOneThatDiesCostsItsPl
       23'000, {}, [&](int t, int axis) { return axis != top || t < 10'000 || t >= 10'300; });
   ASSERT_FALSE(moment.given.empty());
   EXPECT_EQ(deviations(moment.given.back()).size(), frames_);
-  EXPECT_LT(rms(deviations(moment.given.back())), kMostScatter);
+  EXPECT_LT(rms(deviations(moment.given.back())), kMaxScatter);
   const DeliveryResult dead =
       this->run(32'000, {}, [&](int t, int axis) { return axis != top || t < 10'000; });
   ASSERT_FALSE(dead.given.empty());
@@ -162,7 +162,7 @@ TEST_F(LongWindows, ASensorThatIsGoneForAMomentIsLeftOutAndOneThatDiesCostsItsPl
             Observability::channel_lost);
   const std::vector<double> off = deviations(e);
   EXPECT_GE(off.size(), frames_ * 3 / 4);
-  EXPECT_LT(rms(off), kMostScatter);
+  EXPECT_LT(rms(off), kMaxScatter);
 }
 
 }  // namespace long_window_test

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/estimation/design_error.h"
-#include "daemon/lab/few_sensors.h"
+#include "daemon/monitor/estimation/design_error.h"
+#include "daemon/tools/lab/few_sensors.h"
 
 namespace framewatch::estimator {
 namespace model_check_test {

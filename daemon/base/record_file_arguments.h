@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/files/problem.h"
+#include "drivers/formats/record_file.h"
+
+namespace framewatch::daemon {
+
+/// What the command line says of record files, as text; empty or 0: not declared.
+struct RecordFileArguments {
+  std::string unit;         ///< g, mg, gal, mps2, or a number: m/s^2 of one
+  std::string station_xml;  ///< a file that says what a count is; instead of a unit
+  double step_s = 0;
+  std::string format = "detect";
+  std::string time, time_unit, zone, decimal;
+  std::vector<std::string> columns, names;
+
+  bool any() const;
+};
+
+/// The options of the readers; every argument that is none is a problem.
+drivers::RecordOptions record_options(const RecordFileArguments& arguments,
+                                      std::vector<drivers::Problem>& problems);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,191 @@
+#include "daemon/base/sqlite_file.h"
+
+#include <sqlite3.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "drivers/files/input_file.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kPatience_ms = 5000;  // while another process writes
+
+bool means_corrupt(int result) {
+  const int primary = result & 0xff;
+  return primary == SQLITE_CORRUPT || primary == SQLITE_NOTADB;
+}
+
+}  // namespace
+
+void SqliteStatement::finalize(sqlite3_stmt* statement) {
+  sqlite3_finalize(statement);
+}
+
+SqliteStatement& SqliteStatement::bind(int at, std::int64_t value) {
+  sqlite3_bind_int64(statement_.get(), at, value);
+  return *this;
+}
+
+SqliteStatement& SqliteStatement::bind(int at, double value) {
+  sqlite3_bind_double(statement_.get(), at, value);  // NaN becomes NULL
+  return *this;
+}
+
+SqliteStatement& SqliteStatement::bind(int at, std::string_view text) {
+  sqlite3_bind_text(statement_.get(), at, text.data(), static_cast<int>(text.size()),
+                    SQLITE_TRANSIENT);
+  return *this;
+}
+
+SqliteStatement& SqliteStatement::bind(int at, std::span<const double> values) {
+  sqlite3_bind_blob(statement_.get(), at,
+                    values.empty() ? "" : static_cast<const void*>(values.data()),
+                    static_cast<int>(values.size_bytes()), SQLITE_TRANSIENT);
+  return *this;
+}
+
+int SqliteStatement::step() {
+  if (failure_->any) return SQLITE_ERROR;
+  const int result = statement_ ? sqlite3_step(statement_.get()) : SQLITE_ERROR;
+  if (result != SQLITE_ROW && result != SQLITE_DONE) {
+    failure_->any = true;
+    if (statement_) failure_->text = sqlite3_errmsg(sqlite3_db_handle(statement_.get()));
+  }
+  if (means_corrupt(result)) failure_->corrupt = true;
+  return result;
+}
+
+bool SqliteStatement::row() {
+  return step() == SQLITE_ROW;
+}
+
+bool SqliteStatement::run() {
+  const bool good = step() == SQLITE_DONE;
+  // A reset would forget why.
+  if (good) again();
+  return good;
+}
+
+void SqliteStatement::again() {
+  if (!statement_) return;
+  sqlite3_reset(statement_.get());
+  sqlite3_clear_bindings(statement_.get());
+}
+
+bool SqliteStatement::null(int column) const {
+  return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+std::int64_t SqliteStatement::integer(int column) const {
+  return sqlite3_column_int64(statement_.get(), column);
+}
+
+double SqliteStatement::number(int column) const {
+  return null(column) ? std::numeric_limits<double>::quiet_NaN()
+                      : sqlite3_column_double(statement_.get(), column);
+}
+
+std::string SqliteStatement::text(int column) const {
+  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement_.get(), column));
+  return text == nullptr ? "" : text;
+}
+
+std::vector<double> SqliteStatement::numbers(int column) const {
+  const void* bytes = sqlite3_column_blob(statement_.get(), column);
+  const int size = sqlite3_column_bytes(statement_.get(), column);
+  std::vector<double> out(static_cast<std::size_t>(size) / sizeof(double));
+  if (!out.empty()) std::memcpy(out.data(), bytes, out.size() * sizeof(double));
+  return out;
+}
+
+void SqliteFile::close_file(sqlite3* file) {
+  sqlite3_close(file);
+}
+
+bool SqliteFile::fail() {
+  error_ = file_ ? sqlite3_errmsg(file_.get()) : "no memory";
+  if (file_ && means_corrupt(sqlite3_errcode(file_.get()))) failure_.corrupt = true;
+  return false;
+}
+
+/// SQLite would wait for somebody to write into a FIFO.
+bool SqliteFile::is_file(const std::string& path) {
+  error_ = drivers::is_absent(path) ? "" : drivers::why_no_file(path);
+  return error_.empty();
+}
+
+bool SqliteFile::open(const std::string& path) {
+  // auto_vacuum has to be set before the first table.
+  return open_to_write(path,
+                       "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL;"
+                       "PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
+}
+
+bool SqliteFile::open_new(const std::string& path) {
+  return open_to_write(path,
+                       "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = MEMORY;"
+                       "PRAGMA synchronous = OFF; PRAGMA foreign_keys = ON;");
+}
+
+bool SqliteFile::open_to_write(const std::string& path, const std::string& settings) {
+  if (!is_file(path)) return false;
+  sqlite3* file = nullptr;
+  const int opened =
+      sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+  file_.reset(file);
+  failure_ = {};
+  error_.clear();
+  if (opened != SQLITE_OK) {
+    fail();
+    file_.reset();
+    return false;
+  }
+  sqlite3_busy_timeout(file, kPatience_ms);
+  if (execute(settings)) return true;
+  file_.reset();
+  return false;
+}
+
+bool SqliteFile::open_to_read(const std::string& path) {
+  if (!is_file(path)) return false;
+  sqlite3* file = nullptr;
+  const int opened = sqlite3_open_v2(path.c_str(), &file, SQLITE_OPEN_READONLY, nullptr);
+  file_.reset(file);
+  failure_ = {};
+  error_.clear();
+  if (opened != SQLITE_OK) return fail();
+  sqlite3_busy_timeout(file, kPatience_ms);
+  return true;
+}
+
+bool SqliteFile::execute(const std::string& sql) {
+  return (file_ &&
+          sqlite3_exec(file_.get(), sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK) ||
+         fail();
+}
+
+SqliteStatement SqliteFile::prepare(std::string_view sql) {
+  sqlite3_stmt* statement = nullptr;
+  if (sqlite3_prepare_v2(file_.get(), sql.data(), static_cast<int>(sql.size()), &statement,
+                         nullptr) != SQLITE_OK)
+    fail();
+  return {statement, &failure_};
+}
+
+bool SqliteFile::transaction(const std::function<bool()>& work) {
+  failure_.any = false;
+  if (!execute("BEGIN IMMEDIATE")) return false;
+  if (work() && !failure_.any && execute("COMMIT")) return true;
+  fail();
+  const std::string why = std::move(error_);
+  failure_.any = false;
+  (void)execute("ROLLBACK");
+  error_ = why;
+  return false;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,29 @@
+#include "daemon/config/keys/command_options.h"
+
+#include "daemon/config/keys/option_table.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using enum OptionType;
+using enum Reach;
+
+const Option kOptions[] = {
+    {.section = "commands",
+     .key = "directory",
+     .type = text,
+     .meaning = "Of the sockets `<prefix>run` and `<prefix>record`, where these two take commands. "
+                "Without it the service's own, /run/framewatch; for what you start yourself "
+                "$XDG_RUNTIME_DIR/framewatch, or /tmp/framewatch-UID.",
+     .reload = restart,
+     .is_path = true,
+     .target = into<&CommandSettings::directory>},
+};
+
+}  // namespace
+
+std::span<const Option> command_options() {
+  return kOptions;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,85 @@
+#include <algorithm>
+#include <list>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "daemon/config/keys/option_table.h"
+#include "estimator/structure/effect.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using enum OptionType;
+
+/// Texts that the options point into.
+class EffectOptions {
+ public:
+  EffectOptions() {
+    std::string names;
+    for (const estimator::EffectDescription& d : estimator::effect_catalogue())
+      names += (names.empty() ? "" : "|") + std::string(d.name);
+    add_place("kind", choice, "What is hidden; docs/effects.md has the equations.");
+    all_.back().required = true;
+    all_.back().choices = keep(names);
+    add_place("story", integer, "Of the frame story, panel, node or floor.");
+    all_.back().min = 1;
+    all_.back().max = 1000;
+    add_place("frame", text, "Name of the frame it is on.");
+    add_place("panel", text, "Floor panel: names of the frames where its spans start, \"x1y1\".");
+    add_place("node", text, "Crossing of a y-parallel and an x-parallel frame, \"x1y1\".");
+    add_place("to_story", integer, "Lower floor of two that are joined; 0 is the base.");
+    all_.back().default_value = "0";
+    all_.back().min = 0;
+    all_.back().max = 1000;
+    add_place("direction", choice, "Of what concerns the whole building.");
+    all_.back().choices = "x|y";
+    add_place("mode", integer, "Of the building, in the order of the natural frequencies.");
+    all_.back().min = 1;
+    all_.back().max = 100000;
+    add_place("channel", text, "Name of the channel.");
+    add_place("with_channel", text, "Name of the other channel.");
+    for (const estimator::EffectDescription& d : estimator::effect_catalogue())
+      for (const estimator::EffectParameter& p : d.parameters) add_parameter(p);
+  }
+
+  std::span<const Option> options() const { return all_; }
+
+ private:
+  std::string_view keep(const std::string& words) { return texts_.emplace_back(words); }
+
+  void add_place(std::string_view key, OptionType type, std::string_view meaning) {
+    Option o;
+    o.section = "effect";
+    o.key = key;
+    o.type = type;
+    o.meaning = meaning;
+    all_.push_back(o);
+  }
+
+  /// Ranges differ between effects and are checked there.
+  void add_parameter(const estimator::EffectParameter& p) {
+    const auto known =
+        std::find_if(all_.begin(), all_.end(), [&](const Option& o) { return o.key == p.key; });
+    if (known != all_.end()) return;
+    std::string of;
+    for (const estimator::EffectDescription& d : estimator::effect_catalogue())
+      for (const estimator::EffectParameter& other : d.parameters)
+        if (other.key == p.key) of += (of.empty() ? "Of " : ", ") + std::string(d.name);
+    add_place(p.key, number, keep(of + "."));
+    all_.back().unit = p.unit;
+  }
+
+  std::list<std::string> texts_;
+  std::vector<Option> all_;
+};
+
+}  // namespace
+
+std::span<const Option> effect_options() {
+  static const EffectOptions kOptions;
+  return kOptions.options();
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,91 @@
+#include "daemon/config/keys/option_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace framewatch::daemon {
+namespace {
+
+using enum OptionType;
+
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+std::span<const Option> options() {
+  static const std::vector<Option> kAll = [] {
+    std::vector<Option> all;
+    for (const auto table :
+         {structure_options, channel_options, estimator_options, lcm_options, command_options,
+          can_options, watch_options, gap_options, history_options, event_report_options,
+          fragility_options, action_options, fleet_options, scenario_options, effect_options,
+          expectation_options}) {
+      const std::span<const Option> some = table();
+      all.insert(all.end(), some.begin(), some.end());
+    }
+    return all;
+  }();
+  return kAll;
+}
+
+const Option* find_option(std::string_view section, std::string_view key) {
+  const std::span<const Option> all = options();
+  const auto at = std::find_if(all.begin(), all.end(), [&](const Option& o) {
+    return o.section == section && o.key == key;
+  });
+  return at == all.end() ? nullptr : &*at;
+}
+
+std::vector<std::string> choices(const Option& option) {
+  std::vector<std::string> out;
+  std::size_t begin = 0;
+  while (begin < option.choices.size()) {
+    const std::size_t end = std::min(option.choices.find('|', begin), option.choices.size());
+    out.emplace_back(option.choices.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::string constraint(const Option& option) {
+  if (!option.choices.empty()) {
+    std::string list;
+    for (const std::string& choice : choices(option))
+      list += (list.empty() ? "\"" : ", \"") + choice + "\"";
+    return "one of " + list;
+  }
+  std::string rule;
+  if (option.min > -kUnlimited)
+    rule = fmt::format("{} {:.10g}", option.above_min ? ">" : ">=", option.min);
+  if (option.max < kUnlimited)
+    rule += fmt::format("{}<= {:.10g}", rule.empty() ? "" : " and ", option.max);
+  if (!rule.empty() && !option.unit.empty()) rule += fmt::format(" {}", option.unit);
+  return rule;
+}
+
+std::string expected(const Option& option) {
+  const std::string unit = option.unit.empty() ? "" : fmt::format(" ({})", option.unit);
+  switch (option.type) {
+    case text:
+      return "a text in quotes";
+    case choice:
+      return constraint(option);
+    case integer:
+      return "a whole number" + unit;
+    case number:
+      return "a number" + unit;
+    case boolean:
+      return "true or false";
+    case texts:
+      return "a list of texts";
+    case grid:
+      return fmt::format("a number{} or {}", unit, option.shape);
+    case table:
+      return "a table";
+  }
+  return "";
+}
+
+}  // namespace framewatch::daemon

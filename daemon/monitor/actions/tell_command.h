@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "daemon/monitor/service/installed_config.h"
+
+namespace framewatch::daemon {
+
+struct TellArguments {
+  std::string config = kInstalledConfig;
+  std::string message = "a test";
+};
+
+/// `framewatch tell`: delivers an event of kind "test" to the command and the webhook of [actions].
+/// Exit code: 1 when one of them fails.
+int tell_command(const TellArguments& arguments);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,266 @@
+#include "daemon/monitor/estimation/estimation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "daemon/monitor/estimation/design_error.h"
+#include "daemon/monitor/estimation/estimation_events.h"
+#include "daemon/monitor/estimation/intake_events.h"
+#include "daemon/monitor/events/event_words.h"
+#include "drivers/lcm/message_check.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr std::size_t kMaxFindings = 50;
+constexpr double kMost_degc = 200;  // either way: no thermometer on a building says more
+
+void subtract(const estimator::AxisCounters& before, estimator::AxisCounters& from) {
+  from.received -= before.received, from.missing -= before.missing, from.late -= before.late;
+  from.repaired -= before.repaired, from.stuck -= before.stuck, from.clipped -= before.clipped;
+  from.rejected -= before.rejected, from.absurd -= before.absurd;
+}
+
+}  // namespace
+
+Estimation::Estimation(const Config& config, MessageSink sink, Observer observer)
+    : config_(config),
+      observer_(std::move(observer)),
+      publisher_(config, std::move(sink)),
+      foreseen_(with_design_error(config.pipeline)),
+      pipeline_(
+          foreseen_, [this](const estimator::WindowEstimate& estimate) { main_window(estimate); },
+          [this](const estimator::WindowEstimate& estimate) {
+            publisher_.other(estimate);
+            watch(estimate);
+          },
+          [this](const estimator::SampleSet& instant) {
+            if (watch_) strong_.push(instant);
+            look_for_gap(instant);
+            look_for_shaking(instant);
+            if (taps_.instant) taps_.instant(instant);
+          },
+          [this](const estimator::ModelFit& fit) { publisher_.model(fit); }),
+      strong_(pipeline_.axes(), config.pipeline.options.rate_hz),
+      intake_(
+          wanted_axes(config), [this](const estimator::AccelSample& s) { sample(s); },
+          intake_settings(config)),
+      can_(config.can, [this](const estimator::AccelSample& s) { sample(s); }),
+      can_events_(config.can),
+      absurd_events_(config.pipeline.axes),
+      channel_events_(config.pipeline.axes, config.pipeline.options.lateness_s),
+      newest_us_(config.pipeline.axes.size(), INT64_MIN) {
+  pipeline_.on_late([this](const estimator::WindowEstimate& estimate) { late_window(estimate); });
+  intake_.on_notice([this](const drivers::IntakeNotice& n) { intake_notice(n); });
+  can_.on_notice([this](const drivers::CanNotice& n) { notice(n); });
+  begin_watch();
+  begin_gap();
+  begin_shaking();
+}
+
+void Estimation::begin_watch() {
+  watch_.reset();
+  recovery_.reset();
+  if (!config_.watch) return;
+  watch_.emplace(pipeline_.parameters(), config_.watch->options,
+                 window_lengths_s(config_.pipeline.options), config_.watch->baseline,
+                 estimator::ChangeModel{foreseen_.change_error, foreseen_.change_leak});
+  recovery_.emplace(*watch_, config_.watch->options);
+}
+
+void Estimation::begin_gap() {
+  gap_.reset();
+  if (!config_.gap) return;
+  gap_.emplace(config_.pipeline, pipeline_.axes(), config_.gap->options, config_.gap->model);
+}
+
+void Estimation::begin_shaking() {
+  if (!config_.event_report) return;
+  estimator::PipelineConfig config = config_.pipeline;
+  config.axes = pipeline_.axes();
+  shaking_.emplace(config, config_.event_report->options);
+  counted_before_.resize(config_.pipeline.axes.size());
+}
+
+void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
+  if (!shaking_) return;
+  const bool ended = shaking_->push(instant, baseline());
+  if (shaking_->began()) {
+    counted_before_ = axis_counters();
+    findings_.clear();
+  }
+  if (!ended) return;
+  EventReport report{shaking_->ended(), axis_counters(), findings_};
+  report.shaking.known.noise_density = pipeline_.noise_density();
+  add_records(report);
+  for (std::size_t a = 0; a < report.axes.size(); ++a) subtract(counted_before_[a], report.axes[a]);
+  announce(event_of(report, config_));
+  if (taps_.shaken) taps_.shaken(report);
+}
+
+/// What [watch] and others found is what the report says.
+void Estimation::add_records(EventReport& report) const {
+  for (const event_t& e : raised_.all())
+    if (e.severity == severity::alarm && e.kind != "stiffness_change" && e.kind != "strong_motion")
+      report.open.push_back(e);
+  if (!watch_) return;
+  for (std::size_t p = 0; p < report.shaking.stiffness.size(); ++p) {
+    estimator::ShakenStiffness& s = report.shaking.stiffness[p];
+    s.watched = watch_->baseline() != nullptr && watch_->baseline()->knows(p) && watch_->watched(p);
+    if (const auto* r = watch_->record(static_cast<int>(p))) s.record = *r;
+  }
+  if (const auto* r = watch_->record(estimator::ChangeRecord::kEverything)) report.everything = *r;
+}
+
+void Estimation::main_window(const estimator::WindowEstimate& estimate) {
+  if (observer_) observer_(estimate);
+  publisher_.estimate(estimate);
+  ++windows_;
+  watch(estimate);
+  if (gap_) gap_->learn(estimate, pipeline_.theta0());
+  if (shaking_) shaking_->push(estimate);
+}
+
+/// Not for the gap monitor, which learns from the newest windows.
+void Estimation::late_window(const estimator::WindowEstimate& estimate) {
+  publisher_.late(estimate);
+  if (shaking_) shaking_->push(estimate);
+}
+
+void Estimation::look_for_gap(const estimator::SampleSet& instant) {
+  if (!gap_) return;
+  const estimator::GapWindow* window = gap_->push(instant, noise_density_);
+  if (window == nullptr) return;
+  publisher_.gap(*window);
+  if (shaking_) shaking_->gap(window->nrmse);
+  const estimator::GapNews* news = gap_->news();
+  if (news == nullptr) return;
+  announce(gap_event(*news, config_));
+  if (taps_.gap) taps_.gap(*news);
+}
+
+void Estimation::adopt(const estimator::GapModel& model) {
+  if (gap_) gap_->adopt(model);
+}
+
+void Estimation::watch(const estimator::WindowEstimate& estimate) {
+  if (!watch_) return;
+  for (const estimator::Alarm& alarm : watch_->push(estimate))
+    announce(with_recovery(stiffness_event(alarm, pipeline_.parameters()), alarm.parameter));
+  follow_recovery(estimate);
+}
+
+drivers::IntakeResult Estimation::message(const std::string& channel, const void* data,
+                                          std::size_t size, const drivers::LcmSender& sender,
+                                          std::int64_t received_us) {
+  if (config_.watch && channel == config_.watch->temperature_channel)
+    return temperature(data, size);
+  return intake_.message(channel, data, size, sender, received_us);
+}
+
+drivers::IntakeResult Estimation::temperature(const void* data, std::size_t size) {
+  const auto message =
+      drivers::decoded<temperature_t>({static_cast<const std::uint8_t*>(data), size});
+  if (!message) return drivers::IntakeResult::malformed;
+  if (!(std::abs(message->temperature_degc) <= kMost_degc)) {
+    ++absurd_temperatures_;
+    return drivers::IntakeResult::malformed;
+  }
+  if (watch_)
+    watch_->temperature(estimator::from_microseconds(message->time_us), message->temperature_degc);
+  if (taps_.temperature) taps_.temperature(*message);
+  return drivers::IntakeResult::table;
+}
+
+void Estimation::notice(const drivers::CanNotice& notice) {
+  if (const auto event = can_events_.of(notice)) announce(*event);
+}
+
+void Estimation::intake_notice(const drivers::IntakeNotice& notice) {
+  const std::int64_t now_us = seconds_.newest_us() != 0 ? seconds_.newest_us() : notice.arrival_us;
+  if (const auto event = intake_event(notice, config_, raised_, now_us)) announce(*event);
+}
+
+void Estimation::announce(const event_t& event) {
+  raised_.note(event);
+  if (shaking_ && shaking_->active() && findings_.size() < kMaxFindings) findings_.push_back(event);
+  publisher_.event(event);
+  if (taps_.event) taps_.event(event);
+}
+
+void Estimation::withdraw(const std::string& kind) {
+  for (const event_t& event : raised_.take(kind)) announce(withdrawn(event));
+}
+
+void Estimation::sample(const estimator::AccelSample& sample) {
+  if (seconds_.passed(to_microseconds(sample.time))) publish_state();
+  if (taps_.sample) taps_.sample(sample);
+  channel_events_.sample(sample);
+  if (const auto axis = static_cast<std::size_t>(sample.axis); axis < newest_us_.size())
+    newest_us_[axis] = to_microseconds(sample.time);
+  pipeline_.push(sample);
+}
+
+void Estimation::came_up(bool raw) {
+  intake_.came_up();
+  if (!shaking_) return;
+  const std::int64_t newest_us = *std::max_element(newest_us_.begin(), newest_us_.end());
+  shaking_->came_up(estimator::from_microseconds(newest_us), raw);
+}
+
+void Estimation::finish() {
+  can_.finish();
+  pipeline_.finish();
+  publish_state();
+}
+
+std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
+  std::vector<estimator::AxisCounters> out = pipeline_.counters().axes;
+  for (std::size_t a = 0; a < out.size(); ++a) {
+    out[a].rejected += can_.absurd_of(a);
+    out[a].absurd += can_.absurd_of(a);
+  }
+  return out;
+}
+
+void Estimation::publish_state() {
+  for (const event_t& event : std::exchange(to_withdraw_, {})) announce(withdrawn(event));
+  const std::vector<estimator::AxisCounters> axes = axis_counters();
+  for (const event_t& event : absurd_events_.look(axes, seconds_.newest_us())) announce(event);
+  for (const event_t& event : channel_events_.look(axes, seconds_.newest_us())) announce(event);
+  for (event_t event : std::vector<event_t>(raised_.all())) {
+    if (!green_and_past(event, seconds_.newest_us())) continue;
+    event.state = event_state::cleared;
+    event.time_us = seconds_.newest_us();
+    announce(event);
+  }
+  const estimator::PipelineCounters pipeline = pipeline_.counters();
+  const drivers::IntakeCounters& intake = intake_.counters();
+  StatusCounts counts;
+  counts.windows = pipeline.windows;
+  counts.sample_sets = pipeline.sample_sets;
+  counts.gaps = pipeline.interruptions;
+  counts.rejected_messages = intake.foreign + intake.malformed + intake.duplicate +
+                             intake.other_sender + absurd_temperatures_;
+  for (std::size_t n = 0; n < can_.map().nodes.size(); ++n) {
+    const drivers::CanNodeCounters node = can_.node(n);
+    counts.rejected_messages +=
+        node.wrong_length + node.wrong_kind + node.unplaced + node.duplicates + node.late;
+  }
+  noise_density_ = pipeline_.noise_density();
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const estimator::AxisCounters& axis = axes[i];
+    const drivers::HeardNode* node = intake_.node_of(i);
+    counts.axes.push_back({axis.received, node == nullptr ? can_.lost_of(i) : node->counter.lost,
+                           axis.late, axis.repaired,
+                           axis.rejected + (node == nullptr ? 0 : node->left_out()), axis.stuck,
+                           axis.clipped});
+    if (!noise_density_.empty()) counts.axes.back().noise_density = noise_density_[i];
+  }
+  publisher_.parameters(seconds_.newest_us(), pipeline_);
+  publisher_.status(seconds_.newest_us(), counts, live_);
+  if (watch_) publisher_.watch(seconds_.newest_us(), *watch_);
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,118 @@
+#include "daemon/monitor/estimation/estimation_events.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <fmt/core.h>
+
+#include "daemon/base/utc_time.h"
+#include "daemon/config/gap_model.h"
+#include "daemon/monitor/events/change_words.h"
+#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/recovery_words.h"
+#include "estimator/numeric/nan.h"
+
+namespace framewatch::daemon {
+
+namespace {
+
+using estimator::ChangeReason;
+
+std::string end_words(const estimator::Alarm& alarm, const std::string& name) {
+  switch (alarm.reason) {
+    case ChangeReason::not_confirmed:
+      return fmt::format("{} has not changed: the windows behind the alarm do not show it", name);
+    case ChangeReason::of_all:
+      return fmt::format("{} has not changed alone: every stiffness has changed alike", name);
+    default:
+      return fmt::format("{} is at its baseline again", name);
+  }
+}
+
+std::string change_words(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
+  const estimator::Change& c = alarm.change;
+  if (alarm.parameter == estimator::ChangeRecord::kEverything)
+    return common_change_sentence(c.ratio, alarm.measured ? c.std_error : estimator::kNaN);
+  const estimator::Parameter& p = table[alarm.parameter];
+  if (!alarm.measured) return changing_sentence(p, c.ratio);
+  return change_sentence(p, c.ratio, c.std_error) +
+         (alarm.reason == ChangeReason::further ? "; it has changed further" : "");
+}
+
+}  // namespace
+
+event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table) {
+  const bool everything = alarm.parameter == estimator::ChangeRecord::kEverything;
+  const bool over = alarm.state == estimator::AlarmState::cleared;
+  event_t m{};
+  m.time_us = to_microseconds(alarm.found);
+  m.since_us = to_microseconds(alarm.change.since);
+  m.id = alarm.id;
+  m.state = static_cast<std::int32_t>(alarm.state);
+  m.severity = over || everything ? severity::warning : severity::alarm;
+  m.kind = "stiffness_change";
+  m.place = everything ? kWholeBuilding : table[alarm.parameter].name;
+  m.value = alarm.measured ? 100 * alarm.change.ratio : estimator::kNaN;
+  m.std_error = alarm.measured ? 100 * alarm.change.std_error : estimator::kNaN;
+  m.unit = "%";
+  m.message =
+      over ? end_words(alarm, everything ? "everything" : m.place)
+           : fmt::format("{}, since {}", change_words(alarm, table), sensor_time_text(m.since_us));
+  return m;
+}
+
+event_t recovering(event_t event, const estimator::RecoveryLaw& law) {
+  const bool early = law.verdict == estimator::RecoveryVerdict::not_known &&
+                     law.time_s < estimator::Recovery::kRenew_s[0];
+  if (event.state == event_state::cleared || early) return event;
+  event.message += kAfterStrongMotion + recovery_words(law);
+  return event;
+}
+
+event_t renewed(event_t raised, estimator::Time now) {
+  raised.time_us = to_microseconds(now);
+  raised.state = event_state::changed;
+  raised.message = raised.message.substr(0, raised.message.find(kAfterStrongMotion));
+  return raised;
+}
+
+event_t gap_event(const estimator::GapNews& news, const Config& config) {
+  const bool raised = news.state != estimator::AlarmState::cleared;
+  const auto worst = static_cast<std::size_t>(news.worst_axis);  // of a state file, perhaps
+  const std::string channel =
+      worst < config.pipeline.axes.size() ? config.pipeline.axes[worst].name : "";
+  const estimator::ParameterTable table = config.pipeline.parameters();
+  const bool named = news.parameter >= 0 && news.parameter < table.elements();
+  event_t m{};
+  m.time_us = to_microseconds(news.found);
+  m.since_us = to_microseconds(news.since);
+  m.id = news.id;
+  m.state = static_cast<std::int32_t>(news.state);
+  m.severity = raised ? severity::warning : severity::information;
+  m.kind = "gap";
+  m.place = named ? table[news.parameter].name : channel;
+  m.value = 100 * news.excess;
+  m.std_error = std::numeric_limits<double>::quiet_NaN();
+  m.unit = "%";
+  m.segment = segment_name(config, news.id);
+  m.message =
+      raised
+          ? fmt::format("simulation and measurement differ by {:.0f} % beyond noise, most at {}",
+                        m.value, channel)
+          : fmt::format("simulation and measurement agree again: {:.0f} % beyond noise", m.value);
+  if (named && raised)
+    m.message += fmt::format("; {} is {:.1f} % (+-{:.1f} %) {} the model", m.place,
+                             100 * std::abs(news.ratio), 100 * news.std_error,
+                             news.ratio < 0 ? "below" : "above");
+  return m;
+}
+
+event_t withdrawn(event_t raised) {
+  raised.state = event_state::cleared;
+  raised.severity = severity::information;
+  raised.message = "is not looked for any more: the configuration was changed";
+  return raised;
+}
+
+}  // namespace framewatch::daemon

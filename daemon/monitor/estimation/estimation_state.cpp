@@ -1,0 +1,195 @@
+// The state of an estimation, and what a new one takes over.
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "daemon/monitor/estimation/design_error.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "daemon/monitor/estimation/estimation_events.h"
+
+namespace framewatch::daemon {
+namespace {
+
+/// What the filters are tuned to, if it is known: parameters of `axes` channels.
+template <typename Archive>
+void archive_tuning(Archive& a, int parameters, std::size_t axes,
+                    std::optional<estimator::Tuning>& tuning) {
+  bool known = tuning.has_value();
+  a(known);
+  if (!known) return tuning.reset();
+  if (!tuning) tuning.emplace(estimator::Tuning{Eigen::VectorXd(parameters), {}});
+  tuning->noise_density.resize(axes);
+  for (double& value : tuning->theta0) a.within(value, std::numeric_limits<double>::min(), a.kMax);
+  for (double& value : tuning->noise_density)
+    a.within(value, std::numeric_limits<double>::min(), a.kMax);
+  a(tuning->found_right);
+}
+
+template <typename Archive>
+void archive_pipeline(Archive& a, estimator::Pipeline& pipeline) {
+  if constexpr (!Archive::kReading)
+    pipeline.save(a);
+  else if (!pipeline.load(a))
+    a.refuse();
+}
+
+/// Kinds of events that only a section's part of the estimation can clear.
+std::vector<std::string> kinds_of(const std::string& section) {
+  if (section == "lcm")
+    return {"two_senders", "sequence_leap", "duplicates", "losses", "channel_table"};
+  if (section == "can")
+    return {"bus_off", "interface_gone", "emergency", "sequence_leap", "duplicates", "losses"};
+  if (section == "window") return {"absurd_samples", "channel_silent", "channel_stuck"};
+  if (section == "watch") return {"stiffness_change"};
+  if (section == "gap") return {"gap"};
+  return {};
+}
+
+}  // namespace
+
+/// visit: gets every section's name and a function that archives it, in an order in which each
+/// needs only those before it.
+template <typename Visit>
+void Estimation::each_section(const Visit& visit) {
+  visit("counts", [this](auto& a) {
+    a(seconds_);
+    for (std::int64_t* count : {&windows_, &absurd_temperatures_}) a.within(*count, 0, a.kMaxCount);
+  });
+  visit("events", [this](auto& a) { a(raised_); });
+  visit("lcm", [this](auto& a) { a(intake_); });
+  visit("can", [this](auto& a) { a(can_, can_events_); });
+  visit("tuning", [this](auto& a) {
+    if (!std::decay_t<decltype(a)>::kReading) tuning_ = pipeline_.tuning();
+    archive_tuning(a, pipeline_.parameters().size(), config_.pipeline.axes.size(), tuning_);
+  });
+  // What is said of channels compares the pipeline's counters with those it saw before.
+  visit("window", [this](auto& a) {
+    a(absurd_events_, channel_events_, newest_us_);
+    archive_pipeline(a, pipeline_);
+  });
+  if (watch_) {
+    visit("baseline", [this](auto& a) {
+      const estimator::Baseline* const now = baseline();
+      const std::optional<estimator::Baseline> given =
+          now == nullptr ? std::nullopt : std::optional(*now);
+      watch_->archive_learned(a);
+      const bool another = given && (baseline() == nullptr || !baseline()->holds(*given));
+      if (std::decay_t<decltype(a)>::kReading && another) a.refuse();
+    });
+    visit("watch", [this](auto& a) {
+      watch_->archive_detection(a);
+      a(strong_, *recovery_);
+    });
+  }
+  if (gap_)
+    visit("gap", [this](auto& a) {
+      a(*gap_);
+      a.any_size(noise_density_);
+      if (!noise_density_.empty() && noise_density_.size() != config_.pipeline.axes.size())
+        a.refuse();
+    });
+  if (shaking_)
+    visit("event_report", [this](auto& a) {
+      a(*shaking_, counted_before_);
+      findings_.resize(a.count(findings_.size()));
+      for (event_t& e : findings_) archive_event(a, e);
+    });
+}
+
+std::vector<StateSection> Estimation::save() {
+  std::vector<StateSection> sections;
+  each_section([&](const char* name, const auto& archive) {
+    estimator::StateWriter writer;
+    archive(writer);
+    sections.push_back({name, writer.bytes()});
+  });
+  return sections;
+}
+
+std::vector<std::string> Estimation::section_names() {
+  std::vector<std::string> names;
+  each_section([&](const char* name, const auto&) { names.emplace_back(name); });
+  return names;
+}
+
+std::string Estimation::load(const std::vector<StateSection>& sections) {
+  std::string spoilt;
+  each_section([&](const char* name, const auto& archive) {
+    const auto section = std::find_if(sections.begin(), sections.end(),
+                                      [&](const StateSection& s) { return s.name == name; });
+    if (section == sections.end() || !spoilt.empty()) return;
+    estimator::StateReader reader(section->bytes);
+    archive(reader);
+    if (!reader.whole()) spoilt = name;
+  });
+  return spoilt;
+}
+
+void Estimation::went_without(const std::vector<std::string>& lost) {
+  const auto is_lost = [&](const char* name) {
+    return std::find(lost.begin(), lost.end(), name) != lost.end();
+  };
+  if (watch_) watch_->resumed();
+  if (is_lost("window")) {
+    if (tuning_ && !is_lost("tuning")) pipeline_.start_tuned(*tuning_);
+    std::fill(counted_before_.begin(), counted_before_.end(), estimator::AxisCounters{});
+  }
+  for (const std::string& section : lost)
+    for (const std::string& kind : kinds_of(section)) {
+      std::vector<event_t> gone = raised_.take(kind);
+      std::move(gone.begin(), gone.end(), std::back_inserter(to_withdraw_));
+    }
+}
+
+void Estimation::take_over(Estimation& before, bool keep_window) {
+  // Both have the same structure, so only settings can keep a part from fitting.
+  const auto copy = [](auto& from, auto& to) {
+    estimator::StateWriter writer;
+    writer(from);
+    estimator::StateReader reader(writer.bytes());
+    reader(to);
+    return reader.whole();
+  };
+  copy(before.seconds_, seconds_);
+  copy(before.intake_, intake_);
+  copy(before.can_, can_);
+  copy(before.can_events_, can_events_);
+  copy(before.absurd_events_, absurd_events_);
+  copy(before.channel_events_, channel_events_);
+  copy(before.raised_, raised_);
+  windows_ = before.windows_;
+  absurd_temperatures_ = before.absurd_temperatures_;
+  newest_us_ = before.newest_us_;
+  live_ = before.live_;
+  if (keep_window) {
+    estimator::StateWriter writer;
+    before.pipeline_.save(writer);
+    estimator::StateReader reader(writer.bytes());
+    (void)pipeline_.load(reader);
+    noise_density_ = before.noise_density_;
+  }
+  const estimator::Baseline* given = baseline();
+  const bool same_baseline =
+      given == nullptr || (before.baseline() != nullptr && before.baseline()->holds(*given));
+  const bool watch_goes_on = watch_ && before.watch_ && same_baseline &&
+                             copy(*before.watch_, *watch_) && copy(before.strong_, strong_) &&
+                             copy(*before.recovery_, *recovery_);
+  if (!watch_goes_on) {
+    begin_watch();
+    withdraw("stiffness_change");
+  } else if (!keep_window && config_.watch->options.amplitude) {
+    watch_->forget_quiet();  // amplitudes are over the noise, which is another one
+  }
+  if (shaking_ && before.shaking_ && copy(*before.shaking_, *shaking_)) {
+    counted_before_ = before.counted_before_;
+    findings_ = before.findings_;
+  }
+  const bool gap_goes_on = gap_ && before.gap_ && copy(*before.gap_, *gap_);
+  if (!gap_goes_on) {
+    begin_gap();
+    withdraw("gap");
+  }
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,251 @@
+#include "daemon/monitor/estimation/publisher.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "daemon/monitor/estimation/estimate_channels.h"
+#include "drivers/files/encoded.h"
+
+namespace framewatch::daemon {
+
+Publisher::Publisher(const Config& config, MessageSink sink)
+    : config_(config),
+      sink_(std::move(sink)),
+      parameters_channel_(config.lcm.prefix + "PARAMETERS"),
+      status_channel_(config.lcm.prefix + "STATUS"),
+      event_channel_(config.lcm.prefix + "EVENT"),
+      gap_channel_(config.lcm.prefix + "GAP"),
+      watch_channel_(config.lcm.prefix + "WATCH"),
+      model_channel_(config.lcm.prefix + "MODEL_FIT") {
+  other_channels_ = estimate_channels(config);
+  estimate_channel_ = other_channels_.front();
+  other_channels_.erase(other_channels_.begin());
+}
+
+template <typename MessageType>
+void Publisher::send(std::int64_t time_us, const std::string& channel, const MessageType& message) {
+  if (!sink_) return;
+  drivers::encode_into(bytes_, message);
+  sink_(time_us, channel, bytes_);
+}
+
+void Publisher::parameters(std::int64_t time_us, const estimator::Pipeline& pipeline) {
+  const estimator::ParameterTable& table = pipeline.parameters();
+  framewatch::parameter_table_t& m = parameters_;
+  m.time_us = time_us;
+  m.structure = config_.pipeline.structure.name;
+  m.config_sha256 = config_.sha256;
+  m.version = FRAMEWATCH_VERSION;
+  m.rate_hz = config_.pipeline.options.rate_hz;
+  m.window_rows = pipeline.window_rows();
+  m.hop_rows = pipeline.hop_rows();
+  m.boxplot_windows = config_.pipeline.options.boxplot_windows;
+  m.parameters = table.size();
+  m.name.clear();
+  m.unit.clear();
+  m.kind.clear();
+  m.story.clear();
+  for (int i = 0; i < table.size(); ++i) {
+    m.name.push_back(table[i].name);
+    m.unit.push_back(table[i].unit);
+    m.kind.push_back(static_cast<std::int32_t>(table[i].kind));
+    m.story.push_back(table[i].story);
+  }
+  m.design.assign(pipeline.theta0().begin(), pipeline.theta0().end());
+  m.design.resize(m.name.size());
+  m.other_windows = static_cast<std::int32_t>(other_channels_.size());
+  m.other_channel = other_channels_;
+  m.other_rows = pipeline.other_window_rows();
+  send(time_us, parameters_channel_, m);
+}
+
+void Publisher::fill_values(const estimator::WindowEstimate& e) {
+  framewatch::window_estimate_t& m = estimate_;
+  m.window_start_us = to_microseconds(e.start);
+  m.window_end_us = to_microseconds(e.end);
+  m.sequence = e.sequence;
+  m.status = static_cast<std::int32_t>(e.status);
+  m.rows = e.rows;
+  m.residual_ratio = e.residual_ratio;
+  m.parameters = static_cast<std::int32_t>(e.value.size());
+  m.value = e.value;
+  m.std_error = e.std_error;
+  m.reason.clear();
+  for (const estimator::Observability reason : e.reason)
+    m.reason.push_back(static_cast<std::int32_t>(reason));
+  m.snr.clear();
+  for (const double snr : e.snr) m.snr.push_back(static_cast<float>(snr));
+  m.prior_share.clear();
+  for (const double share : e.prior_share) m.prior_share.push_back(static_cast<float>(share));
+  m.noise_share.clear();
+  for (const double share : e.noise_share) m.noise_share.push_back(static_cast<float>(share));
+  m.held_index.clear();
+  m.held_value.clear();
+  m.held_std_error.clear();
+  m.held_end_us.clear();
+  m.boxplot_windows = m.boxplots = 0;
+  for (auto* column : {&m.q1, &m.median, &m.q3, &m.whisker_low, &m.whisker_high}) column->clear();
+  m.outliers.clear();
+  m.boxplot_count.clear();
+  for (std::size_t p = 0; p < e.reason.size() && e.window == 0 && !e.late; ++p) {
+    if (e.reason[p] == estimator::Observability::observable || std::isnan(e.last_value[p]))
+      continue;
+    m.held_index.push_back(static_cast<std::int32_t>(p));
+    m.held_value.push_back(e.last_value[p]);
+    m.held_std_error.push_back(e.last_std_error[p]);
+    m.held_end_us.push_back(to_microseconds(e.last_end[p]));
+  }
+  m.held = static_cast<std::int32_t>(m.held_index.size());
+}
+
+void Publisher::other(const estimator::WindowEstimate& e) {
+  if (!sink_) return;
+  fill_values(e);
+  send(estimate_.window_end_us, other_channels_[static_cast<std::size_t>(e.window - 1)], estimate_);
+}
+
+void Publisher::estimate(const estimator::WindowEstimate& e) {
+  if (!sink_) return;
+  fill_values(e);
+  framewatch::window_estimate_t& m = estimate_;
+  const bool with_boxplot = e.sequence % config_.lcm.boxplot_every == 0;
+  m.boxplot_windows = static_cast<std::int32_t>(
+      std::min<std::int64_t>(e.sequence + 1, config_.pipeline.options.boxplot_windows));
+  m.boxplots = with_boxplot ? static_cast<std::int32_t>(e.boxplot.size()) : 0;
+  if (with_boxplot) {
+    for (const estimator::BoxplotStatistics& box : e.boxplot) {
+      m.q1.push_back(box.q1);
+      m.median.push_back(box.median);
+      m.q3.push_back(box.q3);
+      m.whisker_low.push_back(box.whisker_low);
+      m.whisker_high.push_back(box.whisker_high);
+      m.outliers.push_back(box.outliers);
+      m.boxplot_count.push_back(box.count);
+    }
+  }
+  send(m.window_end_us, estimate_channel_, m);
+}
+
+void Publisher::late(const estimator::WindowEstimate& e) {
+  if (!sink_) return;
+  fill_values(e);
+  const std::string& channel =
+      e.window == 0 ? estimate_channel_ : other_channels_[static_cast<std::size_t>(e.window - 1)];
+  send(estimate_.window_end_us, channel + kLate, estimate_);
+}
+
+void Publisher::event(const event_t& event) {
+  send(event.time_us, event_channel_, event);
+}
+
+void Publisher::watch(std::int64_t time_us, const estimator::Watch& watch) {
+  if (!sink_) return;
+  framewatch::watch_t& m = watch_;
+  const auto count = static_cast<std::size_t>(watch.parameters());
+  const estimator::Baseline none(count);
+  const estimator::Baseline& usual = watch.baseline() != nullptr ? *watch.baseline() : none;
+  const bool known = watch.quiet_baseline() != nullptr;
+  const estimator::Baseline& quiet = known ? *watch.quiet_baseline() : none;
+  m.time_us = time_us;
+  m.long_window_s = watch.options().quiet_window_s;
+  m.quiet_learned_ratio = watch.quiet_learned();
+  m.temperature_degc = watch.degc(estimator::from_microseconds(time_us));
+  m.parameters = static_cast<std::int32_t>(count);
+  m.watched.resize(count);
+  m.baseline = usual.value;
+  m.baseline_std_error = usual.std_error;
+  m.baseline_degc = usual.degc;
+  m.quiet_baseline = quiet.value;
+  m.quiet_std_error = quiet.std_error;
+  for (auto* slopes :
+       {&m.per_degc, &m.per_degc_std_error, &m.per_log_amplitude, &m.per_log_amplitude_std_error})
+    slopes->assign(count, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t p = 0; p < count; ++p) {
+    m.watched[p] = watch.watched(p) ? 1 : 0;
+    if (!quiet.knows(p)) continue;
+    if (watch.options().temperature) {
+      const estimator::Dependence::Slope slope = watch.dependence().per_degc(p);
+      m.per_degc[p] = slope.value;
+      m.per_degc_std_error[p] = slope.std_error;
+    }
+    if (watch.options().amplitude) {
+      const estimator::Dependence::Slope slope = watch.dependence().per_log(p);
+      m.per_log_amplitude[p] = slope.value;
+      m.per_log_amplitude_std_error[p] = slope.std_error;
+    }
+  }
+  send(time_us, watch_channel_, m);
+}
+
+void Publisher::model(const estimator::ModelFit& fit) {
+  if (!sink_) return;
+  framewatch::model_fit_t& m = model_;
+  m.window_start_us = to_microseconds(fit.start);
+  m.window_end_us = to_microseconds(fit.end);
+  m.sequence = fit.sequence;
+  m.parameters = static_cast<std::int32_t>(fit.word.size());
+  m.misfit = fit.misfit;
+  m.design_error = fit.design_error;
+  m.misfit_error = fit.misfit_error;
+  m.corner_error = fit.corner_error;
+  m.error = fit.error;
+  m.word.clear();
+  for (const estimator::FitWord word : fit.word) m.word.push_back(static_cast<std::int32_t>(word));
+  send(m.window_end_us, model_channel_, m);
+}
+
+void Publisher::gap(const estimator::GapWindow& window) {
+  framewatch::gap_t& m = gap_;
+  m.window_start_us = to_microseconds(window.start);
+  m.window_end_us = to_microseconds(window.end);
+  m.overall_nrmse = window.nrmse;
+  m.noise_floor = window.floor;
+  m.name.clear();
+  m.nrmse.clear();
+  m.floor.clear();
+  const std::vector<estimator::SensorAxis>& axes = config_.pipeline.axes;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    if (axes[a].story == 0) continue;
+    m.name.push_back(axes[a].name);
+    m.nrmse.push_back(window.axis_nrmse[a]);
+    m.floor.push_back(window.axis_floor[a]);
+  }
+  m.channels = static_cast<std::int32_t>(m.name.size());
+  send(m.window_end_us, gap_channel_, m);
+}
+
+void Publisher::status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live) {
+  framewatch::status_t& m = status_;
+  m.time_us = time_us;
+  m.config_sha256 = config_.sha256;
+  m.version = FRAMEWATCH_VERSION;
+  m.windows = counts.windows;
+  m.sample_sets = counts.sample_sets;
+  m.gaps = counts.gaps;
+  m.rejected_messages = counts.rejected_messages;
+  m.queue_high_water = live.queue_high_water;
+  m.queue_dropped = live.queue_dropped;
+  m.latency_s = live.latency_s;
+  m.channels = static_cast<std::int32_t>(counts.axes.size());
+  m.name.clear();
+  for (auto* column :
+       {&m.received, &m.lost, &m.late, &m.repaired, &m.rejected, &m.stuck, &m.clipped})
+    column->clear();
+  m.noise_mps2_per_rthz.clear();
+  for (std::size_t i = 0; i < counts.axes.size(); ++i) {
+    m.name.push_back(config_.pipeline.axes[i].name);
+    m.received.push_back(counts.axes[i].received);
+    m.lost.push_back(counts.axes[i].lost);
+    m.late.push_back(counts.axes[i].late);
+    m.repaired.push_back(counts.axes[i].repaired);
+    m.rejected.push_back(counts.axes[i].rejected);
+    m.stuck.push_back(counts.axes[i].stuck);
+    m.clipped.push_back(counts.axes[i].clipped);
+    m.noise_mps2_per_rthz.push_back(counts.axes[i].noise_density);
+  }
+  send(time_us, status_channel_, m);
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/model_fit_t.hpp>
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/watch_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+#include "daemon/config/config.h"
+#include "daemon/monitor/estimation/message_sink.h"
+#include "estimator/gap/gap_alarm.h"
+
+namespace framewatch::daemon {
+
+/// Counters of a live process; all zero in replay, so that its output is reproducible.
+struct LiveState {
+  std::int32_t queue_high_water = 0;
+  std::int64_t queue_dropped = 0;
+  double latency_s = 0;
+};
+
+/// Counters of one axis for the status message.
+struct AxisStatus {
+  std::int64_t received = 0, lost = 0, late = 0, repaired = 0, rejected = 0, stuck = 0, clipped = 0;
+  double noise_density = std::numeric_limits<double>::quiet_NaN();  ///< m/s^2/sqrt(Hz)
+};
+
+struct StatusCounts {
+  std::int64_t windows = 0, sample_sets = 0, gaps = 0, rejected_messages = 0;
+  std::vector<AxisStatus> axes;  ///< parallel to the configured ones
+};
+
+/// Turns results of the estimator into the messages of lcmtypes/ and sends them. No wall clock: the
+/// same estimates give the same bytes.
+class Publisher {
+ public:
+  /// `config` must outlive this. Without a sink nothing is encoded.
+  Publisher(const Config& config, MessageSink sink);
+
+  void parameters(std::int64_t time_us, const estimator::Pipeline& pipeline);
+  /// Boxplot statistics go with every LcmSettings::boxplot_every-th window.
+  void estimate(const estimator::WindowEstimate& estimate);
+  /// An estimate of one of the other windows, on its own channel.
+  void other(const estimator::WindowEstimate& estimate);
+  /// An estimate that comes after its time (WindowEstimate::late), on its window's channel with
+  /// _LATE behind it: whoever reads the other one gets windows in order.
+  void late(const estimator::WindowEstimate& estimate);
+  void event(const event_t& event);
+  /// The baselines that changes are judged against.
+  void watch(std::int64_t time_us, const estimator::Watch& watch);
+  void gap(const estimator::GapWindow& window);
+  void model(const estimator::ModelFit& fit);
+  void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
+
+ private:
+  void fill_values(const estimator::WindowEstimate& estimate);
+  template <typename MessageType>
+  void send(std::int64_t time_us, const std::string& channel, const MessageType& message);
+
+  const Config& config_;
+  MessageSink sink_;
+  std::string parameters_channel_, estimate_channel_, status_channel_, event_channel_, gap_channel_,
+      watch_channel_, model_channel_;
+  std::vector<std::string> other_channels_;
+  framewatch::parameter_table_t parameters_{};
+  framewatch::window_estimate_t estimate_{};
+  framewatch::status_t status_{};
+  framewatch::gap_t gap_{};
+  framewatch::watch_t watch_{};
+  framewatch::model_fit_t model_{};
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "daemon/monitor/history/history_files.h"
+#include "drivers/lcm/lcm_log.h"
+
+namespace framewatch::daemon {
+
+struct RawCount {
+  std::int64_t time_us;
+  std::size_t channel;  ///< of the newest table
+  std::int32_t count;   ///< as in accel_counts_t
+  double resolution_mps2;
+};
+
+/// Receives the content of raw logs.
+struct RawVisitor {
+  /// Called before the first sample, and whenever the channels change.
+  std::function<void(const std::vector<std::string>& names, double rate_hz)> channels;
+  std::function<void(const RawCount&)> sample;
+  /// Other messages than samples; may be empty.
+  std::function<void(const drivers::LogEvent&)> message = {};
+};
+
+/// The raw logs of a directory that may hold samples from `from_us` on and before `to_us`, those
+/// kept for events too, in order of time.
+std::vector<RawLog> raw_logs_between(const std::string& directory, std::int64_t from_us,
+                                     std::int64_t to_us);
+
+/// Reads their samples in the order in which they were received. The intact part of a log that is
+/// still being written, truncated or damaged is read, with a note. False, with the problem, when
+/// one cannot be read.
+bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std::int64_t to_us,
+                      const RawVisitor& visitor, std::vector<std::string>& notes,
+                      std::string& problem);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "daemon/base/damaged_database.h"
+#include "daemon/config/config.h"
+#include "daemon/monitor/estimates/summary_intake.h"
+#include "daemon/monitor/history/summary_store.h"
+
+namespace framewatch::daemon {
+
+/// Summaries, channels and events of a running estimation into the database, from a thread of its
+/// own. message() never waits. While the database does not take them, periods wait, bounded, and
+/// are tried again every second. A corrupt database is set aside and a new one begun, with the
+/// events that could still be read.
+class SummaryHistory {
+ public:
+  static constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
+  static constexpr std::size_t kMaxPeriods = 240;  ///< that wait
+  static constexpr std::size_t kMaxEvents = 10000;
+
+  struct Counters {
+    std::int64_t commits = 0, until_us = 0;
+    std::int64_t dropped = 0;  ///< windows and events
+    std::string trouble;
+    SetAside set_aside;
+  };
+
+  /// `config`, with its history, must outlive this.
+  explicit SummaryHistory(const Config& config);
+  /// Commits what there is, once.
+  ~SummaryHistory();
+  SummaryHistory(const SummaryHistory&) = delete;
+  SummaryHistory& operator=(const SummaryHistory&) = delete;
+
+  /// What the estimation published; what is no estimate of the main window, table, status, event or
+  /// acknowledgement is left alone.
+  void message(const std::string& channel, const std::vector<std::uint8_t>& bytes);
+  Counters counters() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Message {
+    SummaryIntake::Kind kind;
+    std::vector<std::uint8_t> bytes;
+  };
+
+  void work();
+  void guarded(std::size_t messages, const std::function<void()>& round);
+  void take(const Message& message);
+  void end_period();
+  void commit();
+  std::string store_waiting();
+  bool begin_anew(const std::string& reason);
+  void bound();
+  SummaryBatch& waiting() { return intake_.batch(); }
+
+  const Config& config_;
+
+  // Of the thread.
+  SummaryStore store_;
+  SummaryIntake intake_;  ///< kind_of() may be asked by any
+  Clock::time_point next_commit_, next_prune_;
+  std::int64_t repeated_said_ = 0;
+
+  mutable std::mutex mutex_;  ///< guards what is below
+  std::condition_variable wake_;
+  std::vector<Message> queue_;
+  std::size_t queued_ = 0;  ///< bytes
+  Counters counters_;
+  bool stop_ = false;
+  std::thread thread_;  ///< last: it sees everything above
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,166 @@
+#include "daemon/monitor/history/summary_query.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/monitor/history/history_files.h"
+#include "daemon/monitor/history/history_schema.h"
+#include "drivers/files/input_file.h"
+
+namespace framewatch::daemon {
+
+namespace {
+
+/// Of rows that `run` can have written: others are of a damaged or a foreign file.
+constexpr const char* kSound =
+    " WHERE period_s BETWEEN 1 AND 1000000000"
+    " AND start_us BETWEEN -2000000000000000000 AND 2000000000000000000"
+    " AND last_us BETWEEN -2000000000000000000 AND 2000000000000000000";
+
+constexpr const char* kSummaryRow =
+    "SELECT start_us, last_us, windows, observable, mean, std_error, min, whisker_low, q1, median,"
+    " q3, whisker_high, max, outliers, boxed FROM summary JOIN period USING (period_s, start_us)"
+    " WHERE parameter = ? AND period_s = ?";
+
+SummaryRow summary_row(SqliteStatement& s) {
+  SummaryRow r;
+  r.start_us = s.integer(0);
+  r.last_us = s.integer(1);
+  r.windows = s.integer(2);
+  r.observable = s.integer(3);
+  int column = 4;
+  for (double* value : {&r.mean, &r.std_error, &r.min, &r.whisker_low, &r.q1, &r.median, &r.q3,
+                        &r.whisker_high, &r.max})
+    *value = s.number(column++);
+  r.outliers = s.integer(column++);
+  r.boxed = s.integer(column);
+  return r;
+}
+
+}  // namespace
+
+std::string SummaryQuery::open(const std::string& directory) {
+  const std::string path = summary_file(directory);
+  if (drivers::is_absent(path)) {
+    if (raw_logs(raw_folder(directory)).empty() && raw_logs(event_folder(directory)).empty())
+      return "there is none";
+    if (!file_.open(":memory:")) return file_.error();  // raw logs alone
+    return upgrade(file_, history_schema());
+  }
+  if (!file_.open_to_read(path)) return told(file_.error());
+  return told(version_problem(file_, history_schema()));
+}
+
+std::string SummaryQuery::problem() const {
+  return file_.failed() ? told(file_.error()) : "";
+}
+
+std::string SummaryQuery::told(const std::string& why) const {
+  if (!file_.corrupt()) return why;
+  return fmt::format(
+      "the database is corrupt{}; `framewatch run` sets it aside and begins a new one",
+      why.empty() ? "" : fmt::format(" ({})", why));
+}
+
+std::string SummaryQuery::structure() {
+  SqliteStatement s = file_.prepare("SELECT structure FROM config ORDER BY first_us DESC LIMIT 1");
+  return s.row() ? s.text(0) : "";
+}
+
+std::vector<SummaryParameter> SummaryQuery::parameters() {
+  SqliteStatement s = file_.prepare("SELECT id, name, unit FROM parameter ORDER BY id");
+  std::vector<SummaryParameter> out;
+  while (s.row()) out.push_back({s.integer(0), s.text(1), s.text(2)});
+  return out;
+}
+
+std::vector<SummaryPeriods> SummaryQuery::periods() {
+  SqliteStatement s = file_.prepare(
+      fmt::format("SELECT period_s, count(*), min(start_us), max(start_us) FROM period{}"
+                  " GROUP BY period_s ORDER BY period_s",
+                  kSound));
+  std::vector<SummaryPeriods> out;
+  while (s.row()) out.push_back({s.integer(0), s.integer(1), s.integer(2), s.integer(3)});
+  return out;
+}
+
+std::optional<std::int64_t> SummaryQuery::newest_us() {
+  SqliteStatement s = file_.prepare(fmt::format("SELECT max(last_us) FROM period{}", kSound));
+  if (!s.row() || s.null(0)) return std::nullopt;
+  return s.integer(0);
+}
+
+std::vector<SummaryRow> SummaryQuery::rows(std::int64_t parameter, std::int64_t period_s,
+                                           std::int64_t from_us, std::int64_t to_us) {
+  SqliteStatement s = file_.prepare(std::string(kSummaryRow) +
+                                    " AND start_us >= ? AND start_us < ? ORDER BY start_us");
+  s.bind(1, parameter).bind(2, period_s).bind(3, from_us).bind(4, to_us);
+  std::vector<SummaryRow> out;
+  while (s.row()) out.push_back(summary_row(s));
+  return out;
+}
+
+std::optional<SummaryRow> SummaryQuery::newest_row(std::int64_t parameter, std::int64_t period_s) {
+  SqliteStatement s = file_.prepare(std::string(kSummaryRow) +
+                                    " AND observable > 0 ORDER BY start_us DESC LIMIT 1");
+  s.bind(1, parameter).bind(2, period_s);
+  if (!s.row()) return std::nullopt;
+  return summary_row(s);
+}
+
+std::vector<ChannelTotals> SummaryQuery::channels(std::int64_t from_us, std::int64_t to_us) {
+  SqliteStatement s = file_.prepare(
+      "SELECT name, sum(received), sum(lost), sum(late), sum(rejected), sum(stuck), sum(clipped)"
+      " FROM channel_summary JOIN channel ON channel.id = channel"
+      " WHERE period_s = (SELECT min(period_s) FROM channel_summary)"
+      " AND start_us >= ? AND start_us < ? GROUP BY channel ORDER BY channel");
+  s.bind(1, from_us).bind(2, to_us);
+  std::vector<ChannelTotals> out;
+  while (s.row())
+    out.push_back({s.text(0), s.integer(1), s.integer(2), s.integer(3), s.integer(4), s.integer(5),
+                   s.integer(6)});
+  return out;
+}
+
+std::vector<event_t> SummaryQuery::events(std::int64_t from_us, std::int64_t to_us,
+                                          std::int64_t most) {
+  SqliteStatement s = file_.prepare(
+      "SELECT kind, id, time_us, state, since_us, severity, place, value, std_error, unit, message,"
+      " segment FROM event WHERE time_us >= ? AND time_us < ? ORDER BY time_us DESC LIMIT ?");
+  s.bind(1, from_us).bind(2, to_us).bind(3, most);
+  std::vector<event_t> out;
+  while (s.row()) {
+    event_t e{};
+    e.kind = s.text(0);
+    e.id = s.integer(1);
+    e.time_us = s.integer(2);
+    e.state = static_cast<std::int32_t>(s.integer(3));
+    e.since_us = s.integer(4);
+    e.severity = static_cast<std::int32_t>(s.integer(5));
+    e.place = s.text(6);
+    e.value = s.number(7);
+    e.std_error = s.number(8);
+    e.unit = s.text(9);
+    e.message = s.text(10);
+    e.segment = s.text(11);
+    out.push_back(std::move(e));
+  }
+  std::reverse(out.begin(), out.end());
+  return out;
+}
+
+std::vector<StoredAcknowledgement> SummaryQuery::acknowledgements(std::int64_t from_us,
+                                                                  std::int64_t to_us) {
+  SqliteStatement s = file_.prepare(
+      "SELECT id, time_us, kind, place, who, comment FROM acknowledgement"
+      " WHERE time_us >= ? AND time_us < ? ORDER BY time_us");
+  s.bind(1, from_us).bind(2, to_us);
+  std::vector<StoredAcknowledgement> out;
+  while (s.row())
+    out.push_back({s.integer(0), s.integer(1), s.text(2), s.text(3), s.text(4), s.text(5)});
+  return out;
+}
+
+}  // namespace framewatch::daemon

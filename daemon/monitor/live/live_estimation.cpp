@@ -1,0 +1,189 @@
+#include "daemon/monitor/live/live_estimation.h"
+
+#include <poll.h>
+
+#include <utility>
+
+#include "daemon/base/clocks.h"
+#include "daemon/monitor/live/heard_channels.h"
+
+namespace framewatch::daemon {
+namespace {
+
+std::vector<std::string> with(std::vector<std::string> channels, const std::string& another) {
+  channels.push_back(another);
+  return channels;
+}
+
+}  // namespace
+
+LiveEstimation::LiveEstimation(const Config& config, drivers::LcmProvider& lcm,
+                               drivers::CanLogWriter* can_log)
+    : config_(std::make_unique<const Config>(config)),
+      can_map_(config.can),
+      lcm_(lcm),
+      can_log_(can_log),
+      request_channel_(acknowledge_channel(config)),
+      source_(lcm, with(heard_channels(config), request_channel_), config.lcm.queue_capacity,
+              [this](const drivers::LcmMessage& message) { on_message(message); }),
+      can_(can_map_, can_log != nullptr,
+           [this](int bus, const drivers::CanFrame& frame) { on_frame(bus, frame); }) {
+  times_.newest_us.resize(config.pipeline.axes.size());
+  begin_estimation();
+}
+
+void LiveEstimation::begin_estimation() {
+  estimation_ = std::make_unique<Estimation>(
+      *config_,
+      [this](std::int64_t, const std::string& channel, const std::vector<std::uint8_t>& bytes) {
+        lcm_.publish(channel, bytes.data(), static_cast<unsigned>(bytes.size()));
+        if (history_ != nullptr) history_->message(channel, bytes);
+      });
+  if (!segments_ && config_->gap && !config_->gap->store.empty()) segments_.emplace(*config_);
+  estimation_->tap({[this](const estimator::AccelSample& sample) { on_sample(sample); },
+                    [this](const temperature_t& temperature) {
+                      if (history_ != nullptr) history_->temperature(temperature);
+                    },
+                    [this](const estimator::GapNews& news) {
+                      if (segments_ && news.state == estimator::AlarmState::raised)
+                        segments_->raised(news.id);
+                    },
+                    [this](const event_t& event) {
+                      if (on_event_) on_event_(event);
+                    },
+                    [this](const EventReport& report) { reports_.write(report, *config_); }});
+}
+
+void LiveEstimation::reconfigure(Config next, Reach reach) {
+  segments_.reset();  // writes what it still has under the old settings
+  // Both are held until the new estimation has taken over: the old one refers to its configuration.
+  const std::unique_ptr<const Config> config_before =
+      std::exchange(config_, std::make_unique<const Config>(std::move(next)));
+  const std::unique_ptr<Estimation> before = std::move(estimation_);
+  begin_estimation();
+  estimation_->take_over(*before, reach == Reach::settings);
+}
+
+void LiveEstimation::catch_up(RawBacklog backlog) {
+  backlog_ = std::move(backlog);
+  if (backlog_.empty()) estimation_->came_up(backlog_.read_whole());
+}
+
+/// Gives the estimation what waits for it, first the backlog.
+void LiveEstimation::feed() {
+  const std::int64_t until_us = steady_clock_us() + 1000 * kFeed_ms;
+  const auto enough = [until_us] { return steady_clock_us() >= until_us; };
+  feeding_ = true;
+  if (!backlog_.empty()) {
+    backlog_.give([this](const estimator::AccelSample& s) { estimation_->sample(s); },
+                  [this](const drivers::LogEvent& event) {
+                    estimation_->message(event.channel, event.data.data(), event.data.size());
+                  },
+                  enough);
+    if (backlog_.empty()) estimation_->came_up(backlog_.read_whole());
+  }
+  feeding_ = false;
+  for (; backlog_.empty() && !later_.empty() && !enough(); later_.pop_front()) {
+    const Later& l = later_.front();
+    if (l.channel.empty())
+      estimate_frame(l.bus, l.frame);
+    else
+      estimate_message({l.channel, l.data.data(), l.data.size(), l.received_us, l.sender});
+  }
+}
+
+void LiveEstimation::keep(Later later) {
+  if (later_.size() == kMaxLater)
+    ++state_.queue_dropped;
+  else
+    later_.push_back(std::move(later));
+}
+
+void LiveEstimation::on_sample(const estimator::AccelSample& sample) {
+  if (feeding_) return;
+  times_.received_us = host_clock_us();
+  times_.newest_us[static_cast<std::size_t>(sample.axis)] = to_microseconds(sample.time);
+  if (segments_) segments_->sample(sample);
+  if (history_ != nullptr) history_->sample(sample);
+}
+
+void LiveEstimation::step_done(std::int64_t began_us, std::int64_t windows_before,
+                               std::int64_t received_us) {
+  times_.steps.add(1e-6 * static_cast<double>(steady_clock_us() - began_us));
+  if (estimation_->windows() == windows_before) return;
+  state_.latency_s = 1e-6 * static_cast<double>(host_clock_us() - received_us);
+  times_.latencies.add(state_.latency_s);
+  if (state_.latency_s > config_->pipeline.options.hop_s) ++times_.deadline_missed;
+}
+
+bool LiveEstimation::poll(int timeout_ms) {
+  if (catching_up()) {
+    feed();
+    if (catching_up()) timeout_ms = 0;
+  }
+  if (config_->can.empty()) return handle_messages(timeout_ms);
+  std::vector<pollfd> waiting{{source_.descriptor(), POLLIN, 0}};
+  can_.descriptors(waiting);
+  ::poll(waiting.data(), waiting.size(), timeout_ms);
+  can_.handle(steady_clock_us());
+  for (std::size_t b = 0; b < config_->can.buses.size(); ++b) {
+    const bool gone = !can_.state(static_cast<int>(b)).open;
+    estimation_->notice(
+        {drivers::CanNotice::Kind::interface_gone, static_cast<int>(b), !gone, 0, host_clock_us()});
+  }
+  return handle_messages(0) && !can_log_failed_;
+}
+
+bool LiveEstimation::handle_messages(int timeout_ms) {
+  const bool good = source_.handle(timeout_ms);
+  const std::int64_t dropped = source_.dropped().queue_full;
+  state_.queue_dropped += dropped - std::exchange(lcm_dropped_, dropped);
+  state_.queue_high_water = static_cast<std::int32_t>(source_.backlog_high_water());
+  return good;
+}
+
+void LiveEstimation::on_frame(int bus, const drivers::CanFrame& frame) {
+  const std::string& interface = config_->can.buses[static_cast<std::size_t>(bus)].interface;
+  if (can_log_ != nullptr && !can_log_->write(frame, interface)) can_log_failed_ = true;
+  if (catching_up()) {
+    Later later;
+    later.bus = bus;
+    later.frame = frame;
+    return keep(std::move(later));
+  }
+  estimate_frame(bus, frame);
+}
+
+void LiveEstimation::estimate_frame(int bus, const drivers::CanFrame& frame) {
+  const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
+  estimation_->frame(bus, frame);
+  const std::int64_t dropped = can_.dropped();
+  state_.queue_dropped += dropped - std::exchange(can_dropped_, dropped);
+  step_done(began_us, windows, frame.stamp_us);
+  estimation_->set_live(state_);
+}
+
+void LiveEstimation::on_message(const drivers::LcmMessage& message) {
+  if (message.channel == request_channel_) {
+    if (on_request_) on_request_({static_cast<const std::uint8_t*>(message.data), message.size});
+    return;
+  }
+  if (!catching_up()) return estimate_message(message);
+  const auto* bytes = static_cast<const std::uint8_t*>(message.data);
+  Later later;
+  later.channel = message.channel;
+  later.data.assign(bytes, bytes + message.size);
+  later.sender = message.sender;
+  later.received_us = message.received_us;
+  keep(std::move(later));
+}
+
+void LiveEstimation::estimate_message(const drivers::LcmMessage& message) {
+  const std::int64_t began_us = steady_clock_us(), windows = estimation_->windows();
+  estimation_->message(message.channel, message.data, message.size, message.sender,
+                       message.received_us);
+  step_done(began_us, windows, message.received_us);
+  estimation_->set_live(state_);
+}
+
+}  // namespace framewatch::daemon

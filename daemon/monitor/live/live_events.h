@@ -1,0 +1,42 @@
+#pragma once
+
+#include "daemon/config/config.h"
+#include "daemon/monitor/actions/acknowledge_desk.h"
+#include "daemon/monitor/actions/action_report.h"
+#include "daemon/monitor/history/history_report.h"
+#include "daemon/monitor/live/live_estimation.h"
+#include "daemon/monitor/service/command_socket.h"
+
+namespace framewatch::daemon {
+
+/// What `framewatch run` does with events: those of the estimation and of the history go to the
+/// command and the webhook of [actions], and can be acknowledged over its socket. Keeps the
+/// history.
+class LiveEvents {
+ public:
+  /// All must outlive this. Attaches itself to `live`.
+  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live);
+  LiveEvents(const LiveEvents&) = delete;
+  LiveEvents& operator=(const LiveEvents&) = delete;
+
+  /// To be called several times a second.
+  void look();
+  /// Goes on with another configuration, of which [actions] may differ.
+  void reconfigure(const Config& config) { actions_.reconfigure(config); }
+
+  /// Every event of this process that is raised: those of the estimation and of the history.
+  AcknowledgeDesk::Raised raised() { return {&live_.estimation().raised(), &history_.raised()}; }
+
+ private:
+  void acknowledged(const event_t& event, const Acknowledgement& by);
+  CommandPacket obey(const CommandPacket& command, const std::string& user);
+
+  const Config& config_;
+  LiveEstimation& live_;
+  HistoryReport history_;
+  ActionReport actions_;
+  AcknowledgeDesk desk_;
+  CommandSocket commands_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "drivers/lcm/lcm_log.h"
+#include "estimator/motion/sample.h"
+
+namespace framewatch::daemon {
+
+/// Raw samples that the process before stored in its history and that the state of this one lacks,
+/// with the temperatures between them, in the order in which they were received.
+class RawBacklog {
+ public:
+  /// A strong motion's longest time, and what the estimation gets of the time before it.
+  static constexpr double kMost_s = 960, kBefore_s = 60;
+  static constexpr std::size_t kMaxSamples = 8'000'000;  ///< 200 MB; of more sensors fewer seconds
+
+  struct Message {
+    std::size_t before = 0;  ///< index of the sample that it came before
+    drivers::LogEvent event;
+  };
+
+  /// Reads the samples after known_us, by axis (Estimation::newest_us()). resumed: the estimation
+  /// goes on from a state; else it gets samples only when they end in a strong motion that
+  /// [event_report] reports, from kBefore_s before it on. Without [history] there are none; notes
+  /// says what cannot be read.
+  static RawBacklog read(const Config& config, const std::vector<std::int64_t>& known_us,
+                         bool resumed, std::vector<std::string>& notes);
+
+  bool empty() const { return next_ == samples_.size(); }
+  /// The raw samples were read to their end: what the process before had stored last is known.
+  bool read_whole() const { return whole_; }
+  double seconds() const;  ///< from the first to the last sample
+  std::int64_t first_us() const;
+
+  /// Calls `sample` and `message` with what is left, in order, until `enough()` is true.
+  template <typename Sample, typename Temperature, typename Enough>
+  void give(Sample sample, Temperature message, Enough enough) {
+    for (; next_ < samples_.size() && !enough(); ++next_) {
+      for (; !messages_.empty() && messages_.front().before <= next_; messages_.pop_front())
+        message(messages_.front().event);
+      sample(samples_[next_]);
+    }
+    if (empty()) *this = RawBacklog(whole_);
+  }
+
+  RawBacklog() = default;
+
+ private:
+  explicit RawBacklog(bool whole) : whole_(whole) {}
+  void keep_strong_motion(const Config& config);
+  void drop_before(std::int64_t time_us);
+
+  std::vector<estimator::AccelSample> samples_;
+  std::deque<Message> messages_;
+  std::size_t next_ = 0;
+  bool whole_ = false;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,178 @@
+#include "daemon/monitor/live/run_command.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "daemon/base/clocks.h"
+#include "daemon/base/exit_code.h"
+#include "daemon/base/file_digest.h"
+#include "daemon/base/log.h"
+#include "daemon/base/reload_signal.h"
+#include "daemon/base/stop_signal.h"
+#include "daemon/base/utc_time.h"
+#include "daemon/config/config.h"
+#include "daemon/config/sections/config_problems.h"
+#include "daemon/monitor/estimation/state_file.h"
+#include "daemon/monitor/live/heard_channels.h"
+#include "daemon/monitor/live/housekeeping.h"
+#include "daemon/monitor/live/live_events.h"
+#include "daemon/monitor/live/raw_backlog.h"
+#include "daemon/monitor/service/open_lcm.h"
+#include "daemon/monitor/service/service_manager.h"
+#include "daemon/monitor/service/start_count.h"
+#include "drivers/files/cut_off_file.h"
+#include "drivers/files/input_file.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kPoll_ms = 100;
+
+/// Says which sections of a state were not taken, why, and what that costs. Keeps a copy of the
+/// file.
+void log_lost(const std::string& path, const std::vector<LostSection>& lost) {
+  if (lost.empty()) return;
+  for (const LostSection& l : lost)
+    log(LogLevel::warning,
+        fmt::format("{}: section {} {}: {}", path, l.name, l.why, without_section(l.name)));
+  const std::string aside = path + ".refused";
+  std::error_code none;
+  std::filesystem::copy_file(path, aside, std::filesystem::copy_options::overwrite_existing, none);
+  log(LogLevel::notice, none ? fmt::format("cannot copy {} to {}: {}", path, aside, none.message())
+                             : fmt::format("a copy of the file is {}", aside));
+}
+
+/// Resumes from the state file, if there is one, with every section of it that fits. A file of
+/// which nothing fits is renamed, and the log says why. Whether the window was resumed.
+bool resume(const std::string& path, const Config& config, drivers::LcmProvider& lcm,
+            drivers::CanLogWriter* can_log, std::optional<LiveEstimation>& live) {
+  std::error_code none;
+  if (drivers::is_absent(path)) return false;
+  const auto anew = [&]() -> Estimation& {
+    return live.emplace(config, lcm, can_log).estimation();
+  };
+  const LoadedState state = load_what_fits(path, config, live->estimation(), anew);
+  if (state.problem.empty()) {
+    log(LogLevel::notice,
+        fmt::format("goes on from {}: {} windows so far", path, live->estimation().windows()));
+    log_lost(path, state.lost);
+    return std::none_of(state.lost.begin(), state.lost.end(),
+                        [](const LostSection& l) { return l.name == "window"; });
+  }
+  const std::string aside = path + ".refused";
+  std::filesystem::rename(path, aside, none);
+  log(LogLevel::warning,
+      none ? fmt::format("{}: {}; starts anew, and cannot be put aside as {}: {}", path,
+                         state.problem, aside, none.message())
+           : fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
+  return false;
+}
+
+/// The stored raw samples that the estimation has to get first.
+RawBacklog missed_samples(const Config& config, const Estimation& estimation, bool resumed) {
+  std::vector<std::string> notes;
+  RawBacklog out = RawBacklog::read(config, estimation.newest_us(), resumed, notes);
+  for (const std::string& note : notes)
+    log(LogLevel::warning, fmt::format("stored samples: {}", note));
+  if (!out.empty())
+    log(LogLevel::notice, fmt::format("goes on with {:.1f} s of stored samples, from {} on",
+                                      out.seconds(), sensor_time_text(out.first_us())));
+  return out;
+}
+
+void log_summary(const Estimation& estimation) {
+  const estimator::PipelineCounters counters = estimation.pipeline().counters();
+  log(LogLevel::info,
+      fmt::format("stopped: {} windows, {} interruptions, {} messages lost", counters.windows,
+                  counters.interruptions, estimation.intake().lost()));
+}
+
+}  // namespace
+
+int run(const RunArguments& a) {
+  std::vector<ConfigProblem> problems;
+  std::string error;
+  const std::optional<std::string> text = read_text_file(a.config, error);
+  if (!text) problems.push_back({a.config, error});
+  const std::optional<Config> config =
+      text ? parse_config(a.config, *text, problems) : std::nullopt;
+  print_problems(problems);
+  if (!config) return kBadInput;
+  log_doubts(config->doubts);
+  if (const std::string why = nothing_to_hear(*config, a.by_name); !why.empty())
+    return refuse("run", why);
+  if (const std::string names = channels_without_source(*config, a.by_name); !names.empty())
+    log(LogLevel::warning,
+        fmt::format("{}: no source: {}: nothing comes from them unless a node names them",
+                    config->path, names));
+  if (!a.state.empty() && !drivers::is_absent(a.state))  // a device would be renamed and replaced
+    if (const std::string why = drivers::why_no_file(a.state); !why.empty())
+      return refuse("run", fmt::format("{}: {}", a.state, why));
+
+  catch_stop_signals();
+  catch_reload_signal();
+  ServiceManager manager;
+  const auto lcm = open_lcm_with_retry(*config, a.url, manager, error);
+  if (!lcm) return stop_requested() ? 0 : refuse("run", error);
+
+  drivers::CanLogWriter can_log;
+  if (const std::string kept = a.can_log.empty() ? "" : drivers::keep_cut_off(a.can_log);
+      !kept.empty())
+    log(LogLevel::warning,
+        fmt::format("a run that was cut off left frames behind: they are in {}", kept));
+  if (!a.can_log.empty() && !can_log.open(a.can_log))
+    return refuse("run", a.can_log + ": " + can_log.error());
+  drivers::CanLogWriter* const recorder = a.can_log.empty() ? nullptr : &can_log;
+  std::optional<LiveEstimation> estimation(std::in_place, *config, *lcm, recorder);
+  StartCount starts;
+  bool resumed = false;
+  if (!a.state.empty()) {
+    starts = count_start(a.state, error);
+    if (!error.empty()) log(LogLevel::error, fmt::format("starts are not counted: {}", error));
+    resumed = resume(a.state, *config, *lcm, recorder, estimation);
+  }
+  LiveEstimation& live = *estimation;
+  RawBacklog missed = missed_samples(*config, live.estimation(), resumed);
+  LiveEvents events(*config, *lcm, live);
+  live.catch_up(std::move(missed));
+  for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
+  Housekeeping housekeeping(*config, *text, a.state, a.state_every_s, starts, resumed);
+  if (!a.quiet)
+    log(LogLevel::info,
+        fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name, config->path,
+                    config->pipeline.axes.size(), a.url.empty() ? config->lcm.url : a.url));
+  manager.ready();
+  RateLimitedLog failures(LogLevel::error);
+  while (!stop_requested()) {
+    if (!live.poll(kPoll_ms) && !stop_requested()) {
+      failures(host_clock_us(),
+               can_log.error().empty() ? "LCM failed to deliver" : "CAN log: " + can_log.error());
+      ::usleep(1000 * kPoll_ms);
+    }
+    housekeeping.look(live, *lcm, manager, events.raised());
+    events.look();
+    if (reload_requested() && housekeeping.reload(live, manager)) events.reconfigure(live.config());
+  }
+  manager.stopping();
+  // With a state file the instants still open are published after the next start.
+  if (a.state.empty()) {
+    live.finish();
+  } else {
+    housekeeping.write_state(live);
+    error = count_clean_stop(a.state, starts);
+    if (!error.empty()) log(LogLevel::error, fmt::format("the stop is not counted: {}", error));
+  }
+  if (recorder != nullptr && !can_log.close())
+    return refuse("run", a.can_log + ": " + can_log.error());
+  if (!a.quiet) log_summary(live.estimation());
+  return 0;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <future>
+#include <string>
+
+#include "daemon/config/sections/settings.h"
+#include "daemon/monitor/estimation/estimation.h"
+
+namespace framewatch::daemon {
+
+/// Writes the state of a running estimation periodically from a thread, so that a slow disk delays
+/// no estimate.
+class StateKeeper {
+ public:
+  /// path: empty: no state is written. every_s: period.
+  StateKeeper(std::string path, int every_s);
+  ~StateKeeper();
+  StateKeeper(const StateKeeper&) = delete;
+  StateKeeper& operator=(const StateKeeper&) = delete;
+
+  /// config: of the estimation.
+  void look(const Config& config, Estimation& estimation, std::int64_t now_us);
+  /// Writes as soon as possible, because the stored state belongs to an old configuration.
+  void soon() { next_us_ = 1; }
+  /// Writes now, and waits until it is done.
+  void keep(const Config& config, Estimation& estimation);
+
+  bool wanted() const { return !path_.empty(); }
+  const std::string& path() const { return path_; }
+  std::int64_t written_us() const { return written_us_; }  ///< host clock; 0: not yet
+  const std::string& problem() const {
+    return problem_;
+  }  ///< of the newest write; empty: it succeeded
+
+ private:
+  bool written();
+  void report(std::string problem);
+
+  std::string path_;
+  std::int64_t every_us_, next_us_ = 0, written_us_ = 0;
+  std::string problem_;
+  std::future<std::string> writing_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <list>
+#include <string>
+#include <vector>
+
+#include "daemon/config/sections/settings.h"
+#include "daemon/monitor/service/command_packet.h"
+#include "drivers/files/descriptor.h"
+
+namespace framewatch::daemon {
+
+/// Takes commands over a Unix socket (SOCK_SEQPACKET, mode 0660): one packet, one answer, the end.
+/// Who may connect, the file system decides; who did is what the kernel says. Never waits.
+class CommandSocket {
+ public:
+  static constexpr std::size_t kMaxConnections = 16;       ///< the oldest silent one makes room
+  static constexpr std::int64_t kPatience_us = 3'000'000;  ///< with a silent one
+
+  /// The answer to a command of this user.
+  using Handler =
+      std::function<CommandPacket(const CommandPacket& command, const std::string& user)>;
+
+  /// Listens at once; log lines say when it cannot, and look() tries again. service: "run" or
+  /// "record".
+  CommandSocket(const Config& config, const std::string& service, Handler handler);
+  ~CommandSocket();
+  CommandSocket(const CommandSocket&) = delete;
+  CommandSocket& operator=(const CommandSocket&) = delete;
+
+  /// Does what there is to do; to be called several times a second. now_us: steady clock.
+  void look(std::int64_t now_us);
+
+  /// Why nobody listens; empty: this does.
+  const std::string& problem() const { return problem_; }
+  const std::string& path() const { return path_; }
+  std::int64_t malformed() const { return malformed_; }  ///< packets that were none
+
+ private:
+  struct Connection {
+    drivers::Descriptor file;
+    uid_t user = 0;
+    std::int64_t until_us = 0;
+    CommandPacket command;          ///< without a channel: it has not come yet
+    std::future<std::string> name;  ///< of the user, once the command has come
+  };
+  enum class Next { wait, done };
+
+  void listen(std::int64_t now_us);
+  std::string open();
+  void accept(std::int64_t now_us);
+  bool make_room();
+  Next receive(Connection& connection, std::int64_t now_us);
+  Next answer(Connection& connection);
+
+  std::string directory_, path_, service_;
+  Handler handler_;
+  drivers::Descriptor lock_, socket_;
+  std::string problem_ = "not tried yet";
+  std::int64_t next_try_us_ = INT64_MIN, malformed_ = 0;
+  std::list<Connection> connections_;
+  std::vector<std::uint8_t> buffer_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,294 @@
+#include "daemon/page/findings/answers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/monitor/event_report/drift_words.h"
+#include "daemon/monitor/event_report/response_words.h"
+#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/service/health.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kSilent_s = 3;
+constexpr int kAllStories = 8, kMaxSwayed = 5;
+constexpr double kStronger = 1.2;  // than the newest shake: worth a line of its own
+
+std::string capital(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
+std::vector<const Finding*> of_kind(const Known& known, FindingKind kind) {
+  std::vector<const Finding*> out;
+  for (const Finding& f : known.findings)
+    if (f.kind == kind) out.push_back(&f);
+  return out;
+}
+
+/// A sentence ends with a full stop.
+std::string sentence(std::string text) {
+  text = capital(std::move(text));
+  if (!text.empty() && text.back() != '.') text += '.';
+  return text;
+}
+
+AnswerLine line_of(const Finding& f) {
+  return {sentence(f.text), f.since_us, 0};
+}
+
+void say_who_knows(const std::vector<const Finding*>& findings, Answer& out) {
+  for (const Finding* f : findings)
+    if (f->acknowledged)
+      out.more.push_back({f->who.empty()
+                              ? fmt::format("{} is acknowledged.", f->place)
+                              : fmt::format("{} is acknowledged by {}.", f->place, f->who),
+                          0, 0});
+}
+
+Answer is_changed(const Known& k) {
+  Answer out{"Is the building changed?", AnswerState::good, {}, {}};
+  const std::vector<const Finding*> changes = of_kind(k, FindingKind::change);
+  if (changes.size() == 1) {
+    out.line = line_of(*changes.front());
+    out.line.text = "Yes. " + out.line.text;
+  } else if (!changes.empty()) {
+    const auto first = std::min_element(changes.begin(), changes.end(),
+                                        [](auto* a, auto* b) { return a->since_us < b->since_us; });
+    out.line = {fmt::format("Yes, in {} places.", changes.size()), (*first)->since_us, 0};
+    for (const Finding* f : changes) out.more.push_back(line_of(*f));
+  }
+  if (!changes.empty()) {
+    const bool open = std::any_of(changes.begin(), changes.end(),
+                                  [](const Finding* f) { return !f->acknowledged; });
+    out.state = open ? AnswerState::bad : AnswerState::look;
+    say_who_knows(changes, out);
+    return out;
+  }
+  if (k.with_baseline == 0) {
+    out.state = AnswerState::wait;
+    out.line.text = "Not known yet: what it is like unchanged is learned first, while it moves.";
+    return out;
+  }
+  out.line.text =
+      k.with_baseline < k.watched
+          ? fmt::format("No change found in {} of {} elements; the others have no baseline yet.",
+                        k.with_baseline, k.watched)
+          : fmt::format("No. None of {} elements differs from what it was like (its baseline).",
+                        k.watched);
+  if (k.observable < k.with_baseline)
+    out.more.push_back({fmt::format("Now {} of them have a value: where it hardly moves, the last "
+                                    "values stand.",
+                                    k.observable),
+                        0, 0});
+  return out;
+}
+
+Answer is_believed(const Known& k, const Config& config) {
+  Answer out{"Is what I see to be believed?", AnswerState::good, {}, {}};
+  const std::vector<const Finding*> doubts = of_kind(k, FindingKind::belief);
+  std::set<std::string> dead;
+  for (const Finding* f : doubts)
+    if (f->of_channel) dead.insert(f->place);
+  for (const Finding* f : doubts) out.more.push_back(line_of(*f));
+  if (!k.same_config) out.more.push_back({"The estimator runs with another configuration.", 0, 0});
+  if (!k.samples || k.silent_s > kSilent_s) {
+    out.state = k.samples ? AnswerState::bad : AnswerState::wait;
+    out.line.text = k.samples ? fmt::format("No: no samples for {}. What is shown is old.",
+                                            span_text(k.silent_s))
+                              : "There is nothing to believe yet: no samples have come.";
+  } else if (k.estimates && k.estimates_silent_s > kSilent_s) {
+    out.state = AnswerState::bad;
+    out.line.text = fmt::format("No: samples come, but the estimator says nothing for {}.",
+                                span_text(k.estimates_silent_s));
+  } else if (!out.more.empty()) {
+    out.state = AnswerState::look;
+    const bool one = doubts.size() == 1 && k.same_config;
+    out.line = one ? out.more.front() : AnswerLine{"Only in part.", 0, 0};
+    if (one) out.line.text = "Only in part. " + out.line.text;
+    if (one) out.more.clear();
+  } else if (!k.estimates) {
+    out.state = AnswerState::wait;
+    out.line.text = "Samples come; no window is complete yet.";
+  } else {
+    out.line.text = fmt::format("Yes. All {} sensors send", config.pipeline.axes.size());
+    out.line.text +=
+        k.residual && k.observable > 0
+            ? fmt::format(
+                  ", and the model leaves {} of the motion unexplained.",
+                  *k.residual < 0.0005 ? "under 0.1 %" : fmt::format("{:.1f} %", 100 * *k.residual))
+            : ".";
+  }
+  if (!dead.empty()) {
+    const std::size_t all = config.pipeline.axes.size();
+    out.more.push_back({fmt::format("{} of {} sensors are good.", all - dead.size(), all), 0, 0});
+  }
+  say_who_knows(doubts, out);
+  return out;
+}
+
+std::string story_words(const Shake& shake, const estimator::Structure& s, int story) {
+  const estimator::PeakDrift peak = peak_drift(shake.peak, s, story);
+  if (peak.frame < 0) return fmt::format("Story {}: not known", story);
+  return fmt::format("Story {}: {} ({:.2f} mm) in frame {}", story, drift_words(peak.ratio),
+                     1e3 * peak.ratio * s.story_height[static_cast<std::size_t>(story - 1)],
+                     s.frame_name(peak.frame));
+}
+
+/// "Story 3: 0.42 % ± 0.01 % (12.60 mm) in frame y1", by the drifts where they are known.
+std::string drift_line(const Known& k, const estimator::Structure& s, int story) {
+  const auto i = static_cast<std::size_t>(story - 1);
+  if (i >= k.drifts.size()) return story_words(*k.newest, s, story);
+  const estimator::StoryDrift& d = k.drifts[i];
+  if (!d.known()) return fmt::format("Story {}: not known", story);
+  return fmt::format("Story {}: {} ({:.2f} mm) in frame {}{}{}", story, drift_with_error(d),
+                     1e3 * d.ratio * s.story_height[i], s.frame_name(d.frame),
+                     d.measured ? "" : ", computed",
+                     d.gap_at_peak() ? "; the record has a gap at the peak" : "");
+}
+
+/// Every story, downward; of a tall building those that swayed most.
+void add_stories(const Known& k, const estimator::Structure& s, Answer& out) {
+  const Shake& shake = *k.newest;
+  std::vector<int> stories(static_cast<std::size_t>(s.stories));
+  std::iota(stories.rbegin(), stories.rend(), 1);
+  if (s.stories > kAllStories) {
+    const auto swayed = [&](int story) {
+      const estimator::PeakDrift peak = peak_drift(shake.peak, s, story);
+      return peak.frame < 0 ? -1 : peak.ratio;
+    };
+    std::stable_sort(stories.begin(), stories.end(),
+                     [&](int a, int b) { return swayed(a) > swayed(b); });
+    stories.resize(kMaxSwayed);
+  }
+  for (const int story : stories) out.more.push_back({drift_line(k, s, story), 0, 0});
+  if (s.stories > kAllStories)
+    out.more.push_back(
+        {fmt::format("The other {} stories swayed less.", s.stories - kMaxSwayed), 0, 0});
+}
+
+std::string accel_words(const Shake& shake, const Config& config) {
+  const auto words = [](double mps2) {
+    return std::isfinite(mps2) ? fmt::format("{:.2f} m/s²", mps2) : std::string("not known");
+  };
+  double floors = estimator::kNaN;
+  for (int level = 1; level <= config.pipeline.structure.stories; ++level)
+    if (const double peak = peak_accel_mps2(shake.peak, config.pipeline.axes, level);
+        !(peak <= floors))
+      floors = peak;
+  return fmt::format("Peak acceleration of the ground {}, of the floors {}",
+                     words(peak_accel_mps2(shake.peak, config.pipeline.axes, 0)), words(floors));
+}
+
+/// Whether the report is about this shake: strong motion lies within it.
+bool is_of(const EventReportSummary& report, const Shake& shake) {
+  return report.start_us >= shake.from_us && report.start_us <= shake.to_us;
+}
+
+void name_report(const Known& k, Answer& out) {
+  if (!k.report) return;
+  const EventReportSummary& r = *k.report;
+  const bool same = k.newest != nullptr && is_of(r, *k.newest);
+  const std::string color = color_word(r.color);
+  AnswerLine line{same ? fmt::format("Judged {}: {}.", color, r.reason)
+                       : fmt::format("The last strong motion was judged {}: {}.", color, r.reason),
+                  same ? 0 : r.start_us, same ? 0 : r.end_us, r.name};
+  const bool changed = std::any_of(k.findings.begin(), k.findings.end(), [](const Finding& f) {
+    return f.kind == FindingKind::change && !f.acknowledged;
+  });
+  if (r.color == EventColor::green && changed) {  // found since
+    line.text += " Since then a change was found: see above.";
+    if (out.state == AnswerState::good) out.state = AnswerState::look;
+  }
+  if (same && r.color != EventColor::green && out.state != AnswerState::bad)
+    out.state = r.color == EventColor::red ? AnswerState::bad : AnswerState::look;
+  out.more.insert(out.more.begin(), std::move(line));
+  if (r.placard.empty()) return;
+  const AnswerLine placard{
+      fmt::format("Placard: {}. {} {}", r.placard, r.placard_reason, placard_caution()), 0, 0};
+  out.more.insert(out.more.begin(), placard);
+  if (same && r.placard == "unsafe") out.state = AnswerState::bad;
+  if (same && r.placard != "inspected" && out.state == AnswerState::good)
+    out.state = AnswerState::look;
+}
+
+Answer went_through(const Known& k, const Config& config) {
+  Answer out{"What did it just go through?", AnswerState::good, {}, {}};
+  if (k.newest == nullptr) {
+    out.state = k.followed_since_us == 0 ? AnswerState::wait : AnswerState::good;
+    out.line = {k.followed_since_us == 0
+                    ? "Not known yet."
+                    : fmt::format("Nothing: no acceleration over {:g} m/s².", Shaking::kMoves_mps2),
+                k.followed_since_us, 0};
+    name_report(k, out);
+    return out;
+  }
+  const Shake& shake = *k.newest;
+  const bool over = shake.over || k.silent_s > kSilent_s;
+  const estimator::Structure& s = config.pipeline.structure;
+  const double drift = largest_drift_ratio(shake.peak, s);
+  const std::string swayed =
+      drift > 0 ? fmt::format("a story swayed by up to {} of its height (drift ratio)",
+                              drift_words(drift))
+                : std::string("how far its stories swayed is not known");
+  out.line = {
+      fmt::format("{}: {}; the force at the base (shear) was up to {}.",
+                  over ? "A shake" : "It is shaking", swayed, base_shear_words(shake.peak, s)),
+      shake.from_us, over ? shake.to_us : 0};
+  out.state = over ? AnswerState::good : AnswerState::look;
+  add_stories(k, s, out);
+  out.more.push_back({accel_words(shake, config), 0, 0});
+  if (k.strongest != nullptr && largest_drift_ratio(k.strongest->peak, s) > kStronger * drift)
+    out.more.push_back({fmt::format("The strongest so far: {} of a story's height, {}.",
+                                    drift_words(largest_drift_ratio(k.strongest->peak, s)),
+                                    base_shear_words(k.strongest->peak, s)),
+                        k.strongest->from_us, k.strongest->to_us});
+  name_report(k, out);
+  return out;
+}
+
+Answer to_do(const Known& k) {
+  Answer out{"What should I do?", AnswerState::good, {}, {}};
+  std::vector<const Finding*> open;
+  for (const Finding& f : k.findings)
+    if (!f.acknowledged && f.severity >= severity::warning) open.push_back(&f);
+  std::stable_sort(open.begin(), open.end(), [](const Finding* a, const Finding* b) {
+    return a->kind != b->kind ? a->kind < b->kind : a->severity > b->severity;
+  });
+  std::vector<std::string> steps;
+  if (k.samples && k.silent_s > kSilent_s)
+    steps.emplace_back("Find out why no samples come: framewatch status.");
+  else if (k.estimates && k.estimates_silent_s > kSilent_s)
+    steps.emplace_back("Find out why framewatch run says nothing: framewatch status.");
+  for (const Finding* f : open)
+    if (std::find(steps.begin(), steps.end(), f->advice) == steps.end()) steps.push_back(f->advice);
+  if (!k.same_config)
+    steps.emplace_back("Start serve or run anew, so that both have the same configuration.");
+  if (steps.empty()) {
+    out.line.text = !k.samples             ? "Start framewatch run, and whatever sends the samples."
+                    : k.with_baseline == 0 ? "Nothing but wait."
+                                           : "Nothing.";
+    out.state = k.samples ? AnswerState::good : AnswerState::wait;
+    return out;
+  }
+  out.line.text = capital(steps.front());
+  for (std::size_t i = 1; i < steps.size(); ++i) out.more.push_back({capital(steps[i]), 0, 0});
+  out.state = !open.empty() && open.front()->kind == FindingKind::change ? AnswerState::bad
+                                                                         : AnswerState::look;
+  return out;
+}
+
+}  // namespace
+
+std::array<Answer, 4> answers(const Known& known, const Config& config) {
+  return {is_changed(known), is_believed(known, config), went_through(known, config), to_do(known)};
+}
+
+}  // namespace framewatch::daemon

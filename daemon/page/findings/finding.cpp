@@ -1,0 +1,118 @@
+#include "daemon/page/findings/finding.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "daemon/monitor/events/change_words.h"
+#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/place_words.h"
+#include "daemon/monitor/events/recovery_words.h"
+#include "estimator/structure/parameter_table.h"
+
+namespace framewatch::daemon {
+namespace {
+
+/// Kinds of events whose place is a channel of which samples are wrong or do not come.
+constexpr std::array kOfChannels = {"channel_silent", "channel_stuck", "absurd_samples",
+                                    "two_senders",    "losses",        "channel_table"};
+
+bool is_channel(const Config& config, const std::string& place) {
+  const auto& axes = config.pipeline.axes;
+  return std::any_of(axes.begin(), axes.end(), [&](const auto& a) { return a.name == place; });
+}
+
+/// A message without ", since ...": the finding has the time.
+std::string without_time(const std::string& message) {
+  const std::size_t at = message.rfind(", since ");
+  return (at == std::string::npos ? message : message.substr(0, at)) + ".";
+}
+
+void describe_change(Finding& f, const Config& config) {
+  const estimator::ParameterTable table = config.pipeline.parameters();
+  const auto at = table.find(f.place);
+  f.kind = FindingKind::change;
+  if (f.place == kWholeBuilding) {
+    f.text = without_time(f.text);
+    f.advice =
+        "Find out which it is: look at temperature, load, and the sensors' scale and clock. If "
+        "none "
+        "explains it, have a structural engineer look at the building.";
+    return;
+  }
+  f.advice = fmt::format(
+      "Have a structural engineer look at {} before the building is used as before; then "
+      "acknowledge "
+      "the finding.",
+      at ? place_words(f.place) : f.place);
+  const std::size_t at_recovery = f.text.find(kAfterStrongMotion);
+  const std::string recovery =
+      at_recovery == std::string::npos
+          ? ""
+          : " After strong motion: " + f.text.substr(at_recovery + kAfterStrongMotion.size()) + ".";
+  f.text = f.text.substr(0, at_recovery);
+  if (!at || !std::isfinite(f.change_ratio) || !(f.std_error > 0)) {
+    f.text = without_time(f.text) + recovery;  // its message says it
+    return;
+  }
+  f.text = change_sentence(table[*at], f.change_ratio, f.std_error) + "." + recovery;
+}
+
+void describe_strong_motion(Finding& f) {
+  f.kind = FindingKind::shake;
+  f.text = f.text.substr(0, f.text.find("; report ")) + ".";
+  f.advice =
+      f.severity == severity::alarm
+          ? "Have a structural engineer look at the building before it is used as before: the "
+            "report of the strong motion says where."
+          : "Have a structural engineer read the report of the strong motion: it says what to look "
+            "at.";
+}
+
+void describe_channel(Finding& f, const std::string& kind) {
+  f.kind = FindingKind::belief;
+  f.of_channel = true;
+  if (kind == "channel_silent" || kind == "channel_stuck")
+    f.advice = fmt::format("Look at sensor {}: power, cable, mounting.", f.place);
+  else if (kind == "absurd_samples")
+    f.advice = fmt::format("Look at sensor {}: its values are not possible.", f.place);
+  else if (kind == "two_senders" || kind == "channel_table")
+    f.advice = fmt::format("Find out who else sends as {}: a node's number given twice?", f.place);
+  else
+    f.advice = fmt::format("Look at the network of {}: samples are lost.", f.place);
+}
+
+}  // namespace
+
+Finding finding_of(const event_t& e, const Config& config) {
+  Finding f;
+  f.id = e.id;
+  f.severity = e.severity;
+  f.place = e.place;
+  f.since_us = e.since_us;
+  f.text = e.message;
+  if (e.kind == "stiffness_change") {
+    f.change_ratio = e.value / 100;
+    f.std_error = e.std_error / 100;
+    describe_change(f, config);
+  } else if (e.kind == "strong_motion") {
+    describe_strong_motion(f);
+  } else if (e.kind == "gap") {
+    f.kind = FindingKind::belief;
+    f.text = fmt::format("The model does not fit: {}.", e.message);
+    f.advice = fmt::format("Find out what the model lacks near {}: framewatch diagnose.", e.place);
+  } else if (std::find(kOfChannels.begin(), kOfChannels.end(), e.kind) != kOfChannels.end() &&
+             is_channel(config, e.place)) {
+    describe_channel(f, e.kind);
+  } else if (e.kind == "sequence_leap") {
+    f.advice =
+        "Nothing, if sensor nodes were started anew; else find out who sends under their numbers.";
+  } else {
+    f.advice = fmt::format("See to {} {}: framewatch status says more.", e.kind, e.place);
+  }
+  return f;
+}
+
+}  // namespace framewatch::daemon

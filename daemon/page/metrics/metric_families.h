@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <prometheus/metric_family.h>
+
+#include <framewatch/action_status_t.hpp>
+#include <framewatch/can_status_t.hpp>
+#include <framewatch/event_t.hpp>
+#include <framewatch/gap_t.hpp>
+#include <framewatch/history_status_t.hpp>
+#include <framewatch/parameter_table_t.hpp>
+#include <framewatch/reception_t.hpp>
+#include <framewatch/service_t.hpp>
+#include <framewatch/status_t.hpp>
+#include <framewatch/uplink_status_t.hpp>
+#include <framewatch/watch_t.hpp>
+#include <framewatch/window_estimate_t.hpp>
+
+#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/page/metrics/page_use.h"
+
+namespace framewatch::daemon {
+
+/// Collects metrics by name, in the order of the calls.
+class MetricFamilies {
+ public:
+  using Labels = std::vector<std::pair<std::string, std::string>>;
+
+  /// Begins a metric; the next values belong to it.
+  MetricFamilies& gauge(const char* name, const char* help);
+  MetricFamilies& counter(const char* name, const char* help);
+  MetricFamilies& value(double value, const Labels& labels = {});
+  /// A value of each name, labelled `label`; none where it is not finite. `more`: on all of them.
+  template <typename Values>
+  MetricFamilies& each(const char* label, const std::vector<std::string>& names,
+                       const Values& values, const Labels& more = {}) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto one = static_cast<double>(values[i]);
+      if (!std::isfinite(one)) continue;
+      Labels labels{{label, names[i]}};
+      labels.insert(labels.end(), more.begin(), more.end());
+      value(one, labels);
+    }
+    return *this;
+  }
+  /// limit_s: upper limits, the last one infinite; counts: between them.
+  void histogram(const char* name, const char* help, const std::vector<double>& limit_s,
+                 const std::vector<std::int64_t>& counts, double sum_s);
+
+  std::string text() const;
+
+ private:
+  MetricFamilies& family(const char* name, const char* help, prometheus::MetricType type);
+
+  std::vector<prometheus::MetricFamily> families_;
+};
+
+// The contents of each message as metrics.
+void add_service(MetricFamilies& out, const service_t& service);
+void add_status(MetricFamilies& out, const status_t& status);
+void add_estimate(MetricFamilies& out, const parameter_table_t& table,
+                  const window_estimate_t& estimate);
+void add_watch(MetricFamilies& out, const parameter_table_t& table, const watch_t& watch);
+void add_gap(MetricFamilies& out, const gap_t& gap);
+void add_can(MetricFamilies& out, const can_status_t& can);
+void add_history(MetricFamilies& out, const history_status_t& history);
+void add_actions(MetricFamilies& out, const action_status_t& actions);
+void add_reception(MetricFamilies& out, const reception_t& reception);
+void add_uplink(MetricFamilies& out, const uplink_status_t& uplink);
+void add_events(MetricFamilies& out, const std::vector<event_t>& raised);
+/// report: the newest of [event_report], if there is one.
+void add_event_report(MetricFamilies& out, const std::optional<EventReportSummary>& report);
+void add_page_use(MetricFamilies& out, const PageUse& use);
+
+}  // namespace framewatch::daemon

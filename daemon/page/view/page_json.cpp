@@ -1,0 +1,143 @@
+#include "daemon/page/view/page_json.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/json_values.h"
+#include "daemon/monitor/estimates/estimate_table.h"
+
+namespace framewatch::daemon {
+
+std::string estimate_json(const window_estimate_t& e, double min_snr) {
+  std::vector<int> reason(e.reason.begin(), e.reason.end());
+  for (std::size_t p = 0; p < std::min(reason.size(), e.snr.size()); ++p)
+    reason[p] = told_reason(reason[p], static_cast<double>(e.snr[p]), min_snr);
+  return fmt::format(R"({{"start_us":{},"end_us":{},"sequence":{},"status":{},"rows":{},)"
+                     R"("residual":{},"value":{},"error":{},"reason":{},"snr":{}}})",
+                     e.window_start_us, e.window_end_us, e.sequence, e.status, e.rows,
+                     json_value_text(e.residual_ratio), json_list(e.value),
+                     json_list(e.std_error, "{:.4g}"), json_list(reason),
+                     json_list(e.snr, "{:.3g}"));
+}
+
+std::string model_fit_json(const model_fit_t& f) {
+  return fmt::format(R"({{"error":{},"word":{}}})", json_list(f.error, "{:.3g}"),
+                     json_list(f.word));
+}
+
+std::string boxes_json(const window_estimate_t& e) {
+  return fmt::format(
+      R"({{"windows":{},"q1":{},"median":{},"q3":{},"low":{},"high":{},"outliers":{},"count":{}}})",
+      e.boxplot_windows, json_list(e.q1, "{:.6g}"), json_list(e.median, "{:.6g}"),
+      json_list(e.q3, "{:.6g}"), json_list(e.whisker_low, "{:.6g}"),
+      json_list(e.whisker_high, "{:.6g}"), json_list(e.outliers), json_list(e.boxplot_count));
+}
+
+std::string baseline_json(const std::vector<double>& baseline) {
+  return "{\"value\":" + json_list(baseline) + "}";
+}
+
+std::string status_json(const status_t& s, const std::string& config_sha256) {
+  Json channels = Json::array();
+  for (std::size_t i = 0; i < s.name.size(); ++i) {
+    Json one{{"name", s.name[i]},   {"received", s.received[i]}, {"lost", s.lost[i]},
+             {"late", s.late[i]},   {"repaired", s.repaired[i]}, {"rejected", s.rejected[i]},
+             {"stuck", s.stuck[i]}, {"clipped", s.clipped[i]}};
+    one["noise"] = json_value(s.noise_mps2_per_rthz[i]);
+    channels.push_back(std::move(one));
+  }
+  return json_line({{"time_us", s.time_us},
+                    {"windows", s.windows},
+                    {"sets", s.sample_sets},
+                    {"gaps", s.gaps},
+                    {"refused", s.rejected_messages},
+                    {"queue_high", s.queue_high_water},
+                    {"queue_dropped", s.queue_dropped},
+                    {"latency_s", s.latency_s},
+                    {"same_config", s.config_sha256 == config_sha256},
+                    {"channels", channels}});
+}
+
+std::string gap_json(const gap_t& g) {
+  Json names = Json::array();
+  for (const std::string& name : g.name) names.push_back(name);
+  return fmt::format(
+      R"({{"start_us":{},"end_us":{},"overall":{},"noise_floor":{},"name":{},"nrmse":{},"floor":{}}})",
+      g.window_start_us, g.window_end_us, json_value_text(g.overall_nrmse),
+      json_value_text(g.noise_floor), json_line(names), json_list(g.nrmse, "{:.4g}"),
+      json_list(g.floor, "{:.4g}"));
+}
+
+std::string can_json(const can_status_t& s) {
+  Json buses = Json::array();
+  for (std::size_t i = 0; i < s.interface.size(); ++i)
+    buses.push_back({{"interface", s.interface[i]},
+                     {"state", s.state[i]},
+                     {"frames_hz", json_value(s.frames_hz[i])},
+                     {"load", json_value(s.load[i])},
+                     {"expected_load", json_value(s.expected_load[i])},
+                     {"error_frames", s.error_frames[i]},
+                     {"bus_off", s.bus_off[i]},
+                     {"bus_errors", s.bus_errors[i]},
+                     {"overflow", s.overflow[i]}});
+  return json_line({{"time_us", s.time_us}, {"dropped", s.dropped}, {"buses", buses}});
+}
+
+std::string session_status_json(const session_status_t& s) {
+  Json channels = Json::array();
+  for (std::size_t i = 0; i < s.name.size(); ++i)
+    channels.push_back({{"name", s.name[i]},
+                        {"noise", json_value(s.noise_mps2_per_rthz[i])},
+                        {"rms", json_value(s.rms_mps2[i])},
+                        {"offset", json_value(s.offset_mps2[i])},
+                        {"peak", json_value(s.peak_mps2[i])},
+                        {"range", json_value(s.range_mps2[i])},
+                        {"saturated", s.saturated[i]},
+                        {"polarity", s.polarity[i]},
+                        {"problem", s.problem[i]}});
+  // Ids are beyond what JavaScript counts exactly.
+  return json_line({{"time_us", s.time_us},
+                    {"state", s.state},
+                    {"test", s.test},
+                    {"session", s.session},
+                    {"report", s.report},
+                    {"message", s.message},
+                    {"answered", std::to_string(s.answered)},
+                    {"refused", s.refused},
+                    {"elapsed_s", json_value(s.elapsed_s)},
+                    {"length_s", json_value(s.length_s)},
+                    {"trigger_mps2", json_value(s.trigger_mps2)},
+                    {"messages", s.messages},
+                    {"estimates", s.estimates},
+                    {"lost", s.lost},
+                    {"dropped", s.dropped},
+                    {"bytes", s.bytes},
+                    {"disk_free_bytes", s.disk_free_bytes},
+                    {"channels", channels}});
+}
+
+std::string refused_json(std::int64_t id, const std::string& problem) {
+  return json_line({{"answered", std::to_string(id)}, {"refused", problem}});
+}
+
+std::string alarm_json(const event_t& e, bool acknowledged, const Acknowledgement& by) {
+  return json_line({{"id", e.id},
+                    {"time_us", e.time_us},
+                    {"since_us", e.since_us},
+                    {"state", e.state},
+                    {"severity", e.severity},
+                    {"kind", e.kind},
+                    {"place", e.place},
+                    {"value", json_value(e.value)},
+                    {"error", json_value(e.std_error)},
+                    {"unit", e.unit},
+                    {"message", e.message},
+                    {"acknowledged", acknowledged},
+                    {"who", by.who},
+                    {"comment", by.comment}});
+}
+
+}  // namespace framewatch::daemon

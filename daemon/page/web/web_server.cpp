@@ -1,0 +1,282 @@
+#include "daemon/page/web/web_server.h"
+
+#include <microhttpd.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <charconv>
+#include <cstring>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/base/served_file.h"
+#include "daemon/page/view/live_view.h"
+#include "daemon/page/web/connection_guard.h"
+#include "daemon/page/web/web_admission.h"
+#include "daemon/page/web/web_answer.h"
+#include "daemon/page/web/web_event_reports.h"
+#include "daemon/page/web/web_files.h"
+#include "daemon/page/web/web_sessions.h"
+#include "daemon/page/web/web_socket.h"
+#include "daemon/tools/session/session_command.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr const char* kMetricsType = "text/plain; version=0.0.4; charset=utf-8";
+constexpr const char* kJson = "application/json";
+constexpr const char* kSessionPath = "/session/";
+constexpr const char* kEventReportPath = "/event-report/";
+constexpr std::size_t kBlock = 32768;
+constexpr int kOtherDescriptors = 64;  // LCM, the history's files, logs
+
+int port_of(int socket) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
+  return ntohs(address.ss_family == AF_INET6
+                   ? reinterpret_cast<const sockaddr_in6*>(&address)->sin6_port
+                   : reinterpret_cast<const sockaddr_in*>(&address)->sin_port);
+}
+
+const char* type_of(const std::string& path) {
+  return path.ends_with(".js")    ? "text/javascript; charset=utf-8"
+         : path.ends_with(".css") ? "text/css; charset=utf-8"
+         : path.ends_with(".svg") ? "image/svg+xml"
+                                  : "text/html; charset=utf-8";
+}
+
+}  // namespace
+
+class WebServer::Implementation {
+ public:
+  Implementation(const WebSettings& settings, LiveView& view)
+      : settings_(settings), view_(view), guard_(settings.connections) {}
+
+  ~Implementation() {
+    stopping_ = true;
+    wake();
+    if (daemon_) MHD_stop_daemon(daemon_);
+  }
+
+  bool start(int socket, std::string& error) {
+    const int most = settings_.connections.connections();
+    if (allow_descriptors(most + kOtherDescriptors, error)) {
+      daemon_ = MHD_start_daemon(MHD_USE_AUTO_INTERNAL_THREAD | MHD_ALLOW_SUSPEND_RESUME, 0,
+                                 nullptr, nullptr, &Implementation::handle, this,
+                                 MHD_OPTION_LISTEN_SOCKET, socket, MHD_OPTION_CONNECTION_LIMIT,
+                                 static_cast<unsigned>(most), MHD_OPTION_CONNECTION_TIMEOUT,
+                                 settings_.connections.idle_s, MHD_OPTION_NOTIFY_CONNECTION,
+                                 &Implementation::notify, this, MHD_OPTION_END);
+      if (!daemon_) error = "libmicrohttpd cannot start";
+    }
+    if (!daemon_) {
+      ::close(socket);
+      return false;
+    }
+    port_ = port_of(socket);
+    return true;
+  }
+
+  int port() const { return MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_BIND_PORT)->port; }
+  int viewers() const { return guard_.use().viewers; }
+
+  void wake() {
+    guard_.sweep();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (MHD_Connection* waiting : waiting_) MHD_resume_connection(waiting);
+    waiting_.clear();
+  }
+
+ private:
+  /// One open stream of events.
+  struct Viewer {
+    Implementation* server;
+    MHD_Connection* connection;
+    EventRing::Cursor cursor;
+  };
+
+  static void notify(void* self, MHD_Connection* c, void**, MHD_ConnectionNotificationCode what) {
+    ConnectionGuard& guard = static_cast<Implementation*>(self)->guard_;
+    if (what == MHD_CONNECTION_NOTIFY_STARTED)
+      guard.opened(socket_of(c));
+    else
+      guard.closed(socket_of(c));
+  }
+
+  /// Called when the head of a request is whole; what a body holds is never waited for.
+  static MHD_Result handle(void* of, MHD_Connection* c, const char* url, const char* method,
+                           const char*, const char*, std::size_t*, void**) {
+    auto& self = *static_cast<Implementation*>(of);
+    self.guard_.asked(socket_of(c));
+    return self.respond(c, method, url);
+  }
+
+  MHD_Result text(MHD_Connection* c, const std::string& content, const char* type,
+                  const char* policy = kPagePolicy) {
+    return answer(guard_, c, MHD_HTTP_OK, content, type, policy);
+  }
+
+  MHD_Result plain(MHD_Connection* c, unsigned code, const std::string& content) {
+    return answer(guard_, c, code, content + "\n", kPlainText);
+  }
+
+  MHD_Result report(MHD_Connection* c, const std::optional<WebFile>& found) {
+    if (!found) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
+    return text(c, found->content, found->type.c_str(), kReportPolicy);
+  }
+
+  MHD_Result respond(MHD_Connection* c, const std::string& method, const std::string& path) {
+    const WebRequest request = web_request(c, method, path, "framewatch");
+    if (const Admission admission = admit(settings_, request); admission != Admission::served) {
+      const Refusal refusal = refusal_of(admission);
+      return plain(c, refusal.code, refusal.text);
+    }
+    if (method == "POST") return act(c, path);
+    if (path == "/" && !request.token.empty()) return exchange(c, request.token);
+    if (path == "/events") return stream(c);
+    if (path == "/building.json") return text(c, view_.building_json(), kJson);
+    if (path == "/history.json") return text(c, view_.history_json(), kJson);
+    if (path == "/sessions.json")
+      return text(c, settings_.sessions.empty() ? "null" : sessions_json(settings_.sessions),
+                  kJson);
+    if (path == "/event-reports.json")
+      return text(
+          c, settings_.event_reports.empty() ? "null" : event_reports_json(settings_.event_reports),
+          kJson);
+    if (path.starts_with(kSessionPath))
+      return report(c,
+                    session_document(settings_.sessions, path.substr(std::strlen(kSessionPath))));
+    if (path.starts_with(kEventReportPath))
+      return report(c, event_report_document(settings_.event_reports,
+                                             path.substr(std::strlen(kEventReportPath))));
+    if (path == "/metrics" && settings_.metrics)
+      return text(c, settings_.metrics(guard_.use()), kMetricsType);
+    if (path == "/healthz") return plain(c, MHD_HTTP_OK, "ok");
+    return file(c, path == "/" ? "/index.html" : path);
+  }
+
+  MHD_Result act(MHD_Connection* c, const std::string& path) {
+    if (path == "/baseline") {
+      if (!view_.renew_baseline())
+        return plain(c, MHD_HTTP_CONFLICT,
+                     "the baseline is that of framewatch run: [watch] of its configuration");
+      return plain(c, MHD_HTTP_OK, "the next seconds are the new baseline");
+    }
+    if (path == "/session") return tell_recorder(c);
+    const std::string text = header(c, "id", MHD_GET_ARGUMENT_KIND);
+    std::int64_t id = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+    const bool number = error == std::errc() && end == text.data() + text.size();
+    const auto asked = number ? view_.acknowledge(id, "the page at " + viewer_of(c)) : std::nullopt;
+    if (!asked) return plain(c, MHD_HTTP_NOT_FOUND, "no such event");
+    wake();
+    return *asked == 0 ? plain(c, MHD_HTTP_OK, "acknowledged")
+                       : plain(c, MHD_HTTP_ACCEPTED, std::to_string(*asked));
+  }
+
+  /// Answers with the id of the command; the recorder's answer with that id comes as an event.
+  MHD_Result tell_recorder(MHD_Connection* c) {
+    const auto text = [c](const char* name) { return header(c, name, MHD_GET_ARGUMENT_KIND); };
+    SessionRequest request{text("test"), text("operator"), text("notes")};
+    for (const auto& [name, value] : {std::pair{"length_s", &request.length_s},
+                                      std::pair{"trigger_mps2", &request.trigger_mps2},
+                                      std::pair{"pre_trigger_s", &request.pre_trigger_s}}) {
+      const std::string given = text(name);
+      const char* const end = given.data() + given.size();
+      const auto [parsed, error] = std::from_chars(given.data(), end, *value);
+      if (!given.empty() && (error != std::errc() || parsed != end))
+        return plain(c, MHD_HTTP_BAD_REQUEST, std::string(name) + ": is no number");
+    }
+    for (const std::string& problem : problems(request))
+      return plain(c, MHD_HTTP_BAD_REQUEST, problem);
+    const session_command_t command = session_command(text("verb"), request);
+    if (!view_.tell_recorder(command))
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many commands at once");
+    return plain(c, MHD_HTTP_ACCEPTED, std::to_string(command.id));
+  }
+
+  /// Replaces the token in the address by a cookie that scripts cannot read.
+  MHD_Result exchange(MHD_Connection* c, const std::string& token) {
+    MHD_Response* response = MHD_create_response_from_buffer(0, nullptr, MHD_RESPMEM_PERSISTENT);
+    if (!response) return MHD_NO;
+    MHD_add_response_header(response, "Location", "/");
+    // A server without a token needs no cookie.
+    if (!settings_.token.empty() && token == settings_.token)
+      MHD_add_response_header(
+          response, "Set-Cookie",
+          ("framewatch=" + settings_.token + "; HttpOnly; SameSite=Strict; Path=/").c_str());
+    return send_answer(c, MHD_HTTP_SEE_OTHER, response);
+  }
+
+  MHD_Result file(MHD_Connection* c, const std::string& path) {
+    const auto found = page_files().find(path);
+    if (found == page_files().end()) return plain(c, MHD_HTTP_NOT_FOUND, "not here");
+    if (settings_.files.empty()) return text(c, found->second.content, found->second.type.c_str());
+    const auto content = read_served_file(settings_.files, {path.substr(1)});
+    return content ? text(c, *content, type_of(path)) : plain(c, MHD_HTTP_NOT_FOUND, "not here");
+  }
+
+  MHD_Result stream(MHD_Connection* c) {
+    if (!guard_.watches(socket_of(c)))
+      return plain(c, MHD_HTTP_SERVICE_UNAVAILABLE, "too many viewers");
+    auto viewer = std::make_unique<Viewer>(Viewer{this, c, view_.join()});
+    MHD_Response* response = MHD_create_response_from_callback(
+        MHD_SIZE_UNKNOWN, kBlock, &Implementation::read, viewer.get(), &Implementation::leave);
+    if (!response) return MHD_NO;
+    (void)viewer.release();  // leave() has it now
+    MHD_add_response_header(response, MHD_HTTP_HEADER_CONTENT_TYPE, "text/event-stream");
+    return send_answer(c, MHD_HTTP_OK, response);
+  }
+
+  static ssize_t read(void* of, std::uint64_t, char* buffer, std::size_t size) {
+    auto& viewer = *static_cast<Viewer*>(of);
+    Implementation& server = *viewer.server;
+    const std::lock_guard<std::mutex> lock(server.mutex_);
+    if (server.stopping_) return MHD_CONTENT_READER_END_OF_STREAM;
+    const std::size_t copied = server.view_.read(viewer.cursor, buffer, size);
+    if (copied == 0) {
+      server.waiting_.insert(viewer.connection);
+      MHD_suspend_connection(viewer.connection);
+    }
+    return static_cast<ssize_t>(copied);
+  }
+
+  static void leave(void* of) {
+    const std::unique_ptr<Viewer> viewer(static_cast<Viewer*>(of));
+    const std::lock_guard<std::mutex> lock(viewer->server->mutex_);
+    viewer->server->waiting_.erase(viewer->connection);
+  }
+
+  const WebSettings settings_;
+  LiveView& view_;
+  ConnectionGuard guard_;
+  MHD_Daemon* daemon_ = nullptr;
+  int port_ = 0;
+  std::mutex mutex_;
+  std::set<MHD_Connection*> waiting_;  ///< suspended, because they have read everything
+  std::atomic<bool> stopping_ = false;
+};
+
+WebServer::WebServer(const WebSettings& settings, LiveView& view)
+    : implementation_(std::make_unique<Implementation>(settings, view)) {}
+WebServer::~WebServer() = default;
+bool WebServer::start(int socket, std::string& error) {
+  return implementation_->start(socket, error);
+}
+int WebServer::port() const {
+  return implementation_->port();
+}
+int WebServer::viewers() const {
+  return implementation_->viewers();
+}
+void WebServer::wake() {
+  implementation_->wake();
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,73 @@
+#include "daemon/page/web/web_sessions.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/json_values.h"
+#include "daemon/base/served_file.h"
+#include "daemon/tools/report/session_file.h"
+#include "daemon/tools/session/session_log.h"
+
+namespace framewatch::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t kMaxShown = 200;
+
+/// As session_folder_name() makes them: nothing that leads elsewhere.
+bool is_session_name(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+}
+
+}  // namespace
+
+std::string sessions_json(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (std::string name = at->path().filename().string(); is_session_name(name))
+      names.push_back(std::move(name));
+  std::sort(names.begin(), names.end(), std::greater<>());
+  Json out = Json::array();
+  for (const std::string& name : names) {
+    if (out.size() == kMaxShown) break;
+    std::string why;
+    const auto text = read_served_file(folder, {name, kSessionJson});
+    const auto s = text ? parse_session(*text, why) : std::nullopt;
+    if (!s) continue;
+    const std::int64_t length_us = s->end_us > 0 ? s->end_us - s->trigger_us : 0;
+    std::vector<std::string> said = s->problems;
+    said.insert(said.end(), s->finishing.begin(), s->finishing.end());
+    out.push_back({{"session", name},
+                   {"test", s->request.test},
+                   {"operator", s->request.operator_name},
+                   {"state", s->state},
+                   {"began_us", s->began_us},
+                   {"seconds", 1e-6 * static_cast<double>(length_us)},
+                   {"problems", said},
+                   {"report", is_served_file(folder, {name, kReportPage})}});
+  }
+  return json_line(out);
+}
+
+std::optional<WebFile> session_document(const std::string& folder, const std::string& path) {
+  const std::size_t slash = path.find('/');
+  const std::string name = path.substr(0, slash);
+  const std::string file = slash == std::string::npos ? "" : path.substr(slash + 1);
+  if (folder.empty() || !is_session_name(name)) return std::nullopt;
+  if (file != kReportPage && file != kSessionJson) return std::nullopt;
+  auto text = read_served_file(folder, {name, file});
+  if (!text) return std::nullopt;
+  return WebFile{file == kReportPage ? "text/html; charset=utf-8" : "application/json",
+                 std::move(*text)};
+}
+
+}  // namespace framewatch::daemon

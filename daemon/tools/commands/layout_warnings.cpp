@@ -1,0 +1,147 @@
+#include "daemon/tools/commands/layout_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "estimator/structure/parameter_table.h"
+
+namespace framewatch::daemon {
+namespace {
+
+/// Off the frames' directions by more: an axis measures both.
+constexpr double kOblique_deg = 15;
+/// Stories in this upper part of a building drift little, and their drift is a difference of two
+/// floors that move alike.
+constexpr double kNearRoof = 0.8;
+constexpr double kSameSpot_m = 0.01, kParallel_rad = 0.02;
+
+void groups_not_shown(const Config& config, const LayoutOutlook& outlook,
+                      std::vector<std::string>& out) {
+  const estimator::PipelineConfig& c = config.pipeline;
+  for (const GroupOutlook& g : outlook.groups)
+    if (!std::isfinite(g.window_error))
+      out.push_back(
+          fmt::format("{}: this layout shows nothing of it: no value of it will ever be published",
+                      g.parameter));
+    else if (!(g.window_error < c.options.max_error_k))
+      out.push_back(fmt::format(
+          "{}: its standard error will be {:.2g} %, above estimator.max_error_k = {:g} %: no value "
+          "of it will be shown under such shaking",
+          g.parameter, 100 * g.window_error, 100 * c.options.max_error_k));
+  for (const auto direction : {estimator::Direction::x, estimator::Direction::y}) {
+    if ((direction == estimator::Direction::x ? c.structure.n() : c.structure.m()) == 0) continue;
+    const bool measured =
+        std::any_of(c.axes.begin(), c.axes.end(), [&](const estimator::SensorAxis& axis) {
+          return axis.story > 0 && (axis.frame >= 0 ? c.structure.direction(axis.frame)
+                                                    : axis.direction) == direction;
+        });
+    if (!measured)
+      out.push_back(
+          fmt::format("no channel above the base measures along {0}: nothing is identified "
+                      "of the frames parallel to {0}, and a change of them is not noticed",
+                      letter(direction)));
+  }
+}
+
+void single_stories_near_roof(const Config& config, const LayoutOutlook& outlook,
+                              std::vector<std::string>& out) {
+  const estimator::PipelineConfig& c = config.pipeline;
+  const estimator::ParameterTable table = c.parameters();
+  for (const GroupOutlook& g : outlook.groups) {
+    const std::optional<int> p = table.find(g.parameter);
+    if (!p || table[*p].kind != estimator::ParameterKind::frame_stiffness) continue;
+    const estimator::Parameter& group = table[*p];
+    if (group.story != group.last_story || group.story <= kNearRoof * c.structure.stories ||
+        !std::isfinite(g.window_error))
+      continue;
+    out.push_back(fmt::format(
+        "{}: a single story near the roof, whose drift is the difference of two floors that move "
+        "nearly alike: noise and small errors of gain and time make most of it; do not trust its "
+        "value, a spacing of several stories serves better",
+        g.parameter));
+  }
+}
+
+void free_top(const Config& config, const LayoutOutlook& outlook, std::vector<std::string>& out) {
+  const int stories = config.pipeline.structure.stories;
+  if (outlook.floors.empty() || outlook.floors.back() >= stories) return;
+  out.push_back(fmt::format(
+      "no channel on the roof, floor {}: what is above floor {} is judged by what it "
+      "does to that floor alone, and where the ground moves the first mode only, its "
+      "stiffness has errors of 15 % and its damping none that means anything; a channel "
+      "on the roof tells most",
+      stories, outlook.floors.back()));
+}
+
+/// Where an axis points, rad, counter-clockwise from +x.
+double angle_of(const estimator::Structure& s, const estimator::SensorAxis& axis) {
+  if (axis.plan) return axis.plan->angle_rad;
+  const auto along = axis.frame >= 0 ? s.direction(axis.frame) : axis.direction;
+  return along == estimator::Direction::x ? 0 : M_PI / 2;
+}
+
+/// Its place across the way it points, m: what distinguishes parallel axes of a rigid floor.
+double across_m(const estimator::Structure& s, const estimator::SensorAxis& axis) {
+  if (!axis.plan) return axis.frame >= 0 ? line_position(s, axis.frame) : 0;
+  return std::abs(std::sin(axis.plan->angle_rad)) > std::abs(std::cos(axis.plan->angle_rad))
+             ? axis.plan->x_m
+             : axis.plan->y_m;
+}
+
+void contradictions(const Config& config, std::vector<std::string>& out) {
+  const estimator::PipelineConfig& c = config.pipeline;
+  for (std::size_t a = 0; a < c.axes.size(); ++a)
+    for (std::size_t b = a + 1; b < c.axes.size(); ++b) {
+      const estimator::SensorAxis &one = c.axes[a], &two = c.axes[b];
+      if (one.story != two.story || one.vertical || two.vertical ||
+          std::abs(across_m(c.structure, one) - across_m(c.structure, two)) > kSameSpot_m)
+        continue;
+      // A place that nobody gave is no place that two share.
+      if (!one.plan && one.frame < 0 && !two.plan && two.frame < 0) continue;
+      const double apart =
+          std::remainder(angle_of(c.structure, one) - angle_of(c.structure, two), 2 * M_PI);
+      if (M_PI - std::abs(apart) < kParallel_rad)
+        out.push_back(fmt::format(
+            "channels '{}' and '{}' measure one motion of floor {} with opposite signs: they "
+            "contradict each other unless one is mounted backwards; if none is, an azimuth is "
+            "wrong, and their mean is no motion at all",
+            one.name, two.name, one.story));
+      else if (std::abs(apart) < kParallel_rad)
+        out.push_back(fmt::format(
+            "channels '{}' and '{}' measure one motion of floor {}: their mean is used; where they "
+            "contradict each other, nothing here can tell which one is right",
+            one.name, two.name, one.story));
+    }
+}
+
+void oblique(const Config& config, std::vector<std::string>& out) {
+  for (const estimator::SensorAxis& axis : config.pipeline.axes) {
+    if (!axis.plan || axis.vertical) continue;
+    const double off = std::asin(std::min(std::abs(std::cos(axis.plan->angle_rad)),
+                                          std::abs(std::sin(axis.plan->angle_rad)))) *
+                       180 / M_PI;
+    if (off <= kOblique_deg) continue;
+    out.push_back(fmt::format(
+        "channel '{}' points {:.0f} degrees off the frames of direction {}: it measures both "
+        "directions; if it does not, its azimuth or azimuth_y_deg is wrong",
+        axis.name, off, letter(axis.direction)));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> layout_warnings(const Config& config, const LayoutOutlook& outlook) {
+  std::vector<std::string> out;
+  groups_not_shown(config, outlook, out);
+  free_top(config, outlook, out);
+  single_stories_near_roof(config, outlook, out);
+  contradictions(config, out);
+  oblique(config, out);
+  for (const UnusedChannel& unused : config.unused)
+    out.push_back(fmt::format("channel '{}' is not used: {}", unused.name, unused.reason));
+  return out;
+}
+
+}  // namespace framewatch::daemon

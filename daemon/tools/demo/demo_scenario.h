@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "daemon/tools/simulation/scenario.h"
+
+namespace framewatch::daemon {
+
+/// The built-in scenario, configs/scenario_table_two_story.toml.
+Scenario demo_scenario();
+/// configs/scenario_tall_20_stories.toml.
+Scenario tall_demo_scenario();
+
+/// What a demo shakes, and what becomes of it.
+struct DemoBuilding {
+  Scenario scenario;
+  std::string loses;  ///< parameter of which all stories lose stiffness
+  double loss_ratio;
+  double forgotten_s;       ///< after so long windows and filters have seen nothing else
+  std::string config_text;  ///< of the scenario's configuration
+  std::string title;        ///< of a report
+};
+/// stories: 2 or 20.
+DemoBuilding demo_building(int stories);
+
+/// The scenario's truth with the loss, in the order of the parameters of every story.
+Eigen::VectorXd after_loss(const DemoBuilding& building);
+
+/// What is to be identified, by parameter name, SI: of groups of stories in series. theta: every
+/// story's.
+std::map<std::string, double> truth_of(const Scenario& scenario, const Eigen::VectorXd& theta);
+
+}  // namespace framewatch::daemon

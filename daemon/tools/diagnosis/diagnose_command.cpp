@@ -1,0 +1,179 @@
+#include "daemon/tools/diagnosis/diagnose_command.h"
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
+#include "daemon/base/progress.h"
+#include "daemon/base/workers.h"
+#include "daemon/config/sections/config_problems.h"
+#include "daemon/tools/diagnosis/compared_channels.h"
+#include "daemon/tools/diagnosis/diagnose_json.h"
+#include "daemon/tools/diagnosis/diagnose_model.h"
+#include "daemon/tools/diagnosis/diagnose_output.h"
+#include "daemon/tools/diagnosis/diagnose_records.h"
+#include "daemon/tools/diagnosis/diagnose_report.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
+#include "daemon/tools/diagnosis/segment_problems.h"
+#include "drivers/files/text_output.h"
+#include "estimator/diagnose/verdict/diagnose.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kGapRemains = 1;
+constexpr double kComponentMass = 0.1;  ///< tolerance
+
+bool write_file(const std::string& path, const std::string& text) {
+  drivers::TextOutput out;
+  if (out.open(path) && out.write(text) && out.close()) return true;
+  fmt::print(stderr, "{}: {}\n", path, out.error());
+  return false;
+}
+
+/// Keeps freed memory in the heap: matrices of megabytes are allocated and freed by the thousand.
+void keep_freed_memory() {
+  constexpr int kLargest = 1 << 30;
+  ::mallopt(M_ARENA_MAX, 1);
+  ::mallopt(M_MMAP_THRESHOLD, kLargest);
+  ::mallopt(M_TRIM_THRESHOLD, kLargest);
+}
+
+/// Whether there are any.
+bool print_all(const std::vector<std::string>& problems) {
+  for (const std::string& p : problems) fmt::print(stderr, "{}\n", printable_lines(p));
+  return !problems.empty();
+}
+
+std::vector<estimator::EffectKind> excluded_kinds(const std::vector<std::string>& names,
+                                                  std::vector<std::string>& problems) {
+  std::vector<estimator::EffectKind> out;
+  for (const std::string& name : names) {
+    if (const auto kind = estimator::find_effect(name))
+      out.push_back(*kind);
+    else
+      problems.push_back(fmt::format("--without {}: no effect has this name", name));
+  }
+  return out;
+}
+
+std::vector<DiagnoseRecord> read_records(const Config& config, const DiagnoseArguments& a,
+                                         std::vector<std::string>& problems) {
+  const bool both_given = !a.train.empty() && !a.holdout.empty();
+  const bool any_given = !a.train.empty() || !a.holdout.empty();
+  if (a.event.empty() ? !both_given : any_given)
+    problems.push_back("needs --train and --holdout, or --event alone");
+  if (!a.event.empty() && !any_given) return read_event_records(config, a.event, problems);
+  std::vector<std::string> paths = a.train;
+  paths.insert(paths.end(), a.holdout.begin(), a.holdout.end());
+  return read_diagnose_records(config, paths, a.component, problems);
+}
+
+/// Shows on a terminal how far a diagnosis is: every piece of its parallel work counts.
+class DiagnosisProgress {
+ public:
+  explicit DiagnosisProgress(bool quiet) : line_("diagnose", quiet) {}
+
+  /// Called between the calls of Workers::run().
+  void tell(const std::string& what, double done, double then) {
+    what_ = what;
+    done_ = done;
+    then_ = then;
+    line_(what, done);
+  }
+  void count(int pieces, int of) { line_(what_, done_ + (then_ - done_) * pieces / of); }
+
+ private:
+  ProgressLine line_;
+  std::string what_;
+  double done_ = 0, then_ = 0;
+};
+
+/// Runs the diagnosis with as many threads as asked for, and shows its progress on a terminal.
+estimator::Diagnosis run_diagnosis(const DiagnoseArguments& a,
+                                   const estimator::DiagnosisInput& input,
+                                   estimator::DiagnosisOptions options) {
+  if (a.component.any()) options.tolerances.mass = kComponentMass;
+  DiagnosisProgress progress(a.quiet);
+  const Workers workers(
+      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
+      [&](const std::string&, int pieces, int of) { progress.count(pieces, of); });
+  options.parallel = [&](int count, const std::function<void(int)>& work) {
+    workers.run("", count, work);
+  };
+  options.within = [&](int count, const std::function<void(int)>& work) {
+    workers.run_within(count, work);
+  };
+  options.progress = [&](const std::string& what, double done, double then) {
+    progress.tell(what, done, then);
+  };
+  return diagnose(input.plant, input.segments, options);
+}
+
+bool write_outputs(const std::string& directory, const DiagnoseOutput& output) {
+  std::error_code failure;
+  std::filesystem::create_directories(directory, failure);
+  if (failure) {
+    fmt::print(stderr, "{}: {}\n", directory, failure.message());
+    return false;
+  }
+  return write_file(directory + "/diagnosis.json", diagnosis_json(output)) &&
+         write_file(directory + "/model.toml", diagnosis_model_toml(output)) &&
+         write_file(directory + "/report.html", diagnosis_report(output));
+}
+
+}  // namespace
+
+int diagnose_command(const DiagnoseArguments& a) {
+  keep_freed_memory();
+  std::vector<ConfigProblem> config_problems;
+  const std::optional<Config> config = load_config(a.config, config_problems);
+  print_problems(config_problems);
+  if (!config) return kBadInput;
+
+  std::vector<std::string> problems;
+  const estimator::PipelineConfig& pipeline = config->pipeline;
+  if (a.component.any() && (pipeline.structure.stories != 1 || pipeline.structure.frames() != 1))
+    problems.push_back(a.config + ": a component test has one story and one frame");
+  estimator::DiagnosisOptions options;
+  options.holdout_from = a.event.empty() ? a.train.size() : 1;
+  options.without = excluded_kinds(a.without, problems);
+  std::vector<DiagnoseRecord> records = read_records(*config, a, problems);
+  if (print_all(problems)) return kBadInput;
+
+  const ComparedChannels compared = compared_channels(*config, records);
+  options.known = compared.known;
+  std::vector<estimator::RecordSamples> samples;
+  for (DiagnoseRecord& record : records) samples.push_back(std::move(record.samples));
+  const auto input = estimator::diagnosis_input(pipeline.structure, compared.axes, pipeline.design,
+                                                a.component, samples, pipeline.bending_nmprad);
+  if (!input) {
+    fmt::print(stderr, "{}: the channels do not measure every motion that diagnose needs\n",
+               a.config);
+    return kBadInput;
+  }
+  for (std::size_t r = 0; r < records.size(); ++r)
+    add_segment_problems(records[r].path, *input, r, a.component, problems);
+  if (print_all(problems)) return kBadInput;
+
+  const estimator::Diagnosis diagnosis = run_diagnosis(a, *input, options);
+  const DiagnoseOutput output{*config,         input->plant,         records,
+                              input->segments, options.holdout_from, diagnosis};
+  if (!write_outputs(a.out, output)) return kBadInput;
+  if (!a.quiet) fmt::print("{}{}/report.html\n", diagnosis_text(output), a.out);
+  const bool holds = diagnosis.verdict == estimator::Verdict::adequate ||
+                     diagnosis.verdict == estimator::Verdict::explained;
+  return holds ? 0 : kGapRemains;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,333 @@
+#include "daemon/tools/diagnosis/diagnose_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "daemon/base/html_page.h"
+#include "daemon/base/svg_plot.h"
+#include "daemon/tools/diagnosis/diagnose_verdict.h"
+#include "daemon/tools/diagnosis/kind_section.h"
+#include "daemon/tools/diagnosis/noise_beyond.h"
+#include "daemon/tools/diagnosis/where_map.h"
+#include "estimator/diagnose/model/free_run.h"
+#include "estimator/diagnose/model/law_port.h"
+#include "estimator/diagnose/trials/catalogue_form.h"
+#include "estimator/diagnose/verdict/verdict.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kForceDeformationPoints = 4000;
+constexpr std::size_t kRanked = 15;
+
+std::string place(const DiagnoseOutput& o, const estimator::EffectPlace& p) {
+  return html_text(place_text(p, o.plant.structure, o.plant.axes));
+}
+
+std::string use(const DiagnoseOutput& o, std::size_t r) {
+  return r < o.holdout_from ? "train" : "held out";
+}
+
+std::string gap_section(const DiagnoseOutput& o) {
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> plots;
+  for (std::size_t r = 0; r < o.diagnosis.before.size() && r < o.diagnosis.after.size(); ++r) {
+    const estimator::Gap& before = o.diagnosis.before[r];
+    const estimator::Gap& after = o.diagnosis.after[r];
+    rows.push_back({html_text(o.records[r].path) + " (" + use(o, r) + ")",
+                    gap_percent(before.overall), gap_percent(after.overall),
+                    gap_percent(before.overall_floor)});
+    SvgAxis names{""};
+    SvgSeries b{"before", 1, SvgMark::rings, {}, {}}, a{"after", 0, SvgMark::dots, {}, {}},
+        n{"noise floor", 6, SvgMark::bars, {}, {}};
+    for (std::size_t c = 0; c < o.plant.axes.size(); ++c) {
+      if (o.plant.is_input(static_cast<Eigen::Index>(c)) && !o.plant.prescribed) continue;
+      names.categories.push_back(o.plant.axes[c].name);
+      const auto x = static_cast<double>(names.categories.size());
+      const auto at = static_cast<Eigen::Index>(c);
+      for (SvgSeries* s : {&b, &a, &n}) s->x.push_back(x);
+      b.y.push_back(100 * before.axis[at]);
+      a.y.push_back(100 * after.axis[at]);
+      n.y.push_back(100 * before.floor[at]);
+    }
+    SvgPlot plot(use(o, r) + ": gap of every channel", names, {"free-run NRMSE, %"});
+    plot.add(n);
+    plot.add(b);
+    plot.add(a);
+    plots.push_back(plot.svg());
+  }
+  const std::string fitted =
+      o.diagnosis.after_of_all
+          ? "The training records do not determine the effects: the gap after is of a model fitted "
+            "to all records."
+          : "Both models were fitted to the training records alone.";
+  return "<h2>Gap between simulation and measurement</h2>\n"
+         "<p>Free run from the measured " +
+         driver_words(o) + " alone, as a share of " + html_text(denominator_words(o)) + ". " +
+         fitted + "</p>\n" + html_table({"record", "before", "after", "noise floor"}, rows) +
+         html_figure(plots, "Gap per channel, over what the sensors' noise alone would make.");
+}
+
+std::string history_section(const DiagnoseOutput& o) {
+  std::vector<std::string> plots;
+  for (std::size_t r = 0; r < o.diagnosis.before.size() && r < o.diagnosis.after.size(); ++r) {
+    const estimator::RecordSegment& s = o.segments[r];
+    const int axis = o.diagnosis.before[r].worst_axis;
+    const Eigen::VectorXd measured = signal_of(s.spectrum.row(axis).transpose(), s, 1);
+    const auto simulated = [&](const estimator::Gap& gap) {
+      return Eigen::VectorXd(measured - signal_of(gap.difference.row(axis).transpose(), s, 1));
+    };
+    const Eigen::VectorXd before = simulated(o.diagnosis.before[r]),
+                          after = simulated(o.diagnosis.after[r]);
+    Eigen::Index peak = 0;
+    measured.cwiseAbs().maxCoeff(&peak);
+    const auto span = static_cast<Eigen::Index>(4 * s.rate_hz);
+    const Eigen::Index from =
+        std::max<Eigen::Index>(0, std::min(peak - span / 2, measured.size() - span));
+    const Eigen::Index to = std::min(measured.size(), from + span);
+    std::vector<double> t, m, b, a;
+    for (Eigen::Index i = from; i < to; ++i) {
+      t.push_back(static_cast<double>(i) / s.rate_hz);
+      m.push_back(measured[i]);
+      b.push_back(before[i]);
+      a.push_back(after[i]);
+    }
+    SvgPlot plot(use(o, r) + ": channel " + o.plant.axes[static_cast<std::size_t>(axis)].name,
+                 {"time, s"}, {"acceleration in the band, m/s^2"});
+    plot.add({"measured", 6, SvgMark::line, t, m});
+    plot.add({"simulated before", 1, SvgMark::dashed, t, b});
+    plot.add({"simulated after", 0, SvgMark::thin_line, t, a});
+    plots.push_back(plot.svg());
+  }
+  return "<h2>Measured and simulated</h2>\n" +
+         html_figure(plots, "The channel with the widest gap, around the strongest motion.");
+}
+
+/// What a found law does in the last record: the element's deformation and its restoring force.
+struct LawMotion {
+  std::string place;
+  int story = 0;                     ///< of a frame; 0: it is none
+  double linear = 0, stiffness = 0;  ///< before and after, SI
+  Eigen::VectorXd deformation_m, force_n;
+};
+
+std::vector<LawMotion> law_motions(const DiagnoseOutput& o) {
+  std::vector<LawMotion> out;
+  for (const estimator::FoundEffect& f : o.diagnosis.effects) {
+    if (f.index < 0) continue;
+    const estimator::ModelEffect& e = o.diagnosis.model.effects[static_cast<std::size_t>(f.index)];
+    if (!e.element_law()) continue;
+    const std::vector<estimator::ActiveLaw> laws = active_laws(o.plant, o.diagnosis.model);
+    std::size_t law = 0;
+    while (laws[law].effect != static_cast<std::size_t>(f.index)) ++law;
+    const int element = laws[law].port.element;
+    if (element < 0) continue;
+    const std::size_t r = o.segments.size() - 1;
+    const int ratio = steps_per_sample(o.plant, o.segments[r].rate_hz);
+    const estimator::FreeRun run = free_run(o.plant, o.diagnosis.model, o.segments[r], r, ratio);
+    if (!run.good || run.tracks[law].d.size() == 0) continue;
+    const estimator::LawTrack& track = run.tracks[law];
+    const double k = o.diagnosis.model.theta[element];
+    out.push_back({place_text(e.place, o.plant.structure, o.plant.axes),
+                   e.place.kind == estimator::PlaceKind::frame ? e.place.story : 0,
+                   o.diagnosis.linear.theta[element], k, track.d, k * track.d + track.force});
+  }
+  return out;
+}
+
+/// What a law means for whoever looks after the building.
+std::string meaning(const DiagnoseOutput& o, const LawMotion& m) {
+  Eigen::Index at = 0;
+  const double drift = m.deformation_m.cwiseAbs().maxCoeff(&at);
+  const double force = std::abs(m.force_n[at]), linear = m.linear * drift;
+  if (!(drift > 0) || !(linear > 0)) return "";
+  std::string out =
+      fmt::format("At its largest deformation in the last record, {:.3g} mm", 1e3 * drift);
+  if (m.story > 0) {
+    const double height = o.plant.structure.story_height[static_cast<std::size_t>(m.story - 1)];
+    out += fmt::format(" ({:.2f} % of the story's height)", 100 * drift / height);
+  }
+  return out + fmt::format(", {} carries {:.3g} kN, {:.0f} % {} than the linear model says.",
+                           m.place, 1e-3 * force, 100 * std::abs(force / linear - 1),
+                           force < linear ? "less" : "more");
+}
+
+std::string loop_section(const std::vector<LawMotion>& motions) {
+  std::vector<std::string> plots;
+  for (const LawMotion& m : motions) {
+    std::vector<double> d, before, after;
+    const Eigen::Index stride =
+        std::max<Eigen::Index>(1, m.deformation_m.size() / kForceDeformationPoints);
+    for (Eigen::Index i = 0; i < m.deformation_m.size(); i += stride) {
+      d.push_back(m.deformation_m[i]);
+      before.push_back(m.linear * m.deformation_m[i]);
+      after.push_back(m.force_n[i]);
+    }
+    SvgPlot plot(m.place, {"deformation, m"}, {"restoring force, N"});
+    plot.add({"with the effect", 0, SvgMark::thin_line, d, after});
+    plot.add({"linear model", 1, SvgMark::dots, d, before});
+    plots.push_back(plot.svg());
+  }
+  return plots.empty() ? ""
+                       : "<h2>Force and deformation</h2>\n" +
+                             html_figure(plots, "Of the last record, as the model has it.");
+}
+
+/// Time span of nine tenths of the signal that a place needs.
+std::string when(const DiagnoseOutput& o, const estimator::WhereEntry& w) {
+  if (!(w.to_s > w.from_s)) return "";
+  return fmt::format("{:.1f} to {:.1f} s of {}", w.from_s, w.to_s,
+                     html_text(o.records[w.record].path));
+}
+
+std::string band(const estimator::WhereEntry& w) {
+  return w.high_hz > w.low_hz ? fmt::format("{:.2f} to {:.2f} Hz", w.low_hz, w.high_hz) : "";
+}
+
+std::string peak(const estimator::WhereEntry& w) {
+  const char* unit = w.place.kind == estimator::PlaceKind::channel ? "m/s^2" : "N";
+  return w.peak > 0 ? fmt::format("{:.3g} {}", w.peak, unit) : "";
+}
+
+std::string where_section(const DiagnoseOutput& o) {
+  if (o.diagnosis.verdict == estimator::Verdict::adequate)
+    return fmt::format(
+        "<h2>Where</h2>\n<p>Nowhere: the linear model leaves {:.3g} times the sensors' "
+        "noise.</p>\n",
+        o.diagnosis.ratio_before);
+  std::vector<std::vector<std::string>> rows;
+  for (const estimator::WhereEntry& w : o.diagnosis.where)
+    rows.push_back(
+        {place(o, w.place), fmt::format("{:.3f}", w.ratio), when(o, w), band(w), peak(w)});
+  return fmt::format(
+             "<h2>Where</h2>\n<p>One place after the other is allowed to do anything at all. At "
+             "the "
+             "right one the rest of a linear building then fits: what is left falls from {:.3g} "
+             "times the sensors' noise to 1.</p>\n",
+             o.diagnosis.ratio_before) +
+         html_figure(
+             where_map(o.plant.structure, o.plant.axes, o.diagnosis.map, o.diagnosis.ratio_before),
+             "Plans of the stories. The stronger a frame, panel, mass or sensor is drawn, "
+             "the less is left when it may do anything; the three best are numbered.") +
+         html_table({"place", "left, times noise", "when", "frequencies", "largest"}, rows);
+}
+
+const char* why_it_lost(estimator::TrialOutcome outcome) {
+  switch (outcome) {
+    case estimator::TrialOutcome::fitted:
+      return "leaves more unexplained";
+    case estimator::TrialOutcome::screened_out:
+      return "others of its place do better when the measured motion drives the law";
+    case estimator::TrialOutcome::diverged:
+      return "its free run comes to no end";
+    case estimator::TrialOutcome::other_law:
+      break;
+  }
+  return "as fitted it is not the law of this name";
+}
+
+/// Table of the best trials. best: cost of the one that was chosen.
+std::string ranking(const DiagnoseOutput& o, const std::vector<estimator::Trial>& trials,
+                    double best) {
+  std::vector<std::vector<std::string>> rows;
+  for (const estimator::Trial& t : trials) {
+    if (rows.size() == kRanked) break;
+    std::string name(name_of(t.kind)), where = place(o, t.place);
+    if (t.second) {
+      name += " and " + std::string(name_of(t.second->first));
+      where += " and " + place(o, t.second->second);
+    }
+    rows.push_back({html_text(name), where, gap_percent(t.fraction),
+                    fmt::format("{:.0f}", t.cost - best), why_it_lost(t.outcome)});
+  }
+  const std::size_t more = trials.size() - rows.size();
+  return html_table({"candidate", "place", "explains of the excess",
+                     "log-likelihood below the best", "why it lost"},
+                    rows) +
+         (more > 0 ? fmt::format("<p>{} more are in diagnosis.json.</p>\n", more) : "");
+}
+
+std::string effects_section(const DiagnoseOutput& o) {
+  std::string out;
+  for (const estimator::FoundEffect& f : o.diagnosis.effects) {
+    const estimator::Effect effect = catalogue_effect(o.plant, o.segments, f, o.diagnosis.model);
+    const estimator::EffectDescription& d = describe(effect.kind);
+    out += "<h2>" + html_text(std::string(d.name)) + ", " + place(o, effect.place) + "</h2>\n<p>" +
+           html_text(std::string(d.equation)) + "</p>\n";
+    std::vector<std::vector<std::string>> rows;
+    for (std::size_t i = 0; i < d.parameters.size(); ++i)
+      rows.push_back(
+          {html_text(std::string(d.parameters[i].meaning)), fmt::format("{:.5g}", effect.values[i]),
+           i < f.std_error.size() && f.std_error[i] > 0 ? fmt::format("{:.2g}", f.std_error[i])
+                                                        : "",
+           html_text(std::string(d.parameters[i].unit))});
+    if (!rows.empty()) out += html_table({"parameter", "value", "standard error", "unit"}, rows);
+    out += "<p>" + with_capital(confidence_words(f)) + ".</p>\n";
+    if (f.approximate)
+      out +=
+          "<p>More than noise is left: what acts is not quite this, the nearest name in the "
+          "catalogue, or something else acts besides.</p>\n";
+    for (const estimator::EffectKind kind : f.like)
+      out += "<p>Cannot be told from " + html_text(std::string(name_of(kind))) +
+             " with these records: a motion of another strength would tell.</p>\n";
+    if (!f.alternatives.empty())
+      out += "<h3>Runners-up</h3>\n" + ranking(o, f.alternatives, f.chosen.cost);
+  }
+  if (!o.diagnosis.rejected.empty())
+    out +=
+        "<h2>What did not earn its place</h2>\n<p>None that is what its name says explains 97 % of "
+        "what an arbitrary force at the best place would, without worsening a record.</p>\n" +
+        ranking(o, o.diagnosis.rejected, o.diagnosis.rejected.front().cost);
+  return out;
+}
+
+std::string provenance(const DiagnoseOutput& o) {
+  std::vector<std::vector<std::string>> rows{
+      {html_text(o.config.path), "configuration", o.config.sha256}};
+  for (std::size_t r = 0; r < o.records.size(); ++r)
+    rows.push_back({html_text(o.records[r].path), use(o, r), o.records[r].sha256});
+  return "<h2>Provenance</h2>\n" + html_table({"file", "use", "SHA-256"}, rows) +
+         "<p>framewatch " FRAMEWATCH_VERSION ", diagnose</p>\n";
+}
+
+}  // namespace
+
+std::string diagnosis_report(const DiagnoseOutput& o) {
+  const estimator::Diagnosis& d = o.diagnosis;
+  const std::vector<LawMotion> motions = law_motions(o);
+  std::string body = "<p class=\"verdict\">" + html_text(verdict_sentence(o)) + "</p>\n<p>" +
+                     html_text(gap_sentence(o)) + "</p>\n";
+  for (const std::string& text : {damping_sentence(o), noise_sentence(o)})
+    if (!text.empty()) body += "<p>" + html_text(text) + "</p>\n";
+  std::string items;
+  for (const estimator::FoundEffect& f : d.effects)
+    items += "<li>" +
+             html_text(with_capital(effect_words(o, f)) + ": " + grade_word(grade_of(f)) + ", " +
+                       confidence_words(f)) +
+             fmt::format("; it takes {:.0f} % of the gap.</li>\n",
+                         100 * share_of_gap(o, f.before - f.after));
+  if (const std::string text = leading_sentence(o); !text.empty())
+    items += "<li>" + html_text(text) + "</li>\n";
+  if (d.effects.empty())
+    if (const std::string text = kind_sentence(o); !text.empty())
+      items += "<li>" + html_text(text) + "</li>\n";
+  for (const LawMotion& m : motions)
+    if (const std::string text = meaning(o, m); !text.empty())
+      items += "<li>" + html_text(text) + "</li>\n";
+  if (!items.empty()) body += "<ul>\n" + items + "</ul>\n";
+  if (!d.reason.empty()) body += "<p>" + html_text(d.reason) + "</p>\n";
+  const std::string title = "Diagnosis of " + o.plant.structure.name;
+  body += "<h1>" + html_text(title) + "</h1>\n";
+  body += loop_section(motions) + where_section(o) + kind_section(o) + gap_section(o) +
+          history_section(o) + effects_section(o);
+  body += fmt::format(
+      "<h2>What stays unexplained</h2>\n<p>After all effects the simulation differs from the "
+      "measurement by {:.3g} times what the sensors' noise explains; 1 would be nothing but "
+      "noise.</p>\n",
+      d.ratio_after);
+  return html_page(title, body + provenance(o));
+}
+
+}  // namespace framewatch::daemon

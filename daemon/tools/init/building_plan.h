@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/tools/init/place.h"
+#include "drivers/records/axis_header.h"
+#include "estimator/structure/structure.h"
+
+namespace framewatch::daemon {
+
+/// What can become a channel: a column of a record, a signal of a CAN bus, an axis of an LCM node.
+struct ChannelColumn {
+  std::string name;
+  std::string source;               ///< TOML of its `source`; empty: from files only
+  double scale = 1;                 ///< m/s^2 of one
+  drivers::AxisHeader header = {};  ///< what its file says of it
+};
+
+/// Where a channel of a network's station is: at a place in plan, in a direction of the compass.
+struct StationPlace {
+  int story = 0;
+  std::string why_unused;             ///< empty: it is used
+  std::optional<double> azimuth_deg;  ///< empty: `along`
+  char along = 'z';                   ///< x, y, or z: vertical
+  std::optional<double> x_m, y_m;     ///< empty: not known
+};
+
+struct PlannedChannel {
+  Place place;
+  ChannelColumn column;
+  std::optional<StationPlace> station = {};  ///< instead of `place`
+};
+
+/// A building as its owner described it, SI units.
+struct BuildingPlan {
+  estimator::Structure structure;
+  std::string mass_from;  ///< "7200 kg a floor", for a comment
+  /// Of each story, all frames of a direction together, N/m; empty: no design, or no such frame.
+  std::vector<double> story_kx_npm, story_ky_npm;
+  std::string stiffness_from;  ///< for a comment
+  double rate_hz = 100;
+  std::string rate_from;
+  std::vector<PlannedChannel> channels;
+  std::string can_interface, dbc;  ///< empty: no CAN
+  std::string record;              ///< empty: none; with its options as `replay` takes them
+  int record_files = 1;            ///< over 1: `record` is in words, `convert` makes one of them
+  std::optional<double> azimuth_y_deg;  ///< of a station's building
+};
+
+/// Share of the plan that each line of frames carries, between neighbours of which these spans lie:
+/// half of every span to each of its ends.
+std::vector<double> shares_of_frames(const std::vector<double>& spans);
+
+/// Mass of each node: each floor's spread over the plan by shares_of_frames() both ways. kg, as
+/// Structure::node_mass.
+std::vector<double> node_masses(const estimator::Structure& structure,
+                                const std::vector<double>& floor_mass_kg);
+
+/// Floor area in m^2; 0 where a direction has no span.
+double floor_area_m2(const estimator::Structure& structure);
+
+/// Stiffness of each story, equal in all of them, with which floors of these masses sway at
+/// `first_hz`. N/m.
+std::vector<double> story_stiffness_npm(const std::vector<double>& floor_mass_kg, double first_hz);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,197 @@
+#include "daemon/tools/init/channel_questions.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "daemon/base/printable.h"
+#include "daemon/tools/init/place.h"
+#include "daemon/tools/init/station_questions.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using estimator::Structure;
+
+/// Where nobody named the channels: "base-x", "F2-Y1".
+std::string usual_name(const Structure& s, const Place& place) {
+  if (place.story == 0) return place.direction == estimator::Direction::x ? "base-x" : "base-y";
+  std::string frame = s.frame_name(place.frame);
+  frame.front() = static_cast<char>(frame.front() - 'a' + 'A');
+  return fmt::format("F{}-{}", place.story, frame);
+}
+
+/// One node for each channel; where a floor has one accelerometer for each direction, one node for
+/// each floor.
+std::string lcm_source(const Structure& s, const Place& place, std::size_t index) {
+  const bool one_a_floor = s.n() == 1 && s.m() == 1;
+  return fmt::format("{{ lcm = \"ACCEL\", node = {}, axis = \"{}\" }}",
+                     one_a_floor ? static_cast<std::size_t>(place.story) : index,
+                     letter(place.direction));
+}
+
+class ChannelPlacing {
+ public:
+  ChannelPlacing(const InitAnswers& answers, InitReading& reading)
+      : answers_(answers),
+        reading_(reading),
+        structure_(reading.draft.plan.structure),
+        columns_(reading.draft.columns),
+        places_(places_of(structure_)),
+        column_of_place_(places_.size()) {}
+
+  void place() {
+    if (!columns_.empty()) {
+      take_named();
+      take_reading();
+      if (reading_.open.empty()) match();
+      if (!reading_.open.empty()) return;
+    }
+    fill();
+  }
+
+ private:
+  void open(const std::string& option, const std::string& ask, const std::string& problem,
+            std::optional<Place> at = {}) {
+    reading_.open.push_back({option, ask, "", problem, at, ""});
+  }
+  void refuse(const std::string& answer, const std::string& why) {
+    reading_.open.push_back({"channel", "", "", printable(answer) + ": " + why, {}, answer});
+  }
+
+  void take_named() {
+    for (const std::string& text : answers_.channels) {
+      const std::size_t equals = text.rfind('=');
+      if (equals == std::string::npos) {
+        refuse(text, "write NAME=PLACE, such as acc3=2:y1");
+        continue;
+      }
+      const auto column =
+          std::find_if(columns_.begin(), columns_.end(),
+                       [&](const ChannelColumn& c) { return c.name == text.substr(0, equals); });
+      const std::optional<Place> place = parse_place(structure_, text.substr(equals + 1));
+      if (column == columns_.end())
+        refuse(text, "there is no such column; there are " + names_left());
+      else if (!place)
+        refuse(text, "no place of this building; places are " +
+                         place_option(structure_, places_.front()) + " (" +
+                         place_text(structure_, places_.front()) + ") to " +
+                         place_option(structure_, places_.back()));
+      else
+        put(*place, static_cast<std::size_t>(column - columns_.begin()), text);
+    }
+  }
+
+  void put(const Place& place, std::size_t column, const std::string& text) {
+    const auto at = std::find(places_.begin(), places_.end(), place) - places_.begin();
+    std::optional<std::size_t>& there = column_of_place_[static_cast<std::size_t>(at)];
+    if (there)
+      refuse(text, printable(columns_[*there].name) + " is there already");
+    else if (is_used(column))
+      refuse(text, "the column has a place already");
+    else
+      there = column;
+  }
+
+  bool is_used(std::size_t column) const {
+    return std::find(column_of_place_.begin(), column_of_place_.end(), std::optional(column)) !=
+           column_of_place_.end();
+  }
+
+  std::string names_left() const {
+    std::string out;
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      if (!is_used(c)) out += (out.empty() ? "" : ", ") + printable(columns_[c].name);
+    return out.empty() ? "none" : out;
+  }
+
+  void take_reading() {
+    const auto answer = answers_.by_option.find("titles");
+    if (answer == answers_.by_option.end()) return;
+    if (answer->second == "frames")
+      reading_.draft.reading = TitleReading::frames;
+    else if (answer->second == "directions")
+      reading_.draft.reading = TitleReading::directions;
+    else
+      open("titles", "frames or directions?", "frames or directions");
+  }
+
+  void match() {
+    std::vector<std::string> titles;
+    std::vector<std::size_t> column_of_title;
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      if (!is_used(c)) {
+        titles.push_back(columns_[c].name);
+        column_of_title.push_back(c);
+      }
+    const ColumnPlaces found = match_columns(structure_, titles, reading_.draft.reading);
+    for (std::size_t p = 0; p < places_.size(); ++p)
+      if (!column_of_place_[p] && found.column_of_place[p])
+        column_of_place_[p] = column_of_title[*found.column_of_place[p]];
+    const auto missing = std::count(column_of_place_.begin(), column_of_place_.end(), std::nullopt);
+    if (missing == 0) return;
+    if (columns_.size() < places_.size())
+      open("bays", "",
+           fmt::format(
+               "this building needs {} channels, the base's and one for every frame of every "
+               "floor; there are {}. 0x0 has one frame for each direction{}",
+               places_.size(), columns_.size(),
+               reading_.draft.live == "can" ? "; several nodes that send one message take a "
+                                              "[[can_node]] each, by hand: docs/can.md"
+                                            : ""));
+    else if (found.ambiguous)
+      ask_reading(found, column_of_title[*found.ambiguous]);
+    else
+      for (std::size_t p = 0; p < places_.size(); ++p)
+        if (!column_of_place_[p]) ask_place(places_[p]);
+  }
+
+  void ask_reading(const ColumnPlaces& found, std::size_t column) {
+    open(
+        "titles",
+        fmt::format("{} can be read in two ways:\n  frames      {}\n  directions  {}\nWhich one do "
+                    "the titles mean?",
+                    printable(columns_[column].name), found.as_frame, found.as_direction),
+        "");
+  }
+
+  void ask_place(const Place& place) {
+    open("channel",
+         fmt::format("Which column is {}? There are {}.", place_text(structure_, place),
+                     names_left()),
+         "", place);
+  }
+
+  void fill() {
+    BuildingDraft& d = reading_.draft;
+    std::string list;
+    for (std::size_t p = 0; p < places_.size(); ++p) {
+      ChannelColumn column;
+      if (columns_.empty()) column.name = usual_name(structure_, places_[p]);
+      if (column_of_place_[p]) column = columns_[*column_of_place_[p]];
+      if (d.live == "lcm") column.source = lcm_source(structure_, places_[p], p);
+      list += fmt::format("\n     {:<16} {}", printable(column.name),
+                          place_text(structure_, places_[p]));
+      d.plan.channels.push_back({places_[p], column});
+    }
+    if (!columns_.empty() && names_left() != "none")
+      list += "\n     left out         " + names_left();
+    reading_.understood.push_back({"channel", "channels", list});
+  }
+
+  const InitAnswers& answers_;
+  InitReading& reading_;
+  const Structure& structure_;
+  const std::vector<ChannelColumn>& columns_;
+  std::vector<Place> places_;
+  std::vector<std::optional<std::size_t>> column_of_place_;
+};
+
+}  // namespace
+
+void place_channels(const InitAnswers& answers, InitReading& reading) {
+  if (reading.draft.station) return place_station(answers, reading);
+  ChannelPlacing(answers, reading).place();
+}
+
+}  // namespace framewatch::daemon

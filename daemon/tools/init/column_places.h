@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "daemon/tools/init/place.h"
+
+namespace framewatch::daemon {
+
+/// What "y1" in a column's title means, where it is not said otherwise.
+enum class TitleReading {
+  frames,      ///< the frame y1, which moves along x
+  directions,  ///< the first accelerometer along y; with one a floor: along y on floor 1
+};
+
+/// Columns as places of a building, by their titles.
+struct ColumnPlaces {
+  /// Parallel to places_of(): index of the column; empty where no title says it.
+  std::vector<std::optional<std::size_t>> column_of_place;
+  /// A column whose title is one place as a frame and another one as a direction, while both
+  /// readings fit the building; empty: there is none.
+  std::optional<std::size_t> ambiguous;
+  std::string as_frame, as_direction;  ///< of that column, in words
+};
+
+/// Titles such as "base_x", "y1 story 2", "A2Y1", "roof_x", "floor 2 frame y1". A place gets a
+/// column only when every reading of the titles that fits the building agrees and no other column
+/// is of the same place; all else is left to a person. `reading`: the only one to be tried.
+ColumnPlaces match_columns(const estimator::Structure& structure,
+                           const std::vector<std::string>& titles,
+                           std::optional<TitleReading> reading);
+
+}  // namespace framewatch::daemon

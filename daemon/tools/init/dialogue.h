@@ -1,0 +1,29 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "daemon/tools/init/draft.h"
+
+namespace framewatch::daemon {
+
+/// Where a person answers.
+struct Terminal {
+  std::function<std::optional<std::string>()> read_line;  ///< empty: there is no more
+  std::function<void(const std::string&)> say;
+};
+
+/// What is to be said about a building that is all answered; empty: nothing.
+using Remarks = std::function<std::string(const BuildingPlan&)>;
+
+/// Asks what is open, question by question, until the person agrees with what was understood; every
+/// answer can be changed until then. Empty: the person left.
+std::optional<BuildingPlan> ask_building(InitAnswers answers, const std::string& path,
+                                         const Remarks& remarks, ColumnCache& files,
+                                         const Terminal& terminal);
+
+/// The understood answers, a numbered line each.
+std::string summary_text(const InitReading& reading);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/tools/init/building_plan.h"
+#include "daemon/tools/init/channel_columns.h"
+#include "daemon/tools/init/column_places.h"
+#include "daemon/tools/init/station_layout.h"
+
+namespace framewatch::daemon {
+
+/// What was answered, as it was typed: by option or in the dialogue.
+struct InitAnswers {
+  std::map<std::string, std::string, std::less<>> by_option;  ///< "stories": "3"; files of
+                                                              ///< "record" stand one a line
+  std::vector<std::string> channels;                          ///< NAME=PLACE
+  RecordFileArguments record;                                 ///< what the record does not say
+};
+
+/// Files as they were read, by name and options, so that a dialogue reads each once.
+class ColumnCache {
+ public:
+  const ChannelColumns& records(const std::vector<std::string>& paths,
+                                const RecordFileArguments& arguments);
+  const ChannelColumns& dbc(const std::string& path, const std::string& interface);
+
+ private:
+  std::map<std::string, ChannelColumns> read_;
+};
+
+/// A building as far as it is answered.
+struct BuildingDraft {
+  BuildingPlan plan;
+  bool has_x = true, has_y = true;  ///< directions that are measured
+  bool stories_known = false, bays_known = false;
+  RecordFileArguments record_arguments;
+  std::string live;                    ///< "lcm", "can" or "none"
+  std::vector<ChannelColumn> columns;  ///< that a person named
+  std::vector<std::string> notes;      ///< to be told once
+  std::vector<double> mass;            ///< as answered
+  std::string mass_unit;               ///< kg, t, kg/m2
+  std::optional<double> area_m2;
+  std::optional<TitleReading> reading;    ///< of the columns' titles
+  std::optional<StationReading> station;  ///< what headers of a network's files say
+  StationPlan station_plan;
+};
+
+/// What is still to be answered, or was answered wrongly.
+struct OpenQuestion {
+  std::string option;  ///< "stories"; "channel": the place stands in `ask`
+  std::string ask;
+  std::string initial;         ///< what an empty answer means; empty: it must be answered
+  std::string problem;         ///< why the answer does not serve; empty: there is none yet
+  std::optional<Place> place;  ///< of a channel: which column is there?
+  std::string answer = {};     ///< of a channel: the one that does not serve
+  std::string column = {};     ///< of a station: where is this one?
+};
+
+/// An answer as the summary shows it.
+struct UnderstoodAnswer {
+  std::string option, title, text;
+};
+
+struct InitReading {
+  BuildingDraft draft;
+  std::vector<OpenQuestion> open;
+  std::vector<UnderstoodAnswer> understood;
+};
+
+}  // namespace framewatch::daemon

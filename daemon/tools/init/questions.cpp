@@ -1,0 +1,349 @@
+#include "daemon/tools/init/questions.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/core.h>
+
+#include "daemon/base/printable.h"
+#include "daemon/tools/init/answer_text.h"
+#include "daemon/tools/init/start_question.h"
+#include "daemon/tools/init/station_answers.h"
+#include "drivers/files/number_text.h"
+
+namespace framewatch::daemon {
+namespace {
+
+using Draft = BuildingDraft;
+
+constexpr int kMaxStories = 200;  ///< no building has so many
+
+bool always(const Draft&) {
+  return true;
+}
+std::string must(const Draft&) {
+  return "";
+}
+
+std::string take_name(const std::string& text, Draft& d, ColumnCache&) {
+  if (text.empty() || printable(text) != text) return "a name on one line";
+  d.plan.structure.name = text;
+  return "";
+}
+
+std::string file_name(const std::string& path) {
+  return path.substr(path.rfind('/') + 1);
+}
+
+std::string take_record(const std::string& text, Draft& d, ColumnCache& files) {
+  if (text == "none") return "";
+  RecordAnswer answer = parse_record_answer(text);
+  if (!answer.problem.empty()) return answer.problem;
+  if (!answer.arguments.any()) answer.arguments = d.record_arguments;
+  const ChannelColumns& read = files.records(answer.paths, answer.arguments);
+  if (!read.problem.empty()) return read.problem;
+  d.columns = read.columns;
+  d.station = read_station(d.columns);
+  if (d.station) d.station_plan.base_is_basement = !d.station->ground_can_be_base;
+  d.notes.insert(d.notes.end(), read.notes.begin(), read.notes.end());
+  d.plan.record_files = static_cast<int>(answer.paths.size());
+  d.plan.record =
+      d.plan.record_files == 1
+          ? shell_word(answer.paths.front()) + options_text(answer.arguments)
+          : fmt::format("{} files, {} to {}", answer.paths.size(), file_name(answer.paths.front()),
+                        file_name(answer.paths.back()));
+  d.plan.rate_hz = read.rate_hz;
+  d.plan.rate_from = "as the record's times say";
+  return "";
+}
+
+std::string understood_record(const Draft& d) {
+  if (d.plan.record.empty()) return "none";
+  return fmt::format("{}, {} columns, {:g} samples a second", d.plan.record, d.columns.size(),
+                     d.plan.rate_hz);
+}
+
+std::string take_live(const std::string& text, Draft& d, ColumnCache&) {
+  if (text != "lcm" && text != "can" && text != "none") return "lcm, can or none";
+  if (text == "can" && !d.plan.record.empty())
+    return "can: on CAN the channels are named as the bus' signals; leave the record out";
+  d.live = text;
+  return "";
+}
+
+std::string take_interface(const std::string& text, Draft& d, ColumnCache&) {
+  if (text.empty() || text.size() > 15 || text.find_first_of("\"\\/ ") != std::string::npos)
+    return "the name of a network interface, such as can0";
+  d.plan.can_interface = text;
+  return "";
+}
+
+std::string take_dbc(const std::string& text, Draft& d, ColumnCache& files) {
+  if (printable(text) != text) return "a file's name on one line";
+  const ChannelColumns& read = files.dbc(text, d.plan.can_interface);
+  if (!read.problem.empty()) return read.problem;
+  d.columns = read.columns;
+  d.plan.dbc = text;
+  return "";
+}
+
+std::string take_stories(const std::string& text, Draft& d, ColumnCache&) {
+  const auto number = drivers::parse_integer(text);
+  if (!number || *number < 1 || *number > kMaxStories)
+    return fmt::format("a whole number from 1 to {}", kMaxStories);
+  d.plan.structure.stories = d.station_plan.stories = static_cast<int>(*number);
+  d.stories_known = true;
+  return "";
+}
+
+std::string take_directions(const std::string& text, Draft& d, ColumnCache&) {
+  if (text != "x" && text != "y" && text != "both") return "x, y or both";
+  d.has_x = text != "y";
+  d.has_y = text != "x";
+  d.station_plan.has_x = d.has_x;
+  d.station_plan.has_y = d.has_y;
+  if (!d.has_x) d.plan.structure.frames_x.clear();
+  if (!d.has_y) d.plan.structure.frames_y.clear();
+  return "";
+}
+
+std::string ask_bays(const Draft& d) {
+  if (d.station)
+    return "Bays of the plan along x and along y, such as 2x1? With 0x0 one frame stands for all "
+           "of "
+           "its\ndirection; torsion needs frames.";
+  std::string out =
+      "Bays of the plan along x and along y, such as 2x1? Every frame needs an accelerometer on "
+      "every\nfloor: ";
+  out += d.has_x && d.has_y
+             ? "1x1 takes 4 a floor, 2x1 takes 5, 0x0 takes 2, one for each direction"
+         : d.has_x ? "0x0 takes 1 a floor, 0x1 takes 2, 0x2 takes 3"
+                   : "0x0 takes 1 a floor, 1x0 takes 2, 2x0 takes 3";
+  return out + (d.columns.empty() ? "." : fmt::format(". There are {} columns.", d.columns.size()));
+}
+
+std::string take_bays(const std::string& text, Draft& d, ColumnCache&) {
+  const auto bays = parse_bays(text);
+  if (!bays) return "bays along x, an x, bays along y: 2x1, from 0x0 to 20x20";
+  estimator::Structure& s = d.plan.structure;
+  s.frames_x.clear();
+  s.frames_y.clear();
+  for (int i = 0; i <= bays->y && d.has_x; ++i) s.frames_x.push_back(fmt::format("y{}", i + 1));
+  for (int i = 0; i <= bays->x && d.has_y; ++i) s.frames_y.push_back(fmt::format("x{}", i + 1));
+  d.bays_known = true;
+  return "";
+}
+
+std::string moving(const std::vector<std::string>& frames, const char* along) {
+  return frames.size() == 1
+             ? fmt::format("frame {} moves along {}", frames.front(), along)
+             : fmt::format("frames {} to {} move along {}", frames.front(), frames.back(), along);
+}
+
+std::string understood_bays(const Draft& d) {
+  const estimator::Structure& s = d.plan.structure;
+  std::string out;
+  if (d.has_x) out = moving(s.frames_x, "x");
+  if (d.has_y) out += (d.has_x ? ", " : "") + moving(s.frames_y, "y");
+  return out;
+}
+
+/// Positive numbers in m, one or `count`.
+std::string take_lengths(const std::string& text, int count, bool count_known,
+                         std::vector<double>& out) {
+  const auto quantity = parse_quantity(text);
+  if (!quantity || (!quantity->unit.empty() && quantity->unit != "m"))
+    return why_no_quantity(text, "lengths in m, between commas: 3.5 or 4.2, 3.5, 3.5");
+  if (!count_known) return "";
+  const auto values = spread(quantity->values, static_cast<std::size_t>(count));
+  if (!values)
+    return fmt::format("there are {} numbers: give one for all, or {}", quantity->values.size(),
+                       count);
+  out = *values;
+  return "";
+}
+
+std::string take_span_x(const std::string& text, Draft& d, ColumnCache&) {
+  return take_lengths(text, d.plan.structure.m() - 1, d.bays_known, d.plan.structure.span_x);
+}
+std::string take_span_y(const std::string& text, Draft& d, ColumnCache&) {
+  return take_lengths(text, d.plan.structure.n() - 1, d.bays_known, d.plan.structure.span_y);
+}
+std::string take_heights(const std::string& text, Draft& d, ColumnCache&) {
+  return take_lengths(text, d.plan.structure.stories, d.stories_known,
+                      d.plan.structure.story_height);
+}
+
+std::string understood_heights(const Draft& d) {
+  const std::vector<double>& heights = d.plan.structure.story_height;
+  return fmt::format("{} m, {:g} m in all", list_text(heights),
+                     std::accumulate(heights.begin(), heights.end(), 0.0));
+}
+
+std::string take_floors(const std::string& text, Draft& d, ColumnCache&) {
+  if (text != "flexible" && text != "rigid") return "flexible or rigid";
+  d.plan.structure.floor =
+      text == "rigid" ? estimator::FloorModel::rigid : estimator::FloorModel::flexible;
+  return "";
+}
+
+/// kg; the floors' when the area is known.
+std::vector<double> floor_masses(const Draft& d) {
+  double factor = 1;
+  if (d.mass_unit == "t") factor = 1000;
+  if (d.mass_unit == "kg/m2") factor = d.area_m2.value_or(0);
+  std::vector<double> out = d.mass;
+  for (double& mass : out) mass *= factor;
+  return out;
+}
+
+void settle_masses(Draft& d) {
+  const std::vector<double> masses = floor_masses(d);
+  d.plan.structure.node_mass = node_masses(d.plan.structure, masses);
+  d.plan.mass_from = list_text(masses) + " kg a floor";
+  if (d.mass_unit == "kg/m2")
+    d.plan.mass_from += fmt::format(" ({} kg/m^2 of {:.6g} m^2)", list_text(d.mass), *d.area_m2);
+}
+
+std::string take_mass(const std::string& text, Draft& d, ColumnCache&) {
+  auto quantity = parse_quantity(text);
+  if (!quantity)
+    return why_no_quantity(
+        text, "kg of each floor (one or a list), or a density: 18000, 18 t, 500 kg/m2");
+  if (quantity->unit == "kg/m^2") quantity->unit = "kg/m2";
+  if (quantity->unit.empty()) quantity->unit = "kg";
+  if (quantity->unit != "kg" && quantity->unit != "t" && quantity->unit != "kg/m2")
+    return fmt::format("{} is no unit of it: kg, t or kg/m2", quantity->unit);
+  d.mass_unit = quantity->unit;
+  d.area_m2 = floor_area_m2(d.plan.structure) > 0 ? std::optional(floor_area_m2(d.plan.structure))
+                                                  : std::nullopt;
+  if (!d.stories_known || !d.bays_known) return "";
+  const auto values = spread(quantity->values, static_cast<std::size_t>(d.plan.structure.stories));
+  if (!values)
+    return fmt::format("there are {} numbers: give one for all floors, or {}",
+                       quantity->values.size(), d.plan.structure.stories);
+  d.mass = *values;
+  if (d.mass_unit != "kg/m2" || d.area_m2) settle_masses(d);
+  return "";
+}
+
+std::string take_area(const std::string& text, Draft& d, ColumnCache&) {
+  const auto quantity = parse_quantity(text);
+  const bool unit =
+      quantity && (quantity->unit.empty() || quantity->unit == "m2" || quantity->unit == "m^2");
+  if (!quantity || !unit || quantity->values.size() != 1)
+    return why_no_quantity(text, "one number, in m^2");
+  d.area_m2 = quantity->values.front();
+  if (!d.mass.empty()) settle_masses(d);
+  return "";
+}
+
+std::string take_rate(const std::string& text, Draft& d, ColumnCache&) {
+  const auto quantity = parse_quantity(text);
+  if (!quantity || quantity->values.size() != 1 ||
+      (!quantity->unit.empty() && quantity->unit != "Hz"))
+    return why_no_quantity(text, "samples a second, such as 100");
+  d.plan.rate_hz = quantity->values.front();
+  return "";
+}
+
+template <const char* Text>
+std::string fixed(const Draft&) {
+  return Text;
+}
+
+// Questions and defaults that do not depend on what was answered before.
+constexpr char kAskRecord[] =
+    "A record of its accelerometers (CSV and the like), from whose header the channels come? A "
+    "file's\nname, behind it what the file does not say (my.csv --unit g), or none";
+constexpr char kAskLive[] = "Where do live samples come from: lcm, can, or none (from files only)?";
+constexpr char kAskInterface[] = "Which network interface is the CAN bus?";
+constexpr char kAskDbc[] = "Which DBC file describes the bus?";
+constexpr char kAskName[] = "What is the building called?";
+constexpr char kAskDirections[] =
+    "Which horizontal directions do the accelerometers measure: x, y or both?";
+constexpr char kAskSpanX[] = "Spans along x, m (one for all, or each)?";
+constexpr char kAskSpanY[] = "Spans along y, m (one for all, or each)?";
+constexpr char kAskHeights[] =
+    "Story heights, m, from the bottom (one for all, or each: 4.2, 3.5, 3.5)?";
+constexpr char kAskFloors[] =
+    "Floors: flexible in their plane (found out too), or rigid as a slab without large openings?";
+constexpr char kAskMass[] =
+    "Mass of each floor with what it carries: 18000 (kg), 18 t, one for all or each; or 500 kg/m2?";
+constexpr char kAskArea[] = "Area of a floor, m^2?";
+constexpr char kAskRate[] = "Samples a second of every accelerometer?";
+constexpr char kNone[] = "none", kCan0[] = "can0", kBuilding[] = "building", k100[] = "100",
+               kGround[] = "ground";
+
+std::string initial_bays(const Draft& d) {
+  return d.has_x && d.has_y && !d.station ? "" : "0x0";
+}
+std::string initial_floors(const Draft& d) {
+  return d.station ? "rigid" : "flexible";
+}
+std::string initial_live(const Draft& d) {
+  return d.plan.record.empty() ? "" : "none";
+}
+std::string lengths_x(const Draft& d) {
+  return list_text(d.plan.structure.span_x) + " m";
+}
+std::string lengths_y(const Draft& d) {
+  return list_text(d.plan.structure.span_y) + " m";
+}
+
+const InitQuestion kQuestions[] = {
+    {"record", "record", fixed<kAskRecord>, always, fixed<kNone>, take_record, understood_record},
+    {"live", "live samples", fixed<kAskLive>, always, initial_live, take_live,
+     [](const Draft& d) { return d.live; }},
+    {"interface", "CAN bus", fixed<kAskInterface>, [](const Draft& d) { return d.live == "can"; },
+     fixed<kCan0>, take_interface, [](const Draft& d) { return d.plan.can_interface; }},
+    {"dbc", "DBC file", fixed<kAskDbc>, [](const Draft& d) { return d.live == "can"; }, must,
+     take_dbc,
+     [](const Draft& d) {
+       return fmt::format("{}, {} signals of acceleration", d.plan.dbc, d.columns.size());
+     }},
+    {"building", "name", fixed<kAskName>, always, fixed<kBuilding>, take_name,
+     [](const Draft& d) { return d.plan.structure.name; }},
+    {"base", "base", ask_base, asks_base, fixed<kGround>, take_base, understood_base},
+    {"stories", "stories", ask_stories, always, must, take_stories,
+     [](const Draft& d) { return fmt::format("{}", d.plan.structure.stories); }},
+    {"directions", "directions", fixed<kAskDirections>, always, initial_directions, take_directions,
+     [](const Draft& d) {
+       return std::string(!d.has_y ? "x" : !d.has_x ? "y" : "x and y");
+     }},
+    {"bays", "bays", ask_bays, always, initial_bays, take_bays, understood_bays},
+    {"span-x", "spans along x", fixed<kAskSpanX>,
+     [](const Draft& d) { return d.plan.structure.m() > 1; }, must, take_span_x, lengths_x},
+    {"span-y", "spans along y", fixed<kAskSpanY>,
+     [](const Draft& d) { return d.plan.structure.n() > 1; }, must, take_span_y, lengths_y},
+    {"plan", "lengths of the plan", ask_plan, asks_plan, must, take_plan, understood_plan},
+    {"heights", "story heights", fixed<kAskHeights>, always, must, take_heights,
+     understood_heights},
+    {"floors", "floors", fixed<kAskFloors>,
+     [](const Draft& d) {
+       return d.station || d.plan.structure.n() > 1 || d.plan.structure.m() > 1;
+     },
+     initial_floors, take_floors,
+     [](const Draft& d) {
+       return std::string(d.plan.structure.floor == estimator::FloorModel::rigid ? "rigid"
+                                                                                 : "flexible");
+     }},
+    {"mass", "mass", fixed<kAskMass>, always, must, take_mass,
+     [](const Draft& d) { return d.plan.mass_from.empty() ? "a density" : d.plan.mass_from; }},
+    {"area", "floor area", fixed<kAskArea>,
+     [](const Draft& d) { return d.mass_unit == "kg/m2" && floor_area_m2(d.plan.structure) <= 0; },
+     must, take_area, [](const Draft& d) { return fmt::format("{:g} m^2", *d.area_m2); }},
+    {"start", "starting stiffness", ask_start, always, initial_start, take_start,
+     [](const Draft& d) { return d.plan.stiffness_from; }},
+    {"rate", "samples a second", fixed<kAskRate>,
+     [](const Draft& d) { return d.plan.record.empty(); }, fixed<k100>, take_rate,
+     [](const Draft& d) { return fmt::format("{:g}", d.plan.rate_hz); }},
+};
+
+}  // namespace
+
+std::span<const InitQuestion> init_questions() {
+  return kQuestions;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,90 @@
+#include "daemon/tools/lab/reproduce_command.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include "daemon/base/exit_code.h"
+#include "daemon/base/progress.h"
+#include "daemon/tools/lab/reproduction.h"
+#include "daemon/tools/lab/reproduction_report.h"
+#include "drivers/files/text_output.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kBroken = 1;
+
+std::string data_folder() {
+  const char* set = std::getenv("FRAMEWATCH_DATA");
+  return set != nullptr ? set : "";
+}
+
+/// What is missing of the data, for the person; empty when nothing is.
+void tell_what_is_missing(const Reproduction& all) {
+  if (all.motions_missing)
+    fmt::print(stderr,
+               "reproduce: the paper's ground motions are not in FRAMEWATCH_DATA{}; seeded "
+               "Kanai-Tajimi motions stand in\n",
+               data_folder().empty() ? " (not set)" : " (" + data_folder() + ")");
+  if (all.measured_table_missing)
+    fmt::print(stderr, "reproduce: the measured shaking table is not there; the virtual one is\n");
+}
+
+bool write(const std::string& path, const std::string& text) {
+  drivers::TextOutput file;
+  if (file.open(path) && file.write(text) && file.close()) return true;
+  refuse("reproduce", path + ": " + file.error());
+  return false;
+}
+
+Reproduction measured(const ReproduceArguments& a) {
+  ProgressLine progress("reproduce", a.quiet);
+  std::string part;
+  const Workers workers(
+      a.threads > 0 ? a.threads : static_cast<int>(std::thread::hardware_concurrency()),
+      [&](const std::string& what, int done, int count) {
+        if (what != part) progress.part_begins();
+        part = what;
+        progress(fmt::format("{}: run {} of {}", what, done, count),
+                 static_cast<double>(done) / count);
+      });
+  return reproduce_paper(a.only, a.seeds, data_folder(), workers);
+}
+
+}  // namespace
+
+int reproduce(const ReproduceArguments& a) {
+  const auto& cases = reproduction_cases();
+  if (!a.only.empty() && std::find(cases.begin(), cases.end(), a.only) == cases.end())
+    return refuse("reproduce", fmt::format("--case {}: there is no such case, only {}", a.only,
+                                           fmt::join(cases, ", ")));
+  std::error_code error;
+  std::filesystem::create_directories(a.out, error);
+  if (error) return refuse("reproduce", fmt::format("{}: {}", a.out, error.message()));
+  const Reproduction all = measured(a);
+  if (!a.quiet) tell_what_is_missing(all);
+  if (!write(a.out + "/report.html", reproduction_html(all, a.only))) return kBadInput;
+  const bool tables = a.only.empty() || !all.few_sensors.empty();
+  if (tables && !write(a.out + "/accuracy.md", accuracy_markdown(all))) return kBadInput;
+
+  const std::vector<Promise> list = promises(all);
+  const auto broken =
+      std::count_if(list.begin(), list.end(), [](const Promise& p) { return !p.kept; });
+  for (const Promise& promise : list)
+    if (!promise.kept) fmt::print("not kept: {}: {}\n", promise.what, promise.measured);
+  if (!a.quiet)
+    fmt::print(
+        "{}/report.html{}; {}\n", a.out, tables ? fmt::format(", {}/accuracy.md", a.out) : "",
+        list.empty() ? fmt::format("fewer than {} seeds: nothing judged", kSeedsToJudge)
+                     : fmt::format("{} of {} promises kept",
+                                   static_cast<std::ptrdiff_t>(list.size()) - broken, list.size()));
+  return broken > 0 ? kBroken : 0;
+}
+
+}  // namespace framewatch::daemon

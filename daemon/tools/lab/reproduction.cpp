@@ -1,0 +1,123 @@
+#include "daemon/tools/lab/reproduction.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "daemon/tools/lab/paper_buildings.h"
+#include "daemon/tools/lab/paper_motions.h"
+#include "estimator/identify/solve/batch_least_squares.h"
+#include "estimator/simulate/exact_motion.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr double kReproductionHop_s = 0.25;
+constexpr int kExcitationSeeds = 8;
+constexpr int kExactMotions = 4;
+constexpr double kSilence_h = 1;
+constexpr const char* kStandIn =
+    "a seeded Kanai-Tajimi motion (the paper's record is not in FRAMEWATCH_DATA)";
+
+estimator::GroundMotion stand_in() {
+  estimator::KanaiTajimi motion;
+  motion.duration_s = 15;
+  motion.seed = 1;
+  return kanai_tajimi(motion);
+}
+
+std::string title_of(const std::string& group) {
+  if (group == "table1") return "Table 1: five stories, one bay each way";
+  const std::string floors = group == "table2b"   ? "flexible"
+                             : group == "table2c" ? "basic"
+                                                  : "stiff";
+  return "Table 2(" + group.substr(6) + "): two stories, three bays each way, " + floors +
+         " floors";
+}
+
+BuildingReproduction building(const AccuracyCase& c, const estimator::GroundMotion& ground) {
+  const estimator::ParameterTable table(c.structure);
+  BuildingReproduction out{c.group, title_of(c.group), table, c.truth, {}, {}, {}, {}};
+  const estimator::PlanMotion motion = directed(ground, std::numbers::pi / 4);
+  const auto rows = static_cast<Eigen::Index>(kPaper_s * kTrialRate_hz);
+  out.paper = batch_least_squares(
+      c.structure, table, exact_motion(c.structure, table, c.truth, motion, kTrialRate_hz, rows));
+  const ExactRecord record = exact_record(c.structure, c.truth, motion, 0, kPaper_s);
+  estimator::PipelineConfig config{
+      c.structure, record.axes, {}, perturbed_design(table, c.truth, 0.1, 0.3, 1)};
+  config.options.rate_hz = kTrialRate_hz;
+  config.options.hop_s = kReproductionHop_s;
+  const auto windows = run_windows(config, record.accel_abs, 0, kReproductionHop_s);
+  if (!windows.empty())
+    out.matched = Eigen::Map<const Eigen::VectorXd>(windows.back().solution.data(), table.size());
+  return out;
+}
+
+Robustness robustness(int seeds, const Workers& workers) {
+  Robustness out;
+  for (const bool configured : {true, false}) {
+    const std::string suffix = configured ? "" : ", noise not configured";
+    out.sweeps.push_back(study_excitation("Table 1" + suffix, table1(), table1_theta(), configured,
+                                          kExcitationSeeds, workers));
+    out.sweeps.push_back(study_excitation("Table 2c" + suffix, table2(), table2_theta('c'),
+                                          configured, kExcitationSeeds, workers));
+    out.silences.push_back({"Table 1", kSilence_h, configured});
+    out.silences.push_back({"Table 2c", kSilence_h, configured});
+  }
+  workers.run("an hour of noise", static_cast<int>(out.silences.size()), [&](int i) {
+    const bool first = i % 2 == 0;
+    listen_to_noise(first ? table1() : table2(), first ? table1_theta() : table2_theta('c'),
+                    out.silences[static_cast<std::size_t>(i)]);
+  });
+  out.change_by_bias = change_by_bias(table1(), table1_theta(), 1);
+  out.random_buildings = study_random_buildings(seeds, workers);
+  return out;
+}
+
+}  // namespace
+
+const std::vector<std::string>& reproduction_cases() {
+  static const std::vector<std::string> cases = {"table1", "table2b", "table2c",    "table2d",
+                                                 "noise",  "denoise", "table-test", "few-sensors"};
+  return cases;
+}
+
+Reproduction reproduce_paper(const std::string& only, int seeds, const std::string& data,
+                             const Workers& workers) {
+  const auto wanted = [&](const std::string& name) { return only.empty() || only == name; };
+  const auto hachinohe = hachinohe_ns(data), el_centro = el_centro_ns(data);
+  Reproduction out;
+  out.seeds = seeds;
+  out.hachinohe = hachinohe ? "Hachinohe 1968 NS" : kStandIn;
+  out.el_centro = el_centro ? "El Centro 1940 NS" : kStandIn;
+  out.motions_missing = !hachinohe || !el_centro;
+  const estimator::GroundMotion first = hachinohe ? *hachinohe : stand_in();
+  const estimator::GroundMotion second = el_centro ? *el_centro : stand_in();
+  for (const AccuracyCase& c : accuracy_cases()) {
+    if (!wanted(c.group)) continue;
+    if (out.buildings.empty() || out.buildings.back().group != c.group) {
+      out.buildings.push_back(building(c, first));
+      out.buildings.back().exact = study_exact_motion(c, kExactMotions, workers);
+    }
+    out.buildings.back().rows.push_back(study_accuracy(c, seeds, workers));
+  }
+  if (wanted("noise") || wanted("denoise")) {
+    const NoiseSweep sweep = sweep_noise(second, seeds, workers);
+    if (wanted("noise")) out.noise = sweep;
+    if (wanted("denoise")) out.denoise = sweep;
+  }
+  if (wanted("noise")) out.robustness = robustness(seeds, workers);
+  if (wanted("few-sensors")) {
+    out.few_sensors = study_few_sensors(seeds, workers);
+    out.wrong_models = study_wrong_models(seeds, workers);
+  }
+  if (wanted("table-test")) {
+    out.tables.push_back(virtual_table_test(data, workers));
+    auto measured = measured_table_test(data, workers);
+    out.measured_table_missing = !measured;
+    if (measured) out.tables.push_back(std::move(*measured));
+  }
+  return out;
+}
+
+}  // namespace framewatch::daemon

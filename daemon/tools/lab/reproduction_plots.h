@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/tools/lab/reproduction.h"
+
+namespace framewatch::daemon {
+
+/// Given and identified parameters without noise, one plot a kind: Figures 3 and 5.
+std::vector<std::string> given_and_identified(const BuildingReproduction& building);
+
+/// Median errors of k, G and c of some rows by every method, and the least possible.
+std::vector<std::string> median_errors(const std::vector<const AccuracyRow*>& rows);
+
+/// Identified over given against noise level, one line a parameter, one plot a group of them.
+/// damping: also that of frames and floors (Figure 6; Figure 7 has stiffness only).
+std::vector<std::string> noise_influence(const NoiseSweep& sweep,
+                                         const std::vector<Eigen::VectorXd>& ratio,
+                                         const std::string& method, int color, bool damping);
+
+/// Share of parameters published, and published wrong, against noise level.
+std::string excitation_plot(const ExcitationSweep& sweep);
+
+/// Boxplots of the stiffnesses of one stage by every method, frames and floors: Figure 10.
+std::vector<std::string> stage_boxes(const TableTest& test, const TableStage& stage);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/monitor/estimates/estimate_output.h"
+#include "daemon/monitor/estimates/summary_intake.h"
+#include "daemon/monitor/history/summary_store.h"
+#include "drivers/files/partial_file.h"
+
+namespace framewatch::daemon {
+
+/// The messages of an estimation as the tables of a history (docs/history.md), a file that is whole
+/// or not there. The same messages give the same bytes.
+class HistoryOutput : public EstimateOutput {
+ public:
+  /// Periods are those of `config.history`, or the default ones. `config` must outlive this.
+  explicit HistoryOutput(const Config& config);
+
+  [[nodiscard]] bool open(const std::string& path);
+  /// Only what lies in this sensor time is stored, by the start of a period and the time of an
+  /// event. To be called before the first put(); both a multiple of the longest period.
+  void keep(std::int64_t from_us, std::int64_t to_us);
+  [[nodiscard]] bool put(std::int64_t time_us, const std::string& channel,
+                         const std::vector<std::uint8_t>& bytes) override;
+  [[nodiscard]] bool close() override;
+  std::string error() const override { return error_; }
+
+  std::int64_t longest_s() const { return settings_.summary_s.back(); }
+
+ private:
+  bool store();
+  bool fail(const std::string& why);
+
+  HistorySettings settings_;
+  SummaryIntake intake_;
+  SummaryStore store_;
+  drivers::PartialFile file_;
+  std::int64_t from_us_ = std::numeric_limits<std::int64_t>::min();
+  std::int64_t to_us_ = std::numeric_limits<std::int64_t>::max();
+  std::string error_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,312 @@
+#include "daemon/tools/replay/replay_command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <framewatch/event_t.hpp>
+
+#include <fmt/core.h>
+
+#include "daemon/base/exit_code.h"
+#include "daemon/base/log.h"
+#include "daemon/base/printable.h"
+#include "daemon/base/progress.h"
+#include "daemon/config/baseline_file.h"
+#include "daemon/config/sections/config_problems.h"
+#include "daemon/monitor/estimates/estimate_output.h"
+#include "daemon/monitor/estimation/state_file.h"
+#include "daemon/monitor/event_report/event_report_files.h"
+#include "daemon/tools/replay/expectation_check.h"
+#include "daemon/tools/replay/first_passes.h"
+#include "daemon/tools/replay/floors_output.h"
+#include "daemon/tools/replay/history_output.h"
+#include "daemon/tools/replay/replay_arguments.h"
+#include "daemon/tools/replay/replay_pace.h"
+#include "daemon/tools/replay/replay_summary.h"
+#include "drivers/files/standard_streams.h"
+#include "drivers/files/text_output.h"
+#include "drivers/lcm/message_check.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr int kNotAsExpected = 1;
+using Clock = std::chrono::steady_clock;
+
+/// Says all that is wrong. False when replay must not go on.
+bool judge(const ReplaySurvey& survey) {
+  for (const std::string& note : survey.notes()) fmt::print(stderr, "{}\n", printable_lines(note));
+  for (const std::string& problem : survey.problems())
+    fmt::print(stderr, "{}\n", printable_lines(problem));
+  if (survey.salvageable())
+    fmt::print(stderr, "framewatch replay: --salvage uses what is intact\n");
+  return survey.problems().empty();
+}
+
+std::int64_t bytes_of(const std::vector<std::string>& paths) {
+  std::int64_t sum = 0;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    if (!error) sum += static_cast<std::int64_t>(size);
+  }
+  return sum;
+}
+
+/// One replay, from the first byte to the summary.
+class ReplayRun {
+ public:
+  ReplayRun(const ReplayArguments& a, const Config& config,
+            std::optional<Expectations> expectations)
+      : a_(a),
+        config_(config),
+        expectations_(std::move(expectations)),
+        event_channel_(config.lcm.prefix + "EVENT"),
+        survey_(config, a.salvage, a.span),
+        learner_(
+            watched_parameters(config.pipeline.parameters(),
+                               config.watch ? config.watch->options : estimator::WatchOptions{}),
+            std::numeric_limits<double>::infinity()),
+        series_(config.pipeline.parameters(), expectations_.has_value(),
+                config.pipeline.options.min_snr),
+        estimation_(config, sink(), [this](const estimator::WindowEstimate& e) {
+          series_.add(e);
+          learner_.push(e);
+          if (floors_) floors_->follow(e);
+        }) {
+    survey_.declare(a.record);
+    Estimation::Taps taps;
+    if (!a.event_reports.empty())
+      taps.shaken = [this](const EventReport& report) {
+        const std::string problem = write_event_report(report, config_, a_.event_reports);
+        if (failed_.empty()) failed_ = problem;
+      };
+    if (!a.floors.empty())
+      taps.instant = [this](const estimator::SampleSet& instant) {
+        if (failed_.empty() && floors_ && !floors_->put(instant)) failed_ = floors_->error();
+      };
+    estimation_.tap(std::move(taps));
+  }
+
+  int run() {
+    if (!a_.load_state.empty()) {
+      bool touched = false;
+      const LoadedState state = load_state(a_.load_state, config_, estimation_, touched);
+      if (!state.problem.empty()) return refuse("replay", a_.load_state + ": " + state.problem);
+      events_before_ = state.events_before;
+      survey_.goes_on();
+    }
+    tune_first();
+    if (!open_outputs()) return kBadInput;
+    // At a pace the person should not learn after an hour that the end of the log is damaged.
+    if (a_.speed > 0 && !sound_beforehand()) return kBadInput;
+    read_everything();
+    if (a_.speed > 0 ? !survey_.problems().empty() : !judge(survey_)) return kBadInput;
+    const std::int64_t events = outputs_.empty() ? events_before_ : outputs_.front()->events();
+    for (const auto& output : outputs_)
+      if (failed_.empty() && !output->close()) fail(*output);
+    if (failed_.empty() && floors_ && !floors_->close()) failed_ = floors_->error();
+    if (!failed_.empty()) return refuse("replay", failed_);
+    if (!a_.save_state.empty()) {
+      const std::string problem =
+          write_state(a_.save_state, saved_state(config_, estimation_, events));
+      if (!problem.empty()) return refuse("replay", a_.save_state + ": " + problem);
+    }
+    return conclude();
+  }
+
+ private:
+  /// Messages are made for somebody only.
+  MessageSink sink() {
+    const bool wanted = !a_.out.empty() || a_.lcm || config_.watch ||
+                        (expectations_.has_value() && !expectations_->events.empty());
+    if (!wanted) return {};
+    return [this](std::int64_t time_us, const std::string& channel,
+                  const std::vector<std::uint8_t>& bytes) { put(time_us, channel, bytes); };
+  }
+
+  bool open_outputs() {
+    std::string error;
+    if (!a_.floors.empty()) {
+      floors_.emplace(config_.pipeline);
+      if (!floors_->open(a_.floors)) {
+        refuse("replay", floors_->error());
+        return false;
+      }
+    }
+    const auto add = [&](std::unique_ptr<EstimateOutput> output, const std::string& name) {
+      if (output)
+        outputs_.push_back(std::move(output));
+      else
+        refuse("replay", name.empty() ? error : fmt::format("{}: {}", name, error));
+      return error.empty();
+    };
+    const auto file = [&]() -> std::unique_ptr<EstimateOutput> {
+      if (!is_history(a_.out))
+        return estimate_output(config_,
+                               {a_.out, a_.boxplot, !a_.load_state.empty(), events_before_}, error);
+      auto history = std::make_unique<HistoryOutput>(config_);
+      if (!history->open(a_.out)) error = history->error();
+      return error.empty() ? std::move(history) : nullptr;
+    };
+    return (a_.out.empty() || add(file(), a_.out)) &&
+           (!a_.lcm || add(lcm_estimate_output(config_, a_.lcm_url, error), ""));
+  }
+
+  bool sound_beforehand() const {
+    ReplaySurvey survey(config_, a_.salvage, a_.span);
+    survey.declare(a_.record);
+    for (const std::string& path : a_.inputs) survey.add(path);
+    survey.finish();
+    return judge(survey);
+  }
+
+  /// Where the input is a whole: what goes on elsewhere, or has begun there, is estimated as it
+  /// comes, so that its parts together are the same as the uncut input with --one-pass.
+  void tune_first() {
+    if (a_.one_pass || !a_.load_state.empty() || !a_.save_state.empty() || !can_be_tuned(config_))
+      return;
+    Progress progress("replay: tuning", bytes_of(a_.inputs), "MB", 1e6, a_.quiet);
+    const FirstPasses first(config_, {a_.inputs, a_.record, a_.salvage, a_.span},
+                            [&](std::int64_t bytes) { progress(bytes); });
+    if (first.tuning()) estimation_.start_tuned(*first.tuning());
+    if (!a_.quiet && first.read()) fmt::print(stderr, "{}\n", first.note());
+  }
+
+  void read_everything() {
+    Progress progress("replay", bytes_of(a_.inputs), "MB", 1e6, a_.quiet);
+    Pace pace(a_.speed);
+    survey_.feed(estimation_);
+    survey_.at_each([&](std::int64_t bytes, std::int64_t time_us) {
+      progress(bytes);
+      pace.wait_for(time_us);
+    });
+    for (const std::string& path : a_.inputs) survey_.add(path);
+    survey_.finish();
+    if (a_.save_state.empty()) estimation_.finish();  // else it has not ended
+  }
+
+  void put(std::int64_t time_us, const std::string& channel,
+           const std::vector<std::uint8_t>& bytes) {
+    for (const auto& output : outputs_)
+      if (failed_.empty() && !output->put(time_us, channel, bytes)) fail(*output);
+    if (channel != event_channel_) return;
+    const auto event = drivers::decoded<event_t>(bytes);
+    if (!event || event->state != 1) return;
+    events_.push_back({event->kind, event->place, event->since_us});
+    if (!a_.quiet && !a_.json) alarms_ += fmt::format("alarm: {}\n", event->message);
+  }
+
+  void fail(const EstimateOutput& output) {
+    failed_ = a_.out.empty() ? output.error() : fmt::format("{}: {}", a_.out, output.error());
+  }
+
+  int conclude() {
+    const ReplayCounts counts = replay_counts(estimation_);
+    const ReplayOutcome outcome{series_, counts, events_, survey_.first_us()};
+    std::vector<Check> checks;
+    if (expectations_) checks = check_expectations(*expectations_, outcome);
+    std::string problem;
+    if (!a_.junit.empty())
+      problem = drivers::write_text_file(a_.junit, junit_xml(checks, a_.expect));
+    if (problem.empty() && !a_.write_expect.empty())
+      problem = drivers::write_text_file(a_.write_expect, written_expectations(outcome, command()));
+    if (problem.empty() && !a_.write_baseline.empty()) problem = write_baseline();
+    if (!problem.empty()) return refuse("replay", problem);
+
+    if (counts.front().second == 0 && a_.save_state.empty())
+      log(LogLevel::warning, why_no_window(config_, estimation_, survey_.measured_seconds()));
+    const std::chrono::duration<double> work = Clock::now() - start_;
+    const ReplaySummary summary{series_, counts, survey_, estimation_.can(), work.count()};
+    const bool holds =
+        std::all_of(checks.begin(), checks.end(), [](const Check& c) { return c.holds; });
+    if (a_.json) {
+      std::string json = summary.json();
+      if (expectations_)
+        json += fmt::format(",\n \"expectations\": {},\n \"differences\": {}", checks.size(),
+                            differences_json(checks));
+      fmt::print("{}}}\n", json);
+    } else if (!a_.quiet) {
+      std::FILE* const to = writes_standard_output(a_) ? stderr : stdout;
+      fmt::print(to, "{}", printable_lines(summary.text() + alarms_));
+      if (holds && expectations_)
+        fmt::print(to, "\nas expected: {} of {}\n", checks.size(), a_.expect);
+    }
+    if (holds) return 0;
+    tell_differences(checks);
+    return kNotAsExpected;
+  }
+
+  std::string write_baseline() const {
+    const estimator::Baseline baseline = learner_.so_far();
+    if (baseline.known() == 0)
+      return "--write-baseline: no parameter has a value in half of the windows that the design "
+             "does not pull";
+    return drivers::write_text_file(a_.write_baseline,
+                                    baseline_text(baseline, config_.pipeline.parameters()));
+  }
+
+  void tell_differences(const std::vector<Check>& checks) const {
+    int differences = 0;
+    for (const Check& c : checks) {
+      if (c.holds) continue;
+      ++differences;
+      fmt::print(stderr, "{}\n", printable_lines(c.text()));
+    }
+    fmt::print(stderr, "framewatch replay: {} of {} expectations of {} do not hold\n", differences,
+               checks.size(), a_.expect);
+  }
+
+  std::string command() const {
+    std::string text = "framewatch replay " + a_.config;
+    for (const std::string& input : a_.inputs) text += " " + input;
+    return text;
+  }
+
+  const ReplayArguments& a_;
+  const Config& config_;
+  Clock::time_point start_ = Clock::now();
+  std::optional<Expectations> expectations_;
+  std::string event_channel_;
+  std::int64_t events_before_ = 0;  ///< of parts before this one
+  ReplaySurvey survey_;
+  estimator::BaselineLearner learner_;
+  EstimateSeries series_;
+  std::vector<RaisedEvent> events_;
+  std::string alarms_;
+  std::vector<std::unique_ptr<EstimateOutput>> outputs_;
+  std::string failed_;
+  std::optional<FloorsOutput> floors_;
+  Estimation estimation_;
+};
+
+}  // namespace
+
+int replay(const ReplayArguments& a) {
+  const std::vector<std::string> wrong = argument_problems(a);
+  for (const std::string& problem : wrong) refuse("replay", problem);
+  if (!wrong.empty()) return kBadInput;
+  std::vector<ConfigProblem> problems;
+  std::optional<Config> config = load_config(a.config, problems);
+  print_problems(problems);
+  if (!config) return kBadInput;
+  log_doubts(config->doubts);
+  const bool boxplots_are_read =
+      !a.out.empty() || a.lcm || !a.save_state.empty() || !a.load_state.empty();
+  if (!boxplots_are_read) config->pipeline.options.boxplot_windows = 0;
+  if (!a.event_reports.empty() && !config->event_report)
+    return refuse("replay", "--event-reports: needs [event_report] in " + a.config);
+  std::optional<Expectations> expectations;
+  if (!a.expect.empty()) {
+    problems.clear();
+    expectations = load_expectations(a.expect, config->pipeline.parameters(), problems);
+    print_problems(problems);
+    if (!expectations) return kBadInput;
+  }
+  return ReplayRun(a, *config, std::move(expectations)).run();
+}
+
+}  // namespace framewatch::daemon

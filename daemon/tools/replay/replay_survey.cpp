@@ -1,0 +1,323 @@
+#include "daemon/tools/replay/replay_survey.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "daemon/config/axis_names.h"
+#include "daemon/config/header_differences.h"
+#include "drivers/can/can_log.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/standard_streams.h"
+#include "drivers/lcm/message_types.h"
+
+namespace framewatch::daemon {
+namespace {
+
+constexpr std::size_t kStampsPerNode = 4096;
+constexpr int kDamageLines = 20;
+
+bool looks_like_record(const std::string& path) {
+  if (drivers::is_event_log(path)) return false;
+  const std::string name = std::filesystem::path(path).filename();
+  return path == drivers::kStandardInput || name.find(".csv") != std::string::npos ||
+         name.ends_with(".txt") || name.ends_with(".AT2") || name.ends_with(".at2") ||
+         drivers::is_network_file(path);
+}
+
+}  // namespace
+
+ReplaySurvey::ReplaySurvey(const Config& config, bool salvage, ReplaySpan span)
+    : config_(config),
+      salvage_(salvage),
+      span_(span),
+      spanned_(!span.whole()),
+      place_(span.from_s > 0 ? Place::before : Place::inside),
+      span_zero_us_(span.zero_us.value_or(std::numeric_limits<std::int64_t>::min())),
+      intake_(
+          wanted_axes(config), [](const estimator::AccelSample&) {}, intake_settings(config)),
+      counts_(axis_names(config)) {}
+
+void ReplaySurvey::fault(std::string message) {
+  if (!salvage_) ++faults_;
+  (salvage_ ? notes_ : problems_).push_back(std::move(message));
+}
+
+void ReplaySurvey::declare(const RecordFileArguments& arguments) {
+  std::vector<drivers::Problem> found;
+  record_options_ = record_options(arguments, found);
+  declared_ = arguments.any();
+  misdeclared_ = !found.empty();
+  for (const drivers::Problem& p : found)
+    problems_.push_back(fmt::format("{}: {}", p.where, p.message));
+}
+
+void ReplaySurvey::add(const std::string& path) {
+  if (misdeclared_ || ended_()) return;
+  if (const std::string why = drivers::why_no_file(path); !why.empty()) {
+    problems_.push_back(fmt::format("{}: {}", path, why));
+    return;
+  }
+  std::error_code failure;
+  const auto size = std::filesystem::file_size(path, failure);
+  if (failure) {
+    problems_.push_back(fmt::format("{}: {}", path, failure.message()));
+  } else if (size == 0) {
+    problems_.push_back(fmt::format("{}: is empty", path));
+  } else if (drivers::looks_like_candump(path)) {
+    add_candump(path);
+    bytes_ += static_cast<std::int64_t>(size);
+  } else if (!looks_like_record(path)) {
+    add_log(path);
+    bytes_ += static_cast<std::int64_t>(size);
+  } else {
+    bytes_ += static_cast<std::int64_t>(size);
+    std::vector<drivers::Problem> found;
+    auto record = drivers::read_record(path, record_options_, found);
+    for (const drivers::Problem& p : found)
+      problems_.push_back(fmt::format("{}: {}", p.where, p.message));
+    if (record) add_record({path, true, std::move(*record), {}});
+  }
+}
+
+void ReplaySurvey::add_record(ReplayInput input) {
+  const drivers::Record& record = input.record;
+  for (const std::string& note : record.notes) notes_.push_back(input.path + ": " + note);
+  const auto& axes = config_.pipeline.axes;
+  int found = 0;
+  std::string others;
+  for (const std::string& name : record.names) {
+    const auto at = std::find_if(axes.begin(), axes.end(), [&](const estimator::SensorAxis& axis) {
+      return axis.name == name;
+    });
+    input.axis_of_column.push_back(at == axes.end() ? -1 : static_cast<int>(at - axes.begin()));
+    found += at != axes.end();
+    if (at == axes.end()) others += (others.empty() ? "" : ", ") + name;
+  }
+  if (found == 0)
+    problems_.push_back(fmt::format("{}: no column is named like a channel of {}; it has {}",
+                                    input.path, config_.path, others));
+  else if (!others.empty())
+    notes_.push_back(fmt::format("{}: columns without a channel ignored: {}", input.path, others));
+  for (const std::string& difference : header_differences(config_, record))
+    notes_.push_back(fmt::format("{}: {}", input.path, difference));
+  check_rate(input.path, record.rate_hz);
+  std::vector<std::int64_t> used_us;
+  for (const double time_s : record.time_s)
+    if (const std::int64_t time_us = std::llround(time_s * 1e6); !outside(time_us))
+      used_us.push_back(time_us);
+  const bool in_order = used_us.empty() || extend(input.path, used_us.front(), used_us.back());
+  if (in_order && estimation_ != nullptr) give_record(input);
+  inputs_.push_back(std::move(input));
+}
+
+void ReplaySurvey::give_record(const ReplayInput& input) {
+  const drivers::Record& record = input.record;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const std::int64_t time_us = std::llround(record.time_s[i] * 1e6);
+    if (outside(time_us)) continue;
+    if (ended_()) return;
+    if (step_) step_(bytes_, time_us);
+    for (std::size_t c = 0; c < input.axis_of_column.size(); ++c)
+      if (input.axis_of_column[c] >= 0)
+        estimation_->sample({estimator::from_microseconds(time_us), input.axis_of_column[c],
+                             record.accel_mps2[c][i]});
+  }
+}
+
+/// The first time it is asked about is the zero of the span.
+bool ReplaySurvey::outside(std::int64_t time_us) {
+  if (!spanned_) return false;
+  if (span_zero_us_ == std::numeric_limits<std::int64_t>::min()) span_zero_us_ = time_us;
+  const double time_s = static_cast<double>(time_us - span_zero_us_) * 1e-6;
+  return time_s < span_.from_s || time_s >= span_.to_s;
+}
+
+bool ReplaySurvey::left_out(const drivers::LogEvent& event) {
+  if (!spanned_) return false;
+  const bool ours = intake().binding().carries(event.channel);
+  const auto time_us = ours ? drivers::accel_time_us(event.data.data(), event.data.size())
+                            : std::optional<std::int64_t>();
+  if (time_us) {
+    const bool is_outside = outside(*time_us);
+    const double time_s = static_cast<double>(*time_us - span_zero_us_) * 1e-6;
+    place_ = !is_outside ? Place::inside : time_s < span_.from_s ? Place::before : Place::after;
+  }
+  if (place_ != Place::before) return place_ == Place::after;
+  // Tables before the span say which channels are whose.
+  return goes_on_ || drivers::stream_of_table(event.channel).empty();
+}
+
+void ReplaySurvey::add_log(const std::string& path) {
+  drivers::LcmLogReader reader;
+  if (!reader.open(path)) {
+    problems_.push_back(fmt::format("{}: {}", path, reader.error()));
+    return;
+  }
+  std::error_code ignored;
+  const auto packed_bytes = static_cast<std::int64_t>(std::filesystem::file_size(path, ignored));
+  LogSeen seen;
+  stamps_.clear();
+  int damages = 0;
+  const std::int64_t malformed = intake().counters().malformed;
+  const std::int64_t backwards = intake().backwards();
+  estimation_ != nullptr ? estimation_->log_begins() : intake_.log_begins();
+  counts_.log_begins();
+  const std::int64_t damaged_before = damaged_bytes_;
+  drivers::LogEvent event;
+  for (auto read = reader.next(event); read != drivers::LogRead::end; read = reader.next(event)) {
+    if (read == drivers::LogRead::error) {
+      problems_.push_back(fmt::format("{}: byte {}: {}", path, reader.position(), reader.error()));
+      return;
+    }
+    if (ended_()) return;
+    if (read == drivers::LogRead::event) {
+      if (step_)
+        step_(bytes_ + reader.position() * packed_bytes / reader.size(), event.timestamp_us);
+      look_at(event, seen);
+      continue;
+    }
+    damaged_bytes_ += reader.damage().bytes;
+    if (++damages <= kDamageLines)
+      fault(fmt::format("{}: byte {}: {}, {} bytes skipped: {}", path, reader.damage().offset,
+                        read == drivers::LogRead::truncated ? "truncated" : "damaged",
+                        reader.damage().bytes, reader.damage().reason));
+  }
+  if (damages > kDamageLines)
+    fault(fmt::format("{}: {} damaged places in all, {} bytes", path, damages,
+                      damaged_bytes_ - damaged_before));
+  if (intake().backwards() == backwards) seen.backwards_offset = -1;  // it was another sender's
+  judge_log(path, seen, intake().counters().malformed - malformed);
+  inputs_.push_back({path, false, {}, {}});
+}
+
+void ReplaySurvey::add_candump(const std::string& path) {
+  if (config_.can.empty()) {
+    problems_.push_back(fmt::format(
+        "{}: is a candump log, and no channel of {} has a source on CAN", path, config_.path));
+    return;
+  }
+  drivers::CanIntake unfed(config_.can, [](const estimator::AccelSample&) {});
+  const drivers::CanIntake& intake = estimation_ != nullptr ? estimation_->can() : unfed;
+  const auto taken = [&] {
+    std::int64_t frames = 0;
+    for (std::size_t n = 0; n < config_.can.nodes.size(); ++n) frames += intake.node(n).frames;
+    return frames;
+  };
+  const std::int64_t before = taken();
+  std::map<std::string, std::int64_t, std::less<>> others;
+  std::vector<drivers::Problem> found;
+  std::int64_t first_us = INT64_MAX, last_us = INT64_MIN, line_bytes = 0;
+  drivers::read_candump(
+      path,
+      [&](const drivers::CanFrame& frame, std::string_view interface) {
+        line_bytes += drivers::kCandumpLineBytes + 2 * frame.length;
+        const int bus = intake.bus_of(interface);
+        if (bus < 0) {
+          const auto at = others.find(interface);
+          ++(at == others.end() ? others[std::string(interface)] : at->second);
+          return;
+        }
+        if (outside(frame.stamp_us) || ended_()) return;
+        first_us = std::min(first_us, frame.stamp_us);
+        last_us = std::max(last_us, frame.stamp_us);
+        if (step_) step_(bytes_ + line_bytes, frame.stamp_us);
+        if (estimation_ != nullptr)
+          estimation_->frame(bus, frame);
+        else
+          unfed.frame(bus, frame);
+      },
+      found);
+  for (const drivers::Problem& p : found) fault(fmt::format("{}: {}", p.where, p.message));
+  for (const auto& [interface, count] : others)
+    notes_.push_back(fmt::format("{}: {} frames of {}, which {} does not have, ignored", path,
+                                 count, interface, config_.path));
+  if (taken() == before && !spanned_)
+    problems_.push_back(fmt::format("{}: no frame for the channels of {}", path, config_.path));
+  if (first_us <= last_us) extend(path, first_us, last_us);
+  inputs_.push_back({path, false, {}, {}});
+}
+
+void ReplaySurvey::look_at(const drivers::LogEvent& event, LogSeen& seen) {
+  ++seen.events;
+  if (seen.newest == nullptr || seen.newest->first != event.channel)
+    seen.newest = &*seen.channels.try_emplace(event.channel, 0).first;
+  ++seen.newest->second;
+  if (is_of_raw_log(event.channel)) {
+    look_at_counts(event, seen);
+    return;
+  }
+  if (left_out(event)) {
+    seen.left_out = true;
+    return;
+  }
+  const std::int64_t backwards = intake().backwards();
+  const drivers::IntakeCounters before = intake().counters();
+  const auto give = [&](auto& to) {
+    return to.message(event.channel, event.data.data(), event.data.size(), {}, event.timestamp_us);
+  };
+  const auto result = estimation_ != nullptr ? give(*estimation_) : give(intake_);
+  if (result == drivers::IntakeResult::malformed && seen.first_malformed_offset < 0) {
+    seen.first_malformed_offset = event.offset;
+    const char* type = drivers::type_of_lcm_channel(event.channel);
+    seen.malformed =
+        event.channel + ": " + drivers::why_not(type == nullptr ? "accel_t" : type, event.data);
+  }
+  const drivers::IntakeCounters& now = intake().counters();
+  if (now.elsewhere > before.elsewhere && seen.elsewhere_offset < 0)
+    seen.elsewhere_offset = event.offset;
+  if (now.renamed > before.renamed && seen.renamed_offset < 0) seen.renamed_offset = event.offset;
+  if (result != drivers::IntakeResult::samples) return;
+  const drivers::SensorNodeSample& sample = intake().last_sample();
+  const std::int64_t time_us = to_microseconds(sample.time);
+  if (intake().backwards() > backwards && seen.backwards_offset < 0)
+    seen.backwards_offset = event.offset;
+  for (const double value : sample.accel_abs_mps2)
+    if (std::isinf(value) && seen.infinite_offset < 0) seen.infinite_offset = event.offset;
+  log_first_us_ = seen.samples == 0 ? time_us : std::min(log_first_us_, time_us);
+  log_last_us_ = seen.samples == 0 ? time_us : std::max(log_last_us_, time_us);
+  ++seen.samples;
+  if (intake().last_node() >= stamps_.size()) stamps_.resize(intake().last_node() + 1);
+  NodeStamps& node = stamps_[intake().last_node()];
+  if (node.stamps.empty()) node.place = {event.channel, sample.node};
+  if (node.stamps.size() < kStampsPerNode) node.stamps.push_back({sample.sequence, time_us});
+}
+
+// Where one log is cut and the next one begins the nodes need not have come equally far.
+bool ReplaySurvey::extend(const std::string& path, std::int64_t first_us, std::int64_t last_us) {
+  const auto allowed_us = static_cast<std::int64_t>(config_.pipeline.options.lateness_s * 1e6);
+  const bool in_order = !any_ || first_us > last_us_ - allowed_us;
+  if (!in_order)
+    problems_.push_back(
+        fmt::format("{}: its time, {:.6f} s to {:.6f} s, is not after {}, which ends at {:.6f} s: "
+                    "give the files "
+                    "in order of time, without overlap",
+                    path, static_cast<double>(first_us) * 1e-6, static_cast<double>(last_us) * 1e-6,
+                    last_path_, static_cast<double>(last_us_) * 1e-6));
+  first_us_ = any_ ? std::min(first_us_, first_us) : first_us;
+  last_us_ = any_ ? std::max(last_us_, last_us) : last_us;
+  any_ = true;
+  last_path_ = path;
+  return in_order;
+}
+
+void ReplaySurvey::finish() {
+  if (problems_.empty() && spanned_ && !any_)
+    problems_.push_back("--from, --to: no sample of the input lies there");
+  const bool only_logs = std::none_of(inputs_.begin(), inputs_.end(),
+                                      [](const ReplayInput& input) { return input.is_record; });
+  if (!only_logs || !problems_.empty()) return;
+  if (declared_)
+    problems_.push_back("--unit, --step and the like are for record files: a log says them itself");
+  std::string names;
+  for (const std::string& name : any_raw_ ? counts_.missing() : intake().binding().unbound())
+    names += (names.empty() ? "" : ", ") + name;
+  if (!names.empty())
+    notes_.push_back(
+        fmt::format("channels of {} that no message carries: {}", config_.path, names));
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "daemon/config/config.h"
+#include "daemon/monitor/estimates/session_estimates.h"
+#include "daemon/tools/report/frame_loops.h"
+#include "daemon/tools/report/session_changes.h"
+#include "daemon/tools/report/session_drifts.h"
+#include "daemon/tools/report/session_file.h"
+#include "daemon/tools/report/session_floors.h"
+#include "daemon/tools/report/session_motion.h"
+#include "daemon/tools/report/transfer_function.h"
+
+namespace framewatch::daemon {
+
+/// A stage of the session that the report compares with another: forced beside free vibration, each
+/// of them before and after a change of the building, never across one.
+struct ReportStage {
+  StageKind kind;
+  std::string name;  ///< "forced vibration, after the change"; "all of it" without raw samples
+  std::int64_t from_us, to_us;  ///< sensor time
+  bool after = false;           ///< a change
+  WindowRange whole;            ///< every window that lies wholly in the stage
+  WindowRange boxes;  ///< the boxplot_windows of them next to the stage's end (free: beginning)
+};
+
+/// Drift and force in the strongest motion of a stage.
+struct StageLoops {
+  std::size_t stage;  ///< of SessionReport::compared
+  FrameLoops loops;
+};
+
+struct ReportFile {
+  std::string use, path, sha256;
+};
+
+/// Everything a session's report shows. The same input makes the same bytes.
+struct SessionReport {
+  std::string title, test, operator_name, notes;  ///< as the person said; may be empty
+  SessionEstimates estimates;
+  std::optional<SessionFile> session;  ///< of `framewatch record`
+  std::optional<Config> config;
+  std::optional<SessionMotion> motion;
+  std::vector<Stage> stages;                       ///< empty without motion
+  std::vector<ElementChange> changes, recoveries;  ///< a recovery is no change
+  std::vector<JudgedElement> judged;  ///< stiffnesses in which a change would have been found
+  std::vector<ReportStage> compared;  ///< at least one
+  /// Table order, SI, NaN: none. reference_static: the design of the configuration, or what the
+  /// estimator began with; reference_dynamic: of frames, by the ratio of natural frequencies.
+  std::vector<double> reference_static, reference_dynamic;
+  bool reference_from_drawings = false;
+  std::vector<TransferFunction> transfer;        ///< of the longest forced stage before a change
+  std::vector<TransferFunction> transfer_after;  ///< and after it; empty without one
+  std::vector<StageLoops> loops;
+  std::optional<DriftReport> drifts;    ///< with motion
+  std::optional<SessionFloors> floors;  ///< of a building of groups, with motion
+  std::vector<ReportFile> files;
+};
+
+/// Computes every field that follows from estimates, config and motion.
+void evaluate(SessionReport& report);
+
+/// The whole page.
+std::string session_report_html(const SessionReport& report);
+
+/// What a building's owner wants to know, in one sentence, as text.
+std::string verdict_sentence(const SessionReport& report);
+
+/// Whether what was recorded asks for bending of the frames, which the configuration leaves out, in
+/// buildings so tall that they bend; empty where there is nothing to say.
+std::string bending_sentence(const SessionReport& report);
+
+// The sections below are HTML, empty when there is nothing to show.
+std::string verdict_section(const SessionReport& report);
+std::string events_section(const SessionReport& report);
+std::string figure_10_section(const SessionReport& report);
+std::string parameter_section(const SessionReport& report);
+std::string stages_section(const SessionReport& report);
+std::string histories_section(const SessionReport& report);
+std::string transfer_section(const SessionReport& report);
+std::string loops_section(const SessionReport& report);
+std::string drifts_section(const SessionReport& report);
+std::string floors_section(const SessionReport& report);
+std::string health_section(const SessionReport& report);
+std::string check_section(const SessionReport& report);
+
+/// Seconds since the session's first window or sample.
+double session_seconds(const SessionReport& report, std::int64_t time_us);
+/// Of a frame, of a panel, or against bending; `kind` of a parameter_table_t.
+bool is_stiffness_kind(int kind);
+/// Factor and unit in which a kind of parameter is printed: 1e-3, "kN/m".
+std::pair<double, std::string> paper_unit(int kind);
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,350 @@
+#include "daemon/tools/session/record_command.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <deque>
+#include <filesystem>
+#include <optional>
+
+#include <framewatch/session_status_t.hpp>
+
+#include <fmt/core.h>
+
+#include "daemon/base/child_process.h"
+#include "daemon/base/clocks.h"
+#include "daemon/base/exit_code.h"
+#include "daemon/base/log.h"
+#include "daemon/base/stop_signal.h"
+#include "daemon/config/sections/config_problems.h"
+#include "daemon/monitor/live/heard_channels.h"
+#include "daemon/tools/session/recorder.h"
+#include "daemon/tools/session/session_command.h"
+#include "daemon/tools/session/session_desk.h"
+#include "daemon/tools/session/session_finish.h"
+#include "drivers/can/can_source.h"
+#include "drivers/files/descriptor.h"
+#include "drivers/files/encoded.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/partial_file.h"
+#include "drivers/lcm/lcm_source.h"
+
+namespace framewatch::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kPoll_ms = 50;
+constexpr std::int64_t kStatus_us = 1'000'000, kNoSamples_us = 10'000'000;
+
+/// A listener: it starts no node and sends no SYNC, which is the estimator's business.
+drivers::CanMap listening(drivers::CanMap map) {
+  for (drivers::CanBusMap& bus : map.buses) bus.send_sync = bus.nmt_start = false;
+  return map;
+}
+
+/// One recorder per folder: no two write into it.
+class FolderLock {
+ public:
+  /// Empty, or why not.
+  std::string lock(const std::string& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    file_.reset(drivers::open_own_file(folder + "/.recorder", O_RDWR | O_CREAT));
+    if (file_.get() < 0)
+      return fmt::format("{}: sessions cannot be stored there: {}", folder, std::strerror(errno));
+    if (::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) return "";
+    return fmt::format("{}: another framewatch record works there; tell it with --send", folder);
+  }
+
+ private:
+  drivers::Descriptor file_;
+};
+
+class RecordCommand {
+ public:
+  RecordCommand(const RecordArguments& a, const Config& config, drivers::LcmProvider& lcm)
+      : a_(a),
+        config_(config),
+        lcm_(lcm),
+        recorder_(config, a.out, [this](const std::string& folder) { ended(folder); }),
+        desk_(config, recorder_),
+        source_(lcm, channels(), config.lcm.queue_capacity,
+                [this](const drivers::LcmMessage& m) { message(m); }),
+        can_map_(listening(config.can)),
+        can_(can_map_, true,
+             [this](int bus, const drivers::CanFrame& frame) { recorder_.frame(bus, frame); }) {}
+
+  int run() {
+    for (const std::string& note : can_.open()) log(LogLevel::warning, note);
+    step_ = a_.standby ? Step::standby : a_.check ? Step::check : Step::begin;
+    while (step_ != Step::done) {
+      poll();
+      desk_.look();
+      const std::int64_t now_us = host_clock_us();
+      recorder_.tick(now_us);
+      advance(now_us);
+      look_at_child();
+      publish(now_us);
+    }
+    return exit_code_;
+  }
+
+ private:
+  /// Of a command without --standby: check, tap test, session, finishing; standby: until stopped.
+  enum class Step { check, tap, begin, session, finishing, standby, done };
+
+  std::vector<std::string> channels() const {
+    std::vector<std::string> out = recorder_.channels();
+    out.push_back(desk_.channel());
+    return out;
+  }
+
+  void message(const drivers::LcmMessage& m) {
+    if (m.channel == desk_.channel()) return desk_.heard(m.data, m.size, host_clock_us());
+    recorder_.message(m.channel, m.data, m.size, m.received_us, m.sender);
+  }
+
+  void poll() {
+    if (config_.can.empty()) {
+      if (!source_.handle(kPoll_ms) && !stop_requested()) ::usleep(1000 * kPoll_ms);
+      return;
+    }
+    std::vector<pollfd> waiting{{source_.descriptor(), POLLIN, 0}};
+    can_.descriptors(waiting);
+    ::poll(waiting.data(), waiting.size(), kPoll_ms);
+    can_.handle(steady_clock_us());
+    (void)source_.handle(0);
+  }
+
+  void fail(const std::string& why) {
+    log(LogLevel::error, why);
+    exit_code_ = kFailed;
+    step_ = Step::done;
+  }
+
+  void advance(std::int64_t now_us) {
+    if (stop_requested() && !stopping_) return stop(now_us);
+    switch (step_) {
+      case Step::check:
+        if (recorder_.checked()) return after_check(now_us);
+        return wait_for_samples(now_us);
+      case Step::tap:
+        if (recorder_.state() == RecorderState::tapping && now_us < tap_until_us_) return;
+        if (recorder_.state() == RecorderState::tapping) (void)recorder_.stop("", now_us);
+        return judge_channels();
+      case Step::begin: {
+        const std::string why = recorder_.begin(a_.request, now_us);
+        if (!why.empty()) return fail(why);
+        step_ = Step::session;
+        return;
+      }
+      case Step::session:
+        if (recorder_.state() != RecorderState::waiting) return;
+        step_ = Step::finishing;
+        return;
+      case Step::finishing:
+        if (!child_ && to_finish_.empty()) step_ = Step::done;
+        return;
+      case Step::standby:
+      case Step::done:
+        return;
+    }
+  }
+
+  /// Since the newest sample, or since it listens when none has come.
+  void wait_for_samples(std::int64_t now_us) {
+    if (const double s = recorder_.checked_s(); started_us_ == 0 || s > heard_s_) {
+      heard_s_ = s;
+      started_us_ = now_us;
+      next_word_us_ = now_us + kNoSamples_us;
+    }
+    if (now_us < std::min(next_word_us_, waits_until_us())) return;
+    next_word_us_ = now_us + kNoSamples_us;
+    if (now_us >= waits_until_us())
+      return fail(fmt::format("no samples for {:g} s (--wait): nothing was recorded", a_.wait_s));
+    log(LogLevel::warning, "no samples yet: are the sensors' messages on this LCM? Ctrl-C ends it");
+  }
+
+  std::int64_t waits_until_us() const {
+    return started_us_ + static_cast<std::int64_t>(1e6 * a_.wait_s);
+  }
+
+  void after_check(std::int64_t now_us) {
+    if (a_.tap_s <= 0) return judge_channels();
+    (void)recorder_.tap();
+    tap_until_us_ = now_us + static_cast<std::int64_t>(1e6 * a_.tap_s);
+    step_ = Step::tap;
+  }
+
+  void judge_channels() {
+    const std::vector<ChannelResult> results = recorder_.channel_results();
+    if (!a_.quiet) fmt::print("{}", channels_text(results));
+    std::fflush(stdout);
+    for (const ChannelResult& r : results)
+      if (a_.strict && !r.problem.empty())
+        return fail(fmt::format("{}: {}: nothing is recorded (--strict)", r.name, r.problem));
+    step_ = Step::begin;
+  }
+
+  void stop(std::int64_t now_us) {
+    stopping_ = true;
+    const bool recording = recorder_.state() == RecorderState::recording;
+    (void)recorder_.stop("signal", now_us);
+    if (recording || step_ == Step::finishing || (step_ == Step::standby && child_)) {
+      step_ = Step::session;
+      return;
+    }
+    if (!a_.standby && !a_.quiet) log(LogLevel::notice, "nothing was recorded");
+    exit_code_ = a_.standby ? 0 : kFailed;
+    step_ = Step::done;
+  }
+
+  void ended(const std::string& folder) {
+    if (!a_.quiet) log(LogLevel::info, fmt::format("recorded {}", folder));
+    to_finish_.push_back(folder);
+  }
+
+  /// Stages, other formats and the report are another process' work: whatever happens to it, the
+  /// logs are closed.
+  void look_at_child() {
+    if (!child_ && !to_finish_.empty()) {
+      finishing_ = to_finish_.front();
+      to_finish_.pop_front();
+      std::vector<std::string> arguments{"record", a_.config, "--finish", finishing_, "--quiet"};
+      for (const auto& [wanted, option] :
+           {std::pair{a_.csv, "--csv"}, std::pair{a_.mat, "--mat"}, std::pair{a_.split, "--split"},
+            std::pair{!a_.report, "--no-report"}})
+        if (wanted) arguments.push_back(option);
+      if (!a_.reports.empty()) arguments.insert(arguments.end(), {"--reports", a_.reports});
+      std::string error;
+      child_ = ChildProcess::start(std::move(arguments), error);
+      if (!child_) finished(kFailed, error);
+    }
+    if (!child_) return;
+    if (const auto code = child_->ended()) {
+      child_.reset();
+      finished(*code, fmt::format("exit status {}", *code));
+    }
+  }
+
+  void finished(int code, const std::string& how) {
+    const fs::path folder(finishing_);
+    std::string unread;
+    const auto session = read_session_file(finishing_ + "/" + kSessionJson, unread);
+    const bool page = drivers::why_no_file((folder / kReportPage).string()).empty();
+    const std::string report =
+        session && !session->report.empty() ? session->report : std::string();
+    if (!a_.quiet && !report.empty()) fmt::print("{}\n", report);
+    std::fflush(stdout);
+    std::string news = "the report is ready";
+    if (code != 0) {
+      news = fmt::format(
+          "the logs are whole, but what comes after them failed ({}); try framewatch record {} "
+          "--finish {}",
+          how, a_.config, finishing_);
+      log(LogLevel::error, news);
+      exit_code_ = kFailed;
+    } else if (!a_.report) {
+      news = "recorded";
+    }
+    if (session && session->dropped > 0) exit_code_ = kFailed;
+    recorder_.finished(page ? folder.filename().string() : std::string(), news);
+  }
+
+  void publish(std::int64_t now_us) {
+    const session_status_t status = recorder_.status(now_us);
+    const bool changed = status.state != said_state_ || status.message != said_news_ ||
+                         status.answered != said_answer_ || status.report != said_report_;
+    if (!changed && now_us < next_status_us_) return;
+    if (changed && !a_.quiet) tell(status);
+    said_state_ = status.state;
+    said_news_ = status.message;
+    said_answer_ = status.answered;
+    said_report_ = status.report;
+    next_status_us_ = now_us + kStatus_us;
+    drivers::encode_into(bytes_, status);
+    lcm_.publish(config_.lcm.prefix + "SESSION", bytes_.data(),
+                 static_cast<unsigned>(bytes_.size()));
+  }
+
+  void tell(const session_status_t& s) const {
+    if (s.answered != said_answer_ && !s.refused.empty())
+      log(LogLevel::warning, "refused: " + s.refused);
+    if (s.state != said_state_ && s.state == static_cast<int>(RecorderState::armed))
+      log(LogLevel::info, fmt::format("armed: begins {:g} m/s^2 from rest", s.trigger_mps2));
+    if (s.state != said_state_ && s.state == static_cast<int>(RecorderState::recording))
+      log(LogLevel::info, fmt::format("recording {}/{}{}", a_.out, s.session,
+                                      s.length_s > 0 ? fmt::format(" for {:g} s", s.length_s)
+                                                     : "; Ctrl-C or --send stop ends it"));
+    if (s.message != said_news_ && !s.message.empty()) log(LogLevel::info, s.message);
+  }
+
+  const RecordArguments& a_;
+  const Config& config_;
+  drivers::LcmProvider& lcm_;
+  Recorder recorder_;
+  SessionDesk desk_;
+  drivers::LcmSource source_;
+  drivers::CanMap can_map_;
+  drivers::CanSource can_;
+  Step step_ = Step::standby;
+  int exit_code_ = 0;
+  bool stopping_ = false;
+  double heard_s_ = 0;
+  std::int64_t started_us_ = 0, next_word_us_ = 0, tap_until_us_ = 0, next_status_us_ = 0;
+  std::deque<std::string> to_finish_;
+  std::string finishing_;
+  std::optional<ChildProcess> child_;
+  int said_state_ = 0;
+  std::string said_news_, said_report_;
+  std::int64_t said_answer_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+int record(const RecordArguments& a) {
+  if (!a.finish.empty())
+    return finish_session(
+        {a.config, a.finish, a.reports, a.csv, a.mat, a.split, a.report, a.quiet});
+  std::vector<ConfigProblem> config_problems;
+  const auto config = load_config(a.config, config_problems);
+  print_problems(config_problems);
+  bool good = config.has_value();
+  for (const std::string& p : problems(a.request)) {
+    (void)refuse("record", p);
+    good = false;
+  }
+  if (a.standby && (!a.send.empty() || a.tap_s > 0)) {
+    (void)refuse("record", "--standby waits for commands: leave --send and --tap-test out");
+    good = false;
+  }
+  if (!a.send.empty() && !a.url.empty()) {
+    (void)refuse("record", "--send goes over the recorder's socket, not over LCM: leave --url out");
+    good = false;
+  }
+  if (const std::string why = config && a.send.empty() ? nothing_to_hear(*config, a.by_name) : "";
+      !why.empty()) {
+    (void)refuse("record", why);
+    good = false;
+  }
+  if (!good) return kBadInput;
+  if (!a.send.empty()) return send_session_command(*config, a.send, a.request);
+  std::string error;
+  const auto lcm =
+      drivers::open_lcm(a.url.empty() ? config->lcm.url : a.url, config->lcm.reception, error);
+  if (!lcm) return refuse("record", error);
+  FolderLock lock;
+  error = lock.lock(a.out);
+  if (!error.empty()) return refuse("record", error);
+  catch_stop_signals();
+  return RecordCommand(a, *config, *lcm).run();
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,55 @@
+#include "daemon/tools/session/session_desk.h"
+
+#include <framewatch/session_command_t.hpp>
+#include <framewatch/session_status_t.hpp>
+
+#include <fmt/core.h>
+
+#include "daemon/base/clocks.h"
+#include "drivers/files/encoded.h"
+#include "drivers/lcm/message_check.h"
+
+namespace framewatch::daemon {
+
+SessionDesk::SessionDesk(const Config& config, Recorder& recorder)
+    : config_(config),
+      channel_(config.lcm.prefix + "SESSION_COMMAND"),
+      recorder_(recorder),
+      socket_(config, "record", [this](const CommandPacket& command, const std::string& user) {
+        return obey(command, user);
+      }) {}
+
+void SessionDesk::look() {
+  socket_.look(steady_clock_us());
+}
+
+void SessionDesk::heard(const void* data, std::size_t size, std::int64_t now_us) {
+  if (!config_.lcm.commands) {
+    ++not_obeyed_;
+    return warnings_(now_us, fmt::format("commands over LCM are not obeyed (lcm.commands = false): "
+                                         "{} came so far",
+                                         not_obeyed_));
+  }
+  const auto command =
+      drivers::decoded<session_command_t>({static_cast<const std::uint8_t*>(data), size});
+  if (command) recorder_.obey(*command, "LCM", now_us);
+}
+
+CommandPacket SessionDesk::obey(const CommandPacket& command, const std::string& user) {
+  if (command.channel != "SESSION_COMMAND")
+    return refused("framewatch record records, nothing else");
+  const auto wanted = drivers::decoded<session_command_t>(command.bytes);
+  if (!wanted) return refused("the command is not understood: another version?");
+  const std::int64_t now_us = host_clock_us();
+  recorder_.obey(*wanted, user, now_us);
+  const session_status_t now = recorder_.status(now_us);
+  session_status_t answer{};  // without the channels: it must fit a packet
+  answer.time_us = now.time_us;
+  answer.state = now.state;
+  answer.session = now.session;
+  answer.answered = now.answered;
+  answer.refused = now.refused;
+  return {"SESSION", drivers::encoded(answer)};
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,207 @@
+#include "daemon/tools/session/session_finish.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/core.h>
+
+#include "daemon/base/exit_code.h"
+#include "daemon/base/printable.h"
+#include "daemon/config/config.h"
+#include "daemon/config/sections/config_problems.h"
+#include "daemon/monitor/estimates/session_estimates.h"
+#include "daemon/tools/replay/repair_command.h"
+#include "daemon/tools/replay/replay_command.h"
+#include "daemon/tools/report/report_command.h"
+#include "daemon/tools/report/session_file.h"
+#include "daemon/tools/session/session_export.h"
+#include "daemon/tools/session/session_log.h"
+#include "drivers/files/input_file.h"
+#include "drivers/files/text_output.h"
+
+namespace framewatch::daemon {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kMissing_s = 2;  // more than this without an estimate, and they are made again
+constexpr const char* kReplayed = "estimates-replayed.lcmlog";
+
+class Finishing {
+ public:
+  Finishing(const FinishArguments& a, const Config& config, SessionFile& session)
+      : a_(a), config_(config), session_(session) {}
+
+  /// What a crash left under a partial name gets its own; a log of events without its torn end.
+  void recover() {
+    for (const char* name : {kRawLog, kCanLog, kEstimatesLog}) {
+      const std::string path = a_.folder + "/" + name;
+      std::error_code error;
+      if (!drivers::is_absent(path) || drivers::is_absent(path + ".partial")) continue;
+      bool whole = true;
+      if (name != kCanLog) {
+        const std::string repaired = path + ".repaired";
+        whole = repair({path + ".partial", repaired}) == 0;
+        if (whole && !drivers::is_absent(repaired)) {
+          fs::rename(repaired, path, error);
+          if (!error) fs::remove(path + ".partial", error);
+        } else if (whole) {
+          fs::rename(path + ".partial", path, error);
+        }
+      } else {
+        fs::rename(path + ".partial", path, error);
+      }
+      if (whole && !error) {
+        session_.files.push_back(name);
+        note(std::string(name) + ": the recording was cut off here; what is in it is whole");
+      } else {
+        problem(std::string(name) + ".partial: cannot be recovered " + error.message());
+      }
+    }
+  }
+
+  void find_stages_of_it() {
+    for (const char* name : {kRawLog, kCanLog})
+      if (!drivers::is_absent(a_.folder + "/" + name)) raw_.push_back(a_.folder + "/" + name);
+    std::vector<std::string> found;
+    motion_ = raw_.empty() ? std::nullopt : read_session_motion(config_, raw_, found);
+    for (std::string& p : found) problem(std::move(p));
+    if (!motion_) return problem("there are no raw samples to evaluate");
+    session_.stages = find_stages(*motion_);
+    if (session_.end_us == 0) session_.end_us = motion_->time_us(motion_->accel.rows() - 1);
+  }
+
+  /// The estimates that came, or new ones when they do not cover the samples.
+  void choose_estimates() {
+    read_estimates(kEstimatesLog);
+    if (!motion_) return;
+    const std::string lack = what_is_missing();
+    if (lack.empty()) return;
+    ReplayArguments again;
+    again.config = a_.config;
+    again.inputs = raw_;
+    again.out = a_.folder + "/" + kReplayed;
+    again.salvage = again.quiet = true;
+    if (replay(again) != 0) return problem(lack + ", and they cannot be made again");
+    read_estimates(kReplayed);
+    session_.files.push_back(kReplayed);
+    note(lack + fmt::format(": made again from the raw samples, {}", kReplayed));
+  }
+
+  void write_report() {
+    if (!a_.report) return;
+    if (!estimates_) return problem("without estimates there is no report");
+    SessionReport r;
+    r.test = r.title = session_.request.test;
+    r.operator_name = session_.request.operator_name;
+    r.notes = session_.request.notes;
+    r.session = session_;
+    r.config = config_;
+    r.estimates = *std::move(estimates_);
+    r.motion = std::move(motion_);
+    std::vector<std::pair<std::string, std::string>> files{
+        {"estimates", a_.folder + "/" + estimates_log_}, {"configuration", a_.config}};
+    for (const std::string& raw : raw_) files.push_back({"raw samples", raw});
+    const std::string page =
+        a_.reports.empty() ? a_.folder + "/" + kReportPage
+                           : a_.reports + "/" + fs::path(a_.folder).filename().string() + ".html";
+    const std::string why = daemon::write_report(std::move(r), files, page);
+    if (!why.empty()) return problem(why + ": there is no report");
+    session_.report = page;
+  }
+
+  void export_others() {
+    std::vector<std::string> found;
+    export_raw(a_.folder, a_.csv, a_.mat, session_.files, found);
+    export_estimates(config_, a_.folder, estimates_log_, a_.csv, a_.mat, session_.files, found);
+    if (a_.split) export_stages(a_.folder, session_.stages, session_.files, found);
+    for (std::string& p : found) problem(std::move(p));
+  }
+
+  void save() {
+    const std::string why =
+        drivers::write_text_file(a_.folder + "/" + kSessionJson, session_json(session_));
+    if (!why.empty()) problem(why);
+  }
+
+  bool good() const { return good_; }
+  void problem(std::string text) {
+    note(std::move(text));
+    good_ = false;
+  }
+
+ private:
+  /// For the person, but nothing has failed.
+  void note(std::string text) {
+    fmt::print(stderr, "framewatch record: {}\n", printable_lines(text));
+    session_.finishing.push_back(std::move(text));
+  }
+  void read_estimates(const char* log) {
+    std::vector<drivers::Problem> found;
+    estimates_log_ = log;
+    estimates_ = read_session_estimates(a_.folder + "/" + log, found);
+  }
+  std::string what_is_missing() const {
+    const auto& e = estimates_;
+    if (!e) return "there are no estimates";
+    const double most_s = kMissing_s + 2 * config_.pipeline.options.hop_s;
+    const auto seconds = [](std::int64_t from_us, std::int64_t to_us) {
+      return 1e-6 * static_cast<double>(to_us - from_us);
+    };
+    const double first_s = config_.pipeline.options.window_s + most_s;
+    if (seconds(motion_->first_us, e->end_us.front()) > first_s) return "the first estimates lack";
+    if (seconds(e->end_us.back(), motion_->time_us(motion_->accel.rows() - 1)) > most_s)
+      return "the last estimates lack";
+    for (std::size_t w = 1; w < e->end_us.size(); ++w)
+      if (seconds(e->end_us[w - 1], e->end_us[w]) > most_s) return "estimates in between lack";
+    return "";
+  }
+
+  const FinishArguments& a_;
+  const Config& config_;
+  SessionFile& session_;
+  std::vector<std::string> raw_;
+  std::optional<SessionMotion> motion_;
+  std::string estimates_log_;
+  std::optional<SessionEstimates> estimates_;
+  bool good_ = true;
+};
+
+}  // namespace
+
+int finish_session(const FinishArguments& a) {
+  std::vector<ConfigProblem> problems;
+  const auto config = load_config(a.config, problems);
+  print_problems(problems);
+  std::string error;
+  auto session = read_session_file(a.folder + "/" + kSessionJson, error);
+  if (!session) fmt::print(stderr, "{}/{}: {}\n", a.folder, kSessionJson, printable_lines(error));
+  if (!config || !session) return kBadInput;
+  for (const char* name : {kRawLog, kCanLog, kEstimatesLog})
+    if (drivers::DurableFile::in_use(a.folder + "/" + name)) {
+      fmt::print(stderr, "framewatch record: {}: is being recorded\n", a.folder);
+      return kBadInput;
+    }
+  // The recorder may be at the next session.
+  (void)!::nice(5);
+  session->finishing.clear();  // of an earlier try
+  Finishing finishing(a, *config, *session);
+  if (config->sha256 != session->config_sha256)
+    finishing.problem(a.config + ": is not what the session was recorded with");
+  finishing.recover();
+  finishing.find_stages_of_it();
+  finishing.save();
+  finishing.choose_estimates();
+  finishing.write_report();
+  finishing.export_others();
+  session->state = "finished";
+  std::sort(session->files.begin(), session->files.end());
+  session->files.erase(std::unique(session->files.begin(), session->files.end()),
+                       session->files.end());
+  finishing.save();
+  if (!a.quiet && !session->report.empty()) fmt::print("{}\n", session->report);
+  return finishing.good() ? 0 : 1;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,57 @@
+#include "daemon/tools/session/session_log.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "drivers/lcm/lcm_log.h"
+
+namespace framewatch::daemon {
+
+bool SessionLog::open(const std::string& folder, bool lcm, bool can, std::string& error) {
+  return (!lcm || raw_.open(folder + "/" + kRawLog, error)) &&
+         (!can || can_.open(folder + "/" + kCanLog, error)) &&
+         estimates_.open(folder + "/" + kEstimatesLog, error);
+}
+
+void SessionLog::write(const KeptMessage& m) {
+  messages_ += m.kind != MessageKind::estimate;
+  if (m.kind == MessageKind::frame) {
+    (void)can_.append(m.bytes);  // counted
+    return;
+  }
+  const bool raw = m.kind == MessageKind::raw;
+  // A number that is missing in the log is an event that was dropped.
+  std::int64_t& number = raw ? raw_events_ : estimate_events_;
+  event_.clear();
+  drivers::append_log_event(event_, number++, m.received_us, m.channel, m.bytes.data(),
+                            m.bytes.size());
+  (void)(raw ? raw_ : estimates_).append(event_);
+}
+
+std::int64_t SessionLog::dropped() const {
+  return raw_.counters().dropped + can_.counters().dropped + estimates_.counters().dropped;
+}
+
+std::int64_t SessionLog::bytes() const {
+  return raw_.counters().bytes + can_.counters().bytes + estimates_.counters().bytes;
+}
+
+std::string SessionLog::trouble() const {
+  for (const drivers::DurableFile* file : {&raw_, &can_, &estimates_})
+    if (std::string why = file->trouble(); !why.empty()) return why;
+  return "";
+}
+
+void SessionLog::close(std::vector<std::string>& files, std::vector<std::string>& problems) {
+  for (const auto& [file, name] : {std::pair{&raw_, kRawLog}, std::pair{&can_, kCanLog},
+                                   std::pair{&estimates_, kEstimatesLog}}) {
+    if (!file->is_open()) continue;
+    std::string error;
+    if (file->close(error))
+      files.push_back(name);
+    else
+      problems.push_back(std::move(error));
+  }
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,82 @@
+#include "daemon/tools/simulation/simulate_command.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "daemon/base/exit_code.h"
+#include "daemon/base/progress.h"
+#include "daemon/config/sections/config_problems.h"
+#include "daemon/tools/simulation/can_output.h"
+#include "daemon/tools/simulation/scenario.h"
+#include "daemon/tools/simulation/simulation.h"
+#include "daemon/tools/simulation/simulation_output.h"
+#include "daemon/tools/simulation/simulation_size.h"
+#include "daemon/tools/simulation/simulation_truth.h"
+#include "drivers/files/standard_streams.h"
+#include "drivers/files/text_output.h"
+#include "drivers/lcm/lcm_provider.h"
+
+namespace framewatch::daemon {
+int simulate(const SimulateArguments& a) {
+  if (a.out.empty() && !a.lcm && !a.can)
+    return refuse("simulate", "nowhere to put it: --out FILE, --lcm, --can or several");
+  std::vector<ConfigProblem> problems;
+  std::optional<Scenario> scenario = load_scenario(a.scenario, problems);
+  print_problems(problems);
+  if (!scenario) return kBadInput;
+  if (a.seconds > 0) scenario->duration_s = a.seconds;
+  if (const std::string problem = size_problem(*scenario); !problem.empty())
+    return refuse("simulate", fmt::format("{}: {}", a.scenario, problem));
+
+  std::unique_ptr<drivers::LcmProvider> lcm;
+  std::vector<std::unique_ptr<SimulationOutput>> outputs;
+  std::string error;
+  if (!a.out.empty()) {
+    outputs.push_back(file_output(*scenario, a.out, error));
+    if (!outputs.back()) return refuse("simulate", fmt::format("{}: {}", a.out, error));
+  }
+  drivers::TextOutput truth;
+  if (!a.truth.empty() && !truth.open(a.truth))
+    return refuse("simulate", fmt::format("{}: {}", a.truth, truth.error()));
+  Simulation simulation(*scenario);
+  if (a.lcm) {
+    const std::string& url = a.lcm_url.empty() ? scenario->config.lcm.url : a.lcm_url;
+    lcm = drivers::open_lcm(url, scenario->config.lcm.reception, error);
+    if (!lcm) return refuse("simulate", error);
+    outputs.push_back(live_output(*scenario, *lcm, a.speed));
+  }
+
+  if (a.can) {
+    outputs.push_back(can_output(*scenario, a.can_interface, a.speed, error));
+    if (!outputs.back()) return refuse("simulate", error);
+  }
+
+  const std::int64_t count = instants(*scenario);
+  {
+    Progress progress("simulate", count, "instants", 1, a.quiet);
+    for (std::int64_t i = 0; i < count; ++i) {
+      const std::vector<double>& raw = simulation.next();
+      if (simulation.collapsed())
+        return refuse("simulate", fmt::format("{}: the building collapses at {:.2f} s", a.scenario,
+                                              simulation.time_s()));
+      for (const auto& output : outputs)
+        if (!output->put(simulation.time_s(), raw)) return refuse("simulate", output->error());
+      progress(i + 1);
+    }
+  }
+  for (const auto& output : outputs)
+    if (!output->close()) return refuse("simulate", output->error());
+  if (!a.truth.empty() && !(truth.write(truth_json(*scenario)) && truth.close()))
+    return refuse("simulate", fmt::format("{}: {}", a.truth, truth.error()));
+  if (!a.quiet)
+    fmt::print(stderr, "{}: {} channels, {} instants at {:g} Hz{}{}\n",
+               scenario->config.pipeline.structure.name, scenario->config.pipeline.axes.size(),
+               count, scenario->rate_hz, a.out.empty() ? "" : " to ",
+               a.out == drivers::kStandardOutput ? "standard output" : a.out);
+  return 0;
+}
+
+}  // namespace framewatch::daemon

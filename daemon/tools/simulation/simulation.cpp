@@ -1,0 +1,60 @@
+#include "daemon/tools/simulation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace framewatch::daemon {
+namespace {
+
+estimator::ResponseStream response_of(const Scenario& s) {
+  const estimator::Structure& structure = s.config.pipeline.structure;
+  estimator::ResponseOptions options;
+  options.rate_hz = s.rate_hz;
+  std::vector<estimator::ResponseChannel> channels =
+      response_channels(structure, s.config.pipeline.axes);
+  estimator::ChannelEffects(s.effects).delay(channels);
+  return {structure, estimator::ParameterTable(structure),
+          s.truth,   s.motion,
+          options,   s.changes,
+          channels,  s.effects};
+}
+
+/// The sensors with their noise ratios turned into densities, which takes a run ahead.
+std::vector<estimator::SensorModel> sensors_of(const Scenario& s) {
+  std::vector<estimator::SensorModel> models = s.sensors;
+  estimator::ChannelEffects(s.effects).limit(models);
+  const bool wanted = std::any_of(s.noise_ratio.begin(), s.noise_ratio.end(),
+                                  [](double ratio) { return ratio > 0; });
+  if (!wanted) return models;
+  estimator::ResponseStream response = response_of(s);
+  const std::int64_t count = instants(s);
+  Eigen::ArrayXd squares = response.next().array().square();
+  for (std::int64_t i = 1; i < count; ++i) squares += response.next().array().square();
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const double rms =
+        std::sqrt(squares[static_cast<Eigen::Index>(i)] / static_cast<double>(count));
+    models[i].noise_density = std::hypot(
+        models[i].noise_density, estimator::noise_density_of(s.noise_ratio[i], rms, s.rate_hz));
+  }
+  return models;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scenario& s)
+    : response_(response_of(s)),
+      channel_effects_(s.effects),
+      sensors_(s.config.pipeline.axes, sensors_of(s), s.rate_hz, s.seed) {}
+
+const std::vector<double>& Simulation::next() {
+  constexpr double kLargest_mps2 = 1e6;
+  const Eigen::VectorXd& motion = response_.next();
+  collapsed_ = !motion.allFinite() || motion.cwiseAbs().maxCoeff() > kLargest_mps2;
+  return sensors_.measure(response_.time_s(), channel_effects_.apply(response_.time_s(), motion));
+}
+
+std::int64_t instants(const Scenario& s) {
+  return static_cast<std::int64_t>(std::floor(s.duration_s * s.rate_hz + 1e-6)) + 1;
+}
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,122 @@
+#include "daemon/config/keys/option_table.h"
+
+#include <cstdlib>
+#include <set>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "daemon/config/keys/options_markdown.h"
+#include "daemon/config/keys/suggest.h"
+#include "tests/support/config_fixture.h"
+#include "tests/support/temporary.h"
+
+namespace framewatch::daemon {
+namespace option_table_test {
+
+TEST(ConfigOptions, EveryRowIsComplete) {
+  std::set<std::pair<std::string_view, std::string_view>> keys;
+  for (const Option& o : options()) {
+    SCOPED_TRACE(std::string(o.section) + "." + std::string(o.key));
+    EXPECT_TRUE(keys.emplace(o.section, o.key).second) << "twice in the table";
+    EXPECT_TRUE(o.meaning.ends_with(".")) << "meaning is a sentence";
+    EXPECT_FALSE(o.required && !o.default_value.empty());
+    EXPECT_LT(o.min, o.max);
+    EXPECT_EQ(o.type == OptionType::choice, !o.choices.empty());
+  }
+}
+
+TEST(ConfigOptions, DefaultsKeepTheirOwnRules) {
+  for (const Option& o : options()) {
+    if (o.default_value.empty()) continue;
+    SCOPED_TRACE(std::string(o.section) + "." + std::string(o.key));
+    if (o.type == OptionType::number || o.type == OptionType::integer) {
+      for (const std::string_view text : {o.default_value, o.paper_default}) {
+        if (text.empty()) continue;
+        char* end = nullptr;
+        const std::string copy(text);
+        const double value = std::strtod(copy.c_str(), &end);
+        EXPECT_EQ(*end, '\0');
+        EXPECT_TRUE(value >= o.min && value <= o.max && (value > o.min || !o.above_min));
+      }
+    }
+    if (o.type == OptionType::choice) {
+      bool known = false;
+      for (const std::string& choice : choices(o))
+        known = known || "\"" + choice + "\"" == o.default_value;
+      EXPECT_TRUE(known);
+    }
+  }
+}
+
+TEST(ConfigOptions, UnitsAreInTheKeys) {
+  const std::pair<std::string_view, std::string_view> kSuffixes[] = {
+      {"s", "_s"},        {"Hz", "_hz"},
+      {"m", "_m"},        {"kg", "_kg"},
+      {"N/m", "_npm"},    {"m/s^2", "_mps2"},
+      {"bytes", "bytes"}, {"m/s^2/sqrt(Hz)", "_mps2_per_rthz"}};
+  for (const Option& o : options())
+    for (const auto& [unit, suffix] : kSuffixes)
+      EXPECT_TRUE(o.unit != unit || o.key.ends_with(suffix)) << o.key;
+}
+
+TEST(ConfigOptions, DefaultsAreThoseOfTheProgram) {
+  const Config c = test::good(test::kGoodConfig);
+  const estimator::EstimatorOptions o = c.pipeline.options;
+  const estimator::EstimatorOptions d;
+  EXPECT_EQ(o.variant, d.variant);
+  EXPECT_EQ(o.rate_hz, d.rate_hz);
+  EXPECT_EQ(o.window_s, d.window_s);
+  EXPECT_EQ(o.hop_s, d.hop_s);
+  EXPECT_EQ(o.boxplot_windows, d.boxplot_windows);
+  EXPECT_EQ(o.high_pass_hz, d.high_pass_hz);
+  EXPECT_EQ(o.filter_damping, d.filter_damping);
+  EXPECT_EQ(o.corner_ratio, d.corner_ratio);
+  EXPECT_EQ(o.prior, d.prior);
+  EXPECT_EQ(o.self_tune, d.self_tune);
+  EXPECT_EQ(o.settle_s, d.settle_s);
+  EXPECT_EQ(o.lateness_s, d.lateness_s);
+  EXPECT_EQ(o.fill_single_losses, d.fill_single_losses);
+  EXPECT_EQ(o.min_snr, d.min_snr);
+  EXPECT_EQ(o.max_error_k, d.max_error_k);
+  EXPECT_EQ(o.max_error_g, d.max_error_g);
+  EXPECT_EQ(o.max_error_c, d.max_error_c);
+  const LcmSettings l;
+  EXPECT_EQ(c.lcm.url, l.url);
+  EXPECT_EQ(c.lcm.prefix, l.prefix);
+  EXPECT_EQ(c.lcm.queue_capacity, l.queue_capacity);
+  EXPECT_EQ(c.lcm.reception.receive_buffer_bytes, l.reception.receive_buffer_bytes);
+  EXPECT_EQ(c.lcm.reception.interfaces, l.reception.interfaces);
+  EXPECT_EQ(c.lcm.boxplot_every, l.boxplot_every);
+}
+
+TEST(ConfigOptions, CommittedDocumentationIsFresh) {
+  const std::string path = std::string(FRAMEWATCH_SOURCE_DIR) + "/docs/configuration.md";
+  EXPECT_EQ(test::read_file(path), options_markdown())
+      << "run: framewatch check --print-options-markdown > docs/configuration.md";
+}
+
+TEST(ConfigOptions, DocumentationHasEveryRow) {
+  const std::string page = options_markdown();
+  for (const Option& o : options())
+    EXPECT_NE(page.find(std::string(o.meaning).substr(0, 20)), std::string::npos)
+        << o.section << "." << o.key;
+}
+
+TEST(ConfigSuggest, AdviceFitsTheMistake) {
+  const auto advice = [](const char* section, const char* key) {
+    return advice_on_unknown_key(section, key);
+  };
+  EXPECT_EQ(advice("structure", "node_mass_t"), "the unit is kg: write node_mass_kg");
+  EXPECT_EQ(advice("structure", "node_mass"), "the unit is kg: write node_mass_kg");
+  EXPECT_EQ(advice("estimator", "window_ms"), "the unit is s: write window_s");
+  EXPECT_EQ(advice("estimator", "rate_khz"), "the unit is Hz: write rate_hz");
+  EXPECT_EQ(advice("channel", "offset_g"), "the unit is m/s^2: write offset_mps2");
+  EXPECT_EQ(advice("estimator", "self_tun"), "did you mean self_tune?");
+  EXPECT_EQ(advice("structure", "strories"), "did you mean stories?");
+  EXPECT_EQ(advice("structure", "window_s"), "it is a key of [estimator]");
+  EXPECT_TRUE(advice("lcm", "zzzzzz").starts_with("the keys are url, prefix"));
+}
+
+}  // namespace option_table_test
+}  // namespace framewatch::daemon

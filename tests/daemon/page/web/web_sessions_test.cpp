@@ -1,0 +1,106 @@
+#include "daemon/page/web/web_sessions.h"
+
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/base/served_file.h"
+#include "daemon/tools/report/session_file.h"
+#include "tests/support/temporary.h"
+
+namespace framewatch::daemon {
+namespace web_sessions_test {
+
+TEST(WebSessions, GiveOutReportsAndNothingElse) {
+  const test::TemporaryDirectory directory;
+  for (const char* name : {"2026-11-21T14-03-10_a", "2026-11-21T15-00-00"}) {
+    std::filesystem::create_directory(directory.path(name));
+    SessionFile session;
+    session.request.test = name;
+    test::write_file(directory.path(name) + "/session.json", session_json(session));
+    test::write_file(directory.path(name) + "/raw.lcmlog", "raw");
+  }
+  test::write_file(directory.path("2026-11-21T15-00-00/report.html"), "<p>");
+  test::write_file(directory.path("report.html"), "outside");
+  const std::string folder = directory.path("");
+  const auto list = nlohmann::json::parse(sessions_json(folder));
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0]["session"], "2026-11-21T15-00-00");
+  EXPECT_EQ(list[0]["report"], true);
+  EXPECT_EQ(list[1]["report"], false);
+  EXPECT_EQ(sessions_json("/nonexistent"), "[]");
+  EXPECT_EQ(session_document(folder, "2026-11-21T15-00-00/report.html").value().content, "<p>");
+  EXPECT_TRUE(session_document(folder, "2026-11-21T14-03-10_a/session.json"));
+  for (const char* path :
+       {"2026-11-21T15-00-00/raw.lcmlog", "../report.html", "./report.html", "report.html",
+        "2026-11-21T15-00-00/../report.html", "2026-11-21T15-00-00/", "", "/report.html",
+        "2026-11-21T15-00-00/report.html/x", "2026-11-21T14-03-10_a/report.html"})
+    EXPECT_FALSE(session_document(folder, path)) << path;
+  EXPECT_FALSE(session_document("", "2026-11-21T15-00-00/report.html"));
+}
+
+/// A folder of sessions with one finished session "a", and a secret beside the folder.
+struct SessionsAndASecret {
+  SessionsAndASecret() {
+    std::filesystem::create_directories(sessions + "/a");
+    session.request.test = "mine";
+    test::write_file(sessions + "/a/session.json", session_json(session));
+    session.request.test = "secret";
+    test::write_file(secret_session, session_json(session));
+    test::write_file(secret, "secret");
+  }
+  const test::TemporaryDirectory directory;
+  const std::string sessions = directory.path("sessions");
+  const std::string secret = directory.path("secret");
+  const std::string secret_session = directory.path("secret.json");
+  SessionFile session;
+};
+
+TEST(WebSessions, FollowNoLinks) {
+  const SessionsAndASecret s;
+  namespace fs = std::filesystem;
+  fs::create_symlink(s.secret, s.sessions + "/a/report.html");
+  fs::create_directory(s.sessions + "/b");
+  fs::create_symlink(s.secret_session, s.sessions + "/b/session.json");
+  fs::create_directory(s.directory.path("elsewhere"));
+  test::write_file(s.directory.path("elsewhere/session.json"), session_json(s.session));
+  test::write_file(s.directory.path("elsewhere/report.html"), "secret");
+  fs::create_directory_symlink(s.directory.path("elsewhere"), s.sessions + "/c");
+  fs::create_directory_symlink(".", s.sessions + "/d");
+  for (const char* path :
+       {"a/report.html", "b/session.json", "c/session.json", "c/report.html", "d/session.json"})
+    EXPECT_FALSE(session_document(s.sessions, path)) << path;
+  const auto list = nlohmann::json::parse(sessions_json(s.sessions));
+  ASSERT_EQ(list.size(), 1u) << list;
+  EXPECT_EQ(list[0]["test"], "mine");
+  EXPECT_EQ(list[0]["report"], false);
+  // The folder itself may be reached by one, as systemd's state directory is.
+  fs::create_directory_symlink(s.sessions, s.directory.path("link"));
+  EXPECT_TRUE(session_document(s.directory.path("link"), "a/session.json"));
+}
+
+TEST(WebSessions, ReadNeitherPipesNorDevicesNorWhatIsHuge) {
+  const SessionsAndASecret s;
+  namespace fs = std::filesystem;
+  const auto report = [&](const char* name) { return s.sessions + "/" + name + "/report.html"; };
+  for (const char* name : {"pipe", "huge", "folder"}) fs::create_directory(s.sessions + "/" + name);
+  ASSERT_EQ(::mkfifo(report("pipe").c_str(), 0600), 0);
+  ASSERT_EQ(::mkfifo((s.sessions + "/pipe/session.json").c_str(), 0600), 0);
+  test::write_file(report("huge"), "");
+  fs::resize_file(report("huge"), kMaxServedBytes + 1);
+  fs::create_directory(report("folder"));
+  for (const char* path :
+       {"pipe/report.html", "pipe/session.json", "huge/report.html", "folder/report.html"})
+    EXPECT_FALSE(session_document(s.sessions, path)) << path;
+  EXPECT_EQ(nlohmann::json::parse(sessions_json(s.sessions)).size(), 1u);
+  fs::resize_file(report("huge"), kMaxServedBytes);
+  EXPECT_EQ(session_document(s.sessions, "huge/report.html").value().content.size(),
+            kMaxServedBytes);
+}
+
+}  // namespace web_sessions_test
+}  // namespace framewatch::daemon

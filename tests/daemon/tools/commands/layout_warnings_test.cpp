@@ -1,0 +1,136 @@
+#include "daemon/tools/commands/layout_warnings.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "daemon/tools/commands/check_report.h"
+#include "tests/support/config_fixture.h"
+
+namespace framewatch::daemon {
+namespace layout_warnings_test {
+
+/// Ten rigid floors, one frame along x and two along y; channels as given.
+std::string building(const std::string& channels) {
+  return "[structure]\nname = \"ten\"\nstories = 10\nframes_x = [\"y1\"]\n"
+         "frames_y = [\"x1\", \"x2\"]\nspan_x_m = [20.0]\nstory_height_m = 3.5\n"
+         "floor = \"rigid\"\nnode_mass_kg = 400e3\nazimuth_y_deg = 0\n"
+         "[structure.design]\nkx_npm = 2e9\nky_npm = 1e9\ndamping_ratio = 0.02\n"
+         "[estimator]\nrate_hz = 100\n" +
+         channels;
+}
+
+std::string channel(const std::string& name, int story, const std::string& place) {
+  return "[[channel]]\nname = \"" + name + "\"\nstory = " + std::to_string(story) + "\n" + place +
+         "\nnoise_mps2_per_rthz = 1e-4\n";
+}
+
+std::string level(int story) {
+  const std::string n = std::to_string(story);
+  return channel("x" + n, story, "azimuth_deg = 90") +
+         channel("l" + n, story, "azimuth_deg = 0\nx_m = 0") +
+         channel("r" + n, story, "azimuth_deg = 0\nx_m = 20");
+}
+
+CheckReport checked(const std::string& channels, int advise = 0) {
+  return make_check_report(test::good(building(channels)), advise);
+}
+
+bool warns(const CheckReport& report, const std::string& part) {
+  for (const std::string& warning : report.warnings)
+    if (warning.find(part) != std::string::npos) return true;
+  return false;
+}
+
+std::string all_of(const CheckReport& report) {
+  std::string out;
+  for (const std::string& warning : report.warnings) out += warning + "\n";
+  return out;
+}
+
+TEST(LayoutWarnings, AGoodLayoutHasNone) {
+  const CheckReport r = checked(level(0) + level(5) + level(10));
+  ASSERT_TRUE(r.layout);
+  EXPECT_EQ(all_of(r).find("channel"), std::string::npos) << all_of(r);
+  EXPECT_EQ(all_of(r).find("roof"), std::string::npos) << all_of(r);
+}
+
+TEST(LayoutWarnings, TallOrSlenderFramesThatDoNotBend) {
+  const std::string channels = level(0) + level(5) + level(10);
+  const auto warned = [&](const std::string& what, const std::string& by, const char* direction) {
+    const CheckReport r =
+        make_check_report(test::good(test::replaced(building(channels), what, by)), 0);
+    return warns(r, std::string("frames parallel to ") + direction + " of");
+  };
+  EXPECT_TRUE(warned("name", "name", "x"));
+  EXPECT_TRUE(warned("name", "name", "y"));
+  EXPECT_FALSE(warned("[structure.design]", "[structure.design]\nkrx_nmprad = 3e12", "x"));
+  EXPECT_TRUE(warned("[structure.design]", "[structure.design]\nkrx_nmprad = 3e12", "y"));
+  // Nine stories of 35 m in all: by their shape, along x alone of which the width is known.
+  const std::string lower = test::replaced(
+      test::replaced(building(level(0) + level(9)), "stories = 10", "stories = 9"), "20.0", "8.0");
+  const CheckReport r =
+      make_check_report(test::good(test::replaced(test::replaced(lower, "x_m = 20", "x_m = 8"),
+                                                  "x_m = 20", "x_m = 8")),
+                        0);
+  EXPECT_TRUE(warns(r, "frames parallel to x of 9 stories, 31.5 m high and 8 m wide")) << all_of(r);
+  EXPECT_FALSE(warns(r, "frames parallel to y of"));
+}
+
+TEST(LayoutWarnings, ADirectionThatNothingMeasures) {
+  const std::string x = "azimuth_deg = 90";
+  const CheckReport r = checked(channel("b", 0, x) + channel("m", 5, x) + channel("t", 10, x));
+  EXPECT_TRUE(warns(r, "no channel above the base measures along y")) << all_of(r);
+  EXPECT_FALSE(warns(r, "measures along x"));
+}
+
+TEST(LayoutWarnings, AGroupOfWhichItsNoiseLeavesNothing) {
+  std::string noisy = level(0) + level(5) + level(10);
+  for (std::size_t at = 0; (at = noisy.find("1e-4", at)) != std::string::npos;)
+    noisy.replace(at, 4, "0.30");
+  EXPECT_TRUE(warns(checked(noisy), "no value of it will be shown"));
+}
+
+TEST(LayoutWarnings, AFreeTop) {
+  const CheckReport r = checked(level(0) + level(4) + level(7));
+  EXPECT_TRUE(warns(r, "no channel on the roof, floor 10")) << all_of(r);
+}
+
+TEST(LayoutWarnings, SingleStoriesNearTheRoof) {
+  const CheckReport r = checked(level(0) + level(1) + level(5) + level(9) + level(10));
+  EXPECT_TRUE(warns(r, "kx_10_y1: a single story near the roof")) << all_of(r);
+  EXPECT_FALSE(warns(r, "kx_1_y1"));
+}
+
+TEST(LayoutWarnings, TwoChannelsThatMeasureOneMotion) {
+  const std::string base = level(0) + level(10);
+  EXPECT_TRUE(warns(
+      checked(base + channel("e", 5, "azimuth_deg = 90") + channel("w", 5, "azimuth_deg = 270")),
+      "'e' and 'w' measure one motion of floor 5 with opposite signs"));
+  EXPECT_TRUE(warns(
+      checked(base + channel("e", 5, "azimuth_deg = 90") + channel("f", 5, "azimuth_deg = 90")),
+      "'e' and 'f' measure one motion of floor 5: their mean"));
+  EXPECT_FALSE(warns(checked(base + level(5)), "one motion"));
+}
+
+TEST(LayoutWarnings, AzimuthsThatDoNotFitTheAxes) {
+  const CheckReport r =
+      checked(level(0) + level(10) + channel("s", 5, "azimuth_deg = 60\ny_m = 1"));
+  EXPECT_TRUE(warns(r, "'s' points 30 degrees off the frames of direction x")) << all_of(r);
+  EXPECT_FALSE(warns(checked(level(0) + level(5) + level(10)), "degrees off"));
+}
+
+TEST(LayoutWarnings, AdviceIsInTextAndJson) {
+  const CheckReport r = checked(level(0) + level(5) + level(10), 2);
+  ASSERT_EQ(r.layout->advised.size(), 2u);
+  EXPECT_LE(r.layout->advised[0].least_seen_loss, r.layout->advised[1].least_seen_loss);
+  EXPECT_LT(r.layout->advised[0].least_seen_loss, r.layout->least_seen_loss);
+  EXPECT_NE(to_text(r).find("advice      with channels on floor"), std::string::npos);
+  const auto json = nlohmann::json::parse(to_json("c.toml", r, {}));
+  ASSERT_EQ(json["layout"]["advice"].size(), 2u);
+  EXPECT_EQ(json["layout"]["advice"][0]["floor"], r.layout->advised[0].floor);
+  EXPECT_EQ(json["layout"]["measured_floors"], nlohmann::json({5, 10}));
+  EXPECT_TRUE(checked(level(0) + level(5) + level(10)).layout->advised.empty());
+}
+
+}  // namespace layout_warnings_test
+}  // namespace framewatch::daemon

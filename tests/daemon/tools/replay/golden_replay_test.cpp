@@ -1,0 +1,77 @@
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+
+#include "daemon/base/file_digest.h"
+#include "daemon/tools/replay/replay_command.h"
+#include "drivers/lcm/lcm_log.h"
+#include "tests/support/recorded_table_test.h"
+#include "tests/support/temporary.h"
+
+namespace framewatch::daemon {
+namespace golden_replay_test {
+
+using test::read_file;
+using test::TemporaryDirectory;
+
+const std::string kGolden = FRAMEWATCH_SOURCE_DIR "/tests/golden/";
+
+int golden_replay(const std::string& out) {
+  ReplayArguments a{test::table_config(), {kGolden + "table.lcmlog.zst"}, out, false, true, false};
+  a.expect = kGolden + "expected.toml";
+  return replay(a);
+}
+
+/// Over the payloads of every window of every length.
+std::string digest_of_estimates(const std::string& path) {
+  drivers::LcmLogReader reader;
+  EXPECT_TRUE(reader.open(path));
+  std::string bytes;
+  for (drivers::LogEvent e; reader.next(e) == drivers::LogRead::event;)
+    if (e.channel.starts_with("FRAMEWATCH_ESTIMATE")) bytes.append(e.data.begin(), e.data.end());
+  return sha256(bytes);
+}
+
+TEST(GoldenReplay, IsAsExpected) {
+  EXPECT_EQ(golden_replay(""), 0);
+}
+
+// One digest for all builds: debug, release and sanitizers do the same arithmetic. A change that is
+// meant to change numbers in their last bits changes it; `framewatch diff` says by how much.
+TEST(GoldenReplay, GivesTheSameBytesInEveryBuild) {
+  const TemporaryDirectory directory;
+  ASSERT_EQ(golden_replay(directory.path("est.lcmlog")), 0);
+  std::string committed = read_file(kGolden + "estimates.sha256");
+  committed.resize(std::min<std::size_t>(committed.size(), 64));
+  EXPECT_EQ(digest_of_estimates(directory.path("est.lcmlog")), committed)
+      << "the numbers changed: if they are meant to, put the first of these into "
+         "tests/golden/estimates.sha256";
+}
+
+TEST(GoldenReplay, FiveRunsGiveTheSameBytesWithAndWithoutATerminal) {
+  const TemporaryDirectory directory;
+  ASSERT_EQ(golden_replay(directory.path("0.lcmlog")), 0);
+  const std::string first = read_file(directory.path("0.lcmlog"));
+  for (int run = 1; run < 5; ++run) {
+    const std::string out = directory.path(std::to_string(run) + ".lcmlog");
+    std::string command = std::string(FRAMEWATCH_PROGRAM) + " replay " + test::table_config() +
+                          " " + kGolden + "table.lcmlog.zst --out " + out;
+    if (run % 2 == 0) command = "script -qec '" + command + "' /dev/null";
+    ASSERT_EQ(std::system((command + " > /dev/null").c_str()), 0) << command;
+    EXPECT_TRUE(read_file(out) == first) << command;
+  }
+}
+
+TEST(GoldenReplay, ItsRecipeGivesTheGoldenLog) {
+  const TemporaryDirectory directory;
+  const std::string made = directory.path("made.lcmlog"), golden = directory.path("golden.lcmlog");
+  ASSERT_EQ(std::system((std::string(FRAMEWATCH_PROGRAM) + " simulate " + kGolden +
+                         "scenario.toml --quiet --out " + made + " && zstd -q -d " + kGolden +
+                         "table.lcmlog.zst -o " + golden)
+                            .c_str()),
+            0);
+  EXPECT_TRUE(read_file(made) == read_file(golden));
+}
+
+}  // namespace golden_replay_test
+}  // namespace framewatch::daemon
