@@ -73,8 +73,8 @@ const Option kOptions[] = {
      .type = choice,
      .default_value = "\"first\"",
      .choices = "first|none",
-     .meaning = "Whose samples to use while two senders share a node number. Senders that cannot "
-                "be told apart are both ignored.",
+     .meaning = "Whose samples to use while two senders share a node number. If the senders are "
+                "indistinguishable, both are ignored.",
      .reload = settings,
      .target = into<&LcmSettings::two_senders>},
 };

@@ -8,7 +8,7 @@ using enum OptionType;
 using enum Reach;
 
 constexpr std::string_view kSized = "its sizes follow from stories and frames";
-constexpr std::string_view kTheta = "goes to a place in theta that the structure decides";
+constexpr std::string_view kTheta = "its index in theta depends on the structure";
 
 const Option kOptions[] = {
     {.section = "structure",

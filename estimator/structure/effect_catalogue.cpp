@@ -21,7 +21,7 @@ EffectParameter positive(std::string_view key, std::string_view unit, std::strin
   return {key, unit, std::nullopt, 0, kAny, true, meaning};
 }
 
-/// An effect's size: 0 is no effect.
+/// The size of an effect; 0 means none.
 EffectParameter not_negative(std::string_view key, std::string_view unit,
                              std::string_view meaning) {
   return {key, unit, std::nullopt, 0, kAny, false, meaning};
