@@ -297,9 +297,9 @@ TEST_F(Restart, ThePageHasTheSamePeaks) {
   std::optional<Shaking> shaking;
   estimator::Pipeline pipeline(config.pipeline);
   const auto take = [&](estimator::Pipeline::Results&& results) {
-    for (const estimator::PipelineResult& r : results) {
-      if (r.instant != nullptr) shaking->push(*r.instant);
-      if (r.estimate != nullptr) shaking->follow(*r.estimate);
+    for (const estimator::PipelineResult& result : results) {
+      if (result.instant != nullptr) shaking->push(*result.instant);
+      if (result.estimate != nullptr) shaking->follow(*result.estimate);
     }
   };
   estimator::PipelineConfig calibrated = config.pipeline;
