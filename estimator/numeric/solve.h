@@ -4,9 +4,10 @@
 
 #include <Eigen/Core>
 
-#include "estimator/numeric/row_matrix.h"
-
 namespace framewatch::estimator {
+
+/// Rows of numbers, row after row in memory.
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Eigen's decompositions behind plain functions, so that their templates are compiled here and
 // nowhere else: each costs seconds of every source that names it.

@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "estimator/structure/problem.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 

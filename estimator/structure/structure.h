@@ -3,9 +3,14 @@
 #include <string>
 #include <vector>
 
-#include "estimator/structure/problem.h"
-
 namespace framewatch::estimator {
+
+/// One broken rule of a description, and which part of the description broke it.
+struct Problem {
+  std::string field;  ///< configuration key of the part; empty when a part is missing altogether
+  int index = -1;     ///< of the sensor axis; -1 for the structure
+  std::string message;
+};
 
 /// Axis a frame is parallel to, and along which its floors and sensors move.
 enum class Direction { x, y };
@@ -60,5 +65,10 @@ bool bends_as_a_whole(const Structure& structure, Direction direction);
 std::vector<Problem> find_problems(const Structure& structure);
 /// Their messages.
 std::vector<std::string> problems(const Structure& structure);
+
+/// x1y1: the y-parallel, then the x-parallel frame; the one frame's name in a plane building.
+std::string crossing_name(const Structure& structure, int crossing);
+/// Of the crossing where its spans start, as in Gk_2_x1y1.
+std::string panel_name(const Structure& structure, int panel);
 
 }  // namespace framewatch::estimator

@@ -5,6 +5,7 @@
 #include "estimator/structure/story_groups.h"
 
 namespace framewatch::estimator {
+
 Deformations::Deformations(const Structure& s, const FloorLayout& layout,
                            const std::vector<SensorAxis>& axes)
     : layout_(&layout), noise_density_(noise_densities(axes)) {
@@ -100,6 +101,23 @@ void Deformations::compute(const DriftControlledIntegrator& motion, DeformationS
       out[2 * frames + panels + p] =
           panel.bu * (u1.first - u0.first) + panel.bv * (v1.first - v0.first);
     }
+  }
+}
+
+DeformationSet AxisMotion::make_set() const {
+  const auto axes = static_cast<std::size_t>(axes_);
+  return {std::vector<double>(axes * kSignals, 0.0), std::vector<std::uint8_t>(axes, 0)};
+}
+
+void AxisMotion::compute(const DriftControlledIntegrator& motion, DeformationSet& set) const {
+  double* out = set.values.data();
+  for (int axis = 0; axis < axes_; ++axis) {
+    set.known[static_cast<std::size_t>(axis)] = motion.valid(axis) ? 1 : 0;
+    *out++ = motion.value(axis);
+    *out++ = motion.first(axis);
+    *out++ = motion.second(axis);
+    *out++ = motion.held_first(axis);
+    *out++ = motion.held_second(axis);
   }
 }
 

@@ -5,11 +5,30 @@
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/elements/motion_source.h"
 #include "estimator/motion/drift_controlled_integrator.h"
 #include "estimator/structure/sensors.h"
 
 namespace framewatch::estimator {
+
+/// Motion of the whole building at one instant as the regressor rows need it.
+struct DeformationSet {
+  std::vector<double> values;       ///< as the MotionSource says
+  std::vector<std::uint8_t> known;  ///< flags of what is measured, likewise
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a.finite(values);
+    a.each_within(known, 0, 1);
+  }
+};
+
+/// Turns filtered axis motion into what rows are formed of.
+class MotionSource {
+ public:
+  virtual ~MotionSource() = default;
+  virtual void compute(const DriftControlledIntegrator& motion, DeformationSet& set) const = 0;
+  virtual DeformationSet make_set() const = 0;
+};
 
 /// Turns filtered axis motion into element deformations, floor by floor:
 /// [p of the frames, p' of the frames, p of the panels, p' of the panels] as element deformations
@@ -54,5 +73,20 @@ class Deformations : public MotionSource {
 inline double noise_variance(double density, double rate_hz) {
   return density * density * rate_hz / 2;
 }
+
+/// The filtered motion of every axis as it is: kSignals values per axis, one flag each.
+class AxisMotion : public MotionSource {
+ public:
+  /// p, p', p'', and p', p'' for the inputs of a simulation (held_triple).
+  static constexpr int kSignals = 5;
+  enum Signal { value, first, second, held_first, held_second };
+
+  explicit AxisMotion(int axes) : axes_(axes) {}
+  void compute(const DriftControlledIntegrator& motion, DeformationSet& set) const override;
+  DeformationSet make_set() const override;
+
+ private:
+  int axes_;
+};
 
 }  // namespace framewatch::estimator

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "estimator/structure/parameter_table.h"
+
 namespace framewatch::estimator {
 namespace {
 
@@ -72,6 +74,19 @@ void retuned_design(const FloorLayout& layout, const ParameterTable& table,
     const double factor = work.factor[static_cast<std::size_t>(p)];
     out[p] = design[p] * (factor > 0 ? factor : unseen[static_cast<int>(table[p].kind)]);
   }
+}
+
+namespace {
+
+/// Standard deviation of a design that is off by anything up to its tolerance, over the tolerance.
+constexpr double kUniform = 0.58;
+
+}  // namespace
+
+PerturbedDesigns::PerturbedDesigns(const FloorLayout& layout) : own_(layout.own()) {
+  for (int u = 0; u < layout.unknowns(); ++u)
+    for (int c = 0; c < kCount; ++c)
+      error_.push_back(kUniform * design_tolerance(layout.kind(u % own_)) * fixed_sign(u, c));
 }
 
 }  // namespace framewatch::estimator

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/regressors/row_filter.h"
+#include "estimator/identify/regressors/row_tuning.h"
 
 namespace framewatch::estimator {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/identify/groups/axis_motion.h"
-#include "estimator/motion/oscillator_section.h"
+#include "estimator/identify/elements/deformations.h"
+#include "estimator/motion/derivative_triple.h"
 #include "estimator/numeric/kernels.h"
 
 namespace framewatch::estimator {

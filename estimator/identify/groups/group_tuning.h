@@ -8,8 +8,7 @@
 #include <Eigen/Core>
 
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/elements/perturbed_designs.h"
-#include "estimator/identify/groups/group_chain.h"
+#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/groups/group_equations.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/row_tuning.h"

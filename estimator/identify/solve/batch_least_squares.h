@@ -2,11 +2,18 @@
 
 #include <Eigen/Core>
 
-#include "estimator/motion/motion_history.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
+
+/// Everything about a building's motion that the paper's method uses: instants x degrees of freedom
+/// (Structure::dof), SI.
+struct MotionHistory {
+  Eigen::MatrixXd accel_abs;
+  Eigen::MatrixXd vel_rel;  ///< to the ground, like disp_rel
+  Eigen::MatrixXd disp_rel;
+};
 
 /// The paper's identification as its numerical examples have it: accelerations, velocities and
 /// displacements are all given, plain least squares over all instants, P1 (18)-(21). Floors are

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/guessed_design.h"
-#include "estimator/identify/groups/axis_motion.h"
 #include "estimator/identify/groups/reduced_building.h"
-#include "estimator/motion/oscillator_section.h"
+#include "estimator/motion/derivative_triple.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/natural_frequencies.h"
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/floor_layout.h"
-#include "estimator/identify/elements/motion_source.h"
 #include "estimator/identify/regressors/unknown_past.h"
 #include "estimator/setup/pipeline_config.h"
 #include "estimator/state/archive.h"

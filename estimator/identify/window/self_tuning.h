@@ -9,7 +9,7 @@
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/tuned_regression.h"
-#include "estimator/setup/tuning.h"
+#include "estimator/setup/pipeline_config.h"
 
 namespace framewatch::estimator {
 

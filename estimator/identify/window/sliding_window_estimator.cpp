@@ -6,11 +6,10 @@
 
 #include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/elements/guessed_design.h"
-#include "estimator/identify/groups/axis_motion.h"
 #include "estimator/identify/groups/group_tuning.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/regressor_tuning.h"
-#include "estimator/identify/window/window_rows.h"
+#include "estimator/identify/window/tuned_regression.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {

@@ -4,13 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "estimator/identify/elements/motion_source.h"
+#include "estimator/identify/elements/deformations.h"
 #include "estimator/identify/estimate/boxplot.h"
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/noise/axis_noise.h"
 #include "estimator/identify/window/element_drift.h"
-#include "estimator/identify/window/held_bending.h"
-#include "estimator/identify/window/late_windows.h"
 #include "estimator/identify/window/long_window.h"
 #include "estimator/identify/window/model_check.h"
 #include "estimator/identify/window/self_tuning.h"

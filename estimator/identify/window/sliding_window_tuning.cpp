@@ -5,7 +5,7 @@
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/window/sliding_window_estimator.h"
-#include "estimator/identify/window/window_rows.h"
+#include "estimator/identify/window/tuned_regression.h"
 
 namespace framewatch::estimator {
 namespace {

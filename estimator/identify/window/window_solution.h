@@ -7,12 +7,11 @@
 
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/row_filter.h"
-#include "estimator/identify/solve/model_misfit.h"
+#include "estimator/identify/regressors/row_tuning.h"
 #include "estimator/identify/solve/noise_compensation.h"
 #include "estimator/identify/solve/story_solver.h"
 #include "estimator/identify/solve/uncertainty.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {

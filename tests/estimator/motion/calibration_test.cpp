@@ -1,4 +1,4 @@
-#include "estimator/motion/calibration.h"
+#include "estimator/motion/acquisition.h"
 
 #include <cmath>
 #include <limits>

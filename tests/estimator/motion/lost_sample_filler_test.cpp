@@ -1,4 +1,4 @@
-#include "estimator/motion/lost_sample_filler.h"
+#include "estimator/motion/acquisition.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "estimator/motion/oscillator_section.h"
+#include "estimator/motion/derivative_triple.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "estimator/motion/spike_guard.h"
+#include "estimator/motion/axis_guard.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/motion/axis_guard.h"
-#include "estimator/motion/sample_bound.h"
+#include "estimator/motion/acquisition.h"
 
 namespace framewatch::estimator {
 namespace spike_guard_test {

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/structure/place_names.h"
+#include "estimator/structure/structure.h"
 #include "tests/support/example_effects.h"
 
 namespace framewatch::estimator {

@@ -1,5 +1,5 @@
 #include "estimator/identify/gram/sliding_gram.h"
-#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/regressors/regressor_tuning.h"
 
 #include <algorithm>
 #include <cmath>

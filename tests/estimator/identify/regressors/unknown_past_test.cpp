@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "estimator/identify/regressors/floor_rows.h"
+#include "estimator/motion/derivative_triple.h"
 #include "estimator/motion/drift_controlled_integrator.h"
-#include "estimator/motion/oscillator_section.h"
 #include "estimator/state/archive.h"
 
 namespace framewatch::estimator {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/identify/regressors/regressor_filter.h"
+#include "estimator/identify/regressors/regressor_tuning.h"
 #include "estimator/identify/solve/story_solver.h"
 
 #include <gtest/gtest.h>
