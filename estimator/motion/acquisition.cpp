@@ -66,8 +66,8 @@ Calibration::Calibration(const std::vector<SensorAxis>& axes) : straight_(axes.s
     out.offset = axis.offset + axis.polarity * kGravity * std::sin(axis.tilt);
     out.cross = axis.cross;
     if (axis.cross >= 0) {
-      // mx = cos(a) ax + sin(a) ay of an x axis, my = cos(b) ay - sin(b) ax of a y axis, angles
-      // counter-clockwise.
+      // With angles a and b counter-clockwise, an x axis measures mx = cos(a) ax + sin(a) ay, and a
+      // y axis measures my = cos(b) ay - sin(b) ax.
       const SensorAxis& other = axes[static_cast<std::size_t>(axis.cross)];
       const double sign = axis.direction == Direction::x ? 1 : -1;
       const double determinant = std::cos(axis.mount_angle - other.mount_angle);
@@ -91,7 +91,7 @@ void Calibration::apply(std::vector<double>& accel) {
 
 namespace {
 
-constexpr int kVertical = 2;  ///< beside the two directions
+constexpr int kVertical = 2;  ///< stands beside the two directions
 
 std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
   std::vector<AxisGuard::Axis> out;
@@ -101,7 +101,7 @@ std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
   return out;
 }
 
-/// A hammer's blow is no smooth curve through its neighbours.
+/// The blow of a hammer is not a smooth curve, so a lost sample of a force is not interpolated.
 std::vector<std::uint8_t> axes_to_repair(const std::vector<SensorAxis>& axes, bool repair) {
   std::vector<std::uint8_t> out;
   for (const SensorAxis& axis : axes) out.push_back(repair && !axis.is_force);

@@ -14,19 +14,19 @@
 
 namespace framewatch::estimator {
 
-/// Repairs single lost samples by the cubic through their four neighbours, two instants later:
-/// x = (4 (x-1 + x+1) - (x-2 + x+2)) / 6. Longer losses stay NaN. docs/equations.md, lost samples.
+/// Repairs single lost samples by the cubic through their four neighbors, two instants later: x =
+/// (4 (x-1 + x+1) - (x-2 + x+2)) / 6. Longer losses stay NaN. docs/equations.md, lost samples.
 class LostSampleFiller {
  public:
-  /// repair: flags of the axes.
+  /// `repair` has one flag per axis: 0 leaves the axis as it is.
   explicit LostSampleFiller(std::vector<std::uint8_t> repair);
 
-  /// Takes the next set; returns the set two instants older, or null while there is none.
+  /// Takes the next set. Returns the set two instants older, or nullptr at the beginning.
   const SampleSet* push(const SampleSet& set);
-  /// The input has ended: gives out the sets still held, one per call.
+  /// Returns the sets still held, one per call, then nullptr. Call it when the input has ended.
   const SampleSet* drain();
 
-  /// Samples repaired so far, per axis.
+  /// Returns the number of repaired samples per axis.
   const std::vector<std::int64_t>& repaired() const { return repaired_; }
 
   template <typename Archive>
@@ -48,49 +48,52 @@ class LostSampleFiller {
   std::array<SampleSet, 5> ring_;
   int next_ = 0;     ///< slot of the next set
   int filled_ = 0;   ///< consecutive sets held, at most 5
-  int waiting_ = 0;  ///< sets not yet given out
+  int waiting_ = 0;  ///< sets that have not been returned yet
   SampleSet out_;
   std::vector<std::int64_t> repaired_;
 };
 
-/// From scaled sensor values to absolute acceleration along the frames, m/s^2: offset, polarity,
-/// gravity on a tilted axis, and the share of the other horizontal direction on an axis that is
-/// turned in plan. docs/equations.md, mounting.
+/// Converts scaled sensor values to absolute acceleration along the frames, m/s^2. Corrects offset,
+/// polarity, gravity on a tilted axis, and the share of the other horizontal direction on an axis
+/// that is turned in plan. docs/equations.md, mounting.
 class Calibration {
  public:
   explicit Calibration(const std::vector<SensorAxis>& axes);
-  /// In place, one value per axis; an axis without the value it is corrected with becomes NaN.
+  /// Corrects one value per axis in place. An axis becomes NaN if the axis that corrects it has no
+  /// value.
   void apply(std::vector<double>& accel);
 
  private:
   struct Axis {
     double gain, offset;  ///< value = gain * (scaled - offset)
-    int cross;            ///< -1 none
+    int cross;            ///< -1: no correction by another axis
     double own = 1, other = 0;
   };
   std::vector<Axis> axes_;
   std::vector<double> straight_;
 };
 
-/// No building, table or impact on them has accelerations beyond this, m/s^2 either way: 20 g.
+/// Largest plausible acceleration of a building, a table or an impact, m/s^2 in either direction:
+/// 20 g.
 inline constexpr double kMaxAccel = 200;
-/// No sensor resolves this, m/s^2: a smaller number than it that is not 0 is no reading, but
-/// another kind of number taken for one.
+/// Smallest plausible reading other than 0, m/s^2. No sensor resolves it, so a smaller number is
+/// other data read as an acceleration.
 inline constexpr double kMinAccel = 1e-30;
 
-/// The readings that a channel can have, m/s^2 of scale times raw. A sample outside is no
-/// measurement, whatever it is: it never enters a filter.
+/// The range of readings that a channel can have, m/s^2 of scale times raw. A sample outside never
+/// enters a filter.
 struct SampleBound {
   double least, most;
 
-  /// False for what is no number.
+  /// Returns false for a value outside the range and for NaN.
   bool holds(double scaled) const {
     return scaled >= least && scaled <= most && (std::abs(scaled) >= kMinAccel || scaled == 0);
   }
 };
 
-/// With a range, kBeyondRange of it on either side of 0: what is between the two is clipped
-/// (AxisGuard). Without one, kMaxAccel on either side of the offset.
+/// Returns the bound of an axis. With a configured range, it is kBeyondRange times that range on
+/// either side of 0; values beyond the range itself count as clipped (AxisGuard). Without a range,
+/// it is kMaxAccel on either side of the offset.
 inline SampleBound sample_bound(const SensorAxis& axis) {
   constexpr double kBeyondRange = 1.25, kMaxForce_n = 1e12;
   if (axis.range > 0) return {-kBeyondRange * axis.range, kBeyondRange * axis.range};
@@ -98,26 +101,27 @@ inline SampleBound sample_bound(const SensorAxis& axis) {
   return {axis.offset - kMaxAccel, axis.offset + kMaxAccel};
 }
 
-/// The part of a delay that is whole samples, s.
+/// Returns the part of a delay that is whole samples, s.
 double whole_delay_s(double delay_s, double rate_hz);
 
-/// Raw samples in, clean sample sets out: what no sensor can have measured rejected (SampleBound),
-/// whole-sample delays taken off the stamps, axes merged on one grid, failing sensors' values
-/// removed, calibrated, single losses filled. The fraction of a
-/// delay that is less than a sample remains for the reader (SensorAxis::delay of axes()).
+/// Turns raw samples into clean sample sets. It rejects impossible values (SampleBound), subtracts
+/// whole-sample delays from the stamps, merges the axes on one grid, removes values of failing
+/// sensors, calibrates, and fills single losses. The remaining fraction of a delay is left to the
+/// user of the sets (SensorAxis::delay of axes()).
 class Acquisition {
  public:
   using Sink = std::function<void(const SampleSet&)>;
 
-  /// lone_spikes: whether what one axis alone does is kept (AxisGuard).
+  /// Calls `sink` with every clean set. lone_spikes: keep motion that a single axis shows
+  /// (AxisGuard).
   Acquisition(const std::vector<SensorAxis>& axes, const EstimatorOptions& options, Sink sink,
               bool lone_spikes = false);
 
   void push(const AccelSample& raw);
-  /// The input has ended: passes on everything still held.
+  /// Passes on every set that is still held. Call it when the input has ended.
   void finish();
 
-  /// The configured axes with the remaining fractions of their delays.
+  /// Returns the configured axes with the remaining fractions of their delays.
   const std::vector<SensorAxis>& axes() const { return axes_; }
   std::vector<AxisCounters> counters() const;
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr unsigned kNewest = 1, kOldest = 1u << SpikeGuard::kLookAhead;
 constexpr int kNeverStirred = 1000000;
-constexpr double kRises = 1.3;  // times the first sample in doubt
+constexpr double kRises = 1.3;  // ratio to the first doubtful sample
 constexpr double kNeverChanged = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -29,7 +29,8 @@ bool SpikeGuard::beyond(const Axis& a, double value, double steps) const {
          value < std::min(a.low, a.low_before) - reach;
 }
 
-/// A value that stands still tells nothing, neither of a quiet sensor nor of a stuck one.
+/// Takes a sound value into the statistics of its axis. Repeated values are left out: they come
+/// from quiet and from stuck sensors alike.
 void SpikeGuard::take(Axis& a, double value) const {
   if (a.seen > 0 && value == a.last) return;
   if (a.seen == 0) {
@@ -54,7 +55,7 @@ void SpikeGuard::take(Axis& a, double value) const {
   ++a.in_period;
 }
 
-void SpikeGuard::see(int axis, double value, double finest) {
+void SpikeGuard::push(int axis, double value, double finest) {
   Axis& a = of(axis);
   std::copy_backward(a.held.begin(), a.held.end() - 1, a.held.end());
   a.held[0] = value;
@@ -74,17 +75,17 @@ bool SpikeGuard::others_stir(int axis) const {
     if (other.still <= kStirring) return true;
     any = true;
   }
-  return !any;  // alone, nothing contradicts it
+  return !any;  // no other axis contradicts it
 }
 
-/// The oldest first; returns the ages.
+/// Takes the values of these ages, the oldest first. Returns the ages.
 unsigned SpikeGuard::take_ages(Axis& a, unsigned ages) const {
   for (int age = kLookAhead; age >= 0; --age)
     if ((ages >> age & 1u) != 0) take(a, a.held[static_cast<std::size_t>(age)]);
   return ages;
 }
 
-/// Decides all that waits; what is in doubt is sound or not.
+/// Decides all waiting samples. `sound` decides the doubtful ones.
 SpikeGuard::Decided SpikeGuard::decide_all(Axis& a, bool sound) {
   const Decided out{take_ages(a, sound ? a.doubtful | a.back : a.back), sound ? 0 : a.doubtful};
   a.doubtful = a.back = 0;
@@ -135,16 +136,17 @@ SpikeGuard::Decided SpikeGuard::finish(int axis) {
 namespace {
 
 constexpr double kMemory_s = 1;        // of the mean step
-constexpr double kRatioMemory_s = 10;  // of an axis' motion over its neighbours'
+constexpr double kRatioMemory_s = 10;  // of the ratio of an axis's motion to its neighbors'
 constexpr double kStrongestMemory_s = 120;
-constexpr double kStrong = 1.0 / 3;   // of the strongest motion: a recorder's record ends below
-constexpr double kLongRun_s = 0.5;    // equal samples that are stuck when the others move
-constexpr double kMovingFast = 50;    // times the resolution per sample: equal ones are no accident
-constexpr double kOthersMove = 10;    // times the resolution per sample, as the others predict
-constexpr double kFullScale = 0.999;  // of the configured range
+constexpr double kStrong =
+    1.0 / 3;  // share of the strongest motion, below which a recorder ends its record
+constexpr double kLongRun_s = 0.5;    // equal samples are stuck after this time if the others move
+constexpr double kMovingFast = 50;    // resolutions per sample: equal samples are then no accident
+constexpr double kOthersMove = 10;    // resolutions per sample that the others predict
+constexpr double kFullScale = 0.999;  // share of the configured range
 constexpr int kClippedRun = 3;
-constexpr double kFarFiner = 16;  // times smaller than the smallest step
-constexpr int kFinerRun = 300;    // such changes that are believed
+constexpr double kFarFiner = 16;  // ratio of the smallest step to a far finer change
+constexpr int kFinerRun = 300;    // number of such changes before they are accepted
 
 }  // namespace
 
@@ -183,7 +185,7 @@ const SampleSet* AxisGuard::push(const SampleSet& set) {
   ++waiting_;
   for (std::size_t a = 0; a < state_.size(); ++a) {
     if (interrupted) state_[a].run = 0;
-    spikes_.see(static_cast<int>(a), set.accel[a], state_[a].smallest_step);
+    spikes_.push(static_cast<int>(a), set.accel[a], state_[a].smallest_step);
   }
   watch_changes();
   for (std::size_t a = 0; a < state_.size(); ++a) decide(a);
@@ -191,7 +193,7 @@ const SampleSet* AxisGuard::push(const SampleSet& set) {
   return waiting_ > kLookAhead ? give() : nullptr;
 }
 
-/// Judges the samples that are sound, the oldest first.
+/// Judges the sound samples, the oldest first.
 void AxisGuard::decide(std::size_t a) {
   const SpikeGuard::Decided decided =
       lone_spikes_ ? SpikeGuard::Decided{std::isnan(held(0).accel[a]) ? 0u : 1u, 0}
@@ -215,7 +217,7 @@ void AxisGuard::watch_step(State& s, double value) const {
   if (s.seen) {
     const double change = std::abs(value - s.last);
     s.step += forget_ * (change - s.step);
-    // Some far finer changes are another kind of number, not the sensor's resolution.
+    // A few far finer changes are other data, not the sensor's resolution.
     const bool far_finer = kFarFiner * change < s.smallest_step;
     s.finer = std::max(0, s.finer + (far_finer ? 1 : -1));
     if (s.smallest_step == 0 || (change < s.smallest_step && (!far_finer || s.finer > kFinerRun)))
@@ -256,7 +258,7 @@ void AxisGuard::judge(std::size_t a, double value, int age) {
   judge_still(a, age);
 }
 
-/// Of an axis whose newest sample may be one of several equal ones.
+/// Judges an axis whose newest sample may be one of several equal ones.
 void AxisGuard::judge_still(std::size_t a, int age) {
   State& s = state_[a];
   if (s.run <= 1 && !s.still) return;
@@ -280,17 +282,17 @@ void AxisGuard::judge_still(std::size_t a, int age) {
   for (int back = 0; back <= kLookAhead; ++back) remove(a, age + back, s.still ? stuck_ : missing_);
 }
 
-/// Whether the neighbours' motion of the last second says that the axis should move.
+/// Returns true if the neighbors' motion of the last second predicts that the axis should move.
 bool AxisGuard::others_predict(std::size_t a, double ratio, double resolution) {
   if (state_[a].smallest_step > 0) return ratio * others(a, moving_) > kOthersMove * resolution;
-  // An axis that never changed has no step of its own to compare with.
+  // An axis that never changed has no step, so the finest step of its neighbors stands for it.
   double finest = std::numeric_limits<double>::infinity();
   for (std::size_t b = 0; b < state_.size(); ++b)
     if (neighbours(a, b) && moving_[b] > 0) finest = std::min(finest, state_[b].smallest_step);
   return others(a, moving_) > kOthersMove * std::max(finest, kFinest);
 }
 
-/// Called before any sample of this instant is taken out.
+/// Updates the changes of every axis. Call it before removing any sample of this instant.
 void AxisGuard::watch_changes() {
   const int ages = std::min(waiting_, kSlots) - 1;
   for (std::size_t a = 0; a < state_.size(); ++a) {
@@ -307,7 +309,7 @@ void AxisGuard::watch_changes() {
   }
 }
 
-/// How far an axis moves beside its neighbours, while it moves.
+/// Learns how far an axis moves compared with its neighbors, while it moves.
 void AxisGuard::learn_ratios() {
   for (std::size_t a = 0; a < state_.size(); ++a) {
     State& s = state_[a];
@@ -322,7 +324,7 @@ bool AxisGuard::neighbours(std::size_t a, std::size_t b) const {
          (alone_[a] != 0 || state_[b].axis.direction == state_[a].axis.direction);
 }
 
-/// Median over the neighbours; 0 without any.
+/// Returns the median of `of` over the neighbors; 0 without neighbors.
 double AxisGuard::others(std::size_t a, const std::vector<double>& of) {
   sorted_.clear();
   for (std::size_t b = 0; b < state_.size(); ++b)
@@ -333,7 +335,7 @@ double AxisGuard::others(std::size_t a, const std::vector<double>& of) {
   return *middle;
 }
 
-/// Whether no neighbour has moved during the last kLookAhead changes.
+/// Returns true if no neighbor has moved during the last kLookAhead changes.
 bool AxisGuard::all_stopped(std::size_t a) const {
   for (std::size_t b = 0; b < state_.size(); ++b)
     if (neighbours(a, b) && way_[b] > 0) return false;

@@ -53,7 +53,7 @@ Eigen::MatrixXd matrix_exponential(const Eigen::MatrixXd& square) {
 
 namespace {
 
-constexpr int kMaxSweeps = 30;  // a dozen rows need six
+constexpr int kMaxSweeps = 30;  // a dozen rows need six sweeps
 constexpr double kNegligible = 1e-17;
 
 }  // namespace

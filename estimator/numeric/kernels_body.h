@@ -14,7 +14,7 @@
 namespace framewatch::estimator::kernels {
 namespace {
 
-/// One complex number of some of the kBins frequencies.
+/// A complex number at as many of the kBins frequencies as a vector holds.
 template <typename Vector>
 struct Complex {
   typename Vector::Type re, im;
@@ -71,7 +71,7 @@ void noise_covariance(const double* d, const double* noise, const int* first, co
   });
 }
 
-/// 1 / sqrt(v), not finite where v is not above zero.
+/// Replaces v by 1 / sqrt(v). The result is not finite where v is not positive.
 template <typename Vector>
 inline FRAMEWATCH_INLINE void inverse_root(typename Vector::Type& v) {
   for (int l = 0; l < Vector::kLength; ++l) v[l] = v[l] > 0 ? __builtin_sqrt(v[l]) : 0.0;
@@ -107,7 +107,7 @@ inline FRAMEWATCH_INLINE void factorise(double* matrix, const int* first, int n)
   }
 }
 
-/// Of a lower triangle whose diagonal, real, is inverted already.
+/// Inverts a lower triangle in place. Its real diagonal must already be inverted.
 template <typename Vector>
 inline FRAMEWATCH_INLINE void invert_triangle(double* matrix, const int* first, int n) {
   constexpr int kNumber = 2 * kBins;
@@ -137,7 +137,7 @@ void inverse_cholesky(double* matrix, const int* first, int n) {
   });
 }
 
-/// So many vectors of columns stay in registers at a time.
+/// Number of column vectors that stay in registers at a time.
 constexpr int kAtOnce = 5;
 
 template <typename Vector, int kCount>
@@ -211,7 +211,7 @@ inline FRAMEWATCH_INLINE void multiply_some(const double* a, int a_stride, int r
                                      columns);
 }
 
-/// body(vector, count, column) for as many vectors of columns as stay in registers at a time.
+/// Calls body(vector, count, column) for as many column vectors as stay in registers at a time.
 template <typename Body>
 inline FRAMEWATCH_INLINE void for_columns(int columns, Body body) {
   constexpr int kWide = kAtOnce * Wide::kLength;

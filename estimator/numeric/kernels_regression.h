@@ -1,6 +1,7 @@
-// Vectors as wide as the registers of one instruction set, and the kernels of the regression: filtered rows, Gram
-// matrices, the story-ordered Cholesky factorization, and the boxplot's sorted array. Included by kernels_body.h.
-// The including source defines FRAMEWATCH_VECTOR_BYTES, the width of a register.
+// Vectors as wide as the registers of one instruction set, and the kernels of the regression:
+// filtered rows, Gram matrices, the story-ordered Cholesky factorization, and the boxplot's sorted
+// array. kernels_body.h includes this header. The including source defines FRAMEWATCH_VECTOR_BYTES,
+// the width of a register.
 #pragma once
 
 #include "estimator/numeric/kernels.h"
@@ -10,14 +11,15 @@
 namespace framewatch::estimator::kernels {
 namespace {
 
-/// A vector of doubles as g++ and clang offer it on every architecture, at any address.
+/// A vector of doubles at any address, by the vector extension that g++ and clang offer on every
+/// architecture.
 template <int kBytes>
 struct VectorOf {
   typedef double Type __attribute__((vector_size(kBytes)));
   typedef double Anywhere __attribute__((vector_size(kBytes), aligned(8), may_alias));
   static constexpr int kLength = kBytes / 8;
 };
-/// As wide as the registers: wider ones the compiler would take apart through memory.
+/// Vectors as wide as the registers. The compiler would split wider ones through memory.
 using Wide = VectorOf<FRAMEWATCH_VECTOR_BYTES>;
 using Lane = VectorOf < FRAMEWATCH_VECTOR_BYTES<8 * kLane ? FRAMEWATCH_VECTOR_BYTES : 8 * kLane>;
 
@@ -30,7 +32,8 @@ inline FRAMEWATCH_INLINE void store(double* to, const typename Vector::Type& v) 
   *reinterpret_cast<typename Vector::Anywhere*>(to) = v;
 }
 
-/// body(vector, j) for j = begin, ... in steps of a vector; begin and end multiples of a lane.
+/// Calls body(vector, j) for j = begin, ... in steps of a vector. begin and end are multiples of a
+/// lane.
 template <typename Body>
 inline FRAMEWATCH_INLINE void for_lanes(int begin, int end, Body body) {
   int j = begin;
@@ -38,7 +41,7 @@ inline FRAMEWATCH_INLINE void for_lanes(int begin, int end, Body body) {
   if (j < end) body(Lane{}, j);
 }
 
-/// kCount pivots from `p` on: the factor's rows.
+/// Computes the factor's rows of kCount pivots from row `p` on.
 template <int kCount>
 inline FRAMEWATCH_INLINE void take_pivots(const double* rows, double* factor_rows, int p, int front,
                                           int stride, const double* floor, unsigned char* usable) {
@@ -74,7 +77,8 @@ inline FRAMEWATCH_INLINE void take_pivots(const double* rows, double* factor_row
       for (int j = p; j < front; ++j) to[k][j] = 0;
 }
 
-/// kRows rows from `q` on, all starting in the same lane, see kCount pivots' rows of the factor.
+/// Subtracts the share of kCount pivot rows from kRows rows from `q` on. These rows all start in
+/// the same lane.
 template <int kCount, int kRows>
 inline FRAMEWATCH_INLINE void eliminate(double* rows, const double* pivot, int q, int stride) {
   double* to = rows + q * stride;
@@ -113,7 +117,7 @@ void partial_cholesky(double* front_rows, double* factor, int pivots, int front,
   if (pivots - p == 1) sweep<1>(front_rows, factor, p, front, stride, floor, usable);
 }
 
-/// kCount unknowns from `p` on, and what they take from those before them.
+/// Solves for kCount unknowns from `p` on and subtracts their share from the unknowns before them.
 template <int kCount>
 inline FRAMEWATCH_INLINE void substitute(const double* factor, int stride, int p, double* x) {
   double known[kCount];
@@ -176,7 +180,7 @@ void filter_rows(const double* x, const double* response, int at, const double* 
   }
 }
 
-/// kRows consecutive packed rows of the same length: to = from + sum_r h_r[i..] h_r[first..].
+/// Adds to kRows consecutive packed rows of equal length: to = from + sum_r h_r[i..] h_r[first..].
 template <int kRows>
 inline FRAMEWATCH_INLINE void add_to_rows(const double* from, double* to, const double* h, int rows,
                                           int stride, int i, int first) {
@@ -197,7 +201,7 @@ inline FRAMEWATCH_INLINE void add_to_rows(const double* from, double* to, const 
 
 void add_rows(const double* source, double* destination, const double* h, int rows, int front,
               int stride) {
-  static_assert(kLane == 4);  // so many rows start at the same column
+  static_assert(kLane == 4);  // this many rows start at the same column
   int i = 0;
   for (; i + kLane <= front; i += kLane) {
     add_to_rows<kLane>(source, destination, h, rows, stride, i, i);
@@ -243,8 +247,8 @@ void subtract_product(const double* packed, const double* __restrict x, double* 
                       int front, int stride) {
   constexpr int kParts = kLane / Lane::kLength;
   for (int i = 0; i < front; i += kLane) {
-    // Four rows that begin in the same lane: as rows (sum += a x) and, to the right of that lane,
-    // transposed (score -= a x_k).
+    // Four rows that begin in the same lane serve twice: as rows (sum += a x) and, right of that
+    // lane, transposed (score -= a x_k).
     const double* a[kLane];
     double xk[kLane];
     for (int k = 0; k < kLane; ++k) {
@@ -284,8 +288,8 @@ void subtract_product(const double* packed, const double* __restrict x, double* 
   }
 }
 
-/// How many of `length` values come before `value`: without branches, because where a value lies
-/// among others nobody can predict.
+/// Returns how many of `length` values satisfy `before`. Avoids branches, because a value's place
+/// among the others cannot be predicted.
 template <typename Before>
 inline FRAMEWATCH_INLINE int count_before(const double* values, int length, Before before) {
   static_assert(kGuidePadding % Wide::kLength == 0 && kGuideStep % Wide::kLength == 0);
@@ -313,7 +317,7 @@ void replace_sorted(double* sorted, int size, double* guide, int guide_size, dou
                             [&](const auto& v) FRAMEWATCH_INLINE { return v < leaving; });
   const int to = place_of(sorted, size, guide, guide_size,
                           [&](const auto& v) FRAMEWATCH_INLINE { return v <= entering; });
-  // One value out, one in: only what lies between them moves.
+  // One value leaves and one enters, so only the values between them move.
   Wide::Type v;
   int i = from;
   if (from < to) {

@@ -4,6 +4,7 @@
 
 namespace framewatch::estimator {
 
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< no value
+inline constexpr double kNaN =
+    std::numeric_limits<double>::quiet_NaN();  ///< stands for a missing value
 
 }  // namespace framewatch::estimator

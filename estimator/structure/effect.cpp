@@ -64,7 +64,7 @@ int crossings(const Structure& s) {
   return std::max(s.n(), 1) * x_lines(s);
 }
 
-/// Whether a floor assumed rigid could have panels.
+/// Returns true if a rigid floor has at least one panel that could shear.
 bool could_flex(const Structure& s) {
   return s.floor == FloorModel::rigid && s.n() > 1 && s.m() > 1;
 }
@@ -187,7 +187,7 @@ std::string number_text(double value) {
   return whole ? std::to_string(static_cast<long long>(value)) : std::to_string(value);
 }
 
-/// "must be > 0 and <= 2 s"; bounds that only keep numbers sane are not named.
+/// Returns "must be > 0 and <= 2 s". Bounds that only reject absurd numbers are left out.
 std::string range_text(const EffectParameter& p) {
   constexpr double kSane = 1e9;
   std::string out;
@@ -205,7 +205,7 @@ class Checker {
   std::vector<Problem> run() {
     const EffectDescription& d = describe(effect_.kind);
     if (std::find(d.places.begin(), d.places.end(), place_.kind) == d.places.end()) {
-      add("", "this kind of effect has no such place");
+      add("", "this effect cannot be at this kind of place");
       return found_;
     }
     check_place();
@@ -255,7 +255,7 @@ class Checker {
       add("node", "no such node");
     if (kind == PlaceKind::node_pair && (place_.to_story < 0 || place_.to_story > place_.story - 2))
       add("to_story", "must be 0 to " + std::to_string(place_.story - 2) +
-                          ": neighbouring floors are joined by their frame already");
+                          ": neighboring floors are already joined by their frame");
     if (kind == PlaceKind::floor && (s_.floor != FloorModel::rigid || s_.n() < 2 || s_.m() < 2))
       add("story", "only a building with floor = \"rigid\" and two frames each way at least");
   }

@@ -12,7 +12,7 @@ using enum EffectKind;
 constexpr double kAny = 1e15;
 constexpr double kLong_s = 1e6;
 
-/// Any size of either sign.
+/// A value of any size and sign.
 EffectParameter either_sign(std::string_view key, std::string_view unit, std::string_view meaning) {
   return {key, unit, std::nullopt, -kAny, kAny, false, meaning};
 }
@@ -21,7 +21,7 @@ EffectParameter positive(std::string_view key, std::string_view unit, std::strin
   return {key, unit, std::nullopt, 0, kAny, true, meaning};
 }
 
-/// An effect's size: 0 is no effect.
+/// A value of at least 0. It is the size of an effect: 0 switches the effect off.
 EffectParameter not_negative(std::string_view key, std::string_view unit,
                              std::string_view meaning) {
   return {key, unit, std::nullopt, 0, kAny, false, meaning};
@@ -101,7 +101,7 @@ std::vector<EffectDescription> elastic_and_hysteretic_laws() {
        "f = kh z; z' = v/(1 + b e) (1 - (1 + a e) abs(z/dy)^n (beta sgn(v z) + g - beta)); "
        "e' = z v/dy^2",
        kHystereticSign,
-       "Wen, J. Eng. Mech. Div. 102 (1976), normalised so that z ends at dy; losses: Baber and "
+       "Wen, J. Eng. Mech. Div. 102 (1976), normalized so that z ends at dy; losses: Baber and "
        "Wen, J. Eng. Mech. Div. 107 (1981)"},
       {pinching,
        "pinching",
@@ -149,7 +149,7 @@ std::vector<EffectDescription> friction_contact_and_weight() {
        "f = fc g(v), g(v) = (1 + s exp(-(v/vs)^2)) tanh(v/v0); with dp: f = fc z; z' = (v - v z / "
        "g(v)) / dp; with ks: f = ks z; z' = v while abs(z) < fc/ks or z v < 0, else 0",
        "fc > 0 resists the velocity. Dissipates.",
-       "Den Hartog, Trans. ASME 53 (1931), regularised; Armstrong-Helouvry, Dupont and Canudas de "
+       "Den Hartog, Trans. ASME 53 (1931), regularized; Armstrong-Helouvry, Dupont and Canudas de "
        "Wit, Automatica 30 (1994); Canudas de Wit and others, IEEE Trans. Autom. Control 40 "
        "(1995)"},
       {quadratic_damping,
@@ -218,7 +218,8 @@ std::vector<EffectDescription> masses_and_rotations() {
        kNode,
        {not_negative("mass_kg", "kg", "m: hidden mass, beside node_mass_kg"),
         positive("frequency_hz", "Hz", "F: of the mass on its spring, the floor held"),
-        within("damping_ratio", "", std::nullopt, 0, 2, "h: likewise")},
+        within("damping_ratio", "", std::nullopt, 0, 2,
+               "h: of the mass on its spring, the floor held")},
        "m (q'' + a_abs) + c q' + k q = 0, q relative to the node, a_abs its absolute acceleration; "
        "k = m (2 pi F)^2; c = 2 h m 2 pi F; k q + c q' pulls the node",
        "q > 0 pulls the node toward positive.",
@@ -230,7 +231,7 @@ std::vector<EffectDescription> masses_and_rotations() {
        "every story's frames of the direction deform by d = drift - h_i phi, phi the base's "
        "rotation; K phi = sum over stories of h_i k d (moment of the elastic story shears); "
        "dashpots and added laws take the same d",
-       "Smaller K is softer; 1/K = 0 is none. phi > 0 leans toward positive.",
+       "Smaller K is softer; 1/K = 0 is rigid. phi > 0 leans toward positive.",
        "Veletsos and Meek, Earthquake Eng. Struct. Dyn. 3 (1974), without rotary inertia"},
       {frame_bending,
        "frame_bending",
@@ -239,7 +240,7 @@ std::vector<EffectDescription> masses_and_rotations() {
        "in each frame of the direction a hinge at every floor j = 0..N-1 turns all above it: "
        "d_i = drift_i - h_i sum over j < i of phi_j; K phi_j = sum over i > j of h_i k_i d_i; "
        "dashpots and added laws take the same d",
-       "Smaller K is softer; 1/K = 0 is none. phi > 0 leans toward positive.",
+       "Smaller K is softer; 1/K = 0 is rigid. phi > 0 leans toward positive.",
        "Stafford Smith and Coull, Tall Building Structures, 1991, columns as hinged segments"},
   };
 }
@@ -364,7 +365,7 @@ std::vector<EffectDescription> sensor_errors() {
   };
 }
 
-/// In the order of EffectKind.
+/// Returns the descriptions in the order of EffectKind.
 std::vector<EffectDescription> make_catalogue() {
   std::vector<EffectDescription> out;
   for (const auto& part :

@@ -13,7 +13,7 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kDense = 200;  // degrees of freedom up to which dense algebra is as quick
+constexpr int kDense = 200;  // degrees of freedom up to which dense algebra is as fast
 constexpr int kVectors = 8;
 constexpr int kMaxIterations = 200;
 constexpr double kConverged = 1e-14;
@@ -42,7 +42,7 @@ double lowest_frequency_hz(const Structure& s, const ParameterTable& table,
     stiffness = Sparse(r.transpose()) * stiffness * r;
     mass = Sparse(r.transpose()) * mass * r;
   }
-  // Subspace iteration: several vectors, for the lowest frequencies may lie close together.
+  // Subspace iteration with several vectors, because the lowest frequencies may lie close together.
   const Eigen::SimplicialLDLT<Sparse> solver(stiffness);
   Eigen::MatrixXd x = Eigen::MatrixXd::Zero(stiffness.rows(), kVectors);
   for (Eigen::Index i = 0; i < x.rows(); ++i)

@@ -29,7 +29,8 @@ Deformations::Deformations(const Structure& s, const FloorLayout& layout,
         own_frame.push_back(static_cast<int>(a));
     }
     if (!place(0, f).empty() || own_frame.empty()) continue;
-    // A base that turns as a plane: the least-squares line through the frames that are measured.
+    // The base turns as a plane: the least-squares line through its measured frames gives the
+    // others.
     double mean = 0, spread = 0;
     const auto at = [&](int axis) {
       return line_position(s, axes[static_cast<std::size_t>(axis)].frame);

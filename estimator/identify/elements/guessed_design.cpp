@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPeriodPerStory = 0.1;  // s
 constexpr double kGuessedDamping = 0.02;
-constexpr double kLargestStep = 5;     // retuning: most a parameter may move at once
-constexpr double kTrustedError = 0.1;  // retuning: relative standard error trusted by half
+constexpr double kLargestStep = 5;  // retuning: largest factor by which a parameter moves at once
+constexpr double kTrustedError = 0.1;  // retuning: relative standard error that is trusted by half
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void retuned_design(const FloorLayout& layout, const ParameterTable& table,
 
 namespace {
 
-/// Standard deviation of a design that is off by anything up to its tolerance, over the tolerance.
+/// Standard deviation over tolerance, for a design whose error is uniform within its tolerance.
 constexpr double kUniform = 0.58;
 
 }  // namespace

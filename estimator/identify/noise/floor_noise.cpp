@@ -65,7 +65,8 @@ void set_noise_density(FloorNoise& noise, const std::vector<double>& density, do
 
 namespace {
 
-/// Response of high-pass and one tap set to a unit impulse, long enough for the high-pass to decay.
+/// Returns the response of the high-pass and one tap set to a unit impulse. `length` covers the
+/// decay of the high-pass.
 std::vector<double> impulse_response(const std::vector<double>& taps, const HighPass& hp,
                                      std::size_t length) {
   std::vector<double> high(length), out(length, 0.0);

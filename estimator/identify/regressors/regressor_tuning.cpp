@@ -10,9 +10,9 @@
 namespace framewatch::estimator {
 namespace {
 
-/// The derivative triple is accurate up to this share of the sampling rate: no corner is higher.
+/// Highest corner as a share of the sampling rate: the derivative triple is accurate up to there.
 constexpr double kHighestCorner = 0.2;
-/// Periods of the high-pass after which its impulse response is forgotten.
+/// Periods of the high-pass in which its impulse response decays.
 constexpr double kDecay = 3;
 
 }  // namespace
@@ -100,7 +100,8 @@ void RegressorTuning::floor_stiffness(int floor, const Eigen::VectorXd& theta) {
     add(p, theta[layout_->parameter(floor, p)]);
 }
 
-/// Modes of the equations taken, in the first columns of modes_ and frequency_hz_; their number.
+/// Computes the modes of the present equations into the first columns of modes_ and frequency_hz_.
+/// Returns their number.
 int RegressorTuning::floor_modes(int floor, const Eigen::VectorXd& theta) {
   const int frames = layout_->frames();
   const auto count = static_cast<int>(equations_.size());
@@ -152,7 +153,7 @@ void RegressorTuning::weigh(int floor, int r, const OscillatorSection& section, 
   const FloorNoise& noise = noise_[static_cast<std::size_t>(floor)];
   const NoiseMoments moments = noise_filter_.through(section);
 
-  for (int p = 0; p < unknowns; ++p) {  // force of the element on the row, per unit deformation
+  for (int p = 0; p < unknowns; ++p) {  // force of the element on the row per unit deformation
     double projected = 0;
     for (int f = 0; f < frames; ++f) projected += layout_->coefficient(p, f) * phi[f];
     force_[p] = projected * (p < layout_->own() ? theta0_at(floor, p)
@@ -160,7 +161,7 @@ void RegressorTuning::weigh(int floor, int r, const OscillatorSection& section, 
   }
   for (int f = 0; f < frames; ++f) inertia_[f] = phi[f] * mass(floor, f);
   const Eigen::Index axes = noise.variance.size();
-  // How the noise of every axis enters the row through mass, stiffness and damping.
+  // The noise of each axis enters the row through mass, stiffness and damping.
   double variance = 0, response = 0;
   common_.setZero();
   for (Eigen::Index a = 0; a < axes; ++a) {
@@ -186,7 +187,7 @@ void RegressorTuning::weigh(int floor, int r, const OscillatorSection& section, 
     out.response[row * static_cast<std::size_t>(frames) + static_cast<std::size_t>(f)] = -phi[f];
   out.noise_response += root_weight * root_weight * moments.g22 * response;
   for (int p = 0; p < unknowns; ++p) {
-    // The response is -m p'': noise in p'' and p moves together, in p'' and p' it does not.
+    // The response is -m p''. Noise in p'' is correlated with noise in p, but not with noise in p'.
     const bool damping = noise.damping[static_cast<std::size_t>(p)];
     if (!damping)
       out.noise_right[static_cast<std::size_t>(p)] -=
@@ -273,7 +274,7 @@ double RegressorTuning::detuning(int floor, const Eigen::VectorXd& theta) {
 
 namespace {
 
-constexpr int kShapes = 4;  // of a row: two of the high-pass, two of its oscillator section
+constexpr int kShapes = 4;  // shapes of a row: two of the high-pass, two of its oscillator section
 
 }  // namespace
 
@@ -311,7 +312,8 @@ void RegressorFilter::rebuild(int floor) {
   std::fill(f.s2.begin(), f.s2.end(), 0.0);
   f.settling = settle_ + 1;
   f.past.end();
-  f.starting = tuning_->removes_past() && settle_ == 0;  // what settles owes nothing
+  f.starting =
+      tuning_->removes_past() && settle_ == 0;  // settled filters carry no trace of the past
   if (!f.starting) return;
   f.past.begin(f.rows->rows);
   for (int r = 0; r < f.rows->rows; ++r) {
@@ -368,7 +370,7 @@ void RegressorFilter::push(const DeformationSet& set) {
   }
 }
 
-/// Here, because the tuning must not need the filter that needs it.
+/// Defined here, because the tuning must not depend on the filter, which depends on it.
 std::unique_ptr<RowFilter> RegressorTuning::make_filter(int settle) {
   return std::make_unique<RegressorFilter>(*this, *layout_, settle);
 }

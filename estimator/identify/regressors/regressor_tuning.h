@@ -21,40 +21,39 @@
 
 namespace framewatch::estimator {
 
-/// How the rows of every floor are formed: projection, oscillator sections and weights for given
-/// parameters theta0, the design of the drawings at first, later what was identified.
-/// docs/equations.md, matched rows.
-/// Allocates when constructed, never after.
+/// Forms the rows of every floor: projection, oscillator sections and weights for given parameters
+/// theta0. At first theta0 is the design, later it is identified. docs/equations.md, matched rows.
+/// Allocates only in the constructor.
 class RegressorTuning : public RowTuning {
  public:
-  /// Structure to high_pass must outlive the object. theta0 > 0, theta order. noise_density: of
-  /// every axis, m/s^2/sqrt(Hz), > 0; empty: the configured ones.
+  /// The arguments from `structure` to `high_pass` must outlive the object. theta0: > 0, theta
+  /// order. noise_density: of every axis, m/s^2/sqrt(Hz), > 0; empty: the configured ones.
   RegressorTuning(const Structure& structure, const FloorLayout& layout,
                   const Deformations& deformations, const EstimatorOptions& options,
                   const DerivativeTriple& triple, const HighPass& high_pass,
                   const Eigen::VectorXd& theta0, std::vector<double> noise_density = {});
 
   void set_theta0(const Eigen::VectorXd& theta0, const std::vector<double>& noise_density) override;
-  /// Parts are floors.
+  /// Each floor is one part.
   int parts() const override { return layout_->floors(); }
   void tune(int floor) override;
 
-  /// Rows of a floor when every motion is known.
+  /// Returns the rows of a floor if every motion is known.
   const FloorRows& rows(int floor) const override { return rows_[static_cast<std::size_t>(floor)]; }
-  /// known: (floors + 1) x frames flags of DeformationSet. Equations that need an unknown motion
-  /// are left out and the rest projected on their own eigenvectors. out: once a copy of
-  /// rows(floor).
+  /// Writes the rows of a floor for partly known motion into `out`, which must be a copy of
+  /// rows(floor). known: (floors + 1) x frames flags of DeformationSet. Equations that need an
+  /// unknown motion are left out; the others are projected on their own eigenvectors.
   void rows(int floor, const std::vector<std::uint8_t>& known, FloorRows& out);
 
   const Eigen::VectorXd& theta0() const override { return theta0_; }
   const std::vector<double>& noise_density() const override { return noise_density_; }
-  /// 3 / (zeta w) of the slowest section.
+  /// Returns 3 / (zeta w) of the slowest section, in instants, and at least `least`.
   int settle_rows(int least) const override;
-  /// The paper's variant: its filters settle.
+  /// Returns the settling time in the paper's variant, whose filters must settle; otherwise 0.
   int start_rows() const override;
   bool removes_past() const { return options_->variant != Variant::paper; }
   const PolePair& high_pass_poles() const { return high_pass_poles_; }
-  /// Largest relative change of the corners of a floor's sections.
+  /// Returns the largest relative change of the corner frequencies of a floor's sections.
   double detuning(int floor, const Eigen::VectorXd& theta) override;
   std::unique_ptr<RowTuning> copy() const override {
     return std::make_unique<RegressorTuning>(*this);
@@ -94,12 +93,12 @@ class RegressorTuning : public RowTuning {
   Eigen::VectorXd theta0_;
   std::vector<double> noise_density_;
   std::vector<double> mass_;    ///< floors x frames
-  Eigen::MatrixXd constraint_;  ///< of rigid floors; empty when flexible
+  Eigen::MatrixXd constraint_;  ///< constraint of rigid floors; empty if floors are flexible
   PerturbedDesigns perturbed_;
   std::vector<FloorNoise> noise_;
   std::vector<FloorRows> rows_;
 
-  // Of one call, kept so that it need not allocate.
+  // Buffers of single calls, kept to avoid allocations.
   std::vector<int> equations_;
   Eigen::MatrixXd basis_, modes_, stiffness_;  ///< frames x rows, frames x rows, frames x frames
   std::vector<double> projected_;
@@ -107,13 +106,13 @@ class RegressorTuning : public RowTuning {
   JacobiEigen eigen_;
 };
 
-/// Forms the regression's rows of every floor from p, p' and p'' of the element deformations: each
-/// row passes its oscillator section (docs/equations.md (12), the last part of the drift-controlled
-/// integrator) and is weighted, (13).
+/// Forms the regression rows of every floor from p, p' and p'' of the element deformations. Each
+/// row passes its oscillator section, the last part of the drift-controlled integrator
+/// (docs/equations.md (12)), and is weighted (13).
 class RegressorFilter : public RowFilter {
  public:
-  /// settle: instants a floor's filters run before its rows count, after a start or when another
-  /// set of motions is known. The tuning must outlive the filter.
+  /// settle: instants that a floor's filters run before its rows count, after a start or when other
+  /// motions become known. The tuning must outlive the filter.
   RegressorFilter(RegressorTuning& tuning, const FloorLayout& layout, int settle);
 
   void reset(int settle) override;
@@ -162,11 +161,11 @@ class RegressorFilter : public RowFilter {
   }
 
   struct Floor {
-    const FloorRows* rows = nullptr;  ///< the tuning's, or those below
+    const FloorRows* rows = nullptr;  ///< the tuning's rows, or some_known
     FloorRows some_known;
     std::vector<double> s1, s2;
     UnknownPast past;
-    bool starting = false;  ///< too few rows since the start to know the past from
+    bool starting = false;  ///< too few rows since the start to determine the past
     int settling = 0;
   };
   void rebuild(int floor);
