@@ -138,8 +138,8 @@ namespace {
 constexpr double kMemory_s = 1;        // of the mean step
 constexpr double kRatioMemory_s = 10;  // of the ratio of an axis's motion to its neighbors'
 constexpr double kStrongestMemory_s = 120;
-constexpr double kStrong =
-    1.0 / 3;  // share of the strongest motion, below which a recorder ends its record
+// Share of the strongest motion, below which a recorder ends its record.
+constexpr double kStrong = 1.0 / 3;
 constexpr double kLongRun_s = 0.5;    // equal samples are stuck after this time if the others move
 constexpr double kMovingFast = 50;    // resolutions per sample: equal samples are then no accident
 constexpr double kOthersMove = 10;    // resolutions per sample that the others predict

@@ -53,11 +53,10 @@ class SpikeGuard {
 
  private:
   struct Axis {
-    double last = 0;  ///< newest sound value
-    double step = 0,
-           step_before = 0;    ///< mean change of values, now and at the end of the last period
-    double change = 0;         ///< newest change
-    double low = 0, high = 0;  ///< extremes of this period of kPeriod_s
+    double last = 0;                         ///< newest sound value
+    double step = 0, step_before = 0;        ///< mean change now, and at the end of the last period
+    double change = 0;                       ///< newest change
+    double low = 0, high = 0;                ///< extremes of this period of kPeriod_s
     double low_before = 0, high_before = 0;  ///< extremes of the period before
     double least_step = 0;                   ///< least mean step that is assumed
     int seen = 0;                            ///< sound changes, counted up to one second
@@ -205,8 +204,8 @@ class AxisGuard {
   /// The newest change of every axis, and its way over the last kLookAhead changes. Not part of the
   /// state.
   std::vector<double> change_, way_;
-  std::vector<double>
-      moving_;  ///< State::motion, or 0 for an axis that does not move; not part of the state
+  /// State::motion, or 0 for an axis that does not move; not part of the state.
+  std::vector<double> moving_;
   std::vector<double> sorted_;
   int newest_ = 0, waiting_ = 0;
   SampleSet out_;

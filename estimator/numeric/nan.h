@@ -4,7 +4,7 @@
 
 namespace framewatch::estimator {
 
-inline constexpr double kNaN =
-    std::numeric_limits<double>::quiet_NaN();  ///< stands for a missing value
+/// Stands for a missing value.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace framewatch::estimator

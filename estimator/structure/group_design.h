@@ -9,8 +9,8 @@ namespace framewatch::estimator {
 
 /// The design of the building as designed parameters.
 struct GroupDesign {
-  Eigen::VectorXd
-      theta;  ///< parameters of every story, in the order of ParameterTable(structure), SI
+  /// Parameters of every story, in the order of ParameterTable(structure), SI.
+  Eigen::VectorXd theta;
   BendingStiffness bending_nmprad{};
 };
 

@@ -30,8 +30,8 @@ struct StoryGroups {
 struct WantedGroups {
   /// Floors at which groups end, ascending; empty: at every measured floor.
   std::vector<int> floors = {};
-  bool bending =
-      false;  ///< frames bend: even a building with a sensor everywhere is identified in groups
+  /// Frames bend: even a building with a sensor everywhere is identified in groups.
+  bool bending = false;
 };
 
 /// Returns the groups of a layout. On flexible floors, a frame's groups end where that frame has an
@@ -39,8 +39,8 @@ struct WantedGroups {
 /// On rigid floors, groups end where the direction is measured; two frames of a direction are
 /// separate if every measured floor shows its translations and its rotation.
 ///
-/// Forces and vertical axes do not end groups. With a force, stories are groups of one if every
-/// floor is measured. find_problems() of structure and axes must be empty.
+/// Forces and vertical axes do not end groups. With one of them, stories are groups of one if
+/// every floor is measured. find_problems() of structure and axes must be empty.
 StoryGroups story_groups(const Structure& structure, const std::vector<SensorAxis>& axes,
                          const WantedGroups& wanted = {});
 

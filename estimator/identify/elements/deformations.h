@@ -12,9 +12,8 @@ namespace framewatch::estimator {
 
 /// The motion of the whole building at one instant, from which regression rows are formed.
 struct DeformationSet {
-  std::vector<double> values;  ///< in the order that the MotionSource defines
-  std::vector<std::uint8_t>
-      known;  ///< flags of the measured places, in the order that the MotionSource defines
+  std::vector<double> values;       ///< in the order that the MotionSource defines
+  std::vector<std::uint8_t> known;  ///< flags of the measured places, in the same order
 
   template <typename Archive>
   void archive(Archive& a) {

@@ -10,10 +10,10 @@ namespace framewatch::estimator {
 
 enum class WindowStatus { warming_up, valid, nothing_identifiable };
 
-/// The reason why a parameter has no value; observable: it has one. quiet: its element moves too
-/// little above the sensors' noise. floor_too_stiff: the frames move, but this floor panel does not
-/// shear enough. symmetric_plan: the panel cannot shear, because the frames of each direction are
-/// alike.
+/// Tells if a parameter has a value (observable), or why not.
+///   quiet            its element moves too little above the sensors' noise
+///   floor_too_stiff  the frames move, but this floor panel does not shear enough
+///   symmetric_plan   the panel cannot shear, because the frames of each direction are alike
 enum class Observability {
   observable,
   warming_up,
@@ -108,13 +108,10 @@ struct ModelFit {
   /// By parameter, table order; NaN until a window shows it. Rms of what the equations leave beyond
   /// sensor noise, over the rms of the stiffness forces.
   std::vector<double> misfit;
-  std::vector<double>
-      design_error;  ///< error from tolerances of masses and of stories in their group
+  std::vector<double> design_error;  ///< from tolerances of masses and of story shares
   std::vector<double> misfit_error;  ///< error that the misfit may hide
-  std::vector<double>
-      corner_error;  ///< spread over corner frequencies of the row filters, beyond noise
-  std::vector<double>
-      error;  ///< all these errors together; at least 1 where the model does not fit
+  std::vector<double> corner_error;  ///< spread over filter corners, beyond noise
+  std::vector<double> error;         ///< all of these; at least 1 if the model does not fit
   std::vector<FitWord> word;
 
   template <typename Archive>

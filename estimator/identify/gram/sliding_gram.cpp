@@ -9,8 +9,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr int kSpansPerLength = 5;
-constexpr double kMaxEnergy =
-    1e60;  // largest energy of a block in squares of noise, beyond any motion
+constexpr double kMaxEnergy = 1e60;  // of a block, in squares of noise: beyond any motion
 
 }  // namespace
 

@@ -15,10 +15,11 @@
 namespace framewatch::estimator {
 namespace {
 
-/// Modes above are taken as rigid: the derivative filters end here.
+/// Modes above this frequency are taken as rigid, because the derivative filters end here.
 constexpr double kHighestMode_hz = 20;
-/// Of an inner set, for each pair of its ends: with 4 the rest, taken as rigid, changes stiffnesses
-/// by 1e-5, with 3 by 2e-4, and what a shift costs does not grow with the stories of a group.
+/// Number of modes of an inner set for each pair of its ends. The rest is taken as rigid: with 4
+/// modes this changes stiffnesses by 1e-5, with 3 by 2e-4. So the cost of an instant does not grow
+/// with the stories of a group.
 constexpr int kFewestModes = 3, kMaxModes = 4;
 
 std::vector<double> by_columns(const Eigen::MatrixXd& m) {
@@ -50,7 +51,7 @@ std::vector<int> not_zero_rows(const Eigen::MatrixXd& m) {
   return out;
 }
 
-/// Of exponents per step: conjugate ones together, real ones two by two.
+/// Pairs exponents per step: conjugate ones together, real ones two by two.
 std::vector<PolePair> pole_pairs(const std::vector<std::complex<double>>& exponents) {
   std::vector<PolePair> out;
   std::vector<double> real;
@@ -66,10 +67,10 @@ std::vector<PolePair> pole_pairs(const std::vector<std::complex<double>>& expone
   return out;
 }
 
-/// Modes of one inner set with its ends held.
+/// The modes of one inner set with its ends held.
 struct SetModes {
-  int first, size;        ///< its coordinates, behind the measured ones
-  Eigen::MatrixXd shape;  ///< size x modes, of unit mass
+  int first, size;        ///< its coordinates, after the measured ones
+  Eigen::MatrixXd shape;  ///< size x modes, of unit modal mass
   Eigen::VectorXd w2;     ///< (rad/s)^2
 };
 
@@ -116,12 +117,12 @@ class Builder {
   }
 
  private:
-  /// Projected rows of a matrix that acts on all measured coordinates.
+  /// Returns the projected rows of a matrix that acts on all measured coordinates.
   Eigen::MatrixXd rows(const Eigen::MatrixXd& on_measured) const {
     return projection_ * on_measured.bottomRows(b_.rows());
   }
 
-  /// Static shapes under motion of the ends, and the modes of every set.
+  /// Computes the static shapes under motion of the ends and the modes of every set.
   void condense() {
     at_ends_ = Eigen::MatrixXd::Zero(b_.size(), b_.measured);
     at_ends_.topRows(b_.measured).setIdentity();
@@ -136,7 +137,7 @@ class Builder {
       const int pairs = std::max(1, (ends + 1) / 2);
       SetModes set{first, size, Eigen::MatrixXd(size, size), Eigen::VectorXd(size)};
       Eigen::Index modes = 0;
-      for (Eigen::Index m = size - 1; m >= 0; --m) {  // 1 / w^2, ascending
+      for (Eigen::Index m = size - 1; m >= 0; --m) {  // ascending 1 / w^2
         const double over_w2 = eigen.values[m];
         const bool low = over_w2 * std::pow(2 * M_PI * kHighestMode_hz, 2) > 1;
         if (!(over_w2 > 1e-12 * eigen.values[size - 1]) ||
@@ -153,7 +154,7 @@ class Builder {
     mass_ = at_ends_.transpose() * b_.mass * at_ends_;
   }
 
-  /// Each floor's own modes while its neighbours are held, as rows.
+  /// Computes the modes of each floor with its neighbors held, as rows.
   void project() {
     const Eigen::MatrixXd k = at_ends_.transpose() * stiffness_ * at_ends_;
     projection_ = Eigen::MatrixXd::Zero(b_.rows(), b_.rows());
@@ -207,7 +208,7 @@ class Builder {
     return out;
   }
 
-  /// All rows of the floors that these measured coordinates belong to.
+  /// Returns all rows of the floors that these measured coordinates belong to.
   std::vector<int> rows_at(const std::vector<int>& ends) const {
     std::vector<int> out;
     for (std::size_t f = 0; f + 1 < b_.floors.size(); ++f)
@@ -245,8 +246,8 @@ class Builder {
   double rate_hz_;
   InnerModes modes_;
   Eigen::MatrixXd stiffness_, damping_;
-  Eigen::MatrixXd at_ends_;     ///< all coordinates by measured ones, static
-  Eigen::MatrixXd mass_;        ///< of the measured ones, with what they carry
+  Eigen::MatrixXd at_ends_;     ///< static motion of all coordinates by the measured ones
+  Eigen::MatrixXd mass_;        ///< mass of the measured coordinates and the floors they carry
   Eigen::MatrixXd projection_;  ///< rows by equations of the measured floors
   std::vector<double> frequency_hz_;
   std::vector<SetModes> sets_;
@@ -264,7 +265,7 @@ namespace {
 
 constexpr int kSignals = AxisMotion::kSignals;
 
-/// out += matrix x; by columns.
+/// out += matrix x. The matrix is stored by columns.
 void add_product(const std::vector<double>& matrix, int rows, const double* x, int columns,
                  double* out) {
   const double* at = matrix.data();
@@ -317,7 +318,7 @@ void GroupChain::add_static(const double* motion) {
       for (const int row : part.rows) signal_[size(row * stride_ + part.parameter)] += *at++ * x;
     }
   }
-  // by_* are by columns: rows vary fastest.
+  // by_* are stored by columns, so rows vary fastest.
   const auto add = [&](const Eigen::MatrixXd& matrix, int signal) {
     const double* at = matrix.data();
     for (Eigen::Index c = 0; c < matrix.cols(); ++c)
@@ -342,7 +343,7 @@ void GroupChain::advance(const InnerChain& chain, Inner& inner, const double* mo
     for (int m = 0; m < modes; ++m) {
       inner.forces_now[size(m)] += second[m] * signal(e, AxisMotion::held_second) +
                                    first[m] * signal(e, AxisMotion::held_first);
-      // A hold takes nothing off what acts at once.
+      // A hold does not attenuate what acts at once.
       inner.column[size(m)] +=
           second[m] * signal(e, AxisMotion::second) + first[m] * signal(e, AxisMotion::first);
     }
@@ -360,7 +361,7 @@ void GroupChain::advance(const InnerChain& chain, Inner& inner, const double* mo
   inner.state.swap(inner.next);
   inner.forces_before = inner.forces_now;
 
-  // Accelerations of the modes from the forces and what the springs hold.
+  // The accelerations of the modes follow from the forces and the spring forces.
   double* accel = inner.column.data();
   const double* rate = &inner.state[size(modes)];
   for (int m = 0; m < modes; ++m) {
@@ -383,7 +384,7 @@ void GroupChain::advance(const InnerChain& chain, Inner& inner, const double* mo
 }
 
 void GroupChain::derive(const InnerChain& chain, Inner& inner) {
-  if (chain.forces.empty()) return;  // nothing that is identified moves it
+  if (chain.forces.empty()) return;  // no identified parameter moves it
   const int modes = chain.modes, columns = inner.columns;
   const auto rows = static_cast<int>(chain.rows.size());
   const auto ends = static_cast<int>(chain.ends.size());
@@ -411,7 +412,7 @@ void GroupChain::derive(const InnerChain& chain, Inner& inner) {
     for (std::size_t p = 0; p < chain.forces.size(); ++p) {
       const double derivative = inner.on_rows[size(r * columns) + p];
       signal_[size(row * stride_ + chain.forces[p].parameter)] += derivative;
-      response_[size(row)] += derivative;  // h x = z: what is linear in x about the tuning
+      response_[size(row)] += derivative;  // h x = z: the part linear in x about the tuning
     }
   }
 }

@@ -17,23 +17,23 @@ namespace {
 
 /// A spring with at least one coordinate in an inner set.
 struct InnerSpring {
-  std::vector<std::pair<int, double>> deformation;  ///< in the set: coordinate, coefficient
-  std::vector<std::pair<int, double>> ends;         ///< in measured coordinates
+  std::vector<std::pair<int, double>> deformation;  ///< coordinate of the set, coefficient
+  std::vector<std::pair<int, double>> ends;         ///< measured coordinate, coefficient
   double stiffness;
-  bool hinge;  ///< rotational: its stiffness may differ from the design by much
+  bool hinge;  ///< rotational; its stiffness may differ much from the design
 };
 
-/// Coordinates that are not measured and move together.
+/// Unmeasured coordinates that move together.
 struct InnerSet {
   Eigen::MatrixXd mass;
   std::vector<InnerSpring> springs;
 };
 
-/// A set of at most so many coordinates is kept as it is.
+/// Largest number of coordinates of a set that is not reduced.
 constexpr int kMaxInner = 40;
 
 constexpr int kShapes = 24;    // modes of a large set
-constexpr double kSpread = 3;  // hinges: factor that their stiffness may be off
+constexpr double kSpread = 3;  // factor by which the stiffness of hinges may be off
 constexpr double kIndependentShape = 1e-7;
 
 Eigen::MatrixXd shapes_of(const InnerSet& set, int measured, double hinge_factor) {
@@ -62,9 +62,10 @@ Eigen::MatrixXd shapes_of(const InnerSet& set, int measured, double hinge_factor
   return out;
 }
 
-/// Shapes, orthonormal columns, whose sums are the set's motions: all of them, or the lowest modes
-/// with the ends held and the static shapes under motion of the ends, for hinges as designed, a
-/// third and three times as stiff. measured: number of measured coordinates.
+/// Returns orthonormal columns whose sums are the motions of the set. A small set keeps all its
+/// motions. A large set is described by its lowest modes with the ends held and the static shapes
+/// under motion of the ends, for hinges as designed, a third as stiff and three times as stiff.
+/// measured: number of measured coordinates.
 Eigen::MatrixXd inner_shapes(const InnerSet& set, int measured) {
   const Eigen::Index n = set.mass.rows();
   if (n <= kMaxInner) return Eigen::MatrixXd::Identity(n, n);
@@ -85,9 +86,9 @@ Eigen::MatrixXd inner_shapes(const InnerSet& set, int measured) {
   return independent.left.leftCols(kept);
 }
 
-constexpr double kCoupled = 1e-9;  // of a mass matrix' diagonal
+constexpr double kCoupled = 1e-9;  // share of a mass matrix' diagonal
 
-/// A frame story, floor panel or hinge: stiffness and damping along a deformation.
+/// A frame story, floor panel or hinge with stiffness and damping along a deformation.
 struct Spring {
   std::vector<std::pair<int, double>> deformation;  ///< coordinate, coefficient
   double stiffness, damping;
@@ -95,13 +96,13 @@ struct Spring {
   bool hinge = false;
 };
 
-/// All coordinates: measured ones first.
+/// All coordinates, the measured ones first.
 struct Coordinates {
   std::vector<FloorCoordinates> floor;  ///< base first
-  std::vector<std::vector<int>> index;  ///< of every floor's coordinates
-  std::vector<int> forces;              ///< axes of the coordinates behind the base's
+  std::vector<std::vector<int>> index;  ///< coordinates of every floor
+  std::vector<int> forces;              ///< axes of the coordinates after the base's
   std::array<Eigen::RowVectorXd, 2> rotation_of_axes;
-  std::array<int, 2> rotation{-1, -1};  ///< coordinates behind the forces'; -1: not known
+  std::array<int, 2> rotation{-1, -1};  ///< coordinates after the forces; -1: not known
   int inputs = 0, measured = 0, total = 0;
 };
 
@@ -181,7 +182,7 @@ std::vector<Spring> springs(const Structure& s, const ParameterTable& table,
   return out;
 }
 
-/// Sets of inner coordinates that springs or masses connect, each ascending.
+/// Returns the sets of inner coordinates that springs or masses connect, each ascending.
 std::vector<std::vector<int>> connected(const std::vector<Spring>& springs,
                                         const Eigen::MatrixXd& mass, const Coordinates& c) {
   std::vector<int> root(static_cast<std::size_t>(c.total));
@@ -213,7 +214,7 @@ std::vector<std::vector<int>> connected(const std::vector<Spring>& springs,
   return out;
 }
 
-/// Forces work on what their places move by.
+/// Adds the forces, which do work on the motion of their places.
 void add_forces(const Structure& s, const std::vector<SensorAxis>& axes, const Coordinates& c,
                 Eigen::MatrixXd& mass) {
   for (std::size_t n = 0; n < c.forces.size(); ++n) {
@@ -247,7 +248,7 @@ Eigen::MatrixXd mass_of(const Structure& s, const std::vector<SensorAxis>& axes,
   return mass;
 }
 
-/// Motion of the frames at the base and at every floor by all coordinates.
+/// Returns the motion of the frames at the base and at every floor by all coordinates.
 Eigen::MatrixXd frames_of(const Structure& s, const Coordinates& c) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero((s.stories + 1) * s.frames(), c.total);
   for (std::size_t l = 0; l < c.floor.size(); ++l)
@@ -257,7 +258,8 @@ Eigen::MatrixXd frames_of(const Structure& s, const Coordinates& c) {
   return out;
 }
 
-/// Columns: all coordinates' motion for the measured ones and for those that describe inner sets.
+/// Motion of all coordinates (rows) by the measured ones and by those that describe inner sets
+/// (columns).
 struct Basis {
   Eigen::MatrixXd shapes;
   std::vector<int> sets;
@@ -304,7 +306,8 @@ Basis basis_of(const std::vector<Spring>& springs, const Eigen::MatrixXd& mass,
   return out;
 }
 
-/// By parameter, the first one of the group that it is part of while only these axes are there.
+/// Returns by parameter the first one of the group that it belongs to if only these axes are
+/// present.
 std::vector<int> first_of_group(const Structure& s, const std::vector<SensorAxis>& axes,
                                 const ParameterTable& table,
                                 const std::vector<std::uint8_t>& present) {

@@ -312,8 +312,8 @@ void RegressorFilter::rebuild(int floor) {
   std::fill(f.s2.begin(), f.s2.end(), 0.0);
   f.settling = settle_ + 1;
   f.past.end();
-  f.starting =
-      tuning_->removes_past() && settle_ == 0;  // settled filters carry no trace of the past
+  // Settled filters carry no trace of the past.
+  f.starting = tuning_->removes_past() && settle_ == 0;
   if (!f.starting) return;
   f.past.begin(f.rows->rows);
   for (int r = 0; r < f.rows->rows; ++r) {

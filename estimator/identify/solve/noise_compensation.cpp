@@ -40,9 +40,9 @@ void NoiseCompensation::update(const RowFilter& rows, const WindowParts& sums, d
 
 namespace {
 
-/// Of the error's part that the solution absorbs to the part that it leaves: chosen so that
-/// intervals hold for buildings that the model does not describe (docs/accuracy.md). Equations of
-/// groups are taken together, which overstates it.
+/// Ratio of the model's error that the solution absorbs to the error that it leaves. Chosen so that
+/// intervals hold for buildings that the model does not describe (docs/accuracy.md). The equations
+/// of groups are taken together, which overstates the ratio.
 constexpr double kAbsorbed = 1.5, kAbsorbedOfGroups = 1;
 
 bool is_stiffness(ParameterKind kind) {
@@ -92,7 +92,8 @@ void ModelMisfit::update(const WindowParts& sums, const std::vector<double>& sol
   }
 }
 
-/// A story's first unknowns are in the equations of the floor below, too.
+/// Returns the lowest floor whose equations hold the unknown. The first unknowns of a story are
+/// also in the equations of the floor below.
 int ModelMisfit::lowest_floor(int unknown) const {
   const int floor = unknown / layout_.own();
   return unknown % layout_.own() < layout_.shared() ? std::max(floor - 1, 0) : floor;

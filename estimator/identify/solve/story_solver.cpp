@@ -27,13 +27,14 @@ InverseDiagonal::InverseDiagonal(const FloorLayout& layout)
 }
 
 void InverseDiagonal::step(const StoryFactor& factor, int floor, double* diagonal) {
-  // Z = inverse. With the factor's rows [U W] of a story: Z_own = U^-1 (I + W Z_next W^T) U^-T.
+  // Z is the inverse. With the factor's rows [U W] of a story: Z_own = U^-1 (I + W Z_next W^T)
+  // U^-T.
   const int own = layout_.own();
   const int next = layout_.next(floor);
   const int stride = factor.row_stride(floor);
   const double* rows = factor.rows(floor);
   std::fill(middle_.begin(), middle_.end(), 0.0);
-  for (int p = 0; p < own; ++p)  // what is held fixed has no variance to pass on
+  for (int p = 0; p < own; ++p)  // a fixed unknown has no variance to pass on
     middle_[static_cast<std::size_t>(p * columns_ + p)] = rows[p * stride + p] > 0 ? 1 : 0;
   if (next > 0) {
     for (int p = 0; p < own; ++p)
@@ -57,7 +58,7 @@ void InverseDiagonal::step(const StoryFactor& factor, int floor, double* diagona
 
 namespace {
 
-/// A pivot below this share of its own diagonal entry is rounding error.
+/// A pivot below this share of its diagonal entry is rounding error.
 constexpr double kSmallestPivot = 1e-13;
 
 }  // namespace
@@ -110,7 +111,7 @@ void StorySolver::factor(const WindowParts& sums, const std::vector<double>& pri
                                     compensation.values, a, shape.front, stride);
     gather_information(sums, floor);
     if (floor > 0) {
-      // What the floor below knows about this story's frames: the Schur complement of its rows.
+      // The Schur complement of the floor below carries its information about this story's frames.
       const int from_stride = padded(layout_.front(floor - 1));
       const double* from = front_[1 - floor % 2].data() + own * from_stride + own;
       for (int i = 0; i < passed; ++i, from += from_stride) {

@@ -10,19 +10,21 @@
 namespace framewatch::estimator {
 namespace {
 
-/// Measured: batch means of 20 blocks understate the spread by a seventh (docs/accuracy.md).
+/// Batch means of 20 blocks understate the spread by a seventh, as measured (docs/accuracy.md).
 constexpr double kCorrection = 1.155;
 
-/// 97.5 % point of Student's t, by Fisher's expansion: within a hundredth from 3 degrees on.
+/// Returns the 97.5 % point of Student's t by Fisher's expansion, within a hundredth from 3 degrees
+/// of freedom on.
 double student(double n) {
   constexpr double z = 1.959964, z2 = z * z;
   return z * (1 + (z2 + 1) / (4 * n) + ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
               (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n));
 }
 
-constexpr double kMinDegrees = 1.5;  // the expansion's end: beyond it nothing is published
+constexpr double kMinDegrees = 1.5;  // end of the expansion; below it no error is published
 
-/// Variance of a sum of so many scores over the sum of their squares about their mean.
+/// Returns the variance of a sum of this many scores over the sum of their squares about their
+/// mean.
 double spread_of(int blocks) {
   return kCorrection * kCorrection * blocks / (blocks - 1);
 }
@@ -99,7 +101,8 @@ void BatchMeans::assemble(int floor) {
   add_bias_columns(floor);
 }
 
-/// Whether rows of a block know the floor's own unknowns: its own rows or those of the floor below.
+/// Returns true if rows of a block hold the floor's own unknowns: rows of the floor or of the one
+/// below.
 bool BatchMeans::has_rows(int floor, int block) const {
   const auto holds = [&](int f) {
     return holds_[static_cast<std::size_t>(f * kBlocks + block)] != 0;
@@ -113,7 +116,7 @@ int BatchMeans::blocks_with_rows(int floor) const {
   return blocks;
 }
 
-/// By how much the spread of few blocks is widened, of a floor's own unknown.
+/// Returns the factor that widens the spread of few blocks for a floor's own unknown.
 double BatchMeans::widening(int floor, int position, int blocks) const {
   if (blocks < kFewest || blocks == kBlocks) return 1;
   const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
@@ -136,7 +139,7 @@ void BatchMeans::add_block_scores(int floor) {
   const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
   const int first = floor * layout_.own();
   const int unknowns = shape.front - 1;
-  // The response is the front's last column: x = [solution, -1] leaves its residual.
+  // The response is the front's last column, so x = [solution, -1] gives the residual.
   std::fill(x_.begin(), x_.end(), 0.0);
   std::copy_n(solution_.begin() + first, unknowns, x_.begin());
   x_[static_cast<std::size_t>(unknowns)] = -1;
@@ -147,7 +150,7 @@ void BatchMeans::add_block_scores(int floor) {
                                       score_.data(), shape.front, shape.stride);
     for (int i = 0; i < unknowns; ++i) columns(first + i)[b] += score_[static_cast<std::size_t>(i)];
   }
-  // The floor's own scores are now whole: what the story above adds went to that story's.
+  // The floor's own scores are now complete: the floor above has added its share.
   const int blocks = blocks_with_rows(floor);
   for (int u = first; u < first + layout_.own(); ++u) {
     double* row = columns(u);
@@ -215,7 +218,7 @@ void MassErrors::begin(StorySolver& solver, const GramShape& shape, const std::v
   next_step_ = 0;
 }
 
-/// The floor's part of the right-hand side, times the error of its mass.
+/// Loads the floor's part of the right-hand side, times the error of its mass.
 void MassErrors::load(int floor) {
   const GramShape::Floor& shape = shape_->floor[static_cast<std::size_t>(floor)];
   const int response = shape.front - 1;

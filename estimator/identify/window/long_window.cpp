@@ -10,10 +10,11 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr int kWindowsPerLength = 5;
-constexpr double kUsualStep = 0.002;       // by which the usual energy follows, per block
+constexpr double kUsualStep = 0.002;       // adaptation of the usual energy per block
 constexpr std::size_t kAddAtOnce = 65536;  // doubles per instant
 constexpr int kStepsPerInstant = 4;
-/// An hour's average may be of motion that no ordinary window would be read from.
+/// Gates of a long window. An hour's average may come from motion that is too weak for any ordinary
+/// window.
 constexpr double kMinSnr = 1.3, kMaxError_k = 0.1, kMaxError_g = 0.5, kMaxError_c = 0.5;
 
 EstimatorOptions lenient(EstimatorOptions o, bool noise_configured) {
@@ -133,7 +134,7 @@ double LongWindow::weight(const double* block) {
   };
   const double motion = limited(energy(block, false), usual_, kMaxOfUsual);
   const double misfit = limited(energy(block, true), usual_misfit_, kMaxOfUsualMisfit);
-  return std::min(motion, misfit * misfit);  // what does not fit at all counts for nothing
+  return std::min(motion, misfit * misfit);  // a block that does not fit at all gets no weight
 }
 
 bool LongWindow::fits(const std::vector<std::uint8_t>& known) {
@@ -244,10 +245,10 @@ const WindowEstimate& LongWindow::give(const Context& c) {
 
 namespace {
 
-constexpr double kMaxError = 0.5;  // relative, of a window that counts
-constexpr double kSurprise = 2;    // times the error of a step
+constexpr double kMaxError = 0.5;  // relative error up to which a window counts
+constexpr double kSurprise = 2;    // in errors of a step
 constexpr double kTiny = 1e-300;
-constexpr double kMinStep = 0.6, kMaxStep = 1.6;  // per window
+constexpr double kMinStep = 0.6, kMaxStep = 1.6;  // factors per window
 
 EstimatorOptions of_bending(EstimatorOptions options) {
   options.long_window_s = std::max(HeldBending::kWindow_s, 2 * options.window_s);
@@ -293,12 +294,12 @@ bool HeldBending::advance(const LongWindow::Context& context) {
     const double error = std::max(std::hypot(solution.std_error()[u], misfit), kMin);
     const double with_tuning = std::hypot(error, off);
     if (!solver.usable(h.unknown) || !(with_tuning < kMaxError)) continue;
-    // The equations are linear in it near the tuning only.
+    // The equations are linear in the ratio only near the tuning.
     const double ratio = std::clamp(solver.solution()[u], kMinStep, kMaxStep);
     const double value = ratio * context.regression->tuning().theta0()[h.parameter];
     const double step = std::log(value / h.value);
     double variance = h.std_error * h.std_error + kDrift * kDrift;
-    // What is held was found far from the right tuning, or the building has changed.
+    // Either the held value was far from the right tuning, or the building has changed.
     if (step * step > kSurprise * kSurprise * (variance + error * error)) variance = step * step;
     const double before = 1 / variance, now = 1 / (with_tuning * with_tuning);
     h.value *= std::exp(step * now / (before + now));

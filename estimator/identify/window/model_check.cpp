@@ -9,7 +9,7 @@
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kFloorsPerInstant = 4;  // tuned
+constexpr int kFloorsPerInstant = 4;  // floors tuned per instant
 
 }  // namespace
 
@@ -73,9 +73,10 @@ const WindowSolution& OtherCorner::solve(const WindowSolution::Trust& trust) {
 
 namespace {
 
-/// Of the usual corners; those of groups are at 0.7 of the floors' frequencies already.
+/// Factors of the usual corner frequencies. Those of groups are at 0.7 of the floors' frequencies
+/// already.
 constexpr double kLowerCorner = 0.7, kHigherCorner = 1.4;
-/// Range of the three solutions from noise alone, in standard errors of one.
+/// Expected range of the three solutions from noise alone, in standard errors of one solution.
 constexpr double kRangeOfNoise = 2;
 
 EstimatorOptions with_corner(EstimatorOptions options, double ratio) {

@@ -52,7 +52,7 @@ bool TunedRegression::finish(const MotionRing& ring) {
 
 namespace {
 
-constexpr int kFewestBlocks = 4;  // of another window
+constexpr int kFewestBlocks = 4;  // fewest blocks of another window
 
 }  // namespace
 

@@ -16,7 +16,7 @@ OtherWindows::OtherWindows(const Structure& structure, const FloorLayout& layout
     windows_.back().estimate.window = static_cast<int>(windows_.size());
     steps += windows_.back().solution.error_steps();
   }
-  // One instant of each window's share goes to its solution.
+  // In each window's share, one instant goes to its solution.
   const int instants = std::max(1, block_rows - count() - 1);
   steps_per_instant_ = (steps + instants - 1) / instants;
 }

@@ -11,12 +11,12 @@
 
 namespace framewatch::estimator {
 
-/// Windows of other lengths than the main one, of whole blocks, from the same block sums
-/// (the spans of SlidingGram). The work is spread over the next block's instants, one window after
-/// the other, so an estimate comes up to a block after its window's end.
+/// Windows of other lengths than the main one, in whole blocks of the same block sums (the spans of
+/// SlidingGram). The work is spread over the instants of the next block, one window after the
+/// other. So an estimate comes up to a block after the end of its window.
 class OtherWindows {
  public:
-  /// blocks: their lengths, the sums' spans.
+  /// blocks: lengths of the windows, which are the spans of the sums.
   OtherWindows(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
                const EstimatorOptions& options, const std::vector<int>& blocks, int block_rows);
 
@@ -24,11 +24,11 @@ class OtherWindows {
   void mark_late() {
     for (Window& window : windows_) window.estimate.late = true;
   }
-  /// WindowSolution::hold() of every window.
+  /// Calls WindowSolution::hold() for every window.
   void hold(int unknown, double ratio, double std_error);
-  /// The tuning has changed: a solution under way is abandoned.
+  /// Abandons a solution in progress, because the tuning has changed.
   void retuned();
-  /// A block has closed at `time`, the end of its last instant. `main` fits the sums' own window.
+  /// Takes a block that closed at `time`, the end of its last instant.
   void block_closed(const SlidingGram& sums, Time time);
 
   struct Context {
@@ -39,7 +39,8 @@ class OtherWindows {
     bool tuned;
     const ElementDrift* drift;
   };
-  /// One instant's share of the work; the estimate of a window that it completed, or null.
+  /// Does one instant's share of the work. Returns the estimate of a window that it completed, or
+  /// nullptr.
   const WindowEstimate* advance(const Context& context);
 
   /// regression: the active one.
@@ -66,45 +67,45 @@ class OtherWindows {
   std::deque<Window> windows_;
   double rate_hz_;
   int steps_per_instant_ = 1;
-  int current_;          ///< window being worked on; count() when there is nothing to do
-  bool solved_ = false;  ///< the current one
-  int rows_ = 0;         ///< of the current one
+  int current_;          ///< window in progress; count() if there is nothing to do
+  bool solved_ = false;  ///< the window in progress is solved
+  int rows_ = 0;         ///< rows of the window in progress
   Time end_{};
 };
 
-/// The windows along one regression: the main one, solved whenever it is due, and the others,
-/// solved as their blocks close. Advances one instant of the motion ring at a time.
+/// The windows of one regression: the main one, solved when it is due, and the others, solved when
+/// their blocks close. Advances by one instant of the motion ring at a time.
 class WindowSeries {
  public:
   /// warm: share of the main window in which a floor must have had rows. other_blocks: lengths of
-  /// the other windows, the sums' spans.
+  /// the other windows, which are the spans of the sums.
   WindowSeries(const Structure& structure, const FloorLayout& layout, const ParameterTable& table,
                const EstimatorOptions& options, double warm, const std::vector<int>& other_blocks,
                int block_rows);
 
   void restart();
-  /// The next solutions are of other rows.
+  /// Takes note that the next solutions come from other rows.
   void retuned();
-  /// WindowEstimate::late of all other windows.
+  /// Sets WindowEstimate::late in all other windows.
   void mark_late() { others_.mark_late(); }
-  /// WindowSolution::hold() of every window.
+  /// Calls WindowSolution::hold() for every window.
   void hold(int unknown, double ratio, double std_error);
 
   struct Instant {
     const MotionRing* ring;
     WindowSolution::Trust trust;
-    bool tuned;  ///< the filters have been found right
-    bool due;    ///< the main window is wanted
+    bool tuned;  ///< the filters have been found to match
+    bool due;    ///< the main window is requested
     const ElementDrift* drift;
     Time window_end;
   };
   struct Done {
     bool block = false;       ///< a block has closed
-    bool closed = false;      ///< likewise, of a window that has enough of them
-    bool errors_new = false;  ///< the main window's standard errors are those of a new block
-    const WindowEstimate* other = nullptr;  ///< of another window, until the next instant
+    bool closed = false;      ///< a block has closed and the window has enough of them
+    bool errors_new = false;  ///< the main window's standard errors come from a new block
+    const WindowEstimate* other = nullptr;  ///< valid until the next instant
   };
-  /// The regression's next instant.
+  /// Advances the regression by its next instant.
   Done advance(TunedRegression& regression, const Instant& instant);
 
   const WindowSolution& main() const { return main_; }
@@ -119,27 +120,27 @@ class WindowSeries {
  private:
   WindowSolution main_;
   OtherWindows others_;
-  int steps_per_instant_;  ///< of BatchMeans: done before the next block closes
+  int steps_per_instant_;  ///< steps of BatchMeans, so that a pass ends before the next block
+                           ///< closes
 };
 
-/// Windows that nothing could be said of when they ended, because the filters had not been tuned to
-/// the building yet. Once they are, the motion that is still held is gone through again with a
-/// regression that has the right filters, a few instants for each new one. Allocates when
-/// constructed, never after.
+/// Windows that could not be solved when they ended, because the filters were not tuned to the
+/// building. Later the motion that is still held is processed again with a tuned regression, a few
+/// instants for each new one. Allocates only in the constructor.
 class LateWindows {
  public:
-  /// most_blocks: of the longest window. hop_rows: instants between main windows.
+  /// most_blocks: blocks in the longest window. hop_rows: instants between main windows.
   LateWindows(const PipelineConfig& config, const ParameterTable& table, const FloorLayout& layout,
               double warm, const std::vector<int>& other_blocks, int block_rows, int most_blocks,
               int hop_rows);
 
-  /// Starts `regression`, which has been tuned, to give the windows that end from instant `from`
-  /// of the ring on and before `until`.
+  /// Starts the tuned `regression` on the windows that end from instant `from` of the ring on and
+  /// before `until`.
   void begin(TunedRegression& regression, std::int64_t from, std::int64_t until);
   bool running() const { return running_; }
-  /// Every window has been given.
+  /// Returns true if every window has been computed.
   bool complete(const TunedRegression& regression) const { return regression.next() >= until_; }
-  /// Abandons what is left; what was given last stays valid.
+  /// Abandons the remaining windows. The last result stays valid.
   void end();
   void hold(int unknown, double ratio, double std_error) {
     series_.hold(unknown, ratio, std_error);
@@ -149,7 +150,7 @@ class LateWindows {
     const WindowEstimate* main = nullptr;
     const WindowEstimate* other = nullptr;
   };
-  /// Its next instant. What is given is valid until the next call.
+  /// Advances by the next instant. The result is valid until the next call.
   Given advance(TunedRegression& regression, const MotionRing& ring,
                 const WindowSolution::Trust& trust, Time window_end);
 
