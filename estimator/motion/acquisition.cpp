@@ -15,10 +15,7 @@ LostSampleFiller::LostSampleFiller(std::vector<std::uint8_t> repair) : repair_(s
 }
 
 const SampleSet* LostSampleFiller::push(const SampleSet& set) {
-  SampleSet& slot = ring_[static_cast<std::size_t>(next_)];
-  slot.time = set.time;
-  slot.index = set.index;
-  std::copy(set.accel.begin(), set.accel.end(), slot.accel.begin());
+  ring_[static_cast<std::size_t>(next_)].copy(set);
   next_ = (next_ + 1) % 5;
   filled_ = std::min(filled_ + 1, 5);
   ++waiting_;
@@ -31,10 +28,7 @@ const SampleSet* LostSampleFiller::drain() {
 }
 
 const SampleSet* LostSampleFiller::give() {
-  const SampleSet& oldest = held(waiting_ - 1);
-  out_.time = oldest.time;
-  out_.index = oldest.index;
-  std::copy(oldest.accel.begin(), oldest.accel.end(), out_.accel.begin());
+  out_.copy(held(waiting_ - 1));
   --waiting_;
   return &out_;
 }

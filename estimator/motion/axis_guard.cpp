@@ -178,10 +178,7 @@ AxisGuard::AxisGuard(const std::vector<Axis>& axes, double rate_hz, bool lone_sp
 const SampleSet* AxisGuard::push(const SampleSet& set) {
   const bool interrupted = waiting_ > 0 && set.index != held(0).index + 1;
   newest_ = (newest_ + 1) % kSlots;
-  SampleSet& slot = held(0);
-  slot.time = set.time;
-  slot.index = set.index;
-  std::copy(set.accel.begin(), set.accel.end(), slot.accel.begin());
+  held(0).copy(set);
   ++waiting_;
   for (std::size_t a = 0; a < state_.size(); ++a) {
     if (interrupted) state_[a].run = 0;
@@ -358,10 +355,7 @@ const SampleSet* AxisGuard::drain() {
 }
 
 const SampleSet* AxisGuard::give() {
-  const SampleSet& oldest = held(waiting_ - 1);
-  out_.time = oldest.time;
-  out_.index = oldest.index;
-  std::copy(oldest.accel.begin(), oldest.accel.end(), out_.accel.begin());
+  out_.copy(held(waiting_ - 1));
   --waiting_;
   return &out_;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <vector>
@@ -38,6 +39,12 @@ struct SampleSet {
   std::int64_t index = 0;  ///< number of the instant on the common grid
   std::vector<double> accel;
 
+  /// Copies a set of as many axes without allocating.
+  void copy(const SampleSet& other) {
+    time = other.time;
+    index = other.index;
+    std::copy(other.accel.begin(), other.accel.end(), accel.begin());
+  }
   /// Archives the state, as every archive() does: estimator/state/archive.h.
   template <typename Archive>
   void archive(Archive& a) {

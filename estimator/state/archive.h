@@ -226,4 +226,20 @@ class StateReader : public StateArchive<StateReader> {
   bool good_ = true;
 };
 
+/// A base class for state behind an interface: archive() calls save() or load() of the derived
+/// class.
+class SavedByVirtual {
+ public:
+  virtual ~SavedByVirtual() = default;
+  virtual void save(StateWriter& state) = 0;
+  virtual void load(StateReader& state) = 0;
+  template <typename Archive>
+  void archive(Archive& a) {
+    if constexpr (Archive::kReading)
+      load(a);
+    else
+      save(a);
+  }
+};
+
 }  // namespace framewatch::estimator

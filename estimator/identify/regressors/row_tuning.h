@@ -17,10 +17,8 @@ namespace framewatch::estimator {
 /// Forms the regression rows of every floor, instant by instant. Rows depend only on the motion
 /// since the start: two filters with the same input form the same bits. So the rows that leave the
 /// window are formed again instead of being stored. Allocates only in the constructor.
-class RowFilter {
+class RowFilter : public SavedByVirtual {
  public:
-  virtual ~RowFilter() = default;
-
   /// Returns to the state of a new filter with the present tuning. settle: instants that the
   /// filters run before rows count.
   virtual void reset(int settle) = 0;
@@ -44,16 +42,6 @@ class RowFilter {
   virtual std::uint8_t origin_of(int floor, const FloorRows* rows) const = 0;
   virtual const FloorRows* floor_rows_from(int floor, std::uint8_t origin) const = 0;
 
-  virtual void save(StateWriter& state) = 0;
-  virtual void load(StateReader& state) = 0;
-  template <typename Archive>
-  void archive(Archive& a) {
-    if constexpr (Archive::kReading)
-      load(a);
-    else
-      save(a);
-  }
-
  protected:
   explicit RowFilter(const FloorLayout& layout) {
     std::size_t at = 0;
@@ -72,10 +60,8 @@ class RowFilter {
 
 /// Defines how rows are formed and weighted for given parameters theta0. At first theta0 is the
 /// design, later it is identified.
-class RowTuning {
+class RowTuning : public SavedByVirtual {
  public:
-  virtual ~RowTuning() = default;
-
   /// Sets other parameters. Then tune every part, 0 to parts() - 1, before calling anything else.
   /// One part fits into one instant.
   virtual void set_theta0(const Eigen::VectorXd& theta0,
@@ -110,16 +96,6 @@ class RowTuning {
   virtual std::unique_ptr<RowTuning> copy() const = 0;
   /// Returns a filter that refers to this tuning, which must outlive it.
   virtual std::unique_ptr<RowFilter> make_filter(int settle) = 0;
-
-  virtual void save(StateWriter& state) = 0;
-  virtual void load(StateReader& state) = 0;
-  template <typename Archive>
-  void archive(Archive& a) {
-    if constexpr (Archive::kReading)
-      load(a);
-    else
-      save(a);
-  }
 
  protected:
   RowTuning() = default;
