@@ -1,13 +1,90 @@
 #include "estimator/motion/acquisition.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
+
+LostSampleFiller::LostSampleFiller(std::vector<std::uint8_t> repair) : repair_(std::move(repair)) {
+  for (SampleSet& s : ring_) s.accel.resize(repair_.size());
+  out_.accel.resize(repair_.size());
+  repaired_.assign(repair_.size(), 0);
+}
+
+const SampleSet* LostSampleFiller::push(const SampleSet& set) {
+  ring_[static_cast<std::size_t>(next_)].copy(set);
+  next_ = (next_ + 1) % 5;
+  filled_ = std::min(filled_ + 1, 5);
+  ++waiting_;
+  if (filled_ == 5) repair();
+  return waiting_ > kLookAhead ? give() : nullptr;
+}
+
+const SampleSet* LostSampleFiller::drain() {
+  return waiting_ > 0 ? give() : nullptr;
+}
+
+const SampleSet* LostSampleFiller::give() {
+  out_.copy(held(waiting_ - 1));
+  --waiting_;
+  return &out_;
+}
+
+void LostSampleFiller::repair() {
+  if (held(0).index - held(4).index != 4) return;
+  for (std::size_t a = 0; a < repaired_.size(); ++a) {
+    double& x = held(2).accel[a];
+    if (repair_[a] == 0 || !std::isnan(x)) continue;
+    const double near = held(1).accel[a] + held(3).accel[a];
+    const double far = held(0).accel[a] + held(4).accel[a];
+    const double filled = (4 * near - far) / 6;
+    if (!std::isfinite(filled)) continue;
+    x = filled;
+    ++repaired_[a];
+  }
+}
+
 namespace {
 
-constexpr int kVertical = 2;  ///< beside the two directions
+constexpr double kGravity = 9.80665;
+
+}  // namespace
+
+Calibration::Calibration(const std::vector<SensorAxis>& axes) : straight_(axes.size()) {
+  for (const SensorAxis& axis : axes) {
+    Axis out;
+    out.gain = axis.polarity / std::cos(axis.tilt);
+    out.offset = axis.offset + axis.polarity * kGravity * std::sin(axis.tilt);
+    out.cross = axis.cross;
+    if (axis.cross >= 0) {
+      // With angles a and b counter-clockwise, an x axis measures mx = cos(a) ax + sin(a) ay, and a
+      // y axis measures my = cos(b) ay - sin(b) ax.
+      const SensorAxis& other = axes[static_cast<std::size_t>(axis.cross)];
+      const double sign = axis.direction == Direction::x ? 1 : -1;
+      const double determinant = std::cos(axis.mount_angle - other.mount_angle);
+      out.own = std::cos(other.mount_angle) / determinant;
+      out.other = -sign * std::sin(axis.mount_angle) / determinant;
+    }
+    axes_.push_back(out);
+  }
+}
+
+void Calibration::apply(std::vector<double>& accel) {
+  for (std::size_t a = 0; a < axes_.size(); ++a)
+    straight_[a] = axes_[a].gain * (accel[a] - axes_[a].offset);
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    const Axis& axis = axes_[a];
+    accel[a] = axis.cross < 0 ? straight_[a]
+                              : axis.own * straight_[a] +
+                                    axis.other * straight_[static_cast<std::size_t>(axis.cross)];
+  }
+}
+
+namespace {
+
+constexpr int kVertical = 2;  ///< stands beside the two directions
 
 std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
   std::vector<AxisGuard::Axis> out;
@@ -17,7 +94,7 @@ std::vector<AxisGuard::Axis> guarded_axes(const std::vector<SensorAxis>& axes) {
   return out;
 }
 
-/// A hammer's blow is no smooth curve through its neighbours.
+/// The blow of a hammer is not a smooth curve, so a lost sample of a force is not interpolated.
 std::vector<std::uint8_t> axes_to_repair(const std::vector<SensorAxis>& axes, bool repair) {
   std::vector<std::uint8_t> out;
   for (const SensorAxis& axis : axes) out.push_back(repair && !axis.is_force);

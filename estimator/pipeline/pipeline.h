@@ -8,12 +8,10 @@
 #include <Eigen/Core>
 
 #include "estimator/identify/estimate/estimate.h"
-#include "estimator/identify/estimate/model_fit.h"
 #include "estimator/motion/pulled.h"
 #include "estimator/motion/sample.h"
 #include "estimator/motion/sample_merger.h"
 #include "estimator/setup/pipeline_config.h"
-#include "estimator/setup/tuning.h"
 #include "estimator/state/archive.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"

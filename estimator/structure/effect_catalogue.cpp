@@ -12,7 +12,7 @@ using enum EffectKind;
 constexpr double kAny = 1e15;
 constexpr double kLong_s = 1e6;
 
-/// Any size of either sign.
+/// A value of any size and sign.
 EffectParameter either_sign(std::string_view key, std::string_view unit, std::string_view meaning) {
   return {key, unit, std::nullopt, -kAny, kAny, false, meaning};
 }
@@ -346,7 +346,7 @@ std::vector<EffectDescription> sensor_errors() {
   };
 }
 
-/// In the order of EffectKind.
+/// Returns the descriptions in the order of EffectKind.
 std::vector<EffectDescription> make_catalogue() {
   std::vector<EffectDescription> out;
   for (const auto& part :

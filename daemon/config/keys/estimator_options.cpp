@@ -1,5 +1,5 @@
 #include "daemon/config/keys/option_table.h"
-#include "estimator/setup/options.h"
+#include "estimator/setup/pipeline_config.h"
 
 namespace framewatch::daemon {
 namespace {

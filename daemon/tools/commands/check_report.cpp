@@ -16,7 +16,6 @@
 #include "estimator/pipeline/pipeline.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/natural_frequencies.h"
-#include "estimator/structure/panel_excitation.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -8,14 +8,15 @@
 #include "estimator/identify/groups/group_tuning.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/identify/regressors/regressor_tuning.h"
-#include "estimator/identify/window/window_rows.h"
+#include "estimator/identify/window/tuned_regression.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
 namespace {
 
-constexpr int kBlocks = BatchMeans::kBlocks;  // per window
-/// Of the main window: rows enough for standard errors, but for the first of a start.
+constexpr int kBlocks = BatchMeans::kBlocks;  // blocks per window
+/// Share of the main window with rows that is enough for standard errors, except for the first rows
+/// of a start.
 constexpr double kWarm = 0.75 * BatchMeans::kFewest / BatchMeans::kBlocks;
 
 }  // namespace
@@ -49,7 +50,7 @@ SlidingWindowEstimator::SlidingWindowEstimator(const PipelineConfig& config,
       series_(config_.structure, layout_, table_, options_, kWarm, other_blocks_, block_rows_),
       estimate_(static_cast<std::size_t>(table_.size())),
       nothing_(config_.axes.size(), kNaN) {
-  boxplots_.reserve(estimate_.value.size());  // copies would not keep what they reserve
+  boxplots_.reserve(estimate_.value.size());  // a copy would not keep reserved memory
   for (std::size_t p = 0; p < estimate_.value.size(); ++p)
     boxplots_.emplace_back(options_.boxplot_windows);
   seen_axes_.assign(layout_.grouped() ? config_.axes.size() : 0, 1);
@@ -209,7 +210,7 @@ void SlidingWindowEstimator::block_closed(Time window_end) {
   if (bending_) bending_->block_closed(active_->sums(), known, window_end);
 }
 
-/// What is worked on between the ends of two blocks.
+/// Does the work that is spread over the instants between two block ends.
 void SlidingWindowEstimator::go_on() {
   if (errors_new_) check_tuning();
   if (long_ && other_ == nullptr) advance_long();
@@ -222,7 +223,7 @@ void SlidingWindowEstimator::advance_long() {
   other_ = long_->advance(
       {active_.get(), &ring_.at(ring_.end() - 1).known, {matched_, noise_.configured()}, tuned()});
   if (other_ == nullptr || !self_tuning_ || self_tuning_->tuned() || !self_tuning_->due()) return;
-  // While no ordinary window shows a parameter, the filters are tuned to the long ones.
+  // While no ordinary window shows a parameter, the filters are tuned to the long windows.
   const WindowSolution& solution = long_->solution();
   for (std::size_t u = 0; u < shown_.size(); ++u) shown_[u] = solution.shown(static_cast<int>(u));
   self_tuning_->begin_check(*active_, solution.solver().solution(), solution.std_error(), shown_,

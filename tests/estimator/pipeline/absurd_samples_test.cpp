@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimator/motion/sample_bound.h"
+#include "estimator/motion/acquisition.h"
 #include "estimator/pipeline/pipeline.h"
 #include "tests/support/paper_buildings.h"
 #include "tests/support/pipeline_run.h"

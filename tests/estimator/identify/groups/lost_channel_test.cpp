@@ -11,7 +11,7 @@ namespace lost_channel_test {
 
 constexpr double kNoSample = std::numeric_limits<double>::quiet_NaN();
 
-/// The last estimate of the main window, with the samples that there are.
+/// Returns the last estimate of the main window for the present samples.
 WindowEstimate last_estimate(const PipelineConfig& config, const Eigen::MatrixXd& accel) {
   WindowEstimate last(static_cast<std::size_t>(config.parameters().size()));
   const auto take = [&](const WindowEstimate& estimate) { last = estimate; };
@@ -24,8 +24,8 @@ WindowEstimate last_estimate(const PipelineConfig& config, const Eigen::MatrixXd
   return last;
 }
 
-/// The groups on both sides of it become one, which keeps the ratio that was identified while the
-/// channel was there, whatever the design's was.
+/// The groups on both sides of the lost channel merge. They keep the ratio that was identified
+/// while the channel was there, whatever the design's ratio was.
 TEST(LostChannel, MakesItsFloorAnInnerOne) {
   daemon::TallTrial trial;
   trial.duration_s = 60;

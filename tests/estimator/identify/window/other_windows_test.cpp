@@ -1,5 +1,5 @@
-// Windows of other lengths than the main one, held values, named reasons, and what a dying sensor
-// leaves of the rest.
+// Tests windows of other lengths than the main one, held values, named reasons, and the effect of a
+// failing sensor.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -17,14 +17,14 @@ namespace other_windows_test {
 
 constexpr double kNoise = 0.01;
 constexpr double kDuration_s = 25;
-/// A fifth of each window's length, in blocks of 0.25 s; [0] is the main one's.
+/// A fifth of each window's length, in blocks of 0.25 s; [0] belongs to the main window.
 constexpr std::int64_t kEvery_us[] = {10'000, 250'000, 500'000, 2'000'000};
 constexpr int kFewest = 5;
-/// Issue 3: parameters far from a lost sensor, against the same with the full array.
+/// Issue 3: parameters far from a lost sensor, compared with the full array.
 constexpr double kFarErrorRatio = 2;
 constexpr double kAlikePerMass = 400;     // 1/s^2: a first mode near 2 Hz
 constexpr double kAlikeDamping_s = 2e-3;  // damping over stiffness
-/// Instants: of a refilled filter, at most, and of the rows that a value needs.
+/// Instants until a filter is refilled, at most, and of the rows that a value needs.
 constexpr int kFill = 30, kSecond = 100;
 
 struct Shaken {
@@ -140,8 +140,8 @@ TEST(HeldValues, ADyingChannelLeavesTheRestAlone) {
 }
 
 TEST(Reasons, AStiffFloorAndASymmetricPlanAreToldApart) {
-  // GIVEN one building with floors a hundred times too stiff to be seen, and one whose frames are
-  // all alike
+  // GIVEN a building with floors a hundred times too stiff to be seen, and one whose frames are all
+  // alike
   const Structure s = daemon::table2();
   Eigen::VectorXd stiff = daemon::table2_theta('d');
   const ParameterTable table(s);

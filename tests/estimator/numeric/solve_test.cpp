@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace framewatch::estimator {
-namespace solve_positive_test {
+namespace solve_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -23,5 +23,5 @@ TEST(SolvePositive, SolvesPositiveMatricesAndOthersOfAnySize) {
     }
 }
 
-}  // namespace solve_positive_test
+}  // namespace solve_test
 }  // namespace framewatch::estimator
