@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "estimator/watch/change_point.h"
-#include "estimator/watch/separate_windows.h"
+#include "estimator/watch/watched.h"
 
 namespace framewatch::estimator {
 
