@@ -1,4 +1,4 @@
-#include "estimator/shaking/fragility.h"
+#include "estimator/shaking/placard.h"
 
 #include <cmath>
 
@@ -79,9 +79,9 @@ TEST(Placard, IsNeverBetterThanRestrictedWhereAStoryIsNotJudged) {
   EXPECT_FALSE(unknown.judged);
   EXPECT_EQ(unknown.story, 2);
   StoryDrift gap = drifted(1, 0.002);
-  gap.unseen_share = StoryDrift::kGap;
+  gap.unseen_share = StoryDrift::kUnseen;
   EXPECT_EQ(placard_of({gap}).placard, Placard::restricted);
-  EXPECT_EQ(placard_of({gap}).reason, PlacardReason::gap);
+  EXPECT_EQ(placard_of({gap}).reason, PlacardReason::interruption);
   EXPECT_EQ(placard_of({drifted(1, 0.002, kNaN)}).reason, PlacardReason::error_unknown);
   EXPECT_EQ(placard_of({drifted(1, 0.002, kNaN)}).placard, Placard::restricted);
 }
