@@ -66,7 +66,7 @@ constexpr double kSettlePeriods = 2;  // of the corner
 
 }  // namespace
 
-GroupDesign design_of(const PipelineConfig& c) {
+GroupDesign group_design_of(const PipelineConfig& c) {
   return {c.design.size() > 0 ? c.design : guessed_design(c.structure, ParameterTable(c.structure)),
           c.bending_nmprad};
 }
@@ -74,7 +74,7 @@ GroupDesign design_of(const PipelineConfig& c) {
 SlowDrift::SlowDrift(const PipelineConfig& config)
     : config_(config),
       table_(config.parameters()),
-      design_(design_of(config)),
+      design_(group_design_of(config)),
       designed_(table_.grouped() ? group_parameters(config.structure, table_, design_)
                                  : design_.theta),
       driven_(has_force(config.axes)),
