@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "estimator/simulate/driven_building.h"
+#include "estimator/simulate/simulated_building.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "estimator/simulate/element_law.h"
-#include "estimator/simulate/make_law.h"
 
 namespace framewatch::estimator {
 namespace {

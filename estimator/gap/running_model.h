@@ -7,7 +7,7 @@
 
 #include "estimator/gap/gap.h"
 #include "estimator/motion/drift_controlled_integrator.h"
-#include "estimator/simulate/driven_building.h"
+#include "estimator/simulate/simulated_building.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 

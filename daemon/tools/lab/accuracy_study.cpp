@@ -10,7 +10,7 @@
 #include "estimator/identify/solve/batch_least_squares.h"
 #include "estimator/refine/cramer_rao.h"
 #include "estimator/refine/max_likelihood.h"
-#include "estimator/simulate/exact_motion.h"
+#include "estimator/simulate/linear_response.h"
 
 namespace framewatch::daemon {
 namespace {

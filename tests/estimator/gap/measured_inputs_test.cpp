@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/gap/gap_monitor.h"
-#include "estimator/simulate/applied_force.h"
+#include "estimator/simulate/building_model.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/nonlinear_building.h"
 #include "estimator/simulate/random.h"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "estimator/numeric/nan.h"
-#include "estimator/shaking/placard.h"
 
 namespace framewatch::estimator {
 namespace fragility_test {
