@@ -7,7 +7,7 @@
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::estimator {
-namespace fragility_test {
+namespace placard_test {
 
 constexpr double kExact = 1e-12;
 const Fragility kFrame{{0.005, 0.01, 0.03, 0.08}, {0.4, 0.4, 0.4, 0.4}};
@@ -96,5 +96,5 @@ TEST(Placard, AStoryThatDidNotDriftIsNotDamaged) {
   EXPECT_EQ(placard_of({drifted(1, 0)}).placard, Placard::inspected);
 }
 
-}  // namespace fragility_test
+}  // namespace placard_test
 }  // namespace framewatch::estimator

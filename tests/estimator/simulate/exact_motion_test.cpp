@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "daemon/tools/lab/accuracy_trial.h"
-#include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"
 #include "estimator/structure/matrices.h"
 #include "tests/support/paper_buildings.h"
