@@ -10,7 +10,7 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNearly = 0.98;  ///< of the clipping level: samples beyond are ignored
+constexpr double kNearly = 0.98;  ///< of the clipping level; larger samples are ignored
 
 }  // namespace
 
@@ -45,7 +45,7 @@ const std::vector<double>& AxisCorrection::apply(const std::vector<double>& acce
     const int age = longest_ - whole_[a];
     aligned_[a] = ring_[static_cast<std::size_t>((newest_ + age) % length_) * axes_ + a];
   }
-  // In reverse order: the effect that a simulation applies last is undone first.
+  // Undo the effects in reverse: the last one applied comes first.
   for (auto e = effects_.rbegin(); e != effects_.rend(); ++e) {
     double& a = aligned_[static_cast<std::size_t>(e->place.channel)];
     switch (e->kind) {

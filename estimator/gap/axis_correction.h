@@ -7,20 +7,20 @@
 
 namespace framewatch::estimator {
 
-/// Corrects the measured accelerations for the sensor errors that a model knows (effects of
-/// channels), so that they compare with the building's motion. A drifting bias is left to the
-/// high-pass.
+/// Removes the sensor errors that a model knows (effects of channels) from measured accelerations,
+/// so that they compare with the building's motion. The high-pass removes a drifting bias.
 class AxisCorrection {
  public:
   /// axes: with the remaining fractions of their delays.
   AxisCorrection(const std::vector<SensorAxis>& axes, const std::vector<Effect>& effects,
                  double rate_hz);
 
-  /// Instants by which all axes are held back to wait for the latest.
+  /// Returns the instants by which all axes are delayed to wait for the latest.
   int held_back() const { return longest_; }
-  /// The fraction of each axis' delay that remains, at most half an instant, in instants.
+  /// Returns the remaining fraction of each axis' delay, at most half an instant, in instants.
   const std::vector<double>& rest() const { return rest_; }
-  /// accel: one value per axis, NaN where missing; valid until the next call.
+  /// Corrects one instant. accel: one value per axis, NaN if missing. The result is valid until the
+  /// next call.
   const std::vector<double>& apply(const std::vector<double>& accel);
 
   template <typename Archive>

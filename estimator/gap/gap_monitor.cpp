@@ -19,7 +19,7 @@ std::vector<DerivativeTriple> triples(const AxisCorrection& correction, double r
   return out;
 }
 
-/// The mean of however many windows.
+/// Returns a learner that averages any number of windows.
 BaselineLearner any_window(const ParameterTable& table) {
   return BaselineLearner(std::vector<Watched>(static_cast<std::size_t>(table.size())),
                          std::numeric_limits<double>::infinity());
@@ -206,9 +206,9 @@ const GapWindow* GapMonitor::push(const SampleSet& set, const std::vector<double
   if (driving_.push(set.accel)) take_inputs();
   if (!current_) return nullptr;
   Current& c = *current_;
-  const bool gap = set.index != c.expected_index;
+  const bool interrupted = set.index != c.expected_index;
   c.expected_index = set.index + 1;
-  if (gap) {
+  if (interrupted) {
     c.filter.reset();
     c.settled_s = 0;
   }

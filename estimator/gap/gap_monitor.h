@@ -5,12 +5,9 @@
 #include <vector>
 
 #include "estimator/gap/axis_correction.h"
-#include "estimator/gap/driving_axes.h"
-#include "estimator/gap/gap_alarm.h"
-#include "estimator/gap/gap_meter.h"
+#include "estimator/gap/gap.h"
 #include "estimator/gap/measured_inputs.h"
 #include "estimator/gap/model_learner.h"
-#include "estimator/gap/noise_path.h"
 #include "estimator/gap/running_model.h"
 #include "estimator/motion/drift_controlled_integrator.h"
 #include "estimator/setup/pipeline_config.h"
@@ -20,27 +17,28 @@
 
 namespace framewatch::estimator {
 
-/// Simulates the current model under the measured inputs continuously and gives the gap to
-/// what the axes above measure. docs/gap.md, docs/equations.md (45), (46). What drives the
-/// model is measured_inputs(): a motion of the base that no axis shows is a gap.
+/// Continuously simulates the current model under the measured inputs and returns the gap to the
+/// motion measured above. docs/gap.md, docs/equations.md (45), (46). measured_inputs() drive the
+/// model: a motion of the base that no axis measures appears as a gap.
 class GapMonitor {
  public:
-  /// axes: with the remaining fractions of their delays (Pipeline::axes). model: none: it is
-  /// learned; stories of a group then keep their shares of the design.
+  /// axes: with the remaining fractions of their delays (Pipeline::axes). model: nullopt to learn
+  /// it; stories of a group then keep the design's shares.
   GapMonitor(const PipelineConfig& config, const std::vector<SensorAxis>& axes,
              const GapOptions& options, const std::optional<GapModel>& model);
 
-  /// Replaces the model and begins anew. Not bounded in time, and allocates.
+  /// Replaces the model and restarts. Not bounded in time; allocates memory.
   void adopt(const GapModel& model);
   bool has_model() const { return current_.has_value(); }
 
-  /// An estimate of the main window, to learn a model from, and to tell which stiffness a gap comes
-  /// from. believed: values of the parameters that windows do not show, theta order.
+  /// Takes an estimate of the main window, to learn a model and to find the stiffness that causes a
+  /// gap. believed: parameters for those that windows do not show, theta order.
   void learn(const WindowEstimate& estimate, const Eigen::VectorXd& believed);
-  /// One calibrated instant; noise_density of each axis, m/s^2/sqrt(Hz), or none. Once a second,
-  /// while there is something to compare, the gap of the last window; valid until the next call.
+  /// Takes one calibrated instant. noise_density: of each axis, m/s^2/sqrt(Hz), or empty. Returns
+  /// the gap of the last window once a second while there is one to compare, else null; valid until
+  /// the next call.
   const GapWindow* push(const SampleSet& set, const std::vector<double>& noise_density);
-  /// The alarm that began or ended at the last push(), or null.
+  /// Returns the alarm that began or ended at the last push(), or null.
   const GapNews* news() const { return news_; }
 
   template <typename Archive>
@@ -71,7 +69,7 @@ class GapMonitor {
     RunningModel running;
     NoisePath noise;
     GapMeter meter;
-    SensorClock::duration delay;  ///< of what is compared
+    SensorClock::duration delay;  ///< of the compared instant
     std::vector<double> held;     ///< ring of instants x axes: filtered, NaN where not valid
     int newest = 0;
     double settled_s = 0;
@@ -85,40 +83,41 @@ class GapMonitor {
       a.within(expected_index, -1, a.kMaxCount);
     }
   };
-  /// Delay of every input's samples beside the axes' own, of all that show it; instants.
+  /// Returns the delay of every input's samples beyond that of the axes, averaged over its axes;
+  /// instants.
   Eigen::VectorXd late(const std::vector<double>& rest) const;
-  /// The inputs from the axes that drive now; the model that runs begins anew with them.
+  /// Recomputes the inputs from the present axes and restarts the running model.
   void take_inputs();
   void hold(Current& c);
   void compare(Current& c) const;
   void noise_variances(const Current& c, const std::vector<double>& noise_density);
-  /// Puts the parameter that has changed most significantly into news.
+  /// Adds the parameter that has changed most significantly to the news.
   void name_place(GapNews& news) const;
 
-  /// A model of identified parameters.
+  /// Returns the model of identified parameters.
   GapModel model_of(const Eigen::VectorXd& theta) const;
 
   Structure structure_;
-  ParameterTable stories_;  ///< of the model that runs
-  ParameterTable table_;    ///< of what is identified
+  ParameterTable stories_;  ///< of the running model
+  ParameterTable table_;    ///< of the identified parameters
   GroupDesign design_;
   std::vector<SensorAxis> axes_;
   DrivingAxes driving_;
-  MeasuredInputs inputs_;  ///< of the axes that drive now
-  /// What each axis above the base measures along x or y: degrees of freedom with weights.
+  MeasuredInputs inputs_;  ///< of the present axes
+  /// Motion that each axis above the base measures along x or y: degrees of freedom with weights.
   std::vector<std::vector<std::pair<int, double>>> seen_;
   double rate_hz_, high_pass_hz_;
   GapOptions options_;
   ModelLearner learner_;
-  GapModel model_;                   ///< while there is one
-  Eigen::VectorXd theta_;            ///< of what is identified
-  std::vector<double> theta_error_;  ///< standard errors of what was learned; 0: as given
-  std::vector<char> has_law_;        ///< of each parameter: an effect of the model acts there
-  BaselineLearner since_gap_;        ///< windows since a gap began to show
-  GapNews named_;                    ///< the last one
+  GapModel model_;                   ///< valid while current_ exists
+  Eigen::VectorXd theta_;            ///< in the order of table_
+  std::vector<double> theta_error_;  ///< standard errors of learned parameters; 0: given
+  std::vector<char> has_law_;        ///< by parameter; 1: an effect of the model acts there
+  BaselineLearner since_gap_;        ///< windows since a gap appeared
+  GapNews named_;                    ///< the last news
   std::optional<Current> current_;
   GapAlarm alarm_;
-  Eigen::VectorXd driven_;  ///< the inputs now
+  Eigen::VectorXd driven_;  ///< the present inputs
   std::vector<double> noise_variance_;
   const GapNews* news_ = nullptr;
 };

@@ -6,23 +6,22 @@
 #include <vector>
 
 #include "estimator/watch/change_point.h"
-#include "estimator/watch/separate_windows.h"
+#include "estimator/watch/watched.h"
 
 namespace framewatch::estimator {
 
-/// Learns a model from main windows that do not overlap, and never across a change of a stiffness:
-/// what was learned before it is the model when it is at least a third of learn_s, and otherwise
-/// learning begins again behind it. The last two windows learned from only confirm that nothing has
-/// changed before them.
+/// Learns a model from main windows that do not overlap, never across a change of a stiffness. At a
+/// change, the windows before it are the model if they cover at least a third of learn_s; otherwise
+/// learning restarts behind it. The last two windows only confirm that nothing changed before them.
 class ModelLearner {
  public:
-  /// elements: the first parameters, which are stiffnesses. learn_s: total length of the windows.
+  /// elements: number of stiffnesses, which come first. learn_s: total length of the windows.
   ModelLearner(int parameters, int elements, double learn_s);
 
-  /// True when the model is learned; further windows are ignored.
+  /// Takes a window. Returns true when the model is learned; further windows are ignored.
   bool push(const WindowEstimate& estimate);
-  /// Means of the parameters of which at least half of the windows have a value, theta order, SI;
-  /// NaN: of the others.
+  /// Returns the means of the parameters that have a value in at least half of the windows, theta
+  /// order, SI; NaN for the others.
   std::vector<WindowMean> learned() const;
 
   template <typename Archive>
@@ -34,7 +33,7 @@ class ModelLearner {
 
  private:
   static constexpr std::size_t kMax = 64, kConfirming = 2;
-  /// A window, or neighbors joined to make room.
+  /// A window, or neighbors joined to free a place.
   struct JoinedWindow {
     Time start{}, end{};
     double length_s = 0;  ///< without the time between joined windows
@@ -61,7 +60,7 @@ class ModelLearner {
   double learn_s_;
   SeparateWindows windows_;
   std::vector<JoinedWindow> joined_;
-  std::size_t count_ = 0;  ///< of those in use
+  std::size_t count_ = 0;  ///< number in use
   bool complete_ = false;
 };
 

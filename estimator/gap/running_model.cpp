@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/simulate/building_model.h"
+#include "estimator/simulate/element_law.h"
 #include "estimator/simulate/linear_building.h"
 #include "estimator/simulate/nonlinear_building.h"
 #include "estimator/structure/matrices.h"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double kLongestStep_s = 1e-3;
 constexpr double kBias_s = 150;  ///< far slower than any motion
-constexpr double kLeft = 0.01;   ///< of a free vibration, after the time to settle
+constexpr double kLeft = 0.01;   ///< remainder of a free vibration after settling
 constexpr double kMinSettle_s = 2, kMaxSettle_s = 120;
 
 std::unique_ptr<DrivenBuilding> building_of(const Structure& structure, const ParameterTable& table,
@@ -29,7 +30,7 @@ std::unique_ptr<DrivenBuilding> building_of(const Structure& structure, const Pa
                                              step_s);
 }
 
-/// By the frames' share of damping in the first mode.
+/// Estimates the time to settle from the frames' share of damping in the first mode.
 double settle_time(const Structure& structure, const ParameterTable& table,
                    const Eigen::VectorXd& theta) {
   const double w1 = 2 * M_PI * natural_frequencies_hz(structure, table, theta).front();
@@ -41,6 +42,27 @@ double settle_time(const Structure& structure, const ParameterTable& table,
   }
   const double decay = c / k * w1 * w1 / 2;
   return std::clamp(-std::log(kLeft) / decay, kMinSettle_s, kMaxSettle_s);
+}
+
+constexpr int kInstantsPerCall = 4;
+constexpr int kFilled = 64;  ///< instants until a filter has values
+constexpr int kFilterInstants = 10'000;
+
+GapModel without_laws(const GapModel& model, const Structure& structure) {
+  GapModel out = model;
+  std::erase_if(out.effects, [&](const Effect& e) { return make_law(e, structure) != nullptr; });
+  return out;
+}
+
+/// Returns the sum of squares of the impulse response of drift control and filter.
+double filtered_variance(double rate_hz, double high_pass_hz) {
+  DriftControlledIntegrator filter({matched_triple(rate_hz)}, HighPass(high_pass_hz, rate_hz));
+  double sum = 0;
+  for (int i = -kFilled; i < kFilterInstants; ++i) {
+    filter.push({i == 0 ? 1.0 : 0.0});
+    sum += filter.value(0) * filter.value(0);
+  }
+  return sum;
 }
 
 }  // namespace
@@ -107,6 +129,31 @@ void RunningModel::push(const Eigen::VectorXd& inputs) {
   const Eigen::VectorXd& accel = building_->accel_abs();
   std::copy(accel.begin(), accel.end(), unfiltered_.begin());
   filter_.push(unfiltered_);
+}
+
+NoisePath::NoisePath(const Structure& structure, const ParameterTable& table, const GapModel& model,
+                     const MeasuredInputs& inputs, double rate_hz, double high_pass_hz)
+    : inputs_(inputs),
+      model_(structure, table, without_laws(model, structure), inputs.inputs, rate_hz, high_pass_hz,
+             Eigen::VectorXd::Zero(inputs.from_axes.rows())),
+      instants_(kFilled + RunningModel::kDelay +
+                static_cast<int>(std::ceil(model_.settle_s() * rate_hz))),
+      own_(filtered_variance(rate_hz, high_pass_hz)),
+      gain_(Eigen::MatrixXd::Zero(structure.degrees_of_freedom(), inputs.from_axes.cols())) {}
+
+void NoisePath::advance() {
+  for (int i = 0; i < kInstantsPerCall && !known(); ++i) {
+    if (instant_ == 0) model_.restart();
+    const Eigen::Index axis = inputs_.used[static_cast<std::size_t>(next_)];
+    model_.push(inputs_.from_axes.col(axis) * (instant_ == kFilled ? 1.0 : 0.0));
+    for (Eigen::Index d = 0; d < gain_.rows(); ++d) {
+      const double accel = model_.accel_abs(static_cast<int>(d));
+      gain_(d, axis) += accel * accel;
+    }
+    if (++instant_ < instants_) continue;
+    instant_ = 0;
+    ++next_;
+  }
 }
 
 }  // namespace framewatch::estimator

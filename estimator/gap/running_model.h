@@ -6,17 +6,18 @@
 #include <Eigen/Core>
 
 #include "estimator/gap/gap.h"
+#include "estimator/gap/measured_inputs.h"
 #include "estimator/motion/drift_controlled_integrator.h"
-#include "estimator/simulate/driven_building.h"
+#include "estimator/simulate/simulated_building.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 
-/// A model that is simulated in step with the building, under its measured inputs. Between the
-/// samples these are interpolated by a windowed sinc, at steps of 1 ms at most. The floors'
-/// accelerations pass drift control and filter as the measured ones do; the inputs do not, because
-/// nonlinear laws do not commute with a filter.
+/// Simulates a model in step with the building, under its measured inputs. A windowed sinc
+/// interpolates these between samples, at steps of at most 1 ms. The floors' accelerations pass the
+/// same drift control and filter as the measured ones. The inputs do not, because nonlinear laws do
+/// not commute with a filter.
 class RunningModel {
  public:
   /// late: delay of every input's samples, less than an instant, in instants.
@@ -24,14 +25,14 @@ class RunningModel {
                const Inputs& inputs, double rate_hz, double high_pass_hz,
                const Eigen::VectorXd& late);
 
-  /// Model and inputs at rest, also in the past.
+  /// Sets model and inputs to rest, also in the past.
   void restart();
-  /// The inputs at the next instant.
+  /// Takes the inputs at the next instant.
   void push(const Eigen::VectorXd& inputs);
-  /// Filtered absolute acceleration of a degree of freedom (Structure::dof), m/s^2: what a sensor
-  /// there and a DriftControlledIntegrator give kDelay instants before the newest.
+  /// Returns the filtered absolute acceleration of a degree of freedom (Structure::dof), m/s^2, as
+  /// a sensor there and a DriftControlledIntegrator return it, kDelay instants before the newest.
   double accel_abs(int dof) const { return filter_.value(dof); }
-  /// Time after which the initial state is forgotten.
+  /// Returns the time after which the initial state is forgotten, s.
   double settle_s() const { return settle_s_; }
 
   static constexpr int kDelay = 16;  ///< instants
@@ -53,17 +54,51 @@ class RunningModel {
 
   int steps_;  ///< per instant
   std::unique_ptr<DrivenBuilding> building_;
-  std::vector<double> rest_;  ///< its motion
+  std::vector<double> rest_;  ///< its motion at rest
   double settle_s_;
   using Taps = Eigen::Matrix<double, Eigen::Dynamic, kTaps>;
   static Taps taps(int steps, double late);
   std::vector<Taps> taps_;  ///< of each input: steps x instants, newest first
   Eigen::MatrixXd recent_;  ///< inputs x ring of kTaps instants
   int newest_ = 0;
-  double bias_share_;  ///< of a sample in the slow mean that is no motion
+  double bias_share_;  ///< weight of a sample in the slow mean, which is bias
   Eigen::VectorXd bias_, before_, after_;
   DriftControlledIntegrator filter_;
   std::vector<double> unfiltered_;
+};
+
+/// Computes the gain of white noise of the input axes, through a model and through the filters
+/// alone: sums of squares of their impulse responses. Nonlinear laws of elements are omitted,
+/// because noise is small. Each call computes a few instants, so no instant is late.
+class NoisePath {
+ public:
+  NoisePath(const Structure& structure, const ParameterTable& table, const GapModel& model,
+            const MeasuredInputs& inputs, double rate_hz, double high_pass_hz);
+
+  /// Computes the next few instants.
+  void advance();
+  bool known() const { return next_ == static_cast<int>(inputs_.used.size()); }
+  /// Returns the variance of a filtered axis per variance of its samples.
+  double own() const { return own_; }
+  /// Returns degrees of freedom x all axes: variance per variance of the axis' samples.
+  /// Precondition: known().
+  const Eigen::MatrixXd& inputs() const { return gain_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(model_);
+    a.within(next_, 0, static_cast<double>(inputs_.used.size()));
+    a.within(instant_, 0, instants_ - 1);
+    a.finite(gain_);
+  }
+
+ private:
+  MeasuredInputs inputs_;
+  RunningModel model_;
+  int instants_;  ///< length of a response
+  int next_ = 0, instant_ = 0;
+  double own_;
+  Eigen::MatrixXd gain_;
 };
 
 }  // namespace framewatch::estimator

@@ -9,8 +9,6 @@
 #include "estimator/numeric/eigenvalues.h"
 #include "estimator/numeric/solve.h"
 #include "estimator/refine/group_likelihood.h"
-#include "estimator/refine/measured_building.h"
-#include "estimator/refine/measured_groups.h"
 #include "estimator/refine/window_likelihood.h"
 
 namespace framewatch::estimator {
@@ -19,12 +17,18 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kHalvings = 12;
-constexpr double kMinSnr = 10;         ///< of a frame stiffness' information over that of noise
-constexpr double kMinCurvature = 0.2;  ///< of a step's information over that with noise
-constexpr double kMinSignal = 1e-3;    ///< the same, of the standard errors
+constexpr Eigen::Index kFewestInstants = 16;
+/// Smallest eigenvalue of the information, scaled to a unit diagonal, that exceeds rounding error.
+constexpr double kRoundingError = 1e-12;
+/// Share of a parameter in a smaller direction from which on its bound is infinite.
+constexpr double kUnknownShare = 1e-4;
 
-/// `information` minus its noise part, in no direction less than `least` times the whole.
+constexpr int kHalvings = 12;
+constexpr double kMinSnr = 10;         ///< information of a frame stiffness over that of noise
+constexpr double kMinCurvature = 0.2;  ///< information of a step over that with noise
+constexpr double kMinSignal = 1e-3;    ///< information of the standard errors over that with noise
+
+/// Returns `information` minus its noise part, in every direction at least `least` times the whole.
 MatrixXd signal_part(const MatrixXd& information, const MatrixXd& noise_part, double least) {
   const VectorXd scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt();
   const VectorXd inverse = scale.cwiseInverse();
@@ -37,7 +41,7 @@ MatrixXd signal_part(const MatrixXd& information, const MatrixXd& noise_part, do
   return back * eigen.values.cwiseMax(least).asDiagonal() * back.transpose();
 }
 
-/// One refinement, in units of the design: x = theta / design.
+/// One refinement in units of the design: x = theta / design.
 class Refiner {
  public:
   Refiner(SegmentLikelihood& likelihood, bool noise_known, const ParameterTable& table,
@@ -102,7 +106,7 @@ class Refiner {
     return misfit / std::max(likelihood_.observations() - fitted, 1.0);
   }
 
-  /// Actual over configured noise, as it scales the prior.
+  /// Returns actual over configured noise, which scales the prior.
   double noise_level() const { return noise_known_ ? std::max(level_, 1.0) : level_; }
   VectorXd pull() const { return noise_level() * prior_; }
 
@@ -187,6 +191,79 @@ RefineStatus refused(SegmentStatus status) {
 }
 
 }  // namespace
+
+SegmentStatus check_segment(const Structure& structure, const std::vector<SensorAxis>& axes,
+                            const Eigen::VectorXd& theta, double rate_hz,
+                            const Eigen::MatrixXd& accel_abs) {
+  if (!problems(structure).empty() || !(rate_hz > 0) || !std::isfinite(rate_hz))
+    return SegmentStatus::bad_input;
+  const ParameterTable table(structure);
+  if (accel_abs.cols() != static_cast<Eigen::Index>(axes.size()) || theta.size() != table.size() ||
+      !theta.allFinite() || !(theta.array() > 0).all())
+    return SegmentStatus::bad_input;
+  for (const SensorAxis& axis : axes)
+    if (axis.story < 0 || axis.story > structure.stories || axis.frame >= structure.frames() ||
+        (axis.story > 0 && axis.frame < 0) || !std::isfinite(axis.delay) ||
+        !std::isfinite(axis.noise_density))
+      return SegmentStatus::bad_input;
+  const auto building = measured_building(structure, table, axes, rate_hz);
+  if (!building) return SegmentStatus::missing_sensors;
+  if (!accel_abs.allFinite()) return SegmentStatus::bad_samples;
+  if (accel_abs.rows() < kFewestInstants) return SegmentStatus::too_short;
+  const Band band = structure_band(structure, table, theta, rate_hz);
+  const double step_hz = rate_hz / static_cast<double>(accel_abs.rows() - 1);
+  const double bins = std::floor(band.high_hz / step_hz) - std::ceil(band.low_hz / step_hz) + 1;
+  const auto end_unknowns = static_cast<double>(EndTerms::sampled);
+  const auto equations = static_cast<double>(building->equations());
+  const bool enough =
+      bins > end_unknowns && 2 * bins * equations >= end_unknowns * equations + 2.0 * table.size();
+  return enough ? SegmentStatus::good : SegmentStatus::too_short;
+}
+
+Eigen::VectorXd bound_of(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale =
+      information.diagonal().cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt();
+  const Eigen::MatrixXd scaled =
+      scale.cwiseInverse().asDiagonal() * information * scale.cwiseInverse().asDiagonal();
+  const RealEigen eigen = symmetric_eigen(scaled);
+  Eigen::VectorXd variance = Eigen::VectorXd::Zero(information.rows());
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < variance.size(); ++i) {
+    const double value = eigen.values[i];
+    const auto vector = eigen.vectors.col(i);
+    for (Eigen::Index p = 0; p < variance.size(); ++p) {
+      if (value > kRoundingError)
+        variance[p] += vector[p] * vector[p] / value;
+      else if (std::abs(vector[p]) > kUnknownShare)
+        variance[p] = kInfinity;
+    }
+  }
+  for (Eigen::Index p = 0; p < variance.size(); ++p)
+    if (!(information(p, p) > std::numeric_limits<double>::min())) variance[p] = kInfinity;
+  return variance.cwiseSqrt().cwiseQuotient(scale);
+}
+
+CramerRaoBound cramer_rao_bound(const Structure& structure, const std::vector<SensorAxis>& axes,
+                                const Eigen::VectorXd& theta, double rate_hz,
+                                const Eigen::MatrixXd& accel_abs) {
+  CramerRaoBound out;
+  out.status = check_segment(structure, axes, theta, rate_hz, accel_abs);
+  if (out.status != SegmentStatus::good) return out;
+  const ParameterTable table(structure);
+  const auto building = measured_building(structure, table, axes, rate_hz);
+  const Spectrum spectrum = spectrum_of(accel_abs, building->delay, rate_hz,
+                                        structure_band(structure, table, theta, rate_hz));
+  WindowLikelihood likelihood(*building, spectrum, EndTerms::states);
+  const auto information = likelihood.information_of_exact_motion(theta);
+  if (!information) {
+    out.status = SegmentStatus::too_short;
+    return out;
+  }
+  out.std_error = bound_of(*information);
+  out.band = spectrum.band;
+  out.bins = static_cast<int>(spectrum.bins());
+  return out;
+}
 
 Refinement refine_max_likelihood(const Structure& structure, const std::vector<SensorAxis>& axes,
                                  double rate_hz, const MatrixXd& accel_abs, const VectorXd& design,

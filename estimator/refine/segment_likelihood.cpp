@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double kRidge = 1e-9;
 
-/// A z = b by a Cholesky factorisation of A brought to a unit diagonal.
+/// Solves A z = b by a Cholesky factorization of A scaled to a unit diagonal.
 class ScaledCholesky {
  public:
   explicit ScaledCholesky(const MatrixXd& matrix)
@@ -95,7 +95,7 @@ bool SegmentLikelihood::fit_ends() {
       ends_.block(r * n, terms_ * n, n, inner_ends_) +=
           2 * (std::conj(bin.end[static_cast<std::size_t>(r)]) * seen).real();
   }
-  if (inner_ends_ > 0) {  // nearly alike far below their frequencies
+  if (inner_ends_ > 0) {  // inner ends are nearly collinear far below their frequencies
     ends_.bottomLeftCorner(inner_ends_, terms_ * n) =
         ends_.topRightCorner(terms_ * n, inner_ends_).transpose();
     ends_.diagonal() *= 1 + kRidge;

@@ -10,11 +10,11 @@
 
 namespace framewatch::estimator {
 
-/// Unknowns per equation for the ends of a segment, docs/equations.md (32). states: displacement
-/// and velocity; sampled: also the terms that sampling adds.
+/// Unknowns per equation at the ends of a segment, docs/equations.md (32). states: displacement and
+/// velocity. sampled: also the terms that sampling adds.
 enum class EndTerms { states = 2, sampled = 4 };
 
-/// Misfit of a segment at one theta and its derivatives; docs/equations.md (33)-(36).
+/// The misfit of a segment at one theta and its derivatives; docs/equations.md (33)-(36).
 struct LikelihoodPoint {
   double misfit = 0;            ///< sum of e^H Omega^-1 e, end terms fitted
   Eigen::VectorXd gradient;     ///< of misfit, per unit of theta
@@ -22,23 +22,23 @@ struct LikelihoodPoint {
   Eigen::MatrixXd noise_part;   ///< expected value of `information` under sensor noise alone
 };
 
-/// Errors-in-variables likelihood of a segment: every axis noisy, the true motion unknown. Which
-/// equations e = D A the motion keeps, a derived class says.
+/// The errors-in-variables likelihood of a segment: every axis is noisy and the true motion
+/// unknown. A derived class defines the equations e = D A of the motion.
 class SegmentLikelihood {
  public:
   virtual ~SegmentLikelihood() = default;
 
-  /// Empty when the misfit is not finite at theta.
+  /// Return nullopt when the misfit is not finite at theta.
   std::optional<double> misfit(const Eigen::VectorXd& theta);
   std::optional<LikelihoodPoint> at(const Eigen::VectorXd& theta);
-  /// Information of the segment if its spectrum is the exact motion.
+  /// Returns the information of the segment if its spectrum is the exact motion; nullopt as above.
   std::optional<Eigen::MatrixXd> information_of_exact_motion(const Eigen::VectorXd& theta);
 
-  /// Complex equations over all bins.
+  /// Returns the number of complex equations over all bins.
   double observations() const;
   Eigen::Index end_unknowns() const { return terms_ * equations_ + inner_ends_; }
   const Spectrum& spectrum() const { return spectrum_; }
-  /// Of one sample's white noise, per axis, (m/s^2)^2.
+  /// Returns the variance of one sample's white noise, per axis, (m/s^2)^2.
   const Eigen::VectorXd& variance() const { return variance_; }
 
  protected:
@@ -49,23 +49,23 @@ class SegmentLikelihood {
     std::vector<std::complex<double>> end;  ///< factors of the end unknowns of every equation
     Eigen::MatrixXcd inner_end;             ///< equations x further end unknowns
   };
-  /// The spectrum must outlive this. variance: per axis. inner_ends: further end unknowns.
+  /// spectrum: must outlive this. variance: per axis. inner_ends: number of further end unknowns.
   SegmentLikelihood(Eigen::Index equations, Eigen::Index parameters,
                     const Eigen::VectorXd& variance, const Spectrum& spectrum, EndTerms terms,
                     Eigen::Index inner_ends = 0);
 
-  /// Sets every bin's operation and inner_end; false where theta is none.
+  /// Sets every bin's operation and inner_end. Returns false when theta is invalid.
   virtual bool operate(const Eigen::VectorXd& theta) = 0;
-  /// Adds bin b. force: weight times residual; motion: the axes' without what is noise of it.
-  /// cross: parameters x end unknowns. noise_part is left out where the motion is exact.
+  /// Adds bin b. force: weight times residual. motion: of the axes, without the noise found in it.
+  /// cross: parameters x end unknowns. Skips noise_part if the motion is exact.
   virtual void gather(Eigen::Index b, const Eigen::VectorXcd& force, const Eigen::VectorXcd& motion,
                       bool exact_motion, LikelihoodPoint& point, Eigen::MatrixXd& cross) const = 0;
 
   const Bin& bin(Eigen::Index b) const { return bins_[static_cast<std::size_t>(b)]; }
   Bin& bin(Eigen::Index b) { return bins_[static_cast<std::size_t>(b)]; }
-  /// Per axis in one bin.
+  /// Returns the noise variance per axis in one bin.
   const Eigen::VectorXd& noise() const { return noise_; }
-  /// The further end unknowns as they were fitted.
+  /// Returns the fitted further end unknowns.
   const Eigen::VectorXd& fitted_inner() const { return fitted_inner_; }
   Eigen::Index equations() const { return equations_; }
   Eigen::Index parameters() const { return parameters_; }

@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// One Butterworth section of two of a fourth-order filter, bilinear, forth and back.
+/// Applies one of the two Butterworth sections of a fourth-order filter, bilinear, forth and back.
 void section(VectorXd& v, double corner_hz, double rate_hz, double quality, bool high) {
   const double k = std::tan(std::numbers::pi * corner_hz / rate_hz);
   const double norm = 1 / (1 + k / quality + k * k);
@@ -44,7 +44,7 @@ bool along(const Structure& s, const SensorAxis& axis, Direction direction) {
   return (axis.frame >= 0 ? s.direction(axis.frame) : axis.direction) == direction;
 }
 
-/// Accelerometers of a floor along a direction; `used`: without those for a check.
+/// Returns the accelerometers of a floor along a direction. used: without those for a check.
 std::vector<Index> axes_of(const PipelineConfig& c, int floor, Direction direction,
                            bool used = false) {
   std::vector<Index> out;
@@ -55,7 +55,7 @@ std::vector<Index> axes_of(const PipelineConfig& c, int floor, Direction directi
   return out;
 }
 
-/// Means over the axes, each toward the direction's positive sense.
+/// Returns the mean over the axes, each toward the direction's positive sense.
 VectorXd mean_of(const PipelineConfig& c, const MatrixXd& accel, const std::vector<Index>& axes,
                  Direction direction) {
   VectorXd out = VectorXd::Zero(accel.rows());
@@ -68,7 +68,7 @@ VectorXd mean_of(const PipelineConfig& c, const MatrixXd& accel, const std::vect
   return out;
 }
 
-/// What each axis of the floor would measure, by what moves elsewhere.
+/// Returns what each axis of the floor would measure, predicted from the other floors.
 MatrixXd predicted(const PipelineConfig& c, const VectorXd& theta, const MatrixXd& accel,
                    int floor) {
   std::vector<std::uint8_t> present = identifying(c.axes);
@@ -139,7 +139,7 @@ VectorXd spline_weights(const std::vector<double>& x, double at) {
   const auto h = [&](Index k) {
     return x[static_cast<std::size_t>(k + 1)] - x[static_cast<std::size_t>(k)];
   };
-  // Second derivatives m = system^-1 right values, none at the ends.
+  // Second derivatives m = system^-1 right values, zero at the ends.
   MatrixXd system = MatrixXd::Identity(n, n), right = MatrixXd::Zero(n, n);
   for (Index k = 1; k + 1 < n; ++k) {
     system(k, k - 1) = h(k - 1) / 6;
@@ -166,7 +166,7 @@ std::vector<LeftOutFloor> leave_floors_out(const PipelineConfig& c, const Vector
   for (const double story : c.structure.story_height) height.push_back(height.back() + story);
   std::vector<MatrixXd> model(static_cast<std::size_t>(c.structure.stories) + 1);
   for (const Direction direction : {Direction::x, Direction::y}) {
-    std::vector<int> floors;  // the base, too
+    std::vector<int> floors;  // including the base
     for (int floor = 0; floor <= c.structure.stories; ++floor)
       if (!axes_of(c, floor, direction).empty()) floors.push_back(floor);
     for (std::size_t i = 1; i + 1 < floors.size(); ++i) {

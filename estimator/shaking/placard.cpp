@@ -1,7 +1,9 @@
 #include "estimator/shaking/placard.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace framewatch::estimator {
 namespace {
@@ -9,7 +11,7 @@ namespace {
 constexpr std::size_t kModerate = static_cast<std::size_t>(DamageState::moderate),
                       kExtensive = static_cast<std::size_t>(DamageState::extensive);
 
-/// Index of the story that is most likely in this state; -1: of none it is known.
+/// Returns the index of the story most likely in this state; -1: no story is known.
 int likeliest(const std::vector<std::array<double, kDamageStates>>& damage, std::size_t state) {
   int out = -1;
   for (std::size_t i = 0; i < damage.size(); ++i) {
@@ -21,6 +23,20 @@ int likeliest(const std::vector<std::array<double, kDamageStates>>& damage, std:
 }
 
 }  // namespace
+
+std::array<double, kDamageStates> damage_probabilities(const Fragility& fragility,
+                                                       double drift_ratio, double std_error) {
+  std::array<double, kDamageStates> out{};
+  const double relative = std_error / drift_ratio;
+  const double variance = std::log1p(relative * relative);  // of the drift's logarithm
+  for (std::size_t i = 0; i < kDamageStates; ++i) {
+    const double spread = std::sqrt(fragility.dispersion[i] * fragility.dispersion[i] + variance);
+    const double z = std::log(drift_ratio / fragility.median[i]) / spread;
+    out[i] = 0.5 * std::erfc(-z / std::numbers::sqrt2);
+    if (i > 0) out[i] = std::min(out[i], out[i - 1]);
+  }
+  return out;
+}
 
 std::vector<std::array<double, kDamageStates>> story_damage(
     const std::vector<StoryDrift>& drifts, const std::vector<Fragility>& by_story) {
@@ -51,13 +67,13 @@ PlacardChoice choose_placard(const std::vector<StoryDrift>& drifts,
   PlacardReason why = PlacardReason::drift_unknown;
   for (std::size_t i = 0; i < drifts.size(); ++i) {
     const StoryDrift& d = drifts[i];
-    if (d.known() && !d.gap_at_peak() && std::isfinite(d.std_error)) continue;
+    if (d.known() && !d.interrupted_at_peak() && std::isfinite(d.std_error)) continue;
     out.not_judged.push_back(d.story);
     if (first_open >= 0) continue;
     first_open = static_cast<int>(i);
-    why = !d.known()        ? PlacardReason::drift_unknown
-          : d.gap_at_peak() ? PlacardReason::gap
-                            : PlacardReason::error_unknown;
+    why = !d.known()                ? PlacardReason::drift_unknown
+          : d.interrupted_at_peak() ? PlacardReason::interruption
+                                    : PlacardReason::error_unknown;
   }
   out.judged = out.not_judged.empty();
   const int extensive = likeliest(damage, kExtensive), moderate = likeliest(damage, kModerate);

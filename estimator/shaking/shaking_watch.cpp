@@ -84,11 +84,11 @@ ShakingWatch::ShakingWatch(const PipelineConfig& config, const ShakingOptions& o
 bool ShakingWatch::push(const SampleSet& set, const Baseline* baseline) {
   began_ = false;
   response_.push(set);
-  // An instant that no sensor has said anything of was not heard.
+  // An instant without any value counts as an interruption.
   if (std::none_of(set.accel.begin(), set.accel.end(), [](double a) { return std::isfinite(a); }))
     return false;
-  const bool missed = look_for_unheard(set.time);
-  // What follows so long a silence is another motion.
+  const bool missed = note_interruption(set.time);
+  // Motion after so long an interruption counts as another one.
   if (active_ && missed && seconds(start_, set.time) >= kLongest_s) return end(set.time, baseline);
   const bool strong = std::any_of(trigger_axes_.begin(), trigger_axes_.end(), [this](auto axis) {
     return std::abs(response_.accel_mps2()[axis]) > options_.trigger_mps2;
@@ -110,7 +110,7 @@ bool ShakingWatch::end(Time now, const Baseline* baseline) {
   active_ = false;
   const bool long_enough = seconds(start_, last_) >= kShortest_s;
   if (long_enough) finish(now, baseline);
-  // The newest one may be the beginning of the next strong motion.
+  // The next strong motion may begin in the newest interruption.
   if (unheard_count_ > 1) unheard_[0] = unheard_[unheard_count_ - 1];
   unheard_count_ = std::min<std::size_t>(unheard_count_, 1);
   return long_enough;
@@ -120,8 +120,8 @@ void ShakingWatch::came_up(Time known, bool raw) {
   came_up_ = CameUp{known, raw};
 }
 
-/// True when there was one just before this instant.
-bool ShakingWatch::look_for_unheard(Time now) {
+/// Returns true if an interruption ended just before this instant.
+bool ShakingWatch::note_interruption(Time now) {
   const bool first = !std::exchange(heard_any_, true);
   const Time before = std::exchange(heard_, now);
   const UnheardWhy restart =
@@ -179,7 +179,7 @@ void ShakingWatch::push(const WindowEstimate& e) {
   }
 }
 
-/// The motion's first windows, where the filters were tuned to the building only later.
+/// Takes the motion's first windows when they arrive late, after the filters were tuned.
 void ShakingWatch::push_late(const WindowEstimate& e) {
   if (!active_ || e.window != 0 || e.status != WindowStatus::valid || e.start < start_) return;
   if (late_.count == kEnds || late_.overlaps(e)) return;
@@ -192,7 +192,7 @@ WindowMean ShakingWatch::first_mean(std::size_t p) const {
   return late.count > 0 ? late : first_.mean(p, elements_);
 }
 
-void ShakingWatch::gap(double nrmse) {
+void ShakingWatch::push_gap(double nrmse) {
   if (active_ && std::isfinite(nrmse) && !(nrmse <= gap_)) gap_ = nrmse;
 }
 

@@ -5,7 +5,6 @@
 #include <complex>
 #include <numbers>
 
-#include "estimator/identify/elements/guessed_design.h"
 #include "estimator/identify/groups/group_equations.h"
 #include "estimator/identify/groups/reduced_building.h"
 #include "estimator/structure/natural_frequencies.h"
@@ -17,18 +16,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Half of the slow part's size where it is not known: its phase decides what it adds to a peak.
+/// Error of an unknown slow part, over its size: its phase decides what it adds to a peak.
 constexpr double kUnknownSlow = 0.5;
 
-GroupDesign design_of(const PipelineConfig& c) {
-  return {c.design.size() > 0 ? c.design : guessed_design(c.structure, ParameterTable(c.structure)),
-          c.bending_nmprad};
-}
-
-/// theta with the design where nothing was identified; scaled: by the median of what was.
+/// Returns the identified parameters, and those of the design where nothing was identified.
 VectorXd completed(const PipelineConfig& c, const ParameterTable& table,
                    const DriftKnowledge& known) {
-  const GroupDesign design = design_of(c);
+  const GroupDesign design = group_design_of(c);
   VectorXd out =
       table.grouped() ? group_parameters(c.structure, table, design) : VectorXd(design.theta);
   for (std::size_t p = 0; p < known.theta.size() && static_cast<Index>(p) < out.size(); ++p)
@@ -36,14 +30,14 @@ VectorXd completed(const PipelineConfig& c, const ParameterTable& table,
   return out;
 }
 
-/// Absolute displacement of every frame at the base, then on every floor, by the axes', at
-/// frequencies far below the floors' own.
+/// Returns the absolute displacement of every frame, at the base, then on every floor, by the
+/// displacements of the axes, at frequencies far below the floors' own.
 MatrixXd frames_by_axes(const PipelineConfig& c, const ParameterTable& table,
                         const VectorXd& theta) {
   const Structure& s = c.structure;
   const auto axes = static_cast<Index>(c.axes.size());
   if (table.grouped()) {
-    const GroupDesign design = design_of(c);
+    const GroupDesign design = group_design_of(c);
     const ReducedBuilding b = reduced_building(s, c.axes, table, design, identifying(c.axes), true);
     if (b.rows() == 0) return {};
     const VectorXd factor = theta.cwiseQuotient(group_parameters(s, table, design));
@@ -62,7 +56,7 @@ MatrixXd frames_by_axes(const PipelineConfig& c, const ParameterTable& table,
   return out;
 }
 
-/// Standard deviation of every drift by the sensors' noise, m, Structure::dof.
+/// Returns the standard deviation of every drift due to the sensors' noise, m, Structure::dof.
 VectorXd noise_of_drifts(const PipelineConfig& c, const MatrixXd& frames,
                          const std::vector<double>& densities) {
   const Index frames_count = c.structure.frames(), dofs = c.structure.degrees_of_freedom();
@@ -74,7 +68,7 @@ VectorXd noise_of_drifts(const PipelineConfig& c, const MatrixXd& frames,
   return (displacement_noise_gain(c.options) * (drifts.cwiseAbs2() * variance)).cwiseSqrt();
 }
 
-/// Share of a slow motion of this frequency that the corner removes.
+/// Returns the share of a slow motion of this frequency that the corner removes.
 double removed_share(double frequency_hz, double corner_hz) {
   const std::complex<double> s(0, frequency_hz / corner_hz);
   return std::abs((2 * StoryResponse::kDamping * s + 1.0) /
@@ -83,7 +77,7 @@ double removed_share(double frequency_hz, double corner_hz) {
 
 double lowest_hz(const PipelineConfig& c, const ParameterTable& table, const VectorXd& theta) {
   const VectorXd stories =
-      table.grouped() ? story_parameters(c.structure, table, design_of(c), theta) : theta;
+      table.grouped() ? story_parameters(c.structure, table, group_design_of(c), theta) : theta;
   return lowest_frequency_hz(c.structure, ParameterTable(c.structure), stories);
 }
 
@@ -92,7 +86,7 @@ bool reads_along(const Structure& s, const SensorAxis& a, Direction direction) {
          (a.frame >= 0 ? s.direction(a.frame) : a.direction) == direction;
 }
 
-/// Relative standard error of a story's stiffness by the windows; 0: not known.
+/// Returns the relative standard error of a story's stiffness by the windows; 0: not known.
 double own_error(const ParameterTable& table, const DriftKnowledge& known, int story, int frame) {
   const int p = table.frame_stiffness(story, frame);
   if (p < 0 || static_cast<std::size_t>(p) >= known.std_error.size()) return 0;
@@ -100,16 +94,17 @@ double own_error(const ParameterTable& table, const DriftKnowledge& known, int s
   return std::isfinite(error) ? error : 0;
 }
 
-/// Error of the slow part, relative to it: that of the stiffness it was computed with.
+/// Returns the relative error of the slow part: that of the stiffness it was computed with.
 double stiffness_error(const PipelineConfig& c, const ParameterTable& table,
                        const DriftKnowledge& known, int story, int frame) {
   const double misfit = std::isfinite(known.misfit) ? known.misfit : 0;
   return std::hypot(own_error(table, known, story, frame), std::hypot(c.mass_tolerance, misfit));
 }
 
-/// Relative error of a drift that is computed between the measured floors around it: the story's
-/// share in the flexibility between them is known to profile_tolerance. Above the highest measured
-/// floor the whole flexibility counts, the masses, and how far EveryFloor's stiffness may be off.
+/// Returns the relative error of a drift that is computed between the measured floors around it.
+/// The story's share in the flexibility between them is known to profile_tolerance. Above the
+/// highest measured floor the error is that of the whole flexibility, the masses and the stiffness
+/// used by EveryFloor.
 double share_error(const PipelineConfig& c, const ParameterTable& table,
                    const DriftKnowledge& known, int story, int frame) {
   const Structure& s = c.structure;
@@ -120,12 +115,12 @@ double share_error(const PipelineConfig& c, const ParameterTable& table,
     if (a.story >= story) above = std::min(above, a.story);
   }
   if (above > s.stories) {
-    const double followed = EveryFloor::kFar / std::sqrt(3.0);  // anywhere within
+    const double followed = EveryFloor::kFar / std::sqrt(3.0);  // uniform within kFar
     return std::hypot(std::hypot(c.profile_tolerance, c.mass_tolerance),
                       std::hypot(own_error(table, known, story, frame), followed));
   }
   const ParameterTable stories(s);
-  const VectorXd theta = design_of(c).theta;
+  const VectorXd theta = group_design_of(c).theta;
   double sum = 0;
   for (int i = below + 1; i <= above; ++i) sum += 1 / theta[stories.frame_stiffness(i, frame)];
   double squares = 0;
@@ -149,7 +144,86 @@ double unseen_share(const PipelineConfig& c, const PeakResponse& peak, int story
   return out;
 }
 
+/// Raises a peak, which may be NaN, to a larger value.
+void raise_peak(double& peak, double value) {
+  if (std::isfinite(value) && !(std::abs(value) <= peak)) peak = std::abs(value);
+}
+
 }  // namespace
+
+/// Takes the largest drift one instant ago, between instants by the parabola through three.
+void PeakResponse::take_drift(std::size_t dof, double drift, double slow) {
+  double* before = &before_m_[3 * dof];
+  double peak = before[1];
+  const double curvature = before[0] - 2 * before[1] + drift;
+  const bool turns = std::isfinite(curvature) && (before[1] - before[0]) * (drift - before[1]) < 0;
+  if (turns) peak -= (drift - before[0]) * (drift - before[0]) / (8 * curvature);
+  if (std::isfinite(peak) && !(std::abs(peak) <= drift_m[dof])) {
+    drift_m[dof] = std::abs(peak);
+    slow_m[dof] = std::copysign(1.0, peak) * before[2];
+  }
+  before[0] = before[1];
+  before[1] = drift;
+  before[2] = slow;
+}
+
+void PeakResponse::note_unseen(std::size_t dof, const std::vector<double>& accel) {
+  for (std::size_t a = 0; a < accel.size(); ++a)
+    raise_peak(unseen_mps2[dof * accel.size() + a], accel[a]);
+}
+
+void PeakResponse::take(const StoryResponse& response) {
+  const double decay = std::exp(-1 / (kLately_s * response.rate_hz()));
+  for (std::size_t dof = 0; dof < drift_m.size(); ++dof) {
+    if (response.interrupted()) note_unseen(dof, lately_mps2);
+    if (!std::isfinite(response.drift_m()[dof])) note_unseen(dof, response.accel_mps2());
+    take_drift(dof, response.drift_m()[dof], response.slow_m()[dof]);
+  }
+  for (std::size_t a = 0; a < accel_mps2.size(); ++a) {
+    raise_peak(accel_mps2[a], response.accel_mps2()[a]);
+    lately_mps2[a] *= decay;
+    raise_peak(lately_mps2[a], response.accel_mps2()[a]);
+  }
+  for (std::size_t d = 0; d < 2; ++d) raise_peak(base_shear_n[d], response.base_shear_n()[d]);
+}
+
+PeakDrift peak_drift(const PeakResponse& peak, const Structure& structure, int story) {
+  PeakDrift out;
+  for (int f = 0; f < structure.frames(); ++f) {
+    const double ratio = peak.drift_m[static_cast<std::size_t>(structure.dof(story, f))] /
+                         structure.story_height[static_cast<std::size_t>(story - 1)];
+    if (std::isfinite(ratio) && !(ratio <= out.ratio)) out = {ratio, f};
+  }
+  return out;
+}
+
+bool drift_is_measured(const PipelineConfig& c, int story) {
+  const auto has = [&](int floor, Direction along) {
+    return floor == 0 || std::any_of(c.axes.begin(), c.axes.end(), [&](const SensorAxis& a) {
+             const Direction own = a.frame >= 0 ? c.structure.direction(a.frame) : a.direction;
+             return a.horizontal() && !a.check && a.story == floor && own == along;
+           });
+  };
+  for (const Direction along : {Direction::x, Direction::y}) {
+    if ((along == Direction::x ? c.structure.n() : c.structure.m()) == 0) continue;
+    if (!has(story, along) || !has(story - 1, along)) return false;
+  }
+  return true;
+}
+
+double largest_drift_ratio(const PeakResponse& peak, const Structure& structure) {
+  double most = 0;
+  for (int story = 1; story <= structure.stories; ++story)
+    if (const double ratio = peak_drift(peak, structure, story).ratio; ratio > most) most = ratio;
+  return most;
+}
+
+double peak_accel_mps2(const PeakResponse& peak, const std::vector<SensorAxis>& axes, int level) {
+  double most = kNaN;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (axes[a].story == level && axes[a].horizontal()) raise_peak(most, peak.accel_mps2[a]);
+  return most;
+}
 
 double displacement_noise_gain(const EstimatorOptions& options) {
   constexpr double kForgotten = 12;  // periods of the mean's corner
@@ -157,7 +231,7 @@ double displacement_noise_gain(const EstimatorOptions& options) {
   const OscillatorSection section(corner, StoryResponse::kDamping, options.rate_hz);
   const double over_w2 = std::pow(2 * std::numbers::pi * corner, -2);
   double x1 = 0, x2 = 0, s1 = 0, s2 = 0, energy = 0;
-  // The mean's own part is a hundredth of it.
+  // The mean's part is a hundredth of it.
   const auto instants = static_cast<std::int64_t>(kForgotten * options.rate_hz / corner);
   for (std::int64_t i = 0; i < instants; ++i) {
     const double x = i == 0 ? 1 : 0;

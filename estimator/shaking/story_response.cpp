@@ -1,21 +1,245 @@
 #include "estimator/shaking/story_response.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "estimator/identify/elements/guessed_design.h"
+#include "estimator/identify/groups/reduced_building.h"
+#include "estimator/numeric/nan.h"
+#include "estimator/numeric/solve.h"
+#include "estimator/structure/matrices.h"
 
 namespace framewatch::estimator {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kMisfitMemory_s = 60;  // longer than the quiet time that ends a strong motion
+
+VectorXd frame_masses(const Structure& s) {
+  VectorXd out(s.degrees_of_freedom());
+  for (int story = 1; story <= s.stories; ++story)
+    for (int f = 0; f < s.frames(); ++f) out[s.dof(story, f)] = s.frame_mass(story, f);
+  return out;
+}
+
+/// Turns displacements of floors into drifts of stories, in place.
+void subtract_floors_below(const Structure& s, MatrixXd& rows) {
+  for (int story = s.stories; story > 1; --story)
+    rows.middleRows(s.dof(story, 0), s.frames()) -=
+        rows.middleRows(s.dof(story - 1, 0), s.frames());
+}
+
+/// Returns -motion K^-1 motion' M. motion: of the frames by the coordinates of `stiffness`.
+MatrixXd flexibility(const Structure& s, const MatrixXd& motion, const MatrixXd& stiffness) {
+  const MatrixXd forces = -(motion.transpose() * frame_masses(s).asDiagonal());
+  MatrixXd out = motion * Ldlt(stiffness).solve(forces);
+  subtract_floors_below(s, out);
+  return out;
+}
+
+MatrixXd flexibility_of_groups(const PipelineConfig& c, const ParameterTable& table,
+                               const GroupDesign& design, const VectorXd& factor) {
+  const ReducedBuilding b =
+      reduced_building(c.structure, c.axes, table, design, identifying(c.axes), true);
+  if (b.rows() == 0) return {};
+  MatrixXd stiffness = b.constant_stiffness;
+  for (std::size_t p = 0; p < b.parts.size(); ++p)
+    if (b.damping[p] == 0 && b.parts[p].size() > 0) stiffness += factor[b.same_as[p]] * b.parts[p];
+  const Index free = b.size() - b.inputs;
+  return flexibility(c.structure,
+                     b.frames.bottomRows(c.structure.degrees_of_freedom()).rightCols(free),
+                     stiffness.bottomRightCorner(free, free));
+}
+
+VectorXd as_vector(const std::vector<double>& values) {
+  return Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size()));
+}
+
 constexpr double kMeanShare = 0.03;   // corner of the mean, over that of the displacement
 constexpr double kSettlePeriods = 2;  // of the corner
 
-/// The larger of two, where the first may be none.
-void raise_peak(double& peak, double value) {
-  if (std::isfinite(value) && !(std::abs(value) <= peak)) peak = std::abs(value);
+}  // namespace
+
+GroupDesign group_design_of(const PipelineConfig& c) {
+  return {c.design.size() > 0 ? c.design : guessed_design(c.structure, ParameterTable(c.structure)),
+          c.bending_nmprad};
 }
 
-}  // namespace
+SlowDrift::SlowDrift(const PipelineConfig& config)
+    : config_(config),
+      table_(config.parameters()),
+      design_(group_design_of(config)),
+      designed_(table_.grouped() ? group_parameters(config.structure, table_, design_)
+                                 : design_.theta),
+      driven_(has_force(config.axes)),
+      theta_(designed_.begin(), designed_.end()),
+      std_error_(theta_.size(), kNaN),
+      identified_(theta_.size(), 0),
+      static_before_(VectorXd::Zero(config.structure.degrees_of_freedom())),
+      drift_(VectorXd::Constant(config.structure.degrees_of_freedom(), kNaN)) {}
+
+void SlowDrift::follow_misfit(const WindowEstimate& e) {
+  double strength = 0;
+  for (const double amplitude : e.amplitude)
+    if (std::isfinite(amplitude)) strength += amplitude * amplitude;
+  const double passed_s = std::chrono::duration<double>(e.end - newest_).count();
+  newest_ = e.end;
+  strongest_m2_ *= std::exp(-std::max(0.0, passed_s) / kMisfitMemory_s);
+  if (!std::isfinite(e.residual_ratio) || strength < strongest_m2_) return;
+  strongest_m2_ = strength;
+  misfit_ = std::abs(e.residual_ratio);
+}
+
+void SlowDrift::follow(const WindowEstimate& e) {
+  if (e.window != 0 || e.status != WindowStatus::valid || e.value.size() != theta_.size()) return;
+  follow_misfit(e);
+  for (std::size_t p = 0; p < theta_.size(); ++p) {
+    if (e.reason[p] != Observability::observable || !(e.value[p] > 0)) continue;
+    theta_[p] = e.value[p];
+    std_error_[p] = p < e.std_error.size() ? e.std_error[p] / e.value[p] : kNaN;
+    identified_[p] = 1;
+  }
+  bool far = formed_.size() == 0;
+  for (Index p = 0; p < formed_.size(); ++p) {
+    const bool damping = p >= table_.elements() && p < 2 * table_.elements();
+    const double now = theta_[static_cast<std::size_t>(p)];
+    far = far || (!damping && std::abs(now - formed_[p]) > kFar * std::abs(formed_[p]));
+  }
+  if (far) form();
+}
+
+double SlowDrift::damping_lag_s() const {
+  std::vector<double> ratios;
+  for (int p = 0; p < table_.elements(); ++p) {
+    const auto k = static_cast<std::size_t>(p), c = static_cast<std::size_t>(p + table_.elements());
+    if (table_[p].kind == ParameterKind::frame_stiffness && identified_[c] != 0)
+      ratios.push_back(theta_[c] / theta_[k]);
+  }
+  if (ratios.empty()) return 0;
+  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2),
+                   ratios.end());
+  return ratios[ratios.size() / 2];
+}
+
+void SlowDrift::form() {
+  formed_.resize(0);
+  flexibility_.resize(0, 0);
+  if (driven_) return;
+  for (int p = 0; p < table_.elements(); ++p)
+    if (table_[p].kind == ParameterKind::frame_stiffness &&
+        identified_[static_cast<std::size_t>(p)] == 0)
+      return;
+  const Structure& s = config_.structure;
+  const VectorXd theta = as_vector(theta_);
+  if (table_.grouped()) {
+    flexibility_ = flexibility_of_groups(config_, table_, design_, theta.cwiseQuotient(designed_));
+  } else {
+    const MatrixXd motion = floor_constraint(s);
+    flexibility_ =
+        flexibility(s, motion, motion.transpose() * assemble(s, table_, theta).stiffness * motion);
+  }
+  if (!flexibility_.allFinite()) flexibility_.resize(0, 0);
+  lag_ = 2 * damping_lag_s() * config_.options.rate_hz;
+  formed_ = theta;
+}
+
+const VectorXd& SlowDrift::push(const VectorXd& slow_accel) {
+  if (!known() || !slow_accel.allFinite()) {
+    static_before_.setZero();
+    drift_.setConstant(static_before_.size(), kNaN);
+    return drift_;
+  }
+  const VectorXd now = flexibility_ * slow_accel;
+  if (!drift_.allFinite()) {
+    drift_ = now;
+  } else {
+    // Damping carries its share of the force: drift + lag d(drift)/dt = now, trapezoidal.
+    drift_ = (now + static_before_ + (lag_ - 1) * drift_) / (lag_ + 1);
+  }
+  static_before_ = now;
+  return drift_;
+}
+
+DriftKnowledge SlowDrift::knowledge() const {
+  DriftKnowledge out;
+  out.theta = theta_;
+  out.std_error = std_error_;
+  for (std::size_t p = 0; p < theta_.size(); ++p)
+    if (identified_[p] == 0) out.theta[p] = kNaN;
+  out.misfit = misfit_;
+  return out;
+}
+
+EveryFloor::EveryFloor(const PipelineConfig& config, std::int64_t settling)
+    : motion_(config),
+      coming_(motion_),
+      settling_(settling),
+      elements_(static_cast<std::size_t>(config.parameters().elements())),
+      used_(identifying(config.axes)),
+      away_rows_(kAway_s * config.options.rate_hz),
+      away_(config.axes.size(), 0) {}
+
+/// Updates the channels that have values. Returns true when one disappeared or returned.
+bool EveryFloor::follow_channels(const SampleSet& set) {
+  bool changed = false;
+  std::vector<std::uint8_t> present = motion_.present();
+  for (std::size_t a = 0; a < away_.size(); ++a) {
+    away_[a] = std::isfinite(set.accel[a]) ? 0 : std::min(away_[a] + 1, away_rows_);
+    const std::uint8_t is =
+        used_[a] == 0 ? 0 : away_[a] == 0 || (present[a] != 0 && away_[a] < away_rows_);
+    changed = changed || is != present[a];
+    present[a] = is;
+  }
+  if (!changed) return false;
+  motion_.tune(Eigen::VectorXd(coming_in_ > 0 ? coming_.theta() : motion_.theta()), present);
+  coming_in_ = 0;
+  return true;
+}
+
+void EveryFloor::push_coming(const SampleSet& set) {
+  began_ = coming_in_ == coming_unsettled_ + settling_;
+  swapped_ = coming_in_ == 1;
+  if (swapped_) std::swap(motion_, coming_);
+  if (--coming_in_ == 0) return;
+  coming_accel_ = coming_.push(set);
+  if (coming_unsettled_ == 0) return;
+  --coming_unsettled_;
+  coming_accel_.setConstant(coming_accel_.size(), kNaN);
+}
+
+const Eigen::VectorXd& EveryFloor::push(const SampleSet& set) {
+  began_ = swapped_ = false;
+  if (follow_channels(set)) unsettled_ = motion_.settle_rows();
+  if (coming_in_ > 0) push_coming(set);
+  const Eigen::VectorXd& accel = motion_.push(set);
+  if (unsettled_ == 0) return accel;
+  --unsettled_;
+  unknown_.setConstant(accel.size(), kNaN);
+  return unknown_;
+}
+
+void EveryFloor::follow(const WindowEstimate& e) {
+  if (e.window != 0 || e.status != WindowStatus::valid || coming_in_ > 0) return;
+  Eigen::VectorXd theta = motion_.theta();
+  bool far = false;
+  for (std::size_t p = 0; p < e.value.size(); ++p) {
+    if (e.reason[p] != Observability::observable || !(e.value[p] > 0)) continue;
+    double& used = theta[static_cast<Eigen::Index>(p)];
+    const bool damping = p >= elements_ && p < 2 * elements_;
+    far = far || (!damping && std::abs(e.value[p] - used) > kFar * std::abs(used));
+    used = e.value[p];
+  }
+  if (!far) return;
+  coming_.tune(theta, std::vector<std::uint8_t>(motion_.present()));
+  coming_unsettled_ = coming_.settle_rows();
+  coming_in_ = coming_unsettled_ + settling_;
+}
 
 StoryResponse::StoryResponse(const PipelineConfig& config)
     : structure_(config.structure),
@@ -54,7 +278,7 @@ StoryResponse::StoryResponse(const PipelineConfig& config)
 
 void StoryResponse::advance(Motion& m, double accel) const {
   if (!std::isfinite(accel)) {
-    m.x1 = m.x2 = m.s1 = m.s2 = m.v1 = m.v2 = m.settled = 0;  // the sensor rests where it rested
+    m.x1 = m.x2 = m.s1 = m.s2 = m.v1 = m.v2 = m.settled = 0;  // the sensor restarts from rest
     return;
   }
   ++m.seen;
@@ -104,7 +328,8 @@ void StoryResponse::follow_floors(const SampleSet& set) {
   const auto floors = motions_.begin() + static_cast<std::ptrdiff_t>(axes_.size());
   if (floors_->swapped()) std::swap_ranges(floors, motions_.end(), coming_motions_.begin());
   if (floors_->began()) {
-    std::copy(floors, motions_.end(), coming_motions_.begin());  // sensors rest where they rested
+    std::copy(floors, motions_.end(),
+              coming_motions_.begin());  // filters keep the resting sensors' means
     for (Motion& motion : coming_motions_) advance(motion, kNaN);
   }
   if (const Eigen::VectorXd* coming = floors_->coming())
@@ -125,7 +350,7 @@ void StoryResponse::follow(const WindowEstimate& estimate) {
   slow_drift_.follow(estimate);
 }
 
-/// Mean of the base's sensors; NaN: one has no value, or there is none.
+/// Returns the mean of the base's sensors; NaN if one has no value or there is no sensor.
 StoryResponse::At StoryResponse::base(Direction direction) const {
   At sum{0, 0};
   double count = 0;
@@ -171,80 +396,6 @@ void StoryResponse::find_story_motion() {
     slow_[dof] = slow[static_cast<Eigen::Index>(dof)];
     if (std::isfinite(slow_[dof])) drift_[dof] += slow_[dof];
   }
-}
-
-/// The largest of a drift one instant ago, between the instants by the parabola through three.
-void PeakResponse::take_drift(std::size_t dof, double drift, double slow) {
-  double* before = &before_m_[3 * dof];
-  double peak = before[1];
-  const double curvature = before[0] - 2 * before[1] + drift;
-  const bool turns = std::isfinite(curvature) && (before[1] - before[0]) * (drift - before[1]) < 0;
-  if (turns) peak -= (drift - before[0]) * (drift - before[0]) / (8 * curvature);
-  if (std::isfinite(peak) && !(std::abs(peak) <= drift_m[dof])) {
-    drift_m[dof] = std::abs(peak);
-    slow_m[dof] = std::copysign(1.0, peak) * before[2];
-  }
-  before[0] = before[1];
-  before[1] = drift;
-  before[2] = slow;
-}
-
-void PeakResponse::note_unseen(std::size_t dof, const std::vector<double>& accel) {
-  for (std::size_t a = 0; a < accel.size(); ++a)
-    raise_peak(unseen_mps2[dof * accel.size() + a], accel[a]);
-}
-
-void PeakResponse::take(const StoryResponse& response) {
-  const double decay = std::exp(-1 / (kLately_s * response.rate_hz()));
-  for (std::size_t dof = 0; dof < drift_m.size(); ++dof) {
-    if (response.interrupted()) note_unseen(dof, lately_mps2);
-    if (!std::isfinite(response.drift_m()[dof])) note_unseen(dof, response.accel_mps2());
-    take_drift(dof, response.drift_m()[dof], response.slow_m()[dof]);
-  }
-  for (std::size_t a = 0; a < accel_mps2.size(); ++a) {
-    raise_peak(accel_mps2[a], response.accel_mps2()[a]);
-    lately_mps2[a] *= decay;
-    raise_peak(lately_mps2[a], response.accel_mps2()[a]);
-  }
-  for (std::size_t d = 0; d < 2; ++d) raise_peak(base_shear_n[d], response.base_shear_n()[d]);
-}
-
-PeakDrift peak_drift(const PeakResponse& peak, const Structure& structure, int story) {
-  PeakDrift out;
-  for (int f = 0; f < structure.frames(); ++f) {
-    const double ratio = peak.drift_m[static_cast<std::size_t>(structure.dof(story, f))] /
-                         structure.story_height[static_cast<std::size_t>(story - 1)];
-    if (std::isfinite(ratio) && !(ratio <= out.ratio)) out = {ratio, f};
-  }
-  return out;
-}
-
-bool drift_is_measured(const PipelineConfig& c, int story) {
-  const auto has = [&](int floor, Direction along) {
-    return floor == 0 || std::any_of(c.axes.begin(), c.axes.end(), [&](const SensorAxis& a) {
-             const Direction own = a.frame >= 0 ? c.structure.direction(a.frame) : a.direction;
-             return a.horizontal() && !a.check && a.story == floor && own == along;
-           });
-  };
-  for (const Direction along : {Direction::x, Direction::y}) {
-    if ((along == Direction::x ? c.structure.n() : c.structure.m()) == 0) continue;
-    if (!has(story, along) || !has(story - 1, along)) return false;
-  }
-  return true;
-}
-
-double largest_drift_ratio(const PeakResponse& peak, const Structure& structure) {
-  double most = 0;
-  for (int story = 1; story <= structure.stories; ++story)
-    if (const double ratio = peak_drift(peak, structure, story).ratio; ratio > most) most = ratio;
-  return most;
-}
-
-double peak_accel_mps2(const PeakResponse& peak, const std::vector<SensorAxis>& axes, int level) {
-  double most = kNaN;
-  for (std::size_t a = 0; a < axes.size(); ++a)
-    if (axes[a].story == level && axes[a].horizontal()) raise_peak(most, peak.accel_mps2[a]);
-  return most;
 }
 
 }  // namespace framewatch::estimator

@@ -10,49 +10,186 @@
 
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/motion/derivative_triple.h"
+#include "estimator/identify/groups/floor_motion.h"
 #include "estimator/motion/sample.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/setup/pipeline_config.h"
-#include "estimator/shaking/every_floor.h"
-#include "estimator/shaking/slow_drift.h"
+#include "estimator/structure/group_design.h"
+#include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 
-/// The motion of the stories at one instant after the other. Displacements are accelerations less
-/// their mean through one oscillator section at the estimation's high-pass (docs/equations.md 8,
-/// 12); they are known two of its periods after the sensor's last interruption. The slow drift that
-/// the section removes is added from SlowDrift once the stiffness is known. Where floors have no
-/// sensors of their own, their motion is that of EveryFloor.
+/// Returns the configured design; without one, a guess from the structure.
+GroupDesign group_design_of(const PipelineConfig& config);
+
+/// The knowledge of a building at the time its drift was computed. story_drifts() derives the
+/// errors of the drift from it.
+struct DriftKnowledge {
+  /// By axis, m/s^2/sqrt(Hz), configured or measured; empty: as configured.
+  std::vector<double> noise_density = {};
+  std::vector<double> theta =
+      {};  ///< table order, SI; NaN: not identified; empty: nothing identified
+  std::vector<double> std_error = {};  ///< of theta, relative; NaN: not identified
+  /// rms residual over rms response of the strongest window of the last minutes; NaN: not known.
+  double misfit = kNaN;
+};
+
+/// Computes the elastic part of the story drifts that double integration above a corner removes.
+/// The floors' slow accelerations times their masses are the slow story forces, which the
+/// identified stiffness turns into drift. docs/equations.md (58), (59). It does not include
+/// permanent drift.
+class SlowDrift {
+ public:
+  /// Relative change of a stiffness that recomputes the flexibility.
+  static constexpr double kFar = 0.02;
+
+  /// Precondition: problems(config) is empty.
+  explicit SlowDrift(const PipelineConfig& config);
+
+  /// Takes over the parameters of a valid main window. Costs at most one solution of K.
+  void follow(const WindowEstimate& estimate);
+  /// Returns true once every frame's stiffness has been identified. Always false in a building
+  /// driven by a shaker, whose force is not a floor's mass times its acceleration.
+  bool known() const { return flexibility_.size() > 0; }
+  /// Takes one instant. slow_accel: absolute accelerations of the frames on the floors
+  /// (Structure::dof) behind the complement of the integrator's high-pass, m/s^2; NaN: not known.
+  /// Returns the slow drift of every frame in every story, m; NaN if it or one of the accelerations
+  /// is not known.
+  const Eigen::VectorXd& push(const Eigen::VectorXd& slow_accel);
+  /// Returns the knowledge without the noise of the sensors.
+  DriftKnowledge knowledge() const;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(theta_, std_error_);
+    a.each_within(identified_, 0, 1);
+    a(misfit_, strongest_m2_, newest_);
+    archive_flexibility(a);
+    a.finite(static_before_);
+    a(drift_);
+  }
+
+ private:
+  void follow_misfit(const WindowEstimate& estimate);
+  /// Archives the parameters of the flexibility, which may be older than theta_.
+  template <typename Archive>
+  void archive_flexibility(Archive& a) {
+    std::vector<double> formed(formed_.begin(), formed_.end());
+    a.any_size(formed);
+    if constexpr (Archive::kReading) {
+      if (!formed.empty() && formed.size() != theta_.size()) return a.refuse();
+      formed_.resize(0);
+      flexibility_.resize(0, 0);
+      if (formed.empty()) return;
+      theta_.swap(formed);
+      form();
+      theta_.swap(formed);
+    }
+  }
+  void form();
+  double damping_lag_s() const;
+
+  PipelineConfig config_;
+  ParameterTable table_;
+  GroupDesign design_;
+  Eigen::VectorXd designed_;
+  bool driven_;  ///< driven by a force
+  std::vector<double> theta_, std_error_;
+  std::vector<std::uint8_t> identified_;
+  double misfit_ = kNaN, strongest_m2_ = 0;
+  Time newest_{};
+  Eigen::VectorXd formed_;       ///< theta that flexibility_ was computed with
+  Eigen::MatrixXd flexibility_;  ///< drifts x accelerations, s^2; empty: not known
+  double lag_ = 0;               ///< damping over stiffness, in half samples
+  Eigen::VectorXd static_before_, drift_;
+};
+
+/// Computes FloorMotion with the parameters identified last and the channels that have values.
+class EveryFloor {
+ public:
+  static constexpr double kFar = 0.1;   ///< relative change of a stiffness that is taken over
+  static constexpr double kAway_s = 2;  ///< a channel without values for so long is left out
+
+  /// Precondition: config.parameters().grouped(). settling: instants for which the motion by new
+  /// stiffnesses runs beside the old one after its start is forgotten.
+  EveryFloor(const PipelineConfig& config, std::int64_t settling);
+
+  /// Returns FloorMotion::push(); NaN after a channel disappeared or returned, until the start is
+  /// forgotten.
+  const Eigen::VectorXd& push(const SampleSet& set);
+  /// Returns the motion by the stiffnesses that will replace those in use; null: no replacement.
+  const Eigen::VectorXd* coming() const { return coming_in_ > 0 ? &coming_accel_ : nullptr; }
+  bool began() const { return began_; }      ///< coming() began with the last push()
+  bool swapped() const { return swapped_; }  ///< the replacement took over at the last push()
+  /// Takes over stiffnesses that differ from those in use by more than kFar. The motion uses the
+  /// old ones until the start of the new ones is forgotten, so no peak is missed. Costs at most one
+  /// FloorMotion::tune().
+  void follow(const WindowEstimate& estimate);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(motion_, coming_);
+    a.within(unsettled_, 0, Archive::kMaxCount);
+    for (std::int64_t* count : {&coming_in_, &coming_unsettled_})
+      a.within(*count, 0, Archive::kMaxCount);
+    a.each_within(away_, 0, Archive::kMaxCount);
+  }
+
+ private:
+  bool follow_channels(const SampleSet& set);
+  void push_coming(const SampleSet& set);
+
+  FloorMotion motion_;
+  FloorMotion coming_;  ///< replaces motion_ in coming_in_ instants
+  std::int64_t settling_;
+  std::int64_t coming_in_ = 0, coming_unsettled_ = 0;  ///< coming_in_ 0: no replacement
+  Eigen::VectorXd coming_accel_;
+  bool began_ = false, swapped_ = false;
+  std::size_t elements_;
+  std::vector<std::uint8_t> used_;  ///< 1: not for a check
+  double away_rows_;
+  std::vector<double> away_;  ///< instants without a value, by axis
+  std::int64_t unsettled_ = 0;
+  Eigen::VectorXd unknown_;
+};
+
+/// Computes the motion of the stories, one instant after the other. Displacements are accelerations
+/// less their mean through one oscillator section at the estimation's high-pass (docs/equations.md
+/// 8, 12); they are known two of its periods after the sensor's last interruption. SlowDrift adds
+/// the slow drift that the section removes, once the stiffness is known. EveryFloor supplies the
+/// motion of floors without sensors.
 class StoryResponse {
  public:
   static constexpr double kDamping = 0.7;  ///< of the oscillator section, a ratio
 
   explicit StoryResponse(const PipelineConfig& config);
 
-  /// One calibrated instant.
+  /// Takes one calibrated instant.
   void push(const SampleSet& set);
-  /// What was identified: floors without sensors move by it from now on.
+  /// Takes over the identified parameters, which move floors without sensors from now on.
   void follow(const WindowEstimate& estimate);
 
-  /// Of each axis: without its mean, m/s^2; NaN: none.
+  /// Returns the acceleration of each axis without its mean, m/s^2; NaN: no value.
   const std::vector<double>& accel_mps2() const { return accel_; }
-  /// Of a frame on a floor, 0: the base, m/s^2; NaN: not known. Without its mean where every frame
-  /// has a sensor.
+  /// Returns the acceleration of a frame on a floor, 0: the base, m/s^2; NaN: not known. Includes
+  /// the mean if floors have no sensors.
   double floor_accel_mps2(int floor, int frame) const;
-  /// Of each frame in each story (Structure::dof), m, positive toward +x or +y; NaN: not known.
+  /// Returns the drift of each frame in each story (Structure::dof), m, positive toward +x or +y;
+  /// NaN: not known.
   const std::vector<double>& drift_m() const { return drift_; }
-  /// The part of drift_m() that SlowDrift added, m; NaN: not known, drift_m() is without it.
+  /// Returns the part of drift_m() that SlowDrift added, m; NaN: not known and not added.
   const std::vector<double>& slow_m() const { return slow_; }
-  /// True at the first instant after instants that never came.
+  /// Returns true at the first instant after an interruption.
   bool interrupted() const { return interrupted_; }
   double rate_hz() const { return rate_hz_; }
-  /// What the stiffness was when the last instant was pushed; without the sensors' noise.
+  /// Returns the stiffness used for the last instant, without the sensors' noise.
   DriftKnowledge knowledge() const { return slow_drift_.knowledge(); }
-  /// Along x and y: minus the floors' masses times their accelerations, N; NaN: not known.
+  /// Returns the base shear along x and y, minus the floors' masses times their accelerations, N;
+  /// NaN: not known.
   const std::array<double, 2>& base_shear_n() const { return base_shear_; }
-  /// Displacements are not known for so long after an interruption.
+  /// Returns how long displacements are not known after an interruption.
   double settling_s() const { return settling_ * step_s_; }
 
   template <typename Archive>
@@ -77,7 +214,7 @@ class StoryResponse {
   void advance(Motion& motion, double accel) const;
   void follow(std::size_t motion, double accel);
   void follow_floors(const SampleSet& set);
-  /// Of a frame at a level, 0: the base.
+  /// The motion of a frame at a level, 0: the base.
   struct At {
     double accel_mps2, moved_m;
     double slow_mps2 = kNaN;  ///< of the floors: acceleration behind the high-pass' complement
@@ -95,73 +232,20 @@ class StoryResponse {
   double mean_step_;                  ///< of the mean's filter
   double settling_;                   ///< instants
   double step_s_;                     ///< between instants
-  std::optional<EveryFloor> floors_;  ///< none where every frame has a sensor on every floor
-  std::vector<int> motion_of_dof_;    ///< -1: none
+  std::optional<EveryFloor> floors_;  ///< empty if every frame has a sensor on every floor
+  std::vector<int> motion_of_dof_;    ///< -1: no sensor
   std::int64_t next_index_ = -1;
   std::vector<Motion> motions_;         ///< by axis; then by level and frame
   std::vector<Motion> coming_motions_;  ///< by level and frame: by EveryFloor::coming()
-  std::vector<double> late_s_;          ///< of the axes: delay that is less than a sample
+  std::vector<double> late_s_;          ///< of the axes: the delay beyond whole samples
   std::vector<double> motion_accel_, moved_, slow_accel_;  ///< of motions_; moved_: displacement, m
   std::vector<double> accel_;                              ///< by axis
-  Eigen::VectorXd floor_accel_;  ///< of floors_, by level and frame: as they move, mean and all
+  Eigen::VectorXd floor_accel_;  ///< of floors_, by level and frame, with its mean
   SlowDrift slow_drift_;
   Eigen::VectorXd slow_floors_;  ///< Structure::dof
   std::vector<double> drift_, slow_;
   bool interrupted_ = false;
   std::array<double, 2> base_shear_{kNaN, kNaN};
 };
-
-/// The largest of it in a time, absolute; NaN: never known.
-struct PeakResponse {
-  static constexpr double kLately_s = 2;  ///< memory of lately_mps2, which decays with it
-
-  std::vector<double> accel_mps2;                  ///< of each axis
-  std::vector<double> drift_m;                     ///< of each frame in each story (Structure::dof)
-  std::array<double, 2> base_shear_n{kNaN, kNaN};  ///< along x and y
-  /// Of drift_m, at its peak: StoryResponse::slow_m(), of the peak's sign; NaN: was not known.
-  std::vector<double> slow_m;
-  /// By frame in each story, then axis: the largest acceleration of the axis while the drift was
-  /// not known; NaN: it always was. Before instants that never came lately_mps2 counts.
-  std::vector<double> unseen_mps2;
-  std::vector<double> lately_mps2;  ///< of each axis, in the last seconds
-
-  PeakResponse() = default;
-  PeakResponse(std::size_t axes, std::size_t degrees_of_freedom)
-      : accel_mps2(axes, kNaN),
-        drift_m(degrees_of_freedom, kNaN),
-        slow_m(degrees_of_freedom, kNaN),
-        unseen_mps2(axes * degrees_of_freedom, kNaN),
-        lately_mps2(axes, 0),
-        before_m_(3 * degrees_of_freedom, kNaN) {}
-  void take(const StoryResponse& response);
-
-  template <typename Archive>
-  void archive(Archive& a) {
-    a(accel_mps2, drift_m, base_shear_n, slow_m, unseen_mps2, before_m_);
-    a.each_within(lately_mps2, 0, a.kMax);
-  }
-
- private:
-  void take_drift(std::size_t dof, double drift, double slow);
-  void note_unseen(std::size_t dof, const std::vector<double>& accel);
-
-  /// By frame in each story: drift two instants ago, one ago, and the slow part one ago.
-  std::vector<double> before_m_;
-};
-
-/// Story drift over story height, of the frame that drifted most.
-struct PeakDrift {
-  double ratio = kNaN;
-  int frame = -1;  ///< -1: of none it is known
-};
-/// story: from 1.
-PeakDrift peak_drift(const PeakResponse& peak, const Structure& structure, int story);
-/// Whether the drift of a story is that of channels on its floor and on the one below; else it is
-/// computed, with the motion that the identified model gives floors without.
-bool drift_is_measured(const PipelineConfig& config, int story);
-/// Of all stories; 0 where none is known.
-double largest_drift_ratio(const PeakResponse& peak, const Structure& structure);
-/// Of the axes at a level, 0: the base; NaN: of none it is known.
-double peak_accel_mps2(const PeakResponse& peak, const std::vector<SensorAxis>& axes, int level);
 
 }  // namespace framewatch::estimator

@@ -2,14 +2,76 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "estimator/numeric/eigenvalues.h"
-#include "estimator/simulate/make_law.h"
-#include "estimator/simulate/rotations.h"
+#include "estimator/numeric/solve.h"
+#include "estimator/simulate/element_law.h"
+#include "estimator/simulate/random.h"
 #include "estimator/structure/matrices.h"
 
 namespace framewatch::estimator {
 namespace {
+
+constexpr int kTones = 100;  ///< one in each of as many equal parts of the band
+
+/// The effect of each rotation on each frame story: the story's height if it lies above the
+/// rotation.
+struct Kinematics {
+  std::vector<std::size_t> frames;  ///< elements of model.linear
+  Eigen::MatrixXd height;           ///< frame stories x rotations, m
+  Eigen::VectorXd spring;           ///< of the rotations, N*m/rad
+};
+
+Kinematics kinematics(const Structure& s, const ParameterTable& table, Direction direction,
+                      double base_stiffness, double floor_stiffness) {
+  Kinematics out;
+  const int first = direction == Direction::x ? 0 : s.n();
+  const int count = direction == Direction::x ? s.n() : s.m();
+  const int base = base_stiffness > 0 ? 1 : 0;
+  const int hinges = floor_stiffness > 0 ? s.stories : 0;
+  out.height = Eigen::MatrixXd::Zero(count * s.stories, base + count * hinges);
+  out.spring = Eigen::VectorXd::Constant(out.height.cols(), floor_stiffness);
+  if (base) out.spring[0] = base_stiffness;
+  for (int f = 0; f < count; ++f) {
+    for (int story = 1; story <= s.stories; ++story) {
+      const double h = s.story_height[static_cast<std::size_t>(story - 1)];
+      const auto row = static_cast<Eigen::Index>(out.frames.size());
+      if (base) out.height(row, 0) = h;
+      for (int floor = 0; floor < std::min(story, hinges); ++floor)
+        out.height(row, base + f * hinges + floor) = h;
+      out.frames.push_back(static_cast<std::size_t>(table.frame_stiffness(story, first + f)));
+    }
+  }
+  return out;
+}
+
+/// Applies base_rocking and frame_bending along one direction: replaces the frames' deformations in
+/// model.linear by those relative to the rotations and adds the rotational springs. The rotations
+/// have no inertia and follow the elastic moments (docs/effects.md). A stiffness <= 0 means no such
+/// rotation.
+void add_rotations(const Structure& s, const ParameterTable& table, Direction direction,
+                   double base_stiffness, double floor_stiffness, LinearModel& model) {
+  const Kinematics k = kinematics(s, table, direction, base_stiffness, floor_stiffness);
+  const auto rows = static_cast<Eigen::Index>(k.frames.size());
+  Eigen::MatrixXd drift(rows, model.mass.size());
+  Eigen::VectorXd stiffness(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const LinearElement& frame = model.linear[k.frames[static_cast<std::size_t>(i)]];
+    drift.row(i) = frame.b.transpose();
+    stiffness[i] = frame.stiffness;
+  }
+  const Eigen::MatrixXd moment_arm = k.height.transpose() * stiffness.asDiagonal();
+  Eigen::MatrixXd rotational = moment_arm * k.height;
+  rotational.diagonal() += k.spring;
+  const Eigen::MatrixXd rotation = Ldlt(rotational).solve(Eigen::MatrixXd(moment_arm * drift));
+  const Eigen::MatrixXd deformation = drift - k.height * rotation;
+  for (Eigen::Index i = 0; i < rows; ++i)
+    model.linear[k.frames[static_cast<std::size_t>(i)]].b = deformation.row(i).transpose();
+  for (Eigen::Index r = 0; r < rotation.rows(); ++r)
+    model.linear.push_back({rotation.row(r).transpose(), k.spring[r], 0});
+}
 
 using enum EffectKind;
 
@@ -34,8 +96,8 @@ Eigen::VectorXd dense(const Element& element, Eigen::Index size) {
   return b;
 }
 
-/// Columns of `rigid` that move none of the flexible floors, and one for every degree of freedom of
-/// those.
+/// Returns the columns of `rigid` that move no flexible floor, and one column for every degree of
+/// freedom of the flexible floors.
 Eigen::MatrixXd freed(const Structure& s, const Eigen::MatrixXd& rigid,
                       const std::vector<bool>& flexible) {
   if (s.floor == FloorModel::flexible) return rigid;
@@ -56,7 +118,7 @@ Eigen::MatrixXd freed(const Structure& s, const Eigen::MatrixXd& rigid,
   return out;
 }
 
-/// Panels of the floors that flex although the building's are rigid.
+/// Adds the panels of the floors that are flexible although the building's floors are rigid.
 void add_flexible_floors(const Structure& s, const std::vector<Effect>& effects,
                          LinearModel& model) {
   Structure flexible = s;
@@ -82,7 +144,7 @@ void add_hidden_masses(const Structure& s, const std::vector<Effect>& effects, L
     const double mass = e->value("mass_kg");
     const double omega = 2 * M_PI * e->value("frequency_hz");
     const int node = s.dof(e->place.story, e->place.frame);
-    // A mass of 0 keeps its place, without effect: it moves, but pulls nobody.
+    // A mass of 0 keeps its degree of freedom: it moves, but exerts no force.
     model.mass[dof] = mass > 0 ? mass : 1;
     model.influence.row(dof) = model.influence.row(node);
     Eigen::VectorXd b = Eigen::VectorXd::Unit(model.mass.size(), dof);
@@ -104,7 +166,7 @@ void add_node_pairs(const Structure& s, const std::vector<Effect>& effects, Line
   }
 }
 
-/// Before other effects than rotations are added.
+/// Call before effects other than rotations are added.
 void add_modal_damping(const Structure& s, const std::vector<Effect>& effects, LinearModel& model) {
   const std::vector<const Effect*> ratios = of_kind(effects, modal_damping);
   if (ratios.empty()) return;
@@ -125,7 +187,7 @@ void add_modal_damping(const Structure& s, const std::vector<Effect>& effects, L
   }
 }
 
-/// Rotational springs of one kind in series are one softer spring.
+/// Returns the stiffness of all rotational springs of one kind in series; 0: no such spring.
 double rotational_stiffness(const std::vector<Effect>& effects, EffectKind kind,
                             Direction direction) {
   double flexibility = 0;
@@ -135,6 +197,40 @@ double rotational_stiffness(const std::vector<Effect>& effects, EffectKind kind,
 }
 
 }  // namespace
+
+AppliedForce::AppliedForce(const Effect& e) : from_s_(e.value("from_s")) {
+  if (e.value("amplitude_n") > 0)
+    tones_.push_back(
+        {e.value("amplitude_n"), 2 * M_PI * e.value("frequency_hz"), e.value("phase_rad")});
+  if (e.value("rms_n") <= 0) return;
+  Random random(static_cast<std::uint64_t>(e.value("seed")), 0);
+  const double low_hz = e.value("low_hz");
+  const double part_hz = (e.value("high_hz") - low_hz) / kTones;
+  for (int i = 0; i < kTones; ++i) {
+    const double frequency_hz = low_hz + part_hz * (i + random.uniform());
+    const double phase = 2 * M_PI * random.uniform();
+    tones_.push_back({e.value("rms_n") * std::sqrt(2.0 / kTones), 2 * M_PI * frequency_hz, phase});
+  }
+}
+
+double AppliedForce::at(double time_s) const {
+  double sum = 0;
+  for (const Tone& tone : tones_)
+    sum += tone.amplitude * std::sin(tone.omega * time_s + tone.phase);
+  return sum;
+}
+
+Eigen::MatrixXd LinearModel::stiffness() const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mass.size(), mass.size());
+  for (const LinearElement& e : linear) out += e.stiffness * e.b * e.b.transpose();
+  return out;
+}
+
+Eigen::MatrixXd LinearModel::damping() const {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(mass.size(), mass.size());
+  for (const LinearElement& e : linear) out += e.damping * e.b * e.b.transpose();
+  return out;
+}
 
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects) {

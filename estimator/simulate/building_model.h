@@ -5,32 +5,71 @@
 
 #include <Eigen/Core>
 
-#include "estimator/simulate/applied_force.h"
 #include "estimator/simulate/element_law.h"
-#include "estimator/simulate/linear_model.h"
 #include "estimator/structure/effect.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 
-/// extra_mass, tuned_mass_damper, base_rocking, frame_bending, added_spring, added_damper,
-/// modal_damping and floor_flexibility act here, the other kinds do not.
+/// The force of the effect unmeasured_force, N, positive toward +x or +y: a sine plus a stationary
+/// Gaussian force, which is a sum of sines with seeded frequencies and phases. Identical on every
+/// machine.
+class AppliedForce {
+ public:
+  explicit AppliedForce(const Effect& effect);
+
+  double from_s() const { return from_s_; }
+  /// Returns the force at time_s, N, as if it had always acted.
+  double at(double time_s) const;
+
+ private:
+  struct Tone {
+    double amplitude;  ///< N
+    double omega;      ///< rad/s
+    double phase;      ///< rad
+  };
+  std::vector<Tone> tones_;
+  double from_s_;
+};
+
+/// A spring and a dashpot along b: force k b'y + c b'y' on the degrees of freedom b.
+struct LinearElement {
+  Eigen::VectorXd b;
+  double stiffness = 0;  ///< N/m
+  double damping = 0;    ///< N*s/m
+};
+
+/// The linear part of a building with its effects. Degrees of freedom are the structure's, then one
+/// for each hidden mass, all relative to the ground.
+struct LinearModel {
+  Eigen::VectorXd mass;               ///< kg
+  Eigen::MatrixXd influence;          ///< x inputs: acceleration with the base, per unit of input
+  Eigen::MatrixXd constraint;         ///< x independent coordinates
+  std::vector<LinearElement> linear;  ///< those of theta in its order, then those of the effects
+
+  Eigen::MatrixXd stiffness() const;  ///< of the degrees of freedom
+  Eigen::MatrixXd damping() const;
+};
+
+/// Builds the linear model. extra_mass, tuned_mass_damper, base_rocking, frame_bending,
+/// added_spring, added_damper, modal_damping and floor_flexibility act in it; the other kinds do
+/// not.
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects);
-/// The same under other inputs. influence: Inputs::influence.
+/// Builds the linear model for other inputs. influence: Inputs::influence.
 LinearModel linear_model(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const std::vector<Effect>& effects,
                          const Eigen::MatrixXd& influence);
 
 /// A law on an element of LinearModel::linear, or between floors.
 struct PlacedLaw {
-  int element;  ///< -1: `between`
+  int element;  ///< -1: see `between`
   std::unique_ptr<ElementLaw> law;
   /// Degrees of freedom whose displacements are added and subtracted; the second may be missing.
   std::vector<int> between;
 
-  /// b of the deformation b'y. size: of y.
+  /// Returns b of the deformation b'y.
   Eigen::VectorXd deformation(const LinearModel& model) const;
 };
 
@@ -39,19 +78,19 @@ struct PlacedForce {
   AppliedForce force;
 };
 
-/// The laws of `effects`, in their order.
+/// Return the laws and the forces of `effects`, in their order.
 std::vector<PlacedLaw> placed_laws(const Structure& structure, const ParameterTable& table,
                                    const Eigen::VectorXd& theta,
                                    const std::vector<Effect>& effects);
 std::vector<PlacedForce> placed_forces(const Structure& structure,
                                        const std::vector<Effect>& effects);
 
-/// Whether the building with its effects stands: its linear stiffness, with every p_delta and all
-/// that is lost by stiffness_drop and stiffness_drift, is positive definite.
+/// Returns true if the building with its effects is stable: its linear stiffness is positive
+/// definite, with every p_delta and all losses by stiffness_drop and stiffness_drift.
 bool stands(const Structure& structure, const ParameterTable& table, const Eigen::VectorXd& theta,
             const std::vector<Effect>& effects);
 
-/// Whether any effect needs more than LinearBuilding: all but those of channels do.
+/// Returns true if any effect needs NonlinearBuilding: all but those of channels do.
 bool concerns_building(const std::vector<Effect>& effects);
 
 }  // namespace framewatch::estimator

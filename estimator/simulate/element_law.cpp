@@ -1,9 +1,386 @@
 #include "estimator/simulate/element_law.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
 namespace framewatch::estimator {
+namespace {
 
-void ElementLaw::rates(double, double, std::span<const double>, std::span<double>) const {}
+double sign(double x) {
+  return x > 0 ? 1 : x < 0 ? -1 : 0;
+}
 
-void ElementLaw::begin_step(double, double) {}
+/// A spring in series with a slider. The memory is the slider's position, which is exact while the
+/// deformation is monotonic within a step.
+class Bilinear : public ElementLaw {
+ public:
+  Bilinear(double kh, double dy) : kh_(kh), dy_(dy) {}
+  double force(double, double d, double, std::span<const double>) const override {
+    return kh_ * std::clamp(d - slider_, -dy_, dy_);
+  }
+  void begin_step(double, double d) override { slider_ = d - std::clamp(d - slider_, -dy_, dy_); }
+  double stiffness_bound() const override { return kh_; }
+  double remembered() const override { return slider_; }
+  void remember(double slider) override { slider_ = slider; }
+
+ private:
+  double kh_, dy_;
+  double slider_ = 0;
+};
+
+/// Parallel springs in series with sliders that yield one after the other and lose strength with
+/// work. States: the deformation of each spring in units of dy, and the work.
+class YieldingSprings : public ElementLaw {
+ public:
+  explicit YieldingSprings(const Effect& e)
+      : kh_(e.value("kh_npm")),
+        dy_(e.value("dy_m")),
+        spread_(e.value("spread")),
+        loss_(e.value("strength_loss")) {}
+  int states() const override { return kSprings + 1; }
+  double force(double, double, double, std::span<const double> z) const override {
+    return kh_ * dy_ * mean(z);
+  }
+  void rates(double, double v, std::span<const double> z, std::span<double> rate) const override {
+    const double weaker = 1 + loss_ * std::max(z[kSprings], 0.0);
+    const double work = mean(z) * v / dy_;
+    rate[kSprings] = work;
+    for (std::size_t i = 0; i < kSprings; ++i) {
+      const double limit =
+          (1 + spread_ * ((2.0 * static_cast<double>(i) + 1) / kSprings - 1)) / weaker;
+      const bool yields = std::abs(z[i]) >= limit && z[i] * v > 0;
+      rate[i] = yields ? -sign(z[i]) * limit * loss_ / weaker * work : v / dy_;
+    }
+  }
+  double stiffness_bound() const override { return kh_; }
+
+ private:
+  static constexpr std::size_t kSprings = 10;
+  static double mean(std::span<const double> z) {
+    double sum = 0;
+    for (std::size_t i = 0; i < kSprings; ++i) sum += z[i];
+    return sum / kSprings;
+  }
+
+  double kh_, dy_, spread_, loss_;
+};
+
+/// Bouc-Wen; with a slip zone, pinching. States: z, m, and the work over kh dy^2.
+class BoucWen : public ElementLaw {
+ public:
+  explicit BoucWen(const Effect& e)
+      : kh_(e.value("kh_npm")),
+        dy_(e.value("dy_m")),
+        exponent_(e.value("exponent")),
+        beta_(e.value("beta")),
+        strength_loss_(e.value("strength_loss")),
+        stiffness_loss_(e.value("stiffness_loss")) {
+    if (e.kind == EffectKind::bouc_wen) {
+      loading_ = e.value("loading");
+      return;
+    }
+    slip_ = e.value("slip_ratio");
+    width_ = e.value("slip_width") * dy_;
+    offset_ = e.value("slip_offset") * dy_;
+    slip_work_ = e.value("slip_work");
+    slip_lock_ = e.value("slip_lock") > 0;
+  }
+  int states() const override { return 2; }
+  double force(double, double, double, std::span<const double> z) const override {
+    return kh_ * z[0];
+  }
+  void rates(double d, double v, std::span<const double> z, std::span<double> rate) const override {
+    const double work = std::max(z[1], 0.0);
+    const double yielded = (1 + strength_loss_ * work) * std::pow(std::abs(z[0]) / dy_, exponent_);
+    const double at = slip_lock_ ? d : z[0] * sign(v) - offset_;
+    double slip = slip_ > 0 ? slip_ * std::exp(-at * at / (width_ * width_)) : 0;
+    if (slip_work_ > 0) slip *= 1 - std::exp(-work / slip_work_);
+    rate[0] = (1 - slip) * v * (1 - yielded * (beta_ * sign(v * z[0]) + loading_ - beta_)) /
+              (1 + stiffness_loss_ * work);
+    rate[1] = z[0] * v / (dy_ * dy_);
+  }
+  double stiffness_bound() const override { return kh_; }
+
+ private:
+  double kh_, dy_, exponent_, beta_, strength_loss_, stiffness_loss_;
+  double loading_ = 1, slip_ = 0, width_ = 1, offset_ = 0, slip_work_ = 0;
+  bool slip_lock_ = false;
+};
+
+/// A brace that yields to either side and then is slack up to where it yielded.
+class SlackBrace : public ElementLaw {
+ public:
+  explicit SlackBrace(const Effect& e)
+      : kh_(e.value("kh_npm")), dy_(e.value("dy_m")), up_(e.value("play_m")), down_(up_) {}
+  double force(double, double d, double, std::span<const double>) const override {
+    return kh_ * (std::clamp(d - up_, 0.0, dy_) - std::clamp(-d - down_, 0.0, dy_));
+  }
+  void begin_step(double, double d) override {
+    up_ = std::max(up_, d - dy_);
+    down_ = std::max(down_, -d - dy_);
+  }
+  double stiffness_bound() const override { return kh_; }
+
+ private:
+  double kh_, dy_, up_, down_;
+};
+
+/// A force f(d) without memory.
+class ElasticLaw : public ElementLaw {
+ public:
+  explicit ElasticLaw(const Effect& e) : kind_(e.kind) {
+    using enum EffectKind;
+    if (kind_ == cubic_stiffness) stiffness_ = e.value("k3_npm3");
+    if (kind_ == quadratic_stiffness) stiffness_ = e.value("k2_npm2");
+  }
+  double force(double, double d, double, std::span<const double>) const override {
+    return stiffness_ * d * (kind_ == EffectKind::cubic_stiffness ? d * d : std::abs(d));
+  }
+
+ private:
+  EffectKind kind_;
+  double stiffness_ = 0;
+};
+
+/// A clearance that closes onto a spring and a dashpot that only push.
+class Contact : public ElementLaw {
+ public:
+  explicit Contact(const Effect& e)
+      : stiffness_(e.value("kg_npm")), gap_(e.value("gap_m")), damping_(e.value("cg_nspm")) {
+    if (e.kind != EffectKind::one_sided_gap) return;
+    up_ = e.value("side") > 0;
+    down_ = !up_;
+  }
+  double force(double, double d, double v, std::span<const double>) const override {
+    return (up_ ? push(d, v) : 0) - (down_ ? push(-d, -v) : 0);
+  }
+  double stiffness_bound() const override { return stiffness_; }
+  double damping_bound() const override { return damping_; }
+
+ private:
+  double push(double d, double v) const {
+    return d > gap_ ? std::max(stiffness_ * (d - gap_) + damping_ * v, 0.0) : 0;
+  }
+
+  double stiffness_, gap_, damping_;
+  bool up_ = true, down_ = true;
+};
+
+/// One story of an elastic amplitude_dependence.
+class AmplitudeDependence : public ElementLaw {
+ public:
+  AmplitudeDependence(const Effect& e, double stiffness)
+      : softening_(stiffness * e.value("softening")),
+        at_m_(e.value("at_m")),
+        exponent_(e.value("exponent")),
+        damping_(stiffness * e.value("damping_s2pm")) {}
+  double force(double, double d, double v, std::span<const double>) const override {
+    return damping_ * v * std::abs(v) -
+           softening_ * d * std::pow(std::abs(d) / at_m_, exponent_ - 1);
+  }
+
+ private:
+  double softening_, at_m_, exponent_, damping_;
+};
+
+/// One story of amplitude_dependence with slipping joints: springs in series with sliders that
+/// yield one after the other (Iwan 1966). There are enough of them that the force at first loading
+/// is the power law. States: the deformation of each spring, m.
+class SlippingJoints : public ElementLaw {
+ public:
+  SlippingJoints(const Effect& e, double stiffness)
+      : elastic_(e, stiffness), slip_(e.value("slip")) {
+    const double at_m = e.value("at_m"), exponent = e.value("exponent");
+    const double ratio = std::pow(kLargest / kSmallest, 1.0 / (kSprings - 1));
+    double below = 0;
+    for (std::size_t i = 0; i < kSprings; ++i) {
+      const double limit = kSmallest * std::pow(ratio, static_cast<double>(i));
+      const double slipping = stiffness * e.value("softening") * exponent *
+                              std::pow(limit * std::sqrt(ratio), exponent - 1);
+      springs_[i] = {slipping - below, limit * at_m};
+      below = slipping;
+    }
+    all_ = below;
+  }
+  int states() const override { return kSprings; }
+  double force(double time_s, double d, double v, std::span<const double> z) const override {
+    double slipped = all_ * d;
+    for (std::size_t i = 0; i < kSprings; ++i) slipped -= springs_[i].stiffness * z[i];
+    const double elastic = elastic_.force(time_s, d, 0, {});
+    return elastic_.force(time_s, 0, v, {}) + (1 - slip_) * elastic - slip_ * slipped;
+  }
+  void rates(double, double v, std::span<const double> z, std::span<double> rate) const override {
+    for (std::size_t i = 0; i < kSprings; ++i)
+      rate[i] = std::abs(z[i]) >= springs_[i].limit_m && z[i] * v > 0 ? 0 : v;
+  }
+
+ private:
+  static constexpr std::size_t kSprings = 40;
+  static constexpr double kSmallest = 1e-3, kLargest = 10;  // limits, of at_m
+  struct Spring {
+    double stiffness, limit_m;
+  };
+  AmplitudeDependence elastic_;
+  double slip_, all_ = 0;
+  std::array<Spring, kSprings> springs_;
+};
+
+class QuadraticDamping : public ElementLaw {
+ public:
+  explicit QuadraticDamping(const Effect& e) : c2_(e.value("c2_ns2pm2")) {}
+  double force(double, double, double v, std::span<const double>) const override {
+    return c2_ * v * std::abs(v);
+  }
+
+ private:
+  double c2_;
+};
+
+class Friction : public ElementLaw {
+ public:
+  explicit Friction(const Effect& e)
+      : force_(e.value("fc_n")),
+        v0_(e.value("v0_mps")),
+        static_(e.value("static_ratio")),
+        stribeck_(e.value("stribeck_mps")) {}
+  double force(double, double, double v, std::span<const double>) const override {
+    const double more = static_ * std::exp(-(v / stribeck_) * (v / stribeck_));
+    return force_ * (1 + more) * std::tanh(v / v0_);
+  }
+  double damping_bound() const override { return force_ * (1 + std::max(static_, 0.0)) / v0_; }
+
+ private:
+  double force_, v0_, static_, stribeck_;
+};
+
+/// Friction with elastic deflection before it slides.
+class PreslidingFriction : public ElementLaw {
+ public:
+  explicit PreslidingFriction(const Effect& e)
+      : steady_(e),
+        force_(e.value("fc_n")),
+        v0_(e.value("v0_mps")),
+        give_(e.value("presliding_m")) {}
+  int states() const override { return 1; }
+  double force(double, double, double, std::span<const double> z) const override {
+    return force_ * z[0];
+  }
+  void rates(double, double v, std::span<const double> z, std::span<double> z_rate) const override {
+    // Anything faster than the shortest step is over within it.
+    constexpr double kFastest_per_s = 4000;
+    if (std::abs(v) < kAtRest * v0_) v = kAtRest * v0_;
+    const double steady = steady_.force(0, 0, v, {}) / force_;
+    z_rate[0] = std::min(std::abs(v / steady) / give_, kFastest_per_s) * (steady - z[0]);
+  }
+  double stiffness_bound() const override { return force_ / give_; }
+
+ private:
+  static constexpr double kAtRest = 1e-6;
+  Friction steady_;
+  double force_, v0_, give_;
+};
+
+/// dk d from t0 on; it starts with a step of the integration.
+class StiffnessDrop : public ElementLaw {
+ public:
+  explicit StiffnessDrop(const Effect& e) : change_(e.value("dk_npm")), at_s_(e.value("at_s")) {}
+  double force(double, double d, double, std::span<const double>) const override {
+    return dropped_ ? change_ * d : 0;
+  }
+  void begin_step(double time_s, double) override {
+    constexpr double kDropRounding_s = 1e-9;
+    dropped_ = time_s >= at_s_ - kDropRounding_s;
+  }
+  double stiffness_bound() const override { return std::abs(change_); }
+
+ private:
+  double change_, at_s_;
+  bool dropped_ = false;
+};
+
+class StiffnessDrift : public ElementLaw {
+ public:
+  explicit StiffnessDrift(const Effect& e)
+      : change_(e.value("dk_npm")),
+        from_s_(e.value("from_s")),
+        duration_s_(e.value("duration_s")) {}
+  double force(double time_s, double d, double, std::span<const double>) const override {
+    return change_ * std::clamp((time_s - from_s_) / duration_s_, 0.0, 1.0) * d;
+  }
+  double stiffness_bound() const override { return std::abs(change_); }
+
+ private:
+  double change_, from_s_, duration_s_;
+};
+
+/// Second-order effect of the weight above.
+class PDelta : public ElementLaw {
+ public:
+  PDelta(const Effect& e, const Structure& s)
+      : stiffness_(-e.value("weight_n") /
+                   s.story_height[static_cast<std::size_t>(e.place.story - 1)]) {}
+  double force(double, double d, double, std::span<const double>) const override {
+    return stiffness_ * d;
+  }
+  double stiffness_bound() const override { return std::abs(stiffness_); }
+
+ private:
+  double stiffness_;
+};
+
+/// Returns a spring kh in series with a slider that yields at the deformation dy.
+std::unique_ptr<ElementLaw> make_slider(double kh, double dy) {
+  return std::make_unique<Bilinear>(kh, dy);
+}
+
+/// Returns the law of bilinear_hysteresis, bouc_wen or pinching.
+std::unique_ptr<ElementLaw> make_hysteretic_law(const Effect& e) {
+  if (e.kind == EffectKind::pinching && e.value("slack") > 0)
+    return std::make_unique<SlackBrace>(e);
+  if (e.kind != EffectKind::bilinear_hysteresis) return std::make_unique<BoucWen>(e);
+  if (e.value("spread") > 0 || e.value("strength_loss") > 0)
+    return std::make_unique<YieldingSprings>(e);
+  return make_slider(e.value("kh_npm"), e.value("dy_m"));
+}
+
+}  // namespace
+
+std::unique_ptr<ElementLaw> make_amplitude_law(const Effect& e, double stiffness) {
+  if (e.value("slip") > 0) return std::make_unique<SlippingJoints>(e, stiffness);
+  return std::make_unique<AmplitudeDependence>(e, stiffness);
+}
+
+std::unique_ptr<ElementLaw> make_law(const Effect& e, const Structure& s) {
+  switch (e.kind) {
+    case EffectKind::cubic_stiffness:
+    case EffectKind::quadratic_stiffness:
+      return std::make_unique<ElasticLaw>(e);
+    case EffectKind::one_sided_gap:
+    case EffectKind::two_sided_gap:
+      return std::make_unique<Contact>(e);
+    case EffectKind::bilinear_hysteresis:
+    case EffectKind::bouc_wen:
+    case EffectKind::pinching:
+      return make_hysteretic_law(e);
+    case EffectKind::coulomb_friction:
+      if (const double ks = e.value("stick_npm"); ks > 0)
+        return make_slider(ks, e.value("fc_n") / ks);
+      if (e.value("presliding_m") > 0 && e.value("fc_n") > 0)
+        return std::make_unique<PreslidingFriction>(e);
+      return std::make_unique<Friction>(e);
+    case EffectKind::quadratic_damping:
+      return std::make_unique<QuadraticDamping>(e);
+    case EffectKind::stiffness_drop:
+      return std::make_unique<StiffnessDrop>(e);
+    case EffectKind::stiffness_drift:
+      return std::make_unique<StiffnessDrift>(e);
+    case EffectKind::p_delta:
+      return std::make_unique<PDelta>(e, s);
+    default:
+      return nullptr;
+  }
+}
 
 }  // namespace framewatch::estimator

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <span>
+
+#include "estimator/structure/effect.h"
+#include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 
@@ -11,17 +15,25 @@ class ElementLaw {
   virtual ~ElementLaw() = default;
   virtual int states() const { return 0; }
   virtual double force(double time_s, double d, double v, std::span<const double> z) const = 0;
-  /// z' of the internal states.
-  virtual void rates(double d, double v, std::span<const double> z, std::span<double> z_rate) const;
-  /// Before every step from time_s, where the deformation is d: what is remembered of the past.
-  virtual void begin_step(double time_s, double d);
-  /// That, as a number; 0 when there is nothing but the states.
+  /// Computes z' of the internal states.
+  virtual void rates(double /*d*/, double /*v*/, std::span<const double> /*z*/,
+                     std::span<double> /*z_rate*/) const {}
+  /// Called before every step from time_s, where the deformation is d, to update the memory.
+  virtual void begin_step(double /*time_s*/, double /*d*/) {}
+  /// Return and restore the memory; 0 when there are only the states.
   virtual double remembered() const { return 0; }
   virtual void remember(double) {}
-  /// Bounds of abs(df/dd), N/m, and abs(df/dv), N*s/m, while abs(d) and abs(v) stay moderate: they
-  /// choose the step.
+  /// Return bounds of abs(df/dd), N/m, and abs(df/dv), N*s/m, for moderate abs(d) and abs(v); they
+  /// determine the step.
   virtual double stiffness_bound() const { return 0; }
   virtual double damping_bound() const { return 0; }
 };
+
+/// Returns amplitude_dependence of one element. stiffness: of the element, N/m.
+std::unique_ptr<ElementLaw> make_amplitude_law(const Effect& effect, double stiffness);
+
+/// Returns the law of an effect; null when the effect does not act on one deformation.
+/// Precondition: problems(effect) is empty.
+std::unique_ptr<ElementLaw> make_law(const Effect& effect, const Structure& structure);
 
 }  // namespace framewatch::estimator

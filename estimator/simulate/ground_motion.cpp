@@ -9,8 +9,8 @@
 namespace framewatch::estimator {
 namespace {
 
-/// x'' + 2 zeta w x' + w^2 x = input, one step at a time with the input linear between samples:
-/// Newmark's average acceleration, unconditionally stable.
+/// Integrates x'' + 2 zeta w x' + w^2 x = input by Newmark's average acceleration, which is
+/// unconditionally stable; the input is linear between samples.
 class Oscillator {
  public:
   Oscillator(double frequency_hz, double damping_ratio, double step_s)
@@ -24,7 +24,7 @@ class Oscillator {
     x_ = x_predicted + h_ * h_ / 4 * a_;
     v_ = v_predicted + h_ / 2 * a_;
   }
-  /// 2 zeta w x' + w^2 x: what the soil column passes on to the surface.
+  /// Returns 2 zeta w x' + w^2 x, which the soil column transmits to the surface.
   double transmitted() const { return 2 * zeta_ * w_ * v_ + w_ * w_ * x_; }
   double acceleration() const { return a_; }
 
@@ -46,7 +46,7 @@ double GroundMotion::duration_s() const {
 }
 
 double GroundMotion::at(double t_s) const {
-  // Times on the grid come out of sums and quotients: rounding must not lose the end samples.
+  // Times on the grid are rounded; rounding must not lose the end samples.
   constexpr double rounding = 1e-9;
   const double last = static_cast<double>(accel.size()) - 1;
   const double place = t_s / step_s;

@@ -11,9 +11,9 @@ struct GroundMotion {
   std::vector<double> accel;  ///< m/s^2, first sample at time 0
 
   double duration_s() const;
-  /// m/s^2 at time t, s; 0 before the first and after the last sample.
+  /// Returns the acceleration at time t, m/s^2; 0 before the first and after the last sample.
   double at(double t_s) const;
-  /// Largest |accel|, m/s^2.
+  /// Returns the largest |accel|, m/s^2.
   double peak() const;
 };
 
@@ -25,11 +25,13 @@ struct PlanMotion {
   double duration_s() const;
 };
 
-/// One motion arriving at an angle to the x axis: x component times cos, y component times sin.
+/// Returns a motion that arrives at an angle to the x axis: x component times cos, y component
+/// times sin.
 PlanMotion directed(const GroundMotion& motion, double angle_rad);
 
-/// Stationary white noise through the ground's own resonance (Kanai-Tajimi), a second-order
-/// high-pass against drift, and an envelope: quadratic build-up, strong part, exponential decay.
+/// Parameters of a stationary white noise filtered by the ground's resonance (Kanai-Tajimi) and a
+/// second-order high-pass against drift, times an envelope: quadratic build-up, strong part,
+/// exponential decay.
 struct KanaiTajimi {
   double ground_frequency_hz = 2.5;
   double ground_damping_ratio = 0.6;
@@ -43,7 +45,7 @@ struct KanaiTajimi {
   std::uint64_t seed = 1;
 };
 
-/// The same motion for the same parameters on every machine.
+/// Returns the motion of the parameters, identical on every machine.
 GroundMotion kanai_tajimi(const KanaiTajimi& parameters);
 
 }  // namespace framewatch::estimator

@@ -12,7 +12,7 @@
 namespace framewatch::estimator {
 namespace {
 
-/// out = a * x. Written out because a debug build of Eigen's is many times slower.
+/// Computes out = a * x, explicitly because Eigen's product is many times slower in a debug build.
 void multiply(const double* a, const double* x, double* out, Eigen::Index rows,
               Eigen::Index columns) {
   for (Eigen::Index r = 0; r < rows; ++r, a += columns) {

@@ -2,15 +2,15 @@
 
 #include <Eigen/Core>
 
-#include "estimator/simulate/driven_building.h"
+#include "estimator/simulate/simulated_building.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/structure.h"
 
 namespace framewatch::estimator {
 
-/// M y'' + C y' + K y = -M r a_g + f advanced in time exactly (first-order-hold state space by the
-/// matrix exponential): no error while the inputs are linear within a step. Floors are
-/// rigid or flexible as the structure says. Starts at rest.
+/// Advances M y'' + C y' + K y = -M r a_g + f in time (first-order-hold state space by the matrix
+/// exponential), exactly while the inputs are linear within a step. Floors are rigid or flexible,
+/// as in the structure. Starts at rest.
 class LinearBuilding : public DrivenBuilding {
  public:
   /// theta in table order; step_s > 0.
@@ -19,9 +19,8 @@ class LinearBuilding : public DrivenBuilding {
   LinearBuilding(const Structure& structure, const ParameterTable& table,
                  const Eigen::VectorXd& theta, Inputs inputs, double step_s);
 
-  /// New stiffness and damping from now on; displacements and velocities go on from where they are.
   void set_theta(const Eigen::VectorXd& theta) override;
-  /// Relative to the ground, one entry per degree of freedom, m and m/s.
+  /// Sets the state relative to the ground, one entry per degree of freedom, m and m/s.
   void set_state(const Eigen::VectorXd& disp_rel, const Eigen::VectorXd& vel_rel);
 
   void drive(const Eigen::Ref<const Eigen::VectorXd>& before,
@@ -30,7 +29,6 @@ class LinearBuilding : public DrivenBuilding {
   void set_time(double) override {}
   Eigen::VectorXd disp_rel() const override;
   Eigen::VectorXd vel_rel() const override;
-  /// m/s^2 per degree of freedom (Structure::dof), positive toward +x or +y.
   const Eigen::VectorXd& accel_abs() const override { return accel_abs_; }
   std::vector<double> motion() const override { return {state_.begin(), state_.end()}; }
   [[nodiscard]] bool resume(const std::vector<double>& motion) override;
@@ -44,10 +42,10 @@ class LinearBuilding : public DrivenBuilding {
   double step_s_;
   Eigen::MatrixXd constraint_;  ///< degrees of freedom x independent coordinates
   Inputs inputs_;
-  double velocity_scale_ = 1;  ///< 1/s; displacements are held times this, which evens out A
+  double velocity_scale_ = 1;  ///< 1/s; displacements are stored times this, which balances A
   RowMajor transition_;        ///< state x (state, inputs before, their change)
   RowMajor output_;            ///< degrees of freedom x state
-  RowMajor direct_;            ///< degrees of freedom x inputs: what forces do at once
+  RowMajor direct_;            ///< degrees of freedom x inputs: immediate effect of forces
   Eigen::VectorXd state_;      ///< scaled coordinates, their velocities, inputs, their change
   Eigen::VectorXd next_;
   Eigen::VectorXd accel_abs_;

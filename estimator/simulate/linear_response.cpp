@@ -17,7 +17,8 @@ int steps_per_instant(const ResponseOptions& options) {
   return static_cast<int>(std::ceil(1 / (options.rate_hz * options.longest_step_s) - 1e-9));
 }
 
-/// Degrees of freedom, the base's two directions, where there are forces those on each degree.
+/// Returns the number of degrees of freedom, plus 2 for the base, plus one force for each degree if
+/// there are forces.
 Eigen::Index columns_of(const SimulatedBuilding& building) {
   return building.accel_abs().size() + 2 + building.applied_n().size();
 }
@@ -28,7 +29,7 @@ Decimator decimator(const std::vector<ResponseChannel>& wanted, const ResponseOp
   std::vector<DecimatorChannel> channels;
   const auto add = [&](const ResponseChannel& c) {
     assert(options.anti_alias || c.delay_s == 0);
-    const bool exists = c.column < columns;  // a force that nothing applies is none
+    const bool exists = c.column < columns;  // false for a force that nothing applies
     channels.push_back({exists ? c.column : 0,
                         options.anti_alias
                             ? anti_alias_taps(ratio, c.delay_s * options.rate_hz * ratio)
@@ -50,6 +51,8 @@ std::unique_ptr<SimulatedBuilding> make_building(const Structure& structure,
     return std::make_unique<NonlinearBuilding>(structure, table, theta, effects, step_s);
   return std::make_unique<LinearBuilding>(structure, table, theta, step_s);
 }
+
+constexpr double kLongestStep_s = 1e-3;
 
 }  // namespace
 
@@ -116,6 +119,29 @@ Response linear_response(const Structure& structure, const ParameterTable& table
   Response out{options.rate_hz, Eigen::MatrixXd(instants, structure.degrees_of_freedom() + 2)};
   ResponseStream stream(structure, table, theta, motion, options);
   for (Eigen::Index i = 0; i < instants; ++i) out.accel_abs.row(i) = stream.next().transpose();
+  return out;
+}
+
+MotionHistory exact_motion(const Structure& structure, const ParameterTable& table,
+                           const Eigen::VectorXd& theta, const PlanMotion& motion, double rate_hz,
+                           Eigen::Index rows) {
+  const int ratio = static_cast<int>(std::ceil(1 / (rate_hz * kLongestStep_s) - 1e-9));
+  const double step_s = 1 / (rate_hz * ratio);
+  const auto ground = [&](Eigen::Index step) {
+    const double t = static_cast<double>(step) * step_s;
+    return Eigen::Vector2d(motion.x.at(t), motion.y.at(t));
+  };
+  LinearBuilding building(structure, table, theta, step_s);
+  const Eigen::Index columns = structure.degrees_of_freedom();
+  MotionHistory out{Eigen::MatrixXd(rows, columns), Eigen::MatrixXd(rows, columns),
+                    Eigen::MatrixXd(rows, columns)};
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    for (Eigen::Index k = (i - 1) * ratio; i > 0 && k < i * ratio; ++k)
+      building.advance(ground(k), ground(k + 1));
+    out.accel_abs.row(i) = building.accel_abs().transpose();
+    out.vel_rel.row(i) = building.vel_rel().transpose();
+    out.disp_rel.row(i) = building.disp_rel().transpose();
+  }
   return out;
 }
 

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "estimator/identify/solve/batch_least_squares.h"
 #include "estimator/simulate/decimator.h"
 #include "estimator/simulate/ground_motion.h"
 #include "estimator/simulate/simulated_building.h"
@@ -17,8 +18,9 @@ namespace framewatch::estimator {
 
 struct ResponseOptions {
   double rate_hz = 100;
-  double longest_step_s = 1e-3;  ///< the fine step is the largest one below that divides 1/rate
-  bool anti_alias = true;        ///< before decimation, on every channel alike, without delay
+  double longest_step_s =
+      1e-3;                ///< the fine step is the largest one up to this that divides 1/rate
+  bool anti_alias = true;  ///< filter every channel before decimation, without delay
 };
 
 /// Parameters that hold from a time on.
@@ -27,40 +29,40 @@ struct ParameterChange {
   Eigen::VectorXd theta;
 };
 
-/// What a stream gives: a degree of freedom, or after the last one base x and base y, then the
-/// forces from outside on every degree of freedom, as it was delay_s before the instant.
+/// An output of a stream: a degree of freedom, then base x and base y, then the external forces on
+/// every degree of freedom, delay_s before the instant.
 struct ResponseChannel {
   int column;
-  double delay_s = 0;  ///< only 0 without the anti-alias filter, which makes it
+  double delay_s = 0;  ///< must be 0 without the anti-alias filter, which makes the delay
   double weight = 1;   ///< of the column
   std::vector<std::pair<int, double>> also = {};  ///< further columns with their weights
 };
 
-/// Of the integration, s.
+/// Returns the step of the integration, s.
 double fine_step_s(const ResponseOptions& options);
 
-/// The response of a building, one output instant after the other. The ground motion is taken at
-/// the fine steps and linear between them; a linear building's response to it is exact. Not the
-/// estimator's scheme, on purpose.
+/// Computes the response of a building, one output instant after the other. The ground motion is
+/// sampled at the fine steps and linear between them; a linear building's response to it is exact.
+/// The scheme deliberately differs from the estimator's.
 class ResponseStream {
  public:
-  /// Changes in ascending order of time; each acts from the first fine step at or after its time.
-  /// No channels: every degree of freedom (Structure::dof), base x and base y, without delay.
+  /// changes: in ascending order of time; each acts from the first fine step at or after its time.
+  /// channels: empty for every degree of freedom (Structure::dof), base x and base y, without
+  /// delay.
   ResponseStream(const Structure& structure, const ParameterTable& table,
                  const Eigen::VectorXd& theta, PlanMotion motion, ResponseOptions options,
                  std::vector<ParameterChange> changes = {},
                  const std::vector<ResponseChannel>& channels = {},
                  const std::vector<Effect>& effects = {});
-  /// Of any building at rest whose step is fine_step_s(options).
+  /// building: at rest, with a step of fine_step_s(options).
   ResponseStream(std::unique_ptr<SimulatedBuilding> building, PlanMotion motion,
                  ResponseOptions options, std::vector<ParameterChange> changes,
                  const std::vector<ResponseChannel>& channels);
 
-  /// Absolute accelerations of the channels, m/s^2, or forces, N, at the next instant, the first
-  /// being time 0.
-  /// After the motion's end the ground rests.
+  /// Returns the channels' absolute accelerations, m/s^2, or forces, N, at the next instant; the
+  /// first is at time 0. After the motion's end the ground rests.
   const Eigen::VectorXd& next();
-  /// Of the instant next() gave last, s.
+  /// Returns the time of the last instant, s.
   double time_s() const;
 
  private:
@@ -74,8 +76,8 @@ class ResponseStream {
   std::unique_ptr<SimulatedBuilding> building_;
   Decimator decimator_;
   std::size_t next_change_ = 0;
-  long long step_;          ///< fine step the building stands at
-  long long instant_ = -1;  ///< output instant given last
+  long long step_;          ///< fine step of the building's state
+  long long instant_ = -1;  ///< last output instant
   Eigen::VectorXd fine_;
 };
 
@@ -85,9 +87,17 @@ struct Response {
   Eigen::MatrixXd accel_abs;
 };
 
-/// From rest, from time 0 for duration_s (the motion's when negative), both ends included.
+/// Returns the response from rest, from time 0 for duration_s (the motion's when negative), both
+/// ends included.
 Response linear_response(const Structure& structure, const ParameterTable& table,
                          const Eigen::VectorXd& theta, const PlanMotion& motion,
                          const ResponseOptions& options = {}, double duration_s = -1);
+
+/// Returns the exact response from rest, `rows` instants from time 0. Without an anti-alias filter
+/// the equation of motion holds at every instant. The ground motion is linear within steps of at
+/// most 1 ms.
+MotionHistory exact_motion(const Structure& structure, const ParameterTable& table,
+                           const Eigen::VectorXd& theta, const PlanMotion& motion, double rate_hz,
+                           Eigen::Index rows);
 
 }  // namespace framewatch::estimator

@@ -14,16 +14,16 @@ namespace framewatch::estimator {
 namespace {
 
 constexpr double kLongestPart_s = 5e-4;
-/// Largest angle in radians that the fastest mode, and a law's own frequency, turn in a part. Modes
-/// beyond the fastest one that counts only follow.
+/// Largest angles, rad, that the fastest mode and a law's frequency turn in a part. Modes above
+/// kFastestMode_hz do not count.
 constexpr double kFastestMode_hz = 300;
 constexpr double kModeAngle = 0.2;
 constexpr double kLawAngle = 0.05;
-/// Largest share of its velocity that a law's damping takes in a part.
+/// Largest share of its velocity that a law's damping removes in a part.
 constexpr double kLawDecay = 0.1;
 
-/// out = a * x, columns from `first` on. Written out because a debug build of Eigen's is many times
-/// slower.
+/// Computes out = a * x for columns from `first` on, explicitly because Eigen's product is many
+/// times slower in a debug build.
 void multiply(const double* a, const double* x, double* out, Eigen::Index rows, Eigen::Index stride,
               Eigen::Index first, Eigen::Index columns) {
   for (Eigen::Index r = 0; r < rows; ++r, a += stride) {

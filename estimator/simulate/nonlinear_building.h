@@ -5,32 +5,32 @@
 #include <Eigen/Core>
 
 #include "estimator/simulate/building_model.h"
-#include "estimator/simulate/driven_building.h"
+#include "estimator/simulate/simulated_building.h"
 
 namespace framewatch::estimator {
 
-/// A building with effects. Its linear part is advanced by the matrix exponential, exactly while
-/// the inputs are linear within a step; laws and forces by the fourth-order Runge-Kutta
-/// scheme in the coordinates that move with it (Lawson, SIAM J. Numer. Anal. 4, 1967). Without laws
-/// it is LinearBuilding up to rounding. Diagnosis fits with another scheme, on purpose.
+/// A building with effects. The matrix exponential advances its linear part, exactly while the
+/// inputs are linear within a step. The fourth-order Runge-Kutta scheme advances laws and forces,
+/// in coordinates that move with the linear part (Lawson, SIAM J. Numer. Anal. 4, 1967). Without
+/// laws it equals LinearBuilding up to rounding. Diagnosis deliberately fits with another scheme.
 class NonlinearBuilding : public DrivenBuilding {
  public:
-  /// Effects without problems, those of channels are ignored; step_s > 0. A step is divided into as
-  /// many parts as the stiffest law and the fastest mode need, times `refinement`.
+  /// effects: without problems; those of channels are ignored. step_s: > 0. A step is divided into
+  /// as many parts as the stiffest law and the fastest mode need, times `refinement`.
   NonlinearBuilding(const Structure& structure, const ParameterTable& table,
                     const Eigen::VectorXd& theta, const std::vector<Effect>& effects, double step_s,
                     int refinement = 1);
   NonlinearBuilding(const Structure& structure, const ParameterTable& table,
                     const Eigen::VectorXd& theta, const std::vector<Effect>& effects, Inputs inputs,
                     double step_s, int refinement = 1);
-  /// The same with laws beyond the catalogue.
+  /// more_laws: laws beyond the catalog.
   NonlinearBuilding(const Structure& structure, const ParameterTable& table,
                     const Eigen::VectorXd& theta, const std::vector<Effect>& effects,
                     std::vector<PlacedLaw> more_laws, Inputs inputs, double step_s,
                     int refinement = 1);
 
   void set_theta(const Eigen::VectorXd& theta) override;
-  /// Relative to the ground; hidden masses move with it, at rest.
+  /// Sets the state relative to the ground, m and m/s; hidden masses move with the ground, at rest.
   void set_state(const Eigen::VectorXd& disp_rel, const Eigen::VectorXd& vel_rel);
   void drive(const Eigen::Ref<const Eigen::VectorXd>& before,
              const Eigen::Ref<const Eigen::VectorXd>& after) override;
@@ -47,13 +47,13 @@ class NonlinearBuilding : public DrivenBuilding {
  private:
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-  /// A law as the integration sees it, in independent coordinates.
+  /// A law in independent coordinates.
   struct Law {
     Eigen::VectorXd b;     ///< deformation = b'q
     Eigen::VectorXd push;  ///< acceleration of the coordinates per newton
     int first_state;
   };
-  /// What the laws and forces do at one stage.
+  /// The effect of laws and forces at one stage.
   struct Slope {
     Eigen::VectorXd accel;   ///< of the coordinates
     Eigen::VectorXd states;  ///< z'
@@ -64,9 +64,9 @@ class NonlinearBuilding : public DrivenBuilding {
   void evaluate(double time_s, const Eigen::VectorXd& state, const Eigen::VectorXd& z,
                 const Eigen::VectorXd& forces, Slope& out) const;
   void forces_at(double time_s, Eigen::VectorXd& out) const;
-  /// The coordinates' part of a state that moves freely for half a part.
+  /// Moves the coordinates of a state freely for half a part.
   void flow(const Eigen::VectorXd& state, Eigen::VectorXd& out) const;
-  /// out = what `accel`, given now, has become after half a part.
+  /// Moves the effect of an acceleration `accel` now over half a part.
   void carry(const Eigen::VectorXd& accel, Eigen::VectorXd& out) const;
   void update_accel();
 
@@ -81,19 +81,19 @@ class NonlinearBuilding : public DrivenBuilding {
   int parts_ = 1;
   double time_s_ = 0;
   double part_start_s_ = 0;
-  double velocity_scale_ = 1;  ///< 1/s; displacements are held times this, which evens out L
+  double velocity_scale_ = 1;  ///< 1/s; displacements are stored times this, which balances L
   Eigen::MatrixXd constraint_;
   RowMajor half_;         ///< 2 coordinates x (state, inputs, their slope): over half a part
   RowMajor output_;       ///< degrees of freedom x state
-  RowMajor output_push_;  ///< degrees of freedom x coordinates: accelerations from those
-  RowMajor direct_;       ///< degrees of freedom x inputs: what their forces do at once
+  RowMajor output_push_;  ///< degrees of freedom x coordinates: accelerations from the coordinates'
+  RowMajor direct_;       ///< degrees of freedom x inputs: immediate effect of forces
   std::vector<Law> placed_;
   std::vector<Eigen::VectorXd> force_push_;
   Eigen::VectorXd state_;  ///< scaled coordinates, their velocities, inputs, their slope
   Eigen::VectorXd z_;      ///< of all laws
   Eigen::VectorXd accel_abs_;
   Eigen::VectorXd applied_n_;
-  // Room for one part's arithmetic.
+  // Scratch of one part.
   Slope k1_, k2_, k3_, k4_;
   Eigen::VectorXd middle_, stage_, end_, carried_, stage_z_, force_now_, force_middle_, force_end_;
 };

@@ -12,7 +12,7 @@ namespace {
 
 /// Standard deviation of the curve about the baseline's value; a larger one costs digits.
 constexpr double kLevel = 0.05;
-constexpr double kChance = 2;  // standard errors of an excess that is none
+constexpr double kChance = 2;  // standard errors of an excess that counts as chance
 
 }  // namespace
 
@@ -135,7 +135,7 @@ double AmplitudeBins::excess() const {
   return scatter().excess;
 }
 
-/// About lines within the bins that have one slope in common.
+/// Computes the scatter about lines, one a bin, that share one slope.
 AmplitudeBins::Scatter AmplitudeBins::scatter() const {
   double across = 0, along = 0, square = 0, weight = 0;
   int freedom = -1, count = 0;
@@ -162,7 +162,7 @@ double RecentAmplitude::remembered(std::size_t i, double time_s) const {
 void RecentAmplitude::push(double time_s, double amplitude_m) {
   if (count_ > 0 && time_s < time_s_[count_ - 1]) return;
   while (count_ > 0 && amplitude_[count_ - 1] <= amplitude_m) --count_;
-  if (count_ == kMax) {  // the one that counts least of those but the newest
+  if (count_ == kMax) {  // drop the smallest remembered one, except the newest
     std::size_t least = 0;
     for (std::size_t i = 1; i < count_; ++i)
       if (remembered(i, time_s) < remembered(least, time_s)) least = i;

@@ -6,35 +6,34 @@
 
 #include "estimator/identify/estimate/estimate.h"
 #include "estimator/watch/amplitude_curve.h"
-#include "estimator/watch/separate_windows.h"
 #include "estimator/watch/watched.h"
 
 namespace framewatch::estimator {
 
-/// Reference parameters that changes are judged against: theta order, SI; NaN where there is none.
+/// Reference values that changes are judged against: theta order, SI; NaN: not known.
 struct Baseline {
   Baseline() = default;
   explicit Baseline(std::size_t parameters);
   std::vector<double> value, std_error;
   std::vector<double> degc;  ///< mean temperature at which it was learned; NaN: not known
-  /// Its values by the amplitude of the element, that of RecentAmplitude, ascending, at most
-  /// AmplitudeBins::kBins; empty: not known.
+  /// Values by RecentAmplitude of the element, ascending, at most AmplitudeBins::kBins; empty: not
+  /// known.
   std::vector<std::vector<AmplitudePoint>> by_amplitude;
 
   bool knows(std::size_t parameter) const;
-  /// Number of parameters it knows.
+  /// Returns the number of parameters it knows.
   int known() const;
-  /// Whether it knows what `other` knows, by the same values.
+  /// Returns true if it has the same value for every parameter that `other` knows.
   bool holds(const Baseline& other) const;
-  /// Whether it is one of so many parameters.
+  /// Returns true if it has this many parameters.
   bool is_of(std::size_t parameters) const {
     return value.size() == parameters && std_error.size() == parameters &&
            degc.size() == parameters && by_amplitude.size() == parameters;
   }
 
-  /// by_amplitude as numbers: of every parameter how many points, then those.
+  /// Returns by_amplitude as numbers: for every parameter the number of points, then the points.
   std::vector<double> flat_points() const;
-  /// The same read; false: they are none.
+  /// Reads by_amplitude from flat_points(). Returns false when `numbers` are invalid.
   [[nodiscard]] bool take_points(const std::vector<double>& numbers);
 
   template <typename Archive>
@@ -48,26 +47,28 @@ struct Baseline {
 };
 
 /// Learns a baseline while the building is intact: the mean of the main windows that count and do
-/// not overlap, weighted by 1 / std_error^2, in all and by amplitude. Its error follows from the
-/// weights, or from the scatter of the windows, about what amplitude explains, if that is larger.
-/// Every parameter is learned for itself, until the error of its baseline is small beside the least
-/// relevant change; in weak motion that takes longer.
+/// not overlap, weighted by 1 / std_error^2, overall and by amplitude. Its error follows from the
+/// weights, or from the scatter of the windows that amplitude does not explain, if that is larger.
+/// Each parameter is learned separately until the error of its baseline is small compared with the
+/// least relevant change; in weak motion that takes longer.
 class BaselineLearner {
  public:
-  /// Standard error of a baseline, over the least relevant change, at which it is learned.
+  /// Standard error of a learned baseline over the least relevant change.
   static constexpr double kExact = 0.1;
 
-  /// watched: theta order. learn_s: sum of the windows that every parameter takes at least.
-  /// amplitude: values by it are learned too.
+  /// watched: theta order. learn_s: least total length of the windows of every parameter.
+  /// amplitude: learn values by amplitude, too.
   BaselineLearner(const std::vector<Watched>& watched, double learn_s, bool amplitude = true);
 
-  /// degc: the window's temperature; NaN: unknown. True when this window completed a parameter.
+  /// Adds a window. degc: its temperature; NaN: unknown. Returns true when it completed a
+  /// parameter.
   bool push(const WindowEstimate& estimate, double degc = std::numeric_limits<double>::quiet_NaN());
-  /// Total length of the windows so far, whatever they show.
+  /// Returns the total length of the windows so far, s, whether or not they had values.
   double seconds() const { return windows_.seconds(); }
-  /// Parameters that are learned.
+  /// Returns the completed parameters.
   Baseline baseline() const;
-  /// Parameters of which at least half of the windows had a value that counts, however exact.
+  /// Returns the parameters of which at least half of the windows had a value that counts, however
+  /// inexact.
   Baseline so_far() const;
 
   template <typename Archive>
@@ -80,7 +81,7 @@ class BaselineLearner {
     bool complete = false;
     int count = 0;
     double learned_s = 0;
-    double weight = 0, value = 0, square = 0;  ///< of values over the first one
+    double weight = 0, value = 0, square = 0;  ///< values minus the first one
     double first = 0;
     double degc_weight = 0, degc = 0;
     int with_amplitude = 0;  ///< of count

@@ -4,14 +4,25 @@
 #include <cmath>
 #include <numeric>
 
-#include "estimator/watch/separate_windows.h"
+#include "estimator/watch/watched.h"
 
 namespace framewatch::estimator {
 namespace {
 
-constexpr double kJudged = 1;  // lengths of main windows behind a change: others may be named
-constexpr double kHold = 3;    // the same until other elements are judged nevertheless
-constexpr double kCommonEvidence = 0.4;  // of what is asked for: an element alone waits for it
+constexpr double kJudged = 1;  // main windows behind a change before other changes may begin
+constexpr double kHold = 3;    // main windows after which others are judged anyway
+constexpr double kCommonEvidence =
+    0.4;  // share of the threshold at which single elements wait for the common change
+
+constexpr double kMinBehind_s = 2;    // shortest windows behind a change that give a first size
+constexpr double kOfLeak = 0.5;       // standard error of the leak over its largest value
+constexpr double kWait = 0.3;         // of its length, by which a longer window may begin later
+constexpr double kSharper = 0.7;      // republish when the error falls to this share
+constexpr double kMovedFar = 3;       // errors by which a less exact size must move
+constexpr double kMoved = 2;          // errors by which a size must move to be republished
+constexpr double kRefuted = 4;        // main windows behind a change after which it may be refuted
+constexpr double kRefined = 2;        // main windows until its time is fixed
+constexpr double kMinBefore = 0.005;  // error of the value before a change, relative
 
 }  // namespace
 
@@ -60,16 +71,22 @@ ChangeBook::ChangeBook(const ParameterTable& table, const std::vector<Watched>& 
   alone_.reserve(elements_);
 }
 
-void ChangeBook::set_baseline(const Baseline& baseline) {
-  baseline_ = baseline;
+/// Returns the baseline of the common change: 1, with the mean error of the frames.
+Baseline ChangeBook::common_baseline(std::size_t window) const {
   Baseline common(1);
   double error = 0, count = 0;
   for (std::size_t p = 0; p < elements_; ++p) {
-    if (frame_[p] == 0 || !baseline.knows(p)) continue;
-    error += baseline_error(0, p);
+    if (frame_[p] == 0 || !baseline_of(window).knows(p)) continue;
+    error += baseline_error(window, p);
     ++count;
   }
   if (count > 0) common.value[0] = 1, common.std_error[0] = error / count;
+  return common;
+}
+
+void ChangeBook::set_baseline(const Baseline& baseline) {
+  baseline_ = baseline;
+  const Baseline common = common_baseline(0);
   for (std::size_t w = 0; w + 1 < detectors_.size(); ++w) {
     detectors_[w].set_baseline(baseline);
     of_all_[w].set_baseline(common);
@@ -78,16 +95,8 @@ void ChangeBook::set_baseline(const Baseline& baseline) {
 
 void ChangeBook::begin_long(const Baseline& baseline, const std::vector<Watched>& watched) {
   long_baseline_ = baseline;
-  Baseline common(1);
-  double error = 0, count = 0;
-  for (std::size_t p = 0; p < elements_; ++p) {
-    if (frame_[p] == 0 || !baseline.knows(p)) continue;
-    error += baseline_error(detectors_.size() - 1, p);
-    ++count;
-  }
-  if (count > 0) common.value[0] = 1, common.std_error[0] = error / count;
   detectors_.back() = ChangeDetector(baseline, watched, threshold_);
-  of_all_.back().set_baseline(common);
+  of_all_.back().set_baseline(common_baseline(detectors_.size() - 1));
   of_all_.back().forget(0);
   histories_.back().clear();
 }
@@ -127,13 +136,13 @@ const std::vector<Alarm>& ChangeBook::push(const WindowEstimate& judged,
   of_all_[window].push(common_);
   remember(explained);
   for (Record& r : records_)
-    if (r.id != 0 && is_long(window) == is_long(r.detector)) follow(r);
+    if (r.id != 0 && is_long(window) == is_long(r.detector)) update(r);
   find(doubted);
   return news_;
 }
 
-/// Of frames that have no record of their own. Where everything has a record, the elements are
-/// judged beside what they have in common.
+/// Finds the common change of the frames without a record. While it has a record, the other
+/// elements are judged relative to it.
 void ChangeBook::find_common(const std::vector<Explained>& explained) {
   const auto window = static_cast<std::size_t>(judged_.window);
   const Baseline& b = baseline_of(window);
@@ -183,7 +192,7 @@ void ChangeBook::remember(const std::vector<Explained>& explained) {
   const auto put = [&](std::size_t element, double off, double own, double common) {
     UsualScatter& scatter = scatter_[window * (elements_ + 1) + element];
     const double error = usual_error(window, element, own);
-    // What the conditions make of the element is no scatter.
+    // The effect of the conditions is not scatter.
     if (records_[element].id == 0 && judged_.start >= gate_ && common <= least_change(element))
       scatter.push(judged_.start, judged_.end, off, error);
     const double slow = scatter_[main * (elements_ + 1) + element].slow();
@@ -198,8 +207,7 @@ void ChangeBook::remember(const std::vector<Explained>& explained) {
     put(all(), common_.value[0] - 1 + common_off_, common_.std_error[0], common_explained_);
 }
 
-/// What a change of one element may move the values of others by, because the model is not quite
-/// right.
+/// Tolerates what a change of one element may move other values by, because the model is inexact.
 void ChangeBook::tolerate() {
   double of_all = 0;
   for (std::size_t p = 0; p < elements_; ++p) {
@@ -213,12 +221,11 @@ void ChangeBook::tolerate() {
   for (ChangeDetector& d : of_all_) d.tolerate(0, of_all);
 }
 
-/// Whether the frames without a record are better described by what they have in common than by as
-/// many changes of their own as they need, each of which costs what the detectors ask for.
+/// Returns true if one common change describes the frames without a record better than separate
+/// changes, each of which costs the detectors' threshold.
 bool ChangeBook::all_alike(std::size_t window, Time since) {
   const WindowHistory& h = histories_[window];
   alone_.clear();
-  double weight = 0, sum = 0;
   for (std::size_t p = 0; p < elements_; ++p) {
     if (frame_[p] == 0 || records_[p].id != 0) continue;
     double count = 0, own = 0, off = 0;
@@ -233,20 +240,11 @@ bool ChangeBook::all_alike(std::size_t window, Time since) {
     const double separate = 1 + (count - 1) / ChangeDetector::kPhases;
     const double error = std::hypot(std::sqrt(count / separate / own), baseline_error(window, p));
     alone_.push_back({off / own, error});
-    weight += 1 / (error * error);
-    sum += off / own / (error * error);
   }
-  if (alone_.size() < 2) return false;
-  const double price = 2 * threshold_, common = sum / weight;
-  double alike = price, apart = 0;
-  for (const auto& [off, error] : alone_) {
-    alike += std::min(std::pow((off - common) / error, 2), price);
-    apart += std::min(std::pow(off / error, 2), price);
-  }
-  return alike < apart;
+  return are_alike(alone_, 2 * threshold_);
 }
 
-/// Whether the windows behind the newest changes have been judged.
+/// Returns true if the windows behind the newest changes have been judged.
 bool ChangeBook::settled() const {
   return std::none_of(records_.begin(), records_.end(), [&](const Record& r) {
     return r.id != 0 && r.state == ChangeState::changing && r.behind_s < kJudged * length_s(r) &&
@@ -303,20 +301,22 @@ void ChangeBook::begin(std::size_t element, std::size_t window) {
   r.detector = window;
   r.found = judged_.end;
   r.first = r.change.since;
-  size_anew(r);
+  refit_size(r);
   forget_others();
   const Change now = measured(r);
-  if (worth_a_number(r, now)) {
+  if (is_significant(r, now)) {
     r.state = ChangeState::measured;
     r.change = now;
   }
-  news_.push_back({r.id, AlarmState::raised, r.parameter, r.change, judged_.end, r.measured(),
-                   ChangeReason::none});
+  announce(r, AlarmState::raised, ChangeReason::none);
+}
+
+void ChangeBook::announce(const Record& r, AlarmState state, ChangeReason reason) {
+  news_.push_back({r.id, state, r.parameter, r.change, judged_.end, r.measured(), reason});
 }
 
 void ChangeBook::end(Record& r, ChangeReason reason) {
-  news_.push_back(
-      {r.id, AlarmState::cleared, r.parameter, r.change, judged_.end, r.measured(), reason});
+  announce(r, AlarmState::cleared, reason);
   forget(index_of(r));
   const int parameter = r.parameter;
   r = {};
@@ -331,6 +331,159 @@ void ChangeBook::forget(std::size_t element) {
 void ChangeBook::forget_others() {
   for (std::size_t p = 0; p < elements_; ++p)
     if (records_[p].id == 0) forget(p);
+}
+
+void ChangeBook::update(Record& r) {
+  bool further = false;
+  if (r.young)
+    refit_size(r);
+  else
+    further = extend_size(r);
+  publish(r, further);
+}
+
+/// Estimates the time from the windows of every length that still cover the time before the change.
+void ChangeBook::refine_time(Record& r) {
+  const std::size_t element = index_of(r);
+  times_.clear();
+  SensorClock::duration shortest = SensorClock::duration::max(), longest{};
+  for (std::size_t w = 0; w < histories_.size(); ++w) {
+    if (is_long(w) != is_long(r.detector)) continue;
+    const WindowHistory& h = histories_[w];
+    const std::size_t oldest = h.first(element, Time::min());
+    if (oldest == h.size() || h.end(oldest) > r.first) continue;
+    times_.push_back(&h);
+    shortest = std::min(shortest, h.end(oldest) - h.start(oldest));
+    longest = std::max(longest, h.end(oldest) - h.start(oldest));
+  }
+  if (times_.empty()) return;
+  const double before = std::hypot(kMinBefore, baseline_error(r.detector, element));
+  const auto time = time_of_change(times_, element, before, r.first - longest, judged_.end,
+                                   shortest / ChangeDetector::kPhases);
+  if (!time) return;
+  r.change.since = time->best;
+  r.change.earliest = time->earliest;
+  r.change.latest = time->latest;
+}
+
+void ChangeBook::refit_size(Record& r) {
+  if (seconds_of(judged_.end - r.found) <= kRefined * length_s(r)) refine_time(r);
+  if (!r.measured() && r.change.latest > gate_) {
+    gate_ = r.change.latest;
+    forget_others();
+  }
+  const std::size_t element = index_of(r);
+  r.size = {};
+  r.behind_s = 0;
+  r.until = r.change.latest;
+  for (;;) {
+    std::size_t at = 0;
+    const WindowHistory* h = next_behind(r, at);
+    if (h == nullptr) break;
+    const WindowHistory::Value v = h->value(at, element);
+    r.size.add(v.off, v.std_error, v.common_error);
+    r.behind_s += seconds_of(h->end(at) - h->start(at));
+    r.until = h->end(at);
+  }
+  const WindowHistory& oldest = histories_[is_long(r.detector) ? r.detector : 0];
+  r.young = oldest.size() < WindowHistory::kMax || oldest.start(0) < r.change.earliest;
+}
+
+/// Returns the next window for the size: the one that begins first, or a longer one that begins
+/// soon after; null if there is no such window.
+const WindowHistory* ChangeBook::next_behind(const Record& r, std::size_t& at) const {
+  const std::size_t element = index_of(r);
+  if (is_long(r.detector)) {
+    const WindowHistory& h = histories_[r.detector];
+    at = h.first(element, r.until);
+    return at < h.size() ? &h : nullptr;
+  }
+  Time earliest = Time::max();
+  for (const std::size_t w : order_)
+    if (const std::size_t i = histories_[w].first(element, r.until); i < histories_[w].size())
+      earliest = std::min(earliest, histories_[w].start(i));
+  for (const std::size_t w : order_) {
+    const WindowHistory& h = histories_[w];
+    at = h.first(element, r.until);
+    if (at < h.size() &&
+        seconds_of(h.start(at) - earliest) <= kWait * seconds_of(h.end(at) - h.start(at)))
+      return &h;
+  }
+  return nullptr;
+}
+
+/// Adds the newest window to the size. Returns true when the element has changed further.
+bool ChangeBook::extend_size(Record& r) {
+  const auto window = static_cast<std::size_t>(judged_.window);
+  const std::size_t element = index_of(r);
+  const WindowHistory& h = histories_[window];
+  const std::size_t at = h.first(element, std::max(r.until, judged_.start));
+  const bool shorter = lengths_s_[window] < length_s(r);
+  if (shorter || at >= h.size() || h.end(at) != judged_.end) return false;
+  const WindowHistory::Value v = h.value(at, element);
+  r.until = h.end(at);
+  r.behind_s += seconds_of(h.end(at) - h.start(at));
+  return r.size.push(v.off, v.std_error, v.common_error);
+}
+
+/// Returns the model's part of the standard error of a size. The size is r times the change, r
+/// about 1 with an error of `own`; the change is the size over r, so large errors count more.
+double ChangeBook::model_error(const Record& r, double ratio) const {
+  if (r.parameter == ChangeRecord::kEverything) return 0;
+  const std::size_t p = index_of(r);
+  const double own = std::min(model_.own[p], 1.0);
+  double others = 0;
+  for (std::size_t q = 0; q < elements_; ++q)
+    if (q != p && records_[q].id != 0)
+      others =
+          std::hypot(others, kOfLeak * model_.leak[q * elements_ + p] * records_[q].change.ratio);
+  return std::hypot(own / (1 - own / 2) * ratio, others);
+}
+
+Change ChangeBook::measured(const Record& r) const {
+  Change out = r.change;
+  if (!r.size.known()) return out;
+  out.ratio = r.size.ratio();
+  out.std_error = std::hypot(r.size.std_error(), baseline_error(r.detector, index_of(r)),
+                             model_error(r, out.ratio));
+  return out;
+}
+
+/// Returns true if the windows behind a change show that there is no change. The model's error does
+/// not count, because it only scales the size. Conditions that may explain a deviation keep the
+/// error large; then the detector, which excludes them, decides.
+bool ChangeBook::is_refuted(const Record& r) const {
+  const std::size_t element = index_of(r);
+  const double error = std::hypot(r.size.std_error(), baseline_error(r.detector, element));
+  return r.size.known() && r.behind_s >= kRefuted * length_s(r) &&
+         error <= least_change(element) / kNothing && std::abs(r.size.ratio()) < kNothing * error;
+}
+
+bool ChangeBook::is_significant(const Record& r, const Change& now) const {
+  return r.size.known() && r.behind_s >= kMinBehind_s &&
+         std::abs(now.ratio) >= kWorth * now.std_error && now.ratio * r.change.ratio > 0;
+}
+
+void ChangeBook::publish(Record& r, bool further) {
+  const Change now = measured(r);
+  if (!detector_of(r.detector, index_of(r)).changed(in_detector(index_of(r))))
+    return end(r, ChangeReason::back);
+  if (is_refuted(r)) return end(r, ChangeReason::not_confirmed);
+  if (!r.measured()) {
+    if (!is_significant(r, now)) return;
+    r.state = ChangeState::measured;
+    r.change = now;
+    return announce(r, AlarmState::changed, ChangeReason::none);
+  }
+  const bool less_exact = now.std_error > r.change.std_error;
+  // A less exact size must contradict the published one.
+  const double most = less_exact ? kMovedFar * std::hypot(now.std_error, r.change.std_error)
+                                 : kMoved * r.change.std_error;
+  const bool moved = std::abs(now.ratio - r.change.ratio) > most;
+  if (!further && !moved && now.std_error > kSharper * r.change.std_error) return;
+  r.change = now;
+  announce(r, AlarmState::changed,
+           further || less_exact ? ChangeReason::further : ChangeReason::none);
 }
 
 }  // namespace framewatch::estimator

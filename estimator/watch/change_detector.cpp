@@ -9,11 +9,11 @@ namespace {
 constexpr Time kLongAgo{SensorClock::duration(-8'000'000'000'000'000)};
 constexpr double kFreedom = 19;        // of a window's standard error, from 20 blocks
 constexpr double kMemory_s = 15;       // of the usual standard error
-constexpr double kMaxOfUsual = 1.5;    // that a single one counts with
-constexpr double kBaselineErrors = 3;  // that a value may be off by permanently
-constexpr double kMaxOfThreshold = 2;  // a sum is limited to that
-constexpr double kConvincing_s = 4;    // a shorter window alone convinces nobody:
-constexpr double kShortWindow = 0.6;   // most that it adds, of the threshold
+constexpr double kMaxOfUsual = 1.5;    // largest weight of a single one, over the usual one
+constexpr double kBaselineErrors = 3;  // of the baseline, tolerated as a permanent offset
+constexpr double kMaxOfThreshold = 2;  // largest sum, over the threshold
+constexpr double kConvincing_s = 4;    // a shorter window adds little:
+constexpr double kShortWindow = 0.6;   // the most it adds, over the threshold
 constexpr std::array<double, ChangeDetector::kSizes> kSizesOfLeast = {1, 2, 4, 16};
 
 double log_likelihood(double z, double freedom) {
@@ -83,7 +83,7 @@ void ChangeDetector::judge(std::size_t p, int phase, const WindowEstimate& e) {
       scale;
   const double z = off / scale, least = parameter.watched.least_change / scale;
 
-  // The error is at least the usual one, of so many windows.
+  // The error is at least the usual one, which is averaged over so many windows.
   const double freedom = kFreedom * (1 + kMemory_s / window_s);
   const auto likelihood = [&](double distance) { return log_likelihood(distance, freedom); };
 

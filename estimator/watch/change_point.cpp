@@ -8,9 +8,9 @@
 namespace framewatch::estimator {
 namespace {
 
-/// Sums over the first windows of a series; differences of two give any stretch.
+/// Sums over the first windows of a series; the difference of two gives any stretch.
 struct Sums {
-  double count = 0, weight = 0, value = 0, square = 0;  ///< values over the first one
+  double count = 0, weight = 0, value = 0, square = 0;  ///< values minus the first one
 
   Sums operator-(const Sums& o) const {
     return {count - o.count, weight - o.weight, value - o.value, square - o.square};
@@ -36,15 +36,15 @@ std::vector<Sums> running_sums(const std::vector<WindowValue>& values, double& o
   return out;
 }
 
-/// excess: how much wider the values scatter than their errors say.
+/// excess: variance of the values over what their errors predict.
 WindowMean mean(const Sums& s, double origin, double excess) {
   if (s.count == 0) return {kNaN, kNaN, 0};
   return {origin + s.value / s.weight, std::sqrt(std::max(excess, 1.0) / s.weight),
           static_cast<int>(s.count)};
 }
 
-/// Weighted squares that a straight line leaves of the values outside of `skipped`: a slow drift,
-/// such as the temperature's, is no step.
+/// Returns the weighted squares that a straight line leaves of the values outside of `skipped`. A
+/// slow drift, such as the temperature's, does not count as a step.
 double left_by_line(const std::vector<WindowValue>& values, std::size_t skipped) {
   double weight = 0, t = 0, v = 0, tt = 0, tv = 0, vv = 0;
   const double origin = values.front().value;

@@ -5,6 +5,11 @@
 #include <limits>
 
 namespace framewatch::estimator {
+namespace {
+
+constexpr double kColdest_degc = -90, kHottest_degc = 150;  // outside: a broken thermometer
+
+}  // namespace
 
 Dependence::Dependence(std::size_t parameters)
     : at_(2 * parameters, 0.0), slope_(2 * parameters, 0.0), covariance_(3 * parameters, 0.0) {}
@@ -52,7 +57,7 @@ bool DependenceLearner::push(const WindowEstimate& e, double degc) {
     Sum& sum = sums_[p];
     const double t = options_.temperature ? degc : 0;
     const double a = options_.amplitude ? log_amplitude(e, p) : 0;
-    if (!std::isfinite(a)) continue;  // noise that is not known, or none
+    if (!std::isfinite(a)) continue;  // the noise is unknown or zero
     if (sum.count++ == 0) {
       sum.first = e.value[p];
       sum.first_degc = t;
@@ -74,7 +79,7 @@ bool DependenceLearner::push(const WindowEstimate& e, double degc) {
 DependenceLearner::Fit DependenceLearner::fit(const Sum& s) const {
   const auto& n = s.normal;
   const double mean[] = {n[1] / n[0], n[2] / n[0]};
-  // About the mean conditions; a condition that is not asked for has a slope of 0 +- 0.
+  // Slopes are about the mean conditions; a condition that is not followed has a slope of 0 +- 0.
   constexpr double kNever = 1e30;
   const double m00 = n[3] - n[0] * mean[0] * mean[0] +
                      (options_.temperature ? 1 / (kUsualPerDegc * kUsualPerDegc) : kNever);
@@ -90,7 +95,8 @@ DependenceLearner::Fit DependenceLearner::fit(const Sum& s) const {
   const int freedom = s.count - 1 - (options_.temperature ? 1 : 0) - (options_.amplitude ? 1 : 0);
   const double excess = freedom > 0 ? std::max(left / freedom, 1.0) : 1.0;
   const double value = s.first * (1 + y);
-  const double scale = 1 / (1 + y);  // slopes are of the first value, and wanted of this one
+  const double scale =
+      1 / (1 + y);  // from slopes relative to the first value to slopes relative to this one
   Fit out{};
   out.value = value;
   out.std_error = s.first * std::sqrt(excess / n[0]);
@@ -125,6 +131,35 @@ Dependence DependenceLearner::dependence() const {
     std::copy(f.covariance.begin(), f.covariance.end(), &out.covariance_[3 * p]);
   }
   return out;
+}
+
+void MeanTemperature::push(Time time, double degc) {
+  if (!(degc >= kColdest_degc && degc <= kHottest_degc)) return;
+  const std::int64_t number = number_of(time);
+  if (number < 0) return;
+  Bin& bin = bins_[static_cast<std::size_t>(number % kBins)];
+  if (bin.number != number) bin = {number, 0, 0};
+  ++bin.count;
+  bin.sum += degc;
+}
+
+double MeanTemperature::mean(Time start, Time end) const {
+  const std::int64_t first = number_of(start), last = number_of(end);
+  double sum = 0, before = std::numeric_limits<double>::quiet_NaN();
+  int count = 0;
+  std::int64_t newest = first - kHolds - 1;
+  for (const Bin& bin : bins_) {
+    if (bin.count == 0 || bin.number <= newest || bin.number > last) continue;
+    const double mean = bin.sum / static_cast<double>(bin.count);
+    if (bin.number < first) {
+      newest = bin.number;
+      before = mean;
+    } else {
+      sum += mean;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : before;
 }
 
 }  // namespace framewatch::estimator

@@ -2,23 +2,25 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "estimator/identify/estimate/estimate.h"
+#include "estimator/motion/sample.h"
 #include "estimator/watch/baseline.h"
-#include "estimator/watch/separate_windows.h"
+#include "estimator/watch/watched.h"
 
 namespace framewatch::estimator {
 
-/// What an intact building's stiffness may depend on: temperature, degC, and the logarithm of the
-/// amplitude of the element's own motion.
+/// Conditions that an intact building's stiffness may depend on: temperature, degC, and the
+/// logarithm of the amplitude of the element's own motion.
 struct Conditions {
   double degc;
   double log_amplitude;
 };
 
-/// How a baseline's values follow the conditions, relative to the value, per degC and per unit of
-/// the logarithm. Theta order.
+/// How a baseline's values follow the conditions: relative change per degC and per unit of the
+/// logarithm of the amplitude. Theta order.
 class Dependence {
  public:
   Dependence() = default;
@@ -26,24 +28,24 @@ class Dependence {
 
   struct Expected {
     double ratio;      ///< to the baseline's value
-    double std_error;  ///< of that, from the slopes'; infinite when a condition is not known
+    double std_error;  ///< of the ratio, from the slopes; infinite when a condition is not known
   };
   Expected expected(std::size_t parameter, const Conditions& now) const;
-  /// Whether it is one of so many parameters.
+  /// Returns true if it has this many parameters.
   bool is_of(std::size_t parameters) const {
     return at_.size() == 2 * parameters && slope_.size() == 2 * parameters &&
            covariance_.size() == 3 * parameters;
   }
-  /// Relative change per degC, and per unit of the logarithm of the amplitude; 0 +- 0 when it is
-  /// not followed.
+  /// Relative change per degC, or per unit of the logarithm of the amplitude; 0 +- 0 when the
+  /// condition is not followed.
   struct Slope {
     double value, std_error;
   };
   Slope per_degc(std::size_t parameter) const;
   Slope per_log(std::size_t parameter) const;
-  /// By how much the ratio usually changes per degC: the slope and its error.
+  /// Returns how much the ratio usually changes per degC: the slope with its error.
   double usual_per_degc(std::size_t parameter) const;
-  /// From one temperature to another.
+  /// Returns the change from one temperature to another.
   Expected change(std::size_t parameter, double from_degc, double to_degc) const;
 
   template <typename Archive>
@@ -54,27 +56,28 @@ class Dependence {
  private:
   friend class DependenceLearner;
   std::vector<double> at_, slope_;  ///< (degC, logarithm) of every parameter
-  std::vector<double> covariance_;  ///< of the two slopes: 00, 11, 01 of every parameter
+  std::vector<double> covariance_;  ///< of the two slopes: 00, 11, 01, for every parameter
 };
 
 struct DependenceOptions {
-  double learn_s = 86400;  ///< sum of the windows it takes
+  double learn_s = 86400;  ///< total length of the windows to learn from
   bool temperature = false, amplitude = false;
 };
 
 /// Learns a baseline from long windows that do not overlap, and how it depends on the conditions:
-/// least squares weighted by 1 / std_error^2, with a weak prior of zero slope, so that a slope that
-/// the conditions did not show has an error that says so. Errors follow from the weights, or from
-/// the scatter about the fit if that is larger.
+/// least squares weighted by 1 / std_error^2. A weak prior of zero slope gives a large error to a
+/// slope that the conditions did not show. Errors follow from the weights, or from the scatter
+/// about the fit if that is larger.
 class DependenceLearner {
  public:
-  /// What a slope may be before anything is known: standard deviations.
+  /// Standard deviations of the slopes' prior.
   static constexpr double kUsualPerDegc = 0.005, kUsualPerLog = 0.05;
 
   DependenceLearner(int parameters, const DependenceOptions& options);
 
-  /// degc: mean of the window; NaN: not known. A window without the temperature asked for does not
-  /// count. True when this one completed the baseline.
+  /// Adds a window. degc: its mean temperature; NaN: not known. Skips a window without a
+  /// temperature when `options.temperature` is set. Returns true when this window completed the
+  /// baseline.
   bool push(const WindowEstimate& estimate, double degc);
   bool complete() const { return windows_.seconds() >= options_.learn_s; }
   double learned_s() const { return windows_.seconds(); }
@@ -112,6 +115,42 @@ class DependenceLearner {
   DependenceOptions options_;
   SeparateWindows windows_;
   std::vector<Sum> sums_;
+};
+
+/// Keeps the mean temperature of the last kBins intervals of equal length.
+class MeanTemperature {
+ public:
+  static constexpr int kBins = 64;
+  /// A reading stays valid for so many intervals when no other one arrives.
+  static constexpr int kHolds = 20;
+
+  explicit MeanTemperature(double bin_s) : bin_us_(static_cast<std::int64_t>(1e6 * bin_s)) {}
+
+  void push(Time time, double degc);
+  /// Returns the mean over the intervals from start to end. Without a reading in them, returns the
+  /// newest valid one before; NaN if there is no such reading.
+  double mean(Time start, Time end) const;
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(bins_);
+  }
+
+ private:
+  struct Bin {
+    std::int64_t number = -1, count = 0;
+    double sum = 0;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      for (std::int64_t* n : {&number, &count}) a.within(*n, -a.kMaxCount, a.kMaxCount);
+      a.finite(sum);
+    }
+  };
+  std::int64_t number_of(Time time) const { return to_microseconds(time) / bin_us_; }
+
+  std::int64_t bin_us_;
+  std::array<Bin, kBins> bins_{};
 };
 
 }  // namespace framewatch::estimator

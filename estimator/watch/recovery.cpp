@@ -12,27 +12,27 @@
 namespace framewatch::estimator {
 namespace {
 
-/// Unknowns of the fit: level at the reference time, slope, then those that errors have in common:
-/// of the amplitude curve and of the two baselines.
+/// Unknowns of the fit: level at the reference time, slope, and the common errors of the amplitude
+/// curve and of the two baselines.
 constexpr int kOfLevel = 0, kOfSlope = 1, kOfCurve = 2, kOfBaseline = 3, kLawUnknowns = 5;
-/// The slope is drawn to 0 by this, per decade of time: softened concrete and rock recover by up to
-/// some per cent of their stiffness per decade, hardly ever by more than 5 %.
+/// Prior of the slope per decade of time: softened concrete and rock recover by some percent of
+/// their stiffness per decade, rarely by more than 5 %.
 constexpr double kUsualSlope = 0.05;
 /// No loss is larger than the whole stiffness.
 constexpr double kUsualLevel = 1;
-/// Per decade beyond the newest window the slope may change by this share of itself: a material has
-/// a longest relaxation time, beyond which it recovers no more (Snieder et al. 2017, eq. 8).
+/// The slope may change by this share of itself per decade beyond the newest window: a material has
+/// a longest relaxation time, beyond which recovery stops (Snieder et al. 2017, eq. 8).
 constexpr double kBendPerDecade = 0.3;
-/// Beyond a law's misfit expected by chance, in standard deviations of it.
+/// Largest misfit of a law beyond the one expected by chance, in its standard deviations.
 constexpr double kMisfit = 3;
-/// A part of the record that is fitted alone has this many points at least.
+/// Fewest points of a part of the record that is fitted alone.
 constexpr std::size_t kMinPoints = 4;
 
 double seconds_from_to(Time from, Time to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-/// Mean of log10(t) from `from_s` >= 0 to `to_s` > from_s.
+/// Returns the mean of log10(t) from `from_s` >= 0 to `to_s` > from_s.
 double mean_log(double from_s, double to_s) {
   const auto part = [](double t) { return t > 0 ? t * std::log(t) : 0; };
   const double mean = (part(to_s) - part(from_s)) / (to_s - from_s) - 1;
@@ -63,13 +63,15 @@ RecoveryWindow recovery_window(Time start, Time end, double value, double std_er
 struct Recovery::Fit {
   Eigen::Matrix<double, kLawUnknowns, 1> x = Eigen::Matrix<double, kLawUnknowns, 1>::Zero();
   Eigen::Matrix<double, kLawUnknowns, kLawUnknowns> covariance;
-  Eigen::Matrix<double, kLawUnknowns, 1> noise_only;  ///< variances, were baseline and curve exact
-  double reference = 0;                               ///< log10 of the time of `level`
+  Eigen::Matrix<double, kLawUnknowns, 1>
+      noise_only;        ///< variances if baseline and curve were exact
+  double reference = 0;  ///< log10 of the time of `level`
   double first = 0, last = 0;
   double misfit = 0;  ///< of the means about the law, weighted
   int freedom = 0, windows = 0;
 
-  /// Of the loss at a logarithm of time; beyond `last` with what the law may be off there.
+  /// Returns the standard error of the loss at a logarithm of time; beyond `last` it includes the
+  /// bend of the law.
   double loss(double log) const { return -(x[kOfLevel] + x[kOfSlope] * (log - reference)); }
   double error(double log) const {
     const double d = log - reference, beyond = std::max(log - last, 0.0);
@@ -122,7 +124,7 @@ int Recovery::windows() const {
   return out;
 }
 
-/// In order of time.
+/// Returns the points in order of time.
 std::vector<Recovery::Point> Recovery::points() const {
   std::vector<Point> out;
   for (std::size_t i = 0; i < kBins; ++i)
@@ -137,7 +139,7 @@ std::vector<Recovery::Point> Recovery::points() const {
   return out;
 }
 
-/// excess: of the windows' variances over what their errors say.
+/// excess: variance of the windows over what their errors predict.
 Recovery::Fit Recovery::fit(const std::vector<Point>& points, std::size_t from, double excess) {
   Fit out;
   out.first = points[from].log;
@@ -181,7 +183,8 @@ Recovery::Fit Recovery::fit(const std::vector<Point>& points, std::size_t from, 
   return out;
 }
 
-/// What windows scatter about the law within their bins, over what their errors say.
+/// Returns the variance of the windows about the law within their bins, over what their errors
+/// predict.
 double Recovery::excess(const std::vector<Point>& points, const Fit& fit) {
   const double slope = fit.x[kOfSlope];
   double square = 0;
@@ -193,7 +196,7 @@ double Recovery::excess(const std::vector<Point>& points, const Fit& fit) {
   return freedom > 0 ? std::max(square / freedom, 1.0) : 1;
 }
 
-/// Of the longest newest part that one law fits.
+/// Fits the longest newest part that one law describes.
 Recovery::Fit Recovery::fit_newest(const std::vector<Point>& points) {
   Fit whole = fit(points, 0, 1);
   const double excess = Recovery::excess(points, whole);
@@ -206,7 +209,7 @@ Recovery::Fit Recovery::fit_newest(const std::vector<Point>& points) {
     const double expected = best.freedom, scatter = std::sqrt(2 * expected);
     if (best.misfit <= expected + kMisfit * scatter) return best;
   }
-  // No part is fitted well: the means scatter more than windows within a bin do.
+  // No part fits well: the means scatter more than windows within a bin do.
   if (best.freedom > 0 && best.misfit > best.freedom) {
     const double more = best.misfit / best.freedom;
     const auto from =
@@ -262,7 +265,7 @@ RecoveryLaw Recovery::law() const {
       break;
     }
   const double later = std::log10(out.later_s);
-  // The law's slope is of recovery: a loss does not grow by it.
+  // The slope is that of recovery, so it cannot make a loss grow.
   out.later_loss = std::clamp(fit.loss(later), 0.0, std::max(out.loss, 0.0));
   out.later_error = fit.error(later);
   out.later_low = std::max(out.later_loss - kErrors * out.later_error, 0.0);
@@ -293,7 +296,7 @@ void Recovery::judge(const Fit& fit, RecoveryLaw& law) const {
       law.loss > kErrors * law.std_error || law.first_loss > kErrors * law.first_error;
   if (lost && law.slope > kErrors * law.slope_error)
     return is(RecoveryVerdict::recovering, RecoveryReason::none);
-  // The largest part of the variance of the slope, or of the loss where that is what is not known.
+  // Blame the largest part of the variance of the slope, or of the loss if that is the unknown.
   const bool of_slope = law.loss > kErrors * law.std_error;
   const int which = of_slope ? kOfSlope : kOfLevel;
   const double variance = fit.covariance(which, which);

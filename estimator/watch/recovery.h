@@ -11,68 +11,72 @@
 
 namespace framewatch::estimator {
 
-/// A window behind strong motion: how far an element's stiffness is from that of the intact element
-/// at the same amplitude. Ratios are relative to the baseline.
+/// A window behind strong motion: the difference of an element's stiffness from that of the intact
+/// element at the same amplitude. Ratios are relative to the baseline.
 struct RecoveryWindow {
   Time start{}, end{};
   double off = 0;        ///< value over the intact one at this amplitude, less 1
-  double std_error = 0;  ///< > 0: what differs from window to window
-  /// Standard error of what all windows of a source have in common: that of the baseline. >= 0.
+  double std_error = 0;  ///< > 0: differs from window to window
+  /// Standard error of the baseline, which all windows of a source share; >= 0.
   double baseline_error = 0;
-  /// Standard error of what the amplitude makes of the intact value; > 0 above the amplitudes of
-  /// the baseline, < 0 below: where the curve is too steep, `off` is wrong the other way there.
+  /// Standard error of the intact value that the amplitude curve causes. It is > 0 above the
+  /// amplitudes of the baseline and < 0 below: a curve that is too steep makes `off` wrong in
+  /// opposite directions.
   double amplitude_error = 0;
-  std::size_t source = 0;  ///< 0: ordinary windows, 1: long windows, which have another baseline
+  std::size_t source =
+      0;  ///< 0: ordinary windows, 1: long windows, which have a different baseline
 };
 
-/// Of a value (SI) with its standard error and the rms deformation of its window. baseline,
-/// baseline_error: SI, of the intact element. curve: of its amplitudes; one that is not known
-/// counts as AmplitudeCurve::kUsualPerLog about usual_amplitude_m > 0. Precondition: value,
-/// std_error, baseline and amplitude_m are > 0.
+/// Returns the window of a value (SI) with its standard error and the rms deformation amplitude_m.
+/// baseline, baseline_error: SI, of the intact element. curve: of the intact element; one that is
+/// not known counts as AmplitudeCurve::kUsualPerLog about usual_amplitude_m > 0. Precondition:
+/// value, std_error, baseline and amplitude_m are > 0.
 RecoveryWindow recovery_window(Time start, Time end, double value, double std_error,
                                double amplitude_m, double baseline, double baseline_error,
                                const AmplitudeCurve& curve, double usual_amplitude_m);
 
 enum class RecoveryVerdict {
   not_known,   ///< RecoveryLaw::reason says why
-  recovering,  ///< the stiffness comes back, and may do so wholly
-  lasting,     ///< some of the loss stays: that all comes back within a year is excluded
+  recovering,  ///< the stiffness comes back, perhaps completely
+  lasting,     ///< some of the loss remains: complete recovery within a year is excluded
   recovered    ///< less than the least relevant change is left
 };
 
-/// Why nothing can be said yet.
+/// The reason for a verdict of not_known.
 enum class RecoveryReason {
   none,
   few_windows,  ///< fewer than Recovery::kFewest
   short_time,   ///< windows cover too little of the logarithm of time
   inexact,      ///< windows scatter too much
-  amplitude,    ///< what the amplitude does to the intact element is not known well enough
+  amplitude,    ///< the effect of the amplitude on the intact element is not known well enough
   baseline      ///< the stiffness before is not known well enough
 };
 
-/// The loss after strong motion: loss(t) = loss(t_ref) - slope log10(t / t_ref). Losses are shares
-/// of the intact stiffness, positive; errors are standard errors.
+/// The loss after strong motion: loss(t) = loss(t_ref) - slope log10(t / t_ref). Losses are
+/// fractions of the intact stiffness, positive; errors are standard errors.
 struct RecoveryLaw {
-  double time_s = 0;                       ///< end of the newest window, since the strong motion's
-  double loss = 0, std_error = 0;          ///< then
+  double time_s = 0;                       ///< end of the newest window, s after the strong motion
+  double loss = 0, std_error = 0;          ///< at time_s
   double slope = 0, slope_error = 0;       ///< per decade of time; > 0: it recovers
-  double first_s = 0;                      ///< of the first windows
-  double first_loss = 0, first_error = 0;  ///< by the windows then alone
-  double later_s = 0;                      ///< a day; later a month, then a year
-  double later_loss = 0, later_error = 0;  ///< expected then, if the law holds on
+  double first_s = 0;                      ///< time of the first windows
+  double first_loss = 0, first_error = 0;  ///< by the windows at first_s alone
+  double later_s = 0;                      ///< a day, then a month, then a year
+  double later_loss = 0, later_error = 0;  ///< expected at later_s, if the law continues to hold
   double later_low = 0, later_high = 0;    ///< Recovery::kErrors errors to either side, low >= 0
-  double stays = 0;                        ///< of a lasting loss: at least so much after a year
+  double stays = 0;  ///< for a lasting loss: at least this much remains after a year
   RecoveryVerdict verdict = RecoveryVerdict::not_known;
   RecoveryReason reason = RecoveryReason::few_windows;
 };
 
-/// Tells whether a loss of stiffness after strong motion is lasting, or only the fatigue that
-/// frames and rock recover from with the logarithm of time ("slow dynamics": TenCate, Smith, Guyer,
+/// Decides whether a loss of stiffness after strong motion is lasting, or the fatigue from which
+/// frames and rock recover with the logarithm of time ("slow dynamics": TenCate, Smith, Guyer,
 /// Phys. Rev. Lett. 85, 2000, 1020; Snieder, Sens-Schoenfelder, Wu, Geophys. J. Int. 208, 2017, 1).
-/// Windows are summed by the logarithm of the time since the motion, so that the state is bounded,
-/// and the law is fitted to these means by weighted least squares, with the errors of baseline and
-/// amplitude curve as unknowns that all windows have in common. Only the newest part of the record
-/// that one law fits is used: a recovery that has stopped is not carried on. docs/equations.md,
+///
+///
+/// Windows are summed by the logarithm of the time since the motion, so the state is bounded. The
+/// law is fitted to these means by weighted least squares, with the errors of baseline and
+/// amplitude curve as unknowns that all windows share. Only the newest part of the record that one
+/// law fits is used, so a recovery that has stopped is not extrapolated. docs/equations.md,
 /// recovery.
 class Recovery {
  public:
@@ -80,35 +84,35 @@ class Recovery {
   static constexpr std::size_t kFewest = 4;  ///< windows that a law needs
   static constexpr double kMinSpan = 0.5;    ///< decades of time that a law needs
   static constexpr double kYear_s = 31'557'600;
-  static constexpr double kMotion_s = 900;  ///< no strong motion is longer
-  /// The finding is renewed so long after the strong motion, s.
+  static constexpr double kMotion_s = 900;  ///< the longest strong motion
+  /// Times after the strong motion at which the finding is renewed, s.
   static constexpr std::array<double, 3> kRenew_s{600, 3600, 86400};
 
-  /// least_change > 0: the least relevant loss, a share of the stiffness.
+  /// least_change > 0: the least relevant loss, a fraction of the stiffness.
   explicit Recovery(double least_change = 0.03) : least_change_(least_change) {}
 
-  /// Strong motion has ended; what was before is forgotten.
+  /// Starts at the end of strong motion and forgets everything before.
   void begin(Time end_of_motion);
   bool active() const { return active_; }
   Time began() const { return began_; }
-  /// Whether a change that is seen since then may be of this strong motion: from kMotion_s before
-  /// its end to the first renewal. Later ones have another cause, and no law.
+  /// Returns true if a change seen at `since` may come from this strong motion: from kMotion_s
+  /// before its end to the first renewal. Later changes have another cause and no law.
   bool is_of(Time since) const;
-  /// Windows that the law is made of.
+  /// Returns the number of windows that the law is fitted to.
   int windows() const;
-  /// Windows that begin before the end of the strong motion, or overlap the last one of their
-  /// source, are left out.
+  /// Adds a window. Ignores windows that begin before the end of the strong motion or overlap the
+  /// last one of their source.
   void push(const RecoveryWindow& window);
-  /// As of the newest window.
+  /// Returns the law as of the newest window.
   RecoveryLaw law() const;
-  /// The loss at a time since the strong motion's end that windows cover, by those within a factor
-  /// 2 of it; count 0: there are none.
+  /// The loss at a time since the strong motion's end that windows cover, by the windows within a
+  /// factor 2 of it; count 0: no window covers it.
   struct Loss {
     double loss = 0, std_error = 0;
     int count = 0;
   };
   Loss loss_at(double time_s) const;
-  /// True once for each of kRenew_s, when `now` is beyond it and a window has come since.
+  /// Returns true once for each of kRenew_s, when `now` is beyond it and a window has come since.
   bool renewal_due(Time now);
 
   template <typename Archive>

@@ -10,7 +10,6 @@
 #include "estimator/watch/baseline.h"
 #include "estimator/watch/change_book.h"
 #include "estimator/watch/dependence.h"
-#include "estimator/watch/mean_temperature.h"
 
 namespace framewatch::estimator {
 
@@ -18,68 +17,67 @@ struct WatchOptions {
   double learn_s = 60;  ///< least total length of windows to learn a baseline from
   /// Least relevant changes of frame and panel stiffness, relative; 0: not watched.
   double least_change_k = 0.03, least_change_g = 0.2;
-  double alarms_per_year = 1;  ///< accepted rate of false alarms, of the whole building
-  /// Time a year in which the building moves enough for windows to have values.
+  double alarms_per_year = 1;  ///< accepted rate of false alarms, for the whole building
+  /// Hours a year in which the building moves enough for windows to have values.
   double shaking_hours_per_year = 10;
-  /// Length of the long windows, which watch weak motion; 0: none.
+  /// Length of the long windows, which watch weak motion, s; 0: no long windows.
   double quiet_window_s = 3600;
-  /// Hours of long windows that their baseline takes.
+  /// Hours of long windows from which their baseline is learned.
   double quiet_learn_hours = 24;
-  /// Conditions that baselines are corrected for: the temperature, given by temperature(), and the
+  /// Conditions that baselines are corrected for: the temperature given by temperature(), and the
   /// amplitude of the motion.
   bool temperature = false, amplitude = true;
 };
 
-/// How the parameters are watched: theta order.
+/// Returns the limits by which the parameters are watched: theta order.
 std::vector<Watched> watched_parameters(const ParameterTable& table, const WatchOptions& options);
 
-/// Watches frame and panel stiffness for changes against a baseline, given or learned first, in the
-/// windows of every length at once: short ones respond quickly, long ones detect small changes. The
-/// longest, of accumulated weak motion, have a baseline of their own, always learned, because a
-/// building is stiffer when it hardly moves.
+/// Watches frame and panel stiffness for changes against a baseline, in windows of every length at
+/// once: short ones respond quickly, long ones detect small changes. The baseline is given or
+/// learned first. The long windows of accumulated weak motion always learn a separate baseline,
+/// because a building is stiffer when it hardly moves.
 class Watch {
  public:
-  /// baseline: parameters that it lacks are learned. windows_s: lengths of the windows,
-  /// WindowEstimate::window its index; the next index is that of the long window, if there is one.
-  /// model: what a change of one element makes of the others; empty: the usual one.
+  /// baseline: parameters that it lacks are learned. windows_s: lengths by WindowEstimate::window;
+  /// the next index is that of the long window, if there is one. model: see ChangeBook.
   Watch(const ParameterTable& table, const WatchOptions& options,
         const std::vector<double>& windows_s, const std::optional<Baseline>& baseline,
         const ChangeModel& model = {});
 
-  /// The transitions of records that this window causes; valid until the next call. Windows may
-  /// come in any order; those of one length that lie closer than a fifth of it are left out, and so
-  /// are late ones (WindowEstimate::late) and those that are not whole yet.
+  /// Takes a window and returns the transitions of records that it causes, valid until the next
+  /// call. Windows may come in any order. Ignores windows of one length that lie closer than a
+  /// fifth of it, late ones (WindowEstimate::late) and those that are not complete yet.
   const std::vector<Alarm>& push(const WindowEstimate& estimate);
-  /// The record of a change of a parameter, or of ChangeRecord::kEverything; null: there is none.
+  /// Returns the record of a change of a parameter or of ChangeRecord::kEverything; null if it has
+  /// no record.
   const ChangeRecord* record(int parameter) const { return book_.record(parameter); }
 
-  /// A reading of the thermometer.
+  /// Takes a reading of the thermometer.
   void temperature(Time time, double degc) { temperature_.push(time, degc); }
 
-  /// The parameters that are given or learned so far; null while there is none.
+  /// Returns the parameters given or learned so far; null while there are no such parameters.
   const Baseline* baseline() const { return baseline_.known() > 0 ? &baseline_ : nullptr; }
   int parameters() const { return static_cast<int>(watched_.size()); }
-  /// The parameter is watched for changes.
+  /// Returns true if the parameter is watched for changes.
   bool watched(std::size_t parameter) const { return watched_[parameter].least_change > 0; }
-  /// Of the long windows; null while it is being learned.
+  /// Returns the baseline of the long windows; null while it is being learned.
   const Baseline* quiet_baseline() const { return quiet_known_ ? &quiet_baseline_ : nullptr; }
-  /// How ordinary windows' value follows the amplitude.
+  /// Returns how the values of ordinary windows follow the amplitude.
   const AmplitudeCurve& curve(std::size_t parameter) const { return curves_[parameter]; }
-  /// How the quiet baseline follows the conditions.
+  /// Returns how the quiet baseline follows the conditions.
   const Dependence& dependence() const { return dependence_; }
-  /// Of the long windows their baseline takes, 0..1.
+  /// Returns the progress of learning the quiet baseline, 0..1.
   double quiet_learned() const;
-  /// Learns the baseline of the long windows anew, because the amplitudes are now measured
-  /// otherwise.
+  /// Restarts learning the quiet baseline, because amplitudes are now measured differently.
   void forget_quiet();
-  /// Mean temperature at a time; NaN: no valid reading.
+  /// Returns the mean temperature at a time; NaN if there is no valid reading.
   double degc(Time now) const { return temperature_.mean(now, now); }
   const WatchOptions& options() const { return options_; }
-  /// Of every detector's sums: false alarms come at most as often as the options ask for.
+  /// Returns the threshold of every detector, chosen for at most options().alarms_per_year.
   double threshold() const { return threshold_; }
 
-  /// The whole state, which is two parts: what was learned, and then what was seen of changes
-  /// since. A watch that has read the first may do without the second. resumed() ends reading.
+  /// The state has two parts: what was learned, and the changes detected since. Reading the second
+  /// part is optional. After reading, call resumed().
   template <typename Archive>
   void archive(Archive& a) {
     archive_learned(a);
@@ -105,13 +103,14 @@ class Watch {
   void archive_detection(Archive& a) {
     a(temperature_, book_, recent_, usual_);
   }
-  /// Forgets what was learned under other conditions than these options correct for.
+  /// Restarts learning the quiet baseline if it was learned for other conditions than these options
+  /// correct for.
   void resumed() {
     if (std::exchange(other_conditions_, false)) forget_quiet();
   }
 
  private:
-  /// The mean logarithm of an amplitude.
+  /// The sum of logarithms of an amplitude.
   struct Usual {
     std::int64_t count = 0;
     double sum = 0;
@@ -128,20 +127,20 @@ class Watch {
   void learn(const WindowEstimate& estimate);
   void learn_quiet(const WindowEstimate& estimate);
   Dependence::Expected expected(std::size_t parameter, double degc) const;
-  /// What the conditions make of an intact element's value, relative to the baseline's.
+  /// Effect of the conditions on an intact element's value, relative to the baseline.
   struct Intact {
     double ratio;      ///< most likely
-    double low, high;  ///< what it may be
+    double low, high;  ///< credible range
   };
   Explained correct(WindowEstimate& estimate, std::size_t parameter, double baseline,
                     const Intact& intact) const;
   bool is_shorter(const WindowEstimate& estimate) const;  ///< than the main window
   Intact intact(std::size_t parameter, const WindowEstimate& estimate, double degc) const;
-  /// The estimate as it would be under the conditions of its baseline.
+  /// Returns the estimate corrected to the conditions of its baseline.
   const WindowEstimate& corrected(const WindowEstimate& estimate);
   void remember_amplitudes(const WindowEstimate& estimate);
   double recovering(std::size_t parameter, Time now) const;
-  /// The estimate without stiffnesses of frames that are too uncertain.
+  /// Returns the estimate without frame stiffnesses that are too uncertain.
   const WindowEstimate& certain(const WindowEstimate& estimate);
   const WindowEstimate& corrected_quiet(const WindowEstimate& estimate);
   void find_doubted(const WindowEstimate& estimate);
@@ -166,9 +165,9 @@ class Watch {
   std::vector<std::uint8_t> stiffness_of_frames_;  ///< flags, theta order
   WindowEstimate certain_;
   std::vector<Explained> explained_;   ///< in the newest window
-  std::vector<std::uint8_t> doubted_;  ///< gains that are not to be believed now
+  std::vector<std::uint8_t> doubted_;  ///< 1: a gain is not credible now
   std::vector<Alarm> none_;
-  bool other_conditions_ = false;  ///< what archive_learned() read was corrected for others
+  bool other_conditions_ = false;  ///< archive_learned() read a state with other options
 };
 
 }  // namespace framewatch::estimator

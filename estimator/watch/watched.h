@@ -1,23 +1,67 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 
 #include "estimator/identify/estimate/estimate.h"
 
 namespace framewatch::estimator {
 
-/// By what limits a parameter is watched.
+/// Returns the seconds since the epoch of the sensor clock.
+inline double seconds_of(Time time) {
+  return std::chrono::duration<double>(time.time_since_epoch()).count();
+}
+
+inline double seconds_of(SensorClock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+/// The limits by which one parameter is watched for changes.
 struct Watched {
   double least_change = 0;  ///< least relevant change, relative; 0: not watched
   double most_bias = 1;     ///< share of prior and noise above which a value does not count
-  double tolerance = 0;     ///< lasting deviation, relative, that is no change
+  double tolerance = 0;     ///< lasting deviation, relative, that does not count as a change
 
-  /// Whether a window has a value that is learned from and judged. The bias of prior and noise is
-  /// the same in all windows alike, so that no mean removes it.
+  /// Returns true if baselines learn from parameter `p` of this window and detectors judge it. A
+  /// value biased by prior and noise does not count: all windows share the bias, so no mean removes
+  /// it.
   bool counts(const WindowEstimate& e, std::size_t p) const {
     return e.reason[p] == Observability::observable && e.std_error[p] > 0 &&
            e.prior_share[p] + e.noise_share[p] <= most_bias;
   }
+};
+
+/// Selects the windows to learn from: valid ones that do not overlap, so that their errors are
+/// nearly independent.
+class SeparateWindows {
+ public:
+  /// Returns true if this window is selected; it then counts.
+  bool take(const WindowEstimate& e) {
+    if (e.status != WindowStatus::valid || (count_ > 0 && e.start <= end_)) return false;
+    end_ = e.end;
+    ++count_;
+    seconds_ += length_s(e);
+    return true;
+  }
+  static double length_s(const WindowEstimate& e) {
+    return std::chrono::duration<double>(e.end - e.start).count();
+  }
+  /// Returns the total length of the selected windows, s.
+  double seconds() const { return seconds_; }
+  /// Returns true if `count` > 0 windows are at least half of the selected ones.
+  bool most(int count) const { return count > 0 && 2 * count >= count_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a.within(count_, 0, a.kMaxCount);
+    a.within(seconds_, 0, a.kMaxCount);
+    a(end_);
+  }
+
+ private:
+  int count_ = 0;
+  double seconds_ = 0;
+  Time end_{};
 };
 
 }  // namespace framewatch::estimator

@@ -13,7 +13,6 @@
 #include "daemon/tools/simulation/simulation_truth.h"
 #include "drivers/files/text_output.h"
 #include "drivers/records/record_csv_writer.h"
-#include "estimator/simulate/channel_effects.h"
 #include "estimator/simulate/nonlinear_building.h"
 #include "estimator/simulate/sensor_model.h"
 #include "tests/study/flicker_noise.h"

@@ -3,9 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "estimator/shaking/fragility.h"
 #include "estimator/shaking/placard.h"
-#include "estimator/shaking/shaking.h"
+#include "estimator/shaking/shaking_watch.h"
 
 namespace framewatch::daemon {
 

@@ -140,7 +140,7 @@ void Estimation::look_for_gap(const estimator::SampleSet& instant) {
   const estimator::GapWindow* window = gap_->push(instant, noise_density_);
   if (window == nullptr) return;
   publisher_.gap(*window);
-  if (shaking_) shaking_->gap(window->nrmse);
+  if (shaking_) shaking_->push_gap(window->nrmse);
   const estimator::GapNews* news = gap_->news();
   if (news == nullptr) return;
   announce(gap_event(*news, config_));

@@ -24,7 +24,6 @@
 #include "estimator/gap/gap_monitor.h"
 #include "estimator/shaking/shaking_watch.h"
 #include "estimator/watch/recovery_watch.h"
-#include "estimator/watch/strong_motion.h"
 
 namespace framewatch::daemon {
 

@@ -3,7 +3,7 @@
 #include <framewatch/event_t.hpp>
 
 #include "daemon/config/config.h"
-#include "estimator/gap/gap_alarm.h"
+#include "estimator/gap/gap.h"
 #include "estimator/watch/recovery.h"
 #include "estimator/watch/watch.h"
 

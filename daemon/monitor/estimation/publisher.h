@@ -15,7 +15,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/message_sink.h"
-#include "estimator/gap/gap_alarm.h"
+#include "estimator/gap/gap.h"
 
 namespace framewatch::daemon {
 

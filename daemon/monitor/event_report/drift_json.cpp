@@ -21,7 +21,7 @@ Json story_json(const DriftReport& r, std::size_t i, const Config& config) {
              {"model", json_value(d.known() ? d.model_error : estimator::kNaN)}}},
            {"restored_ratio", json_value(d.slow_ratio)},
            {"frame", d.known() ? Json(config.pipeline.structure.frame_name(d.frame)) : Json()},
-           {"gap_at_peak", d.gap_at_peak()}};
+           {"gap_at_peak", d.interrupted_at_peak()}};
   if (!r.placard) return out;
   for (std::size_t state = 0; state < estimator::kDamageStates; ++state)
     out["probability_or_worse"][kStates[state]] = json_value(r.damage[i][state]);

@@ -26,7 +26,7 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
   switch (reason) {
     case PlacardReason::drift_unknown:
       return fmt::format("the drift of story {} is not known", drift.story);
-    case PlacardReason::gap:
+    case PlacardReason::interruption:
       return fmt::format(
           "the record has a gap in the strong motion of story {}: its peak drift may be larger "
           "than "
@@ -56,9 +56,9 @@ std::string stories_words(const std::vector<int>& stories) {
 /// Why the first of the stories that are not judged could not be.
 std::string why_not(const std::vector<int>& stories, const std::vector<StoryDrift>& drifts) {
   const StoryDrift& first = drifts[static_cast<std::size_t>(stories.front() - 1)];
-  return open_reason(!first.known()        ? PlacardReason::drift_unknown
-                     : first.gap_at_peak() ? PlacardReason::gap
-                                           : PlacardReason::error_unknown,
+  return open_reason(!first.known()                ? PlacardReason::drift_unknown
+                     : first.interrupted_at_peak() ? PlacardReason::interruption
+                                                   : PlacardReason::error_unknown,
                      first);
 }
 
@@ -94,7 +94,7 @@ std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
   for (const StoryDrift& d : drifts) {
     if (!d.known()) unknown.push_back(d.story);
     if (!d.known()) continue;
-    if (d.gap_at_peak()) gaps.push_back(d.story);
+    if (d.interrupted_at_peak()) gaps.push_back(d.story);
     computed = computed || !d.measured;
     unknown_slow = unknown_slow || !std::isfinite(d.slow_ratio);
     if (std::isfinite(d.slow_ratio)) slow = std::max(slow, std::abs(d.slow_ratio) / d.ratio);

@@ -9,7 +9,7 @@
 #include "daemon/config/config.h"
 #include "daemon/monitor/event_report/drift_report.h"
 #include "estimator/motion/sample_merger.h"
-#include "estimator/shaking/shaking.h"
+#include "estimator/shaking/shaking_watch.h"
 
 namespace framewatch::daemon {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "estimator/shaking/story_response.h"
+#include "estimator/shaking/story_drift.h"
 
 namespace framewatch::daemon {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "estimator/shaking/shaking.h"
+#include "estimator/shaking/shaking_watch.h"
 
 namespace framewatch::daemon {
 

@@ -8,9 +8,8 @@
 #include "daemon/tools/lab/paper_method.h"
 #include "daemon/tools/lab/random_building.h"
 #include "estimator/identify/solve/batch_least_squares.h"
-#include "estimator/refine/cramer_rao.h"
 #include "estimator/refine/max_likelihood.h"
-#include "estimator/simulate/exact_motion.h"
+#include "estimator/simulate/linear_response.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "estimator/motion/svd_denoise.h"
-#include "estimator/simulate/band_noise.h"
+#include "estimator/simulate/random.h"
 
 namespace framewatch::daemon {
 namespace {

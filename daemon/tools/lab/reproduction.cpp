@@ -7,7 +7,7 @@
 #include "daemon/tools/lab/paper_buildings.h"
 #include "daemon/tools/lab/paper_motions.h"
 #include "estimator/identify/solve/batch_least_squares.h"
-#include "estimator/simulate/exact_motion.h"
+#include "estimator/simulate/linear_response.h"
 
 namespace framewatch::daemon {
 namespace {

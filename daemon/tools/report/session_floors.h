@@ -10,7 +10,7 @@
 #include "daemon/monitor/estimates/session_estimates.h"
 #include "daemon/tools/report/session_motion.h"
 #include "estimator/shaking/left_out_floor.h"
-#include "estimator/shaking/story_response.h"
+#include "estimator/shaking/story_drift.h"
 
 namespace framewatch::daemon {
 

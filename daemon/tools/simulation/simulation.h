@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 
 #include "daemon/config/config.h"
-#include "estimator/simulate/channel_effects.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/sensor_model.h"
 #include "estimator/structure/effect.h"

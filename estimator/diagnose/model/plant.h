@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "estimator/refine/measured_building.h"
+#include "estimator/refine/window_likelihood.h"
 #include "estimator/structure/matrices.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/structure/sensors.h"

@@ -1,5 +1,5 @@
-// Simulation beside measurement: what a right model leaves is noise, what a wrong one leaves is an
-// event, and failing sensors are neither.
+// Simulation beside measurement: with the right model only noise remains, a wrong model raises an
+// event, and failing sensors do neither.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -16,7 +16,8 @@
 namespace framewatch::estimator {
 namespace gap_test {
 
-constexpr double kRate_hz = 100, kNoise = 5e-3;  // m/s^2/sqrt(Hz): the floor lies above all else
+constexpr double kRate_hz = 100,
+                 kNoise = 5e-3;  // m/s^2/sqrt(Hz): the floor exceeds every other error
 constexpr double kSeconds = 90;
 constexpr double kFloorOff = 0.15;  // relative: 10-s windows of narrow-band noise
 constexpr double kSchemeError = 1e-3, kLawError = 5e-3;
@@ -48,8 +49,7 @@ class Gap : public testing::Test {
     return s;
   }
 
-  /// What the axes measure, of a building with these effects.
-  /// The first floor's is late.
+  /// Returns the axes' readings of a building with these effects. The first floor's axis is late.
   std::vector<SampleSet> measured(double noise, const std::vector<Effect>& effects = {},
                                   double late_s = 0) const {
     KanaiTajimi ground;
@@ -75,7 +75,7 @@ class Gap : public testing::Test {
     return GapMonitor(config, axes_, options_, model);
   }
 
-  /// Every gap of a monitor, and every event.
+  /// Collects every gap and every event of a monitor.
   struct Seen {
     std::vector<GapWindow> windows;
     std::vector<GapNews> news;
@@ -240,7 +240,7 @@ TEST_F(Gap, GoesOnBitByBitFromItsState) {
     Seen uncut, first, second;
     run(whole, sets, kNoise, uncut);
     run(before, sets, kNoise, first, 0, cut);
-    run(after, sets, kNoise, second, 0, 777);  // what a forgotten member would show
+    run(after, sets, kNoise, second, 0, 777);  // reveals a member that archive() forgot
     second = {};
     StateWriter writer;
     writer(before);
@@ -268,7 +268,7 @@ TEST_F(Gap, LearnsItsModelWhenNoneIsGiven) {
   std::fill(window.prior_share.begin(), window.prior_share.end(), 0.0);
   std::fill(window.noise_share.begin(), window.noise_share.end(), 0.0);
   Eigen::VectorXd believed = 1.5 * theta_;
-  for (int i = 1; i <= 14; ++i) {  // two confirm the others
+  for (int i = 1; i <= 14; ++i) {  // the last two only confirm
     EXPECT_FALSE(m.has_model());
     window.start = from_microseconds(6'000'000LL * i);
     window.end = window.start + std::chrono::seconds(5);

@@ -1,4 +1,4 @@
-// What moves a building besides its base's translations: a base that turns or rocks, a shaker.
+// Inputs beyond the base's translations: a base that turns or rocks, and a shaker.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/gap/gap_monitor.h"
-#include "estimator/simulate/applied_force.h"
+#include "estimator/simulate/building_model.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/nonlinear_building.h"
 #include "estimator/simulate/random.h"
@@ -71,7 +71,7 @@ class MeasuredInput : public testing::Test {
   int ground_x() const { return structure_.degrees_of_freedom(); }
   int force_at(int dof) const { return structure_.degrees_of_freedom() + 2 + dof; }
 
-  /// The ground turns: `influence` is the motion of the degrees of freedom per rad. Relative to
+  /// Turns the ground: `influence` is the motion of the degrees of freedom per rad. Relative to
   /// that it is a force; the channels so far become absolute.
   void turn(const Eigen::VectorXd& influence) {
     lever_ = Eigen::VectorXd::Zero(influence.size());
@@ -86,7 +86,7 @@ class MeasuredInput : public testing::Test {
         channels_[c].also.emplace_back(force_at(dof), influence[dof] / lever_[dof]);
     }
   }
-  /// A share of the turning acceleration.
+  /// Adds a share of the turning acceleration.
   std::pair<int, double> turning(double per_rad) const {
     Eigen::Index at = 0;
     lever_.cwiseAbs().maxCoeff(&at);
@@ -131,14 +131,14 @@ class MeasuredInput : public testing::Test {
       if (const GapWindow* w = monitor.push(set, density)) out = *w;
     return out;
   }
-  /// With these axes taken for checks alone.
+  /// Uses these axes for checks alone.
   std::vector<SensorAxis> unaware(std::size_t from) const {
     std::vector<SensorAxis> out = axes_;
     for (std::size_t a = from; a < out.size(); ++a) out[a].check = true;
     return out;
   }
 
-  /// A base that turns about the vertical, as two axes along x and one along y show it.
+  /// A base that turns about the vertical, measured by two axes along x and one along y.
   void turn_in_plan() {
     Eigen::VectorXd influence(structure_.degrees_of_freedom());
     influence << kDeep_m / 2, -kDeep_m / 2, -kWide_m / 2, kWide_m / 2, kDeep_m / 2, -kDeep_m / 2,
@@ -163,7 +163,7 @@ TEST_F(MeasuredInput, OfABaseThatTurnsIsNoGap) {
   EXPECT_GT(last(sets, unaware(axes_.size() - 1), 0).nrmse, kUnaware);
 }
 
-/// With an effect that does nothing the building is integrated by the other scheme.
+/// An effect of size 0 selects the nonlinear scheme.
 TEST_F(MeasuredInput, DrivesABuildingWithLawsAlike) {
   turn_in_plan();
   Effect none = make_effect(EffectKind::cubic_stiffness, {PlaceKind::frame, 1, 0});
@@ -202,7 +202,7 @@ TEST_F(MeasuredInput, OfAShakerIsNoGap) {
   EXPECT_GT(last(sets, unaware(axes_.size() - 1), 0).nrmse, kUnaware);
 }
 
-/// One of the base's axes fails: the others show its directions, and no more how it turns.
+/// One of the base's axes fails: the others still measure its directions but not how it turns.
 TEST_F(MeasuredInput, OfALostAxisIsDoneWithoutWhereOthersShowItsDirection) {
   constexpr std::size_t kFails = 2000;
   turn_in_plan();

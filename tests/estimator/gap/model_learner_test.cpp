@@ -11,7 +11,7 @@ namespace model_learner_test {
 
 constexpr double kWindow_s = 5, kLearn_s = 60, kError = 0.01;
 
-/// One stiffness, true until change_at windows and a tenth less from then on.
+/// One stiffness that loses a tenth after change_at windows.
 struct Learning {
   explicit Learning(int change_at, int windows, double learn_s = kLearn_s)
       : learner(2, 1, learn_s) {

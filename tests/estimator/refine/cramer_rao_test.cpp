@@ -1,4 +1,4 @@
-#include "estimator/refine/cramer_rao.h"
+#include "estimator/refine/max_likelihood.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ double median_of_stiffness(const CramerRaoBound& bound) {
 }
 
 TEST(CramerRao, TableOneAtOnePercentIsNearThePrototypes) {
-  // Prototypes on other motions: 0.055 % and 0.09 %.
+  // Prototypes on other motions reached 0.055 % and 0.09 %.
   constexpr double kMin = 0.0004, kMax = 0.0012;
   const CramerRaoBound b = bound(table1(0.01));
   ASSERT_EQ(b.status, SegmentStatus::good);
@@ -64,7 +64,8 @@ TEST(CramerRao, IsInfiniteForPanelsThatDoNotShear) {
     for (int f = 0; f < s.frames(); ++f) theta[table.frame_stiffness(story, f)] = 2.5e6;
   theta = with_proportional_damping(s, table, theta, 0.02);
   const auto segment = test::exact_stretch(s, theta, test::oblique_motion(1), 0.01);
-  // WHEN the bound is taken, THEN frames have one and panels have none to speak of
+  // WHEN the bound is computed, THEN frames have a finite one and panels have practically no
+  // information
   const CramerRaoBound b = cramer_rao_bound(s, segment.axes, theta, kRate_hz, segment.accel_abs);
   ASSERT_EQ(b.status, SegmentStatus::good);
   EXPECT_LT(b.std_error[table.frame_stiffness(1, 0)], 0.01 * 2.5e6);

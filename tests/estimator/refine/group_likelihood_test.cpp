@@ -16,7 +16,7 @@ using daemon::tall_record;
 using daemon::TallRecord;
 using daemon::TallTrial;
 
-/// A short building, to be quick: the base and floors 2, 4 and 6 of six.
+/// A short building for a quick test: sensors on the base and floors 2, 4 and 6 of six.
 TallTrial six_stories() {
   TallTrial trial;
   trial.stories = 6;

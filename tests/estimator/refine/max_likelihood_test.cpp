@@ -81,7 +81,7 @@ TEST(MaxLikelihood, ScatterIsTheBound) {
   const CramerRaoBound bound =
       cramer_rao_bound(b.structure, segment.axes, b.truth, kRate_hz, segment.accel_abs);
   ASSERT_EQ(bound.status, SegmentStatus::good);
-  // WHEN each is refined without the prior
+  // WHEN each draw is refined without the prior
   Eigen::VectorXd square = Eigen::VectorXd::Zero(b.truth.size()), stated = square, mean = square;
   int covered = 0;
   for (int draw = 0; draw < kDraws; ++draw) {
@@ -96,7 +96,7 @@ TEST(MaxLikelihood, ScatterIsTheBound) {
     covered += static_cast<int>(
         ((r.theta - b.truth).cwiseAbs().array() < 1.96 * r.std_error.array()).count());
   }
-  // THEN scatter and stated errors are the bound, and the 95 % intervals hold
+  // THEN scatter and stated errors equal the bound, and the 95 % intervals hold
   for (Eigen::Index p = 0; p < b.truth.size(); ++p) {
     EXPECT_GT(std::sqrt(square[p]), kMin) << p;
     EXPECT_LT(std::sqrt(square[p]), kMax) << p;
@@ -136,12 +136,12 @@ TEST(MaxLikelihood, RigidFloorsNeedNotHaveAllSensors) {
   Eigen::MatrixXd measured = test::with_noise(segment, 5);
   const Refinement all = refine(b, segment, measured, false, 5);
   ASSERT_EQ(all.status, RefineStatus::converged);
-  // WHEN a fourth sensor of a floor is taken away
+  // WHEN a fourth sensor of a floor is removed
   segment.axes.erase(segment.axes.begin() + 3);
   Eigen::MatrixXd fewer(measured.rows(), measured.cols() - 1);
   fewer << measured.leftCols(3), measured.rightCols(measured.cols() - 4);
   const Refinement some = refine(b, segment, fewer, false, 5);
-  // THEN three still do, less well
+  // THEN the other three suffice, with larger errors
   ASSERT_EQ(some.status, RefineStatus::converged);
   for (Eigen::Index p = 0; p < 8; ++p) {
     EXPECT_LT(std::abs(all.theta[p] - b.truth[p]), 4 * all.std_error[p]) << p;
@@ -157,7 +157,7 @@ TEST(MaxLikelihood, UnknownNoiseIsTakenFromTheMisfit) {
   for (SensorAxis& axis : segment.axes) axis.noise_density = 0;
   const Refinement r = refine(b, segment, measured, true, 9);
   ASSERT_EQ(r.status, RefineStatus::converged);
-  EXPECT_GT(r.misfit_ratio, 100);  // the 1e-4 that stands in is far less than the noise
+  EXPECT_GT(r.misfit_ratio, 100);  // the default noise density 1e-4 is far below the noise
   for (Eigen::Index p = 0; p < 8; ++p) {
     EXPECT_LT(std::abs(r.theta[p] - b.truth[p]), 4 * r.std_error[p]) << p;
     EXPECT_LT(r.std_error[p], 0.02 * b.truth[p]) << p;

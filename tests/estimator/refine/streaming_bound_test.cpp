@@ -1,5 +1,5 @@
-// How far the streaming estimator is from the Cramer-Rao bound; framewatch reproduce has the whole
-// table on twenty motions (docs/accuracy.md).
+// Distance of the streaming estimator from the Cramer-Rao bound; framewatch reproduce prints the
+// whole table for twenty motions (docs/accuracy.md).
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@ namespace framewatch::estimator {
 namespace streaming_bound_test {
 
 constexpr int kMotions = 3;
-constexpr double kMax = 2.0;  // three motions only; 1.6 is held over twenty
-constexpr double kMin = 0.7;  // lower would mean that the bound is wrong
+constexpr double kMax = 2.0;  // for three motions; 1.6 holds over twenty
+constexpr double kMin = 0.7;  // a lower value means that the bound is wrong
 
 TEST(StreamingBound, TableOneStiffnessIsWithinTwiceTheBound) {
   const daemon::AccuracyRow row =

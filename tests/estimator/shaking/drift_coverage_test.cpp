@@ -1,5 +1,5 @@
-// How often the stated 95 % intervals of peak drifts hold the truth. FRAMEWATCH_DRIFT_RUNS=24 runs
-// more earthquakes of every layout and prints the table of docs/equations.md.
+// Coverage of the stated 95 % intervals of peak drifts. FRAMEWATCH_DRIFT_RUNS=24 runs more
+// earthquakes of every layout and prints the table of docs/equations.md.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,7 +24,7 @@ namespace framewatch::estimator {
 namespace drift_coverage_test {
 
 constexpr double kRate_hz = 100, kNormal95 = 1.96;
-constexpr double kFirst_s = 60, kSecond_s = 60;  // the first teaches the stiffness
+constexpr double kFirst_s = 60, kSecond_s = 60;  // the stiffness is learned in the first
 constexpr double kMinCoverage = 0.90, kMaxCoverage = 0.99;
 
 /// Keeps the largest drifts of a building, at every fine step of its integration.
@@ -62,11 +62,11 @@ class WatchedBuilding : public SimulatedBuilding {
 
 struct Layout {
   const char* name;
-  PipelineConfig config;  ///< what the estimator is told; the truth is off it
+  PipelineConfig config;  ///< the estimator's; the true building differs
   double noise_density;   ///< m/s^2/sqrt(Hz)
 };
 
-/// A plane building of so many stories and so low a frequency.
+/// Returns a plane building of so many stories with a given lowest frequency.
 Layout plane(const char* name, int stories, double lowest_hz, const std::vector<int>& floors,
              double noise_density) {
   PipelineConfig c;
@@ -185,7 +185,7 @@ void run(const Layout& layout, std::uint64_t seed, Tally& tally) {
   take(pipeline.finish());
   ASSERT_EQ(drifts.size(), static_cast<std::size_t>(truly.stories)) << layout.name;
   for (const StoryDrift& d : drifts) {
-    if (d.gap_at_peak()) {
+    if (d.interrupted_at_peak()) {
       ++tally.gaps;
       continue;
     }

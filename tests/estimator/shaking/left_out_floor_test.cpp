@@ -38,7 +38,7 @@ TEST(LeftOutFloor, IsKnownWhereTheModelIsRight) {
 }
 
 TEST(LeftOutFloor, IsNearlyKnownWhereGroupsDifferInDamping) {
-  constexpr double kLow = 0.05;  // damping that is not proportional is left out of inner modes
+  constexpr double kLow = 0.05;  // inner modes ignore damping that is not proportional
   const TallRecord record = tall_record(exact(0.3));
   for (const LeftOutFloor& floor :
        leave_floors_out(record.config, record.truth, record.accel, kFirst, kEnd))

@@ -32,13 +32,13 @@ class ShakingTest : public testing::Test {
   }
   ShakingWatch watch() const { return {{structure_, axes_, {}, {}, {}}, {0.1, kQuiet_s}}; }
 
-  /// A sine from 20 to 30 s that begins and ends within two seconds, m.
+  /// Moves in a sine from 20 to 30 s that begins and ends within two seconds, m.
   static double displacement(double t) {
     const double in = std::clamp(std::min(t - 20, 30 - t) / 2, 0.0, 1.0);
     return in * in * in * (10 - 15 * in + 6 * in * in) *
            std::sin(2 * std::numbers::pi * kMotion_hz * t);
   }
-  /// Each floor moves by `amplitude_m` against the one below, on top of an offset.
+  /// Moves each floor by `amplitude_m` against the one below, on top of an offset.
   static SampleSet at(int i, double amplitude_m = 0.01) {
     constexpr double kStep_s = 1e-3;
     const double t = i / kRate_hz;
@@ -90,7 +90,7 @@ TEST_F(ShakingTest, AnInterruptionKeepsWhereASensorRests) {
   ShakingWatch w = watch();
   for (int i = 0; i < 6000; ++i) {
     SampleSet set = at(i);
-    if (i > 2450 && i < 2460) set.accel[2] = kNaN;  // it begins again in full motion
+    if (i > 2450 && i < 2460) set.accel[2] = kNaN;  // a sensor returns in full motion
     (void)w.push(set, nullptr);
   }
   const double accel = 0.01 * std::pow(2 * std::numbers::pi * kMotion_hz, 2);
@@ -98,8 +98,7 @@ TEST_F(ShakingTest, AnInterruptionKeepsWhereASensorRests) {
 }
 
 TEST_F(ShakingTest, ATimeWithoutSamplesIsToldAndIsNoCalm) {
-  // Longer than quiet_s, in the middle of it.
-  // Instants without a value are missing ones, too.
+  // Longer than quiet_s, in the middle of the motion. Instants without a value are missing, too.
   for (const bool empty : {false, true}) {
     ShakingWatch w = watch();
     for (int i = 0; i < 6000; ++i) {
@@ -125,7 +124,7 @@ TEST_F(ShakingTest, ATimeWithoutSamplesIsToldAndIsNoCalm) {
     EXPECT_EQ(to_microseconds(u.from), 23'990'000);
     EXPECT_EQ(to_microseconds(u.to), 36'000'000);
     EXPECT_EQ(u.why, restart ? UnheardWhy::restart : UnheardWhy::no_samples);
-    // Calm that was heard: from 36 s on.
+    // Recorded calm begins at 36 s.
     EXPECT_NEAR(1e-6 * static_cast<double>(to_microseconds(w.ended().found)), 36 + kQuiet_s, 1);
   }
 }
@@ -175,7 +174,7 @@ TEST_F(ShakingTest, WhatFollowsAVeryLongSilenceIsAnotherMotion) {
     EXPECT_EQ(w.ended().unheard.size(), 1u);
   }
   EXPECT_EQ(ended, 2);
-  EXPECT_EQ(w.ended().unheard.size(), 1u);  // it may have begun in it
+  EXPECT_EQ(w.ended().unheard.size(), 1u);  // the motion may have begun in it
 }
 
 TEST_F(ShakingTest, AFailedSensorHasNoPeakAndNoDrift) {
@@ -231,7 +230,8 @@ TEST_F(ShakingTest, ComparesStiffnessBeforeAndAfter) {
 TEST_F(ShakingTest, GoesOnFromItsState) {
   for (const int cut : {1500, 2100, 2900, 3500}) {
     ShakingWatch whole = watch(), first = watch(), second = watch();
-    for (int i = 0; i < 700; ++i) (void)second.push(at(i, 0.02), nullptr);  // what must not stay
+    for (int i = 0; i < 700; ++i)
+      (void)second.push(at(i, 0.02), nullptr);  // state that must not survive
     bool ended = false;
     for (int i = 0; i < 6000 && !ended; ++i) {
       if (i == cut) {

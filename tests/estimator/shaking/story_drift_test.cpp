@@ -1,5 +1,5 @@
-// Peak drifts and their errors: against closed forms, with gaps, and without a stiffness. How often
-// the intervals hold is in drift_coverage_test.cpp.
+// Peak drifts and their errors: against closed forms, with interruptions, and without a stiffness.
+// drift_coverage_test.cpp tests how often the intervals hold.
 #include "estimator/shaking/story_drift.h"
 
 #include <algorithm>
@@ -54,8 +54,8 @@ struct Peak {
   DriftKnowledge known;
 };
 
-/// The story swings freely at kNatural_hz after 20 s of rest: its drift is amplitude times a sine
-/// that grows within a second, and the floor's absolute acceleration is -w^2 of it (no damping).
+/// The story swings freely at kNatural_hz after 20 s of rest. Its drift is amplitude times a sine
+/// that grows within a second; the floor's absolute acceleration is -w^2 of it (no damping).
 Peak swing(double amplitude_m, bool with_stiffness, int gap_from = -1, int gap_to = -1,
            bool skipped = false) {
   Peak out;
@@ -68,7 +68,7 @@ Peak swing(double amplitude_m, bool with_stiffness, int gap_from = -1, int gap_t
     const double growth = t < 0 ? 0 : t < 5 ? t / 5 : std::max(0.0, 1 - (t - 5) / 10);
     const double accel = -w * w * amplitude_m * growth * std::sin(w * t);
     const bool lost = !skipped && i >= gap_from && i < gap_to;
-    // The ground moves so that the floor's acceleration is that of a drift that obeys the spring.
+    // The ground moves so that the floor's acceleration matches a drift that obeys the spring.
     const double drift_accel = accel;
     response.push({from_microseconds(10'000LL * i), i, {accel - drift_accel, lost ? kNaN : accel}});
     out.peak.take(response);
@@ -121,13 +121,13 @@ TEST(StoryDrift, NoiseErrorIsThatOfNoiseAlone) {
 
 TEST(StoryDrift, AGapAtThePeakIsNoticed) {
   const Peak whole = swing(0.01, true);
-  EXPECT_FALSE(story_drifts(one_story(), whole.peak, whole.known)[0].gap_at_peak());
+  EXPECT_FALSE(story_drifts(one_story(), whole.peak, whole.known)[0].interrupted_at_peak());
   const Peak lost = swing(0.01, true, 2400, 2410);
-  EXPECT_TRUE(story_drifts(one_story(), lost.peak, lost.known)[0].gap_at_peak());
+  EXPECT_TRUE(story_drifts(one_story(), lost.peak, lost.known)[0].interrupted_at_peak());
   const Peak skipped = swing(0.01, true, 2450, 3300, true);
-  EXPECT_TRUE(story_drifts(one_story(), skipped.peak, skipped.known)[0].gap_at_peak());
+  EXPECT_TRUE(story_drifts(one_story(), skipped.peak, skipped.known)[0].interrupted_at_peak());
   const Peak early = swing(0.01, true, 500, 510);
-  EXPECT_FALSE(story_drifts(one_story(), early.peak, early.known)[0].gap_at_peak());
+  EXPECT_FALSE(story_drifts(one_story(), early.peak, early.known)[0].interrupted_at_peak());
 }
 
 TEST(StoryDrift, OfADeadSensorIsNotKnown) {
@@ -144,7 +144,7 @@ TEST(StoryDrift, OfPeaksWithoutTheirSlowPartIsNotSilentAboutIt) {
   const StoryDrift d = story_drifts(one_story(), bare, {})[0];
   EXPECT_NEAR(d.ratio, 0.01, 1e-15);
   EXPECT_TRUE(std::isnan(d.std_error));
-  EXPECT_FALSE(d.gap_at_peak());
+  EXPECT_FALSE(d.interrupted_at_peak());
 }
 
 }  // namespace story_drift_test

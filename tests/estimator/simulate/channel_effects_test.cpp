@@ -1,4 +1,4 @@
-#include "estimator/simulate/channel_effects.h"
+#include "estimator/simulate/sensor_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,8 @@
 namespace framewatch::estimator {
 namespace channel_effects_test {
 
-/// Axes of the table model: base x, base y, then floor 1 (y1, y2, x1, x2), floor 2.
+/// An effect on the axes of the table model: base x, base y, then floor 1 (y1, y2, x1, x2),
+/// floor 2.
 Effect channel_effect(EffectKind kind, int channel, std::vector<double> values, int with = -1) {
   EffectPlace place;
   place.kind = describe(kind).places.front();
@@ -36,8 +37,8 @@ TEST(ChannelEffects, DoWhatTheirEquationsSay) {
        5 * std::cos(angle) + 3 * std::sin(angle)},
       {channel_effect(EffectKind::bias_drift, 4, {0.5, 2}), 5.5},
       {channel_effect(EffectKind::swapped, 4, {}, 7), 8.0},
-      {channel_effect(EffectKind::clipping, 4, {0.1}), 5.0},    // the sensor's matter
-      {channel_effect(EffectKind::time_shift, 4, {0.1}), 5.0},  // the response's
+      {channel_effect(EffectKind::clipping, 4, {0.1}), 5.0},    // SensorModel clips
+      {channel_effect(EffectKind::time_shift, 4, {0.1}), 5.0},  // ResponseChannel shifts
   };
   for (const auto& c : cases) {
     ChannelEffects effects({c.effect});

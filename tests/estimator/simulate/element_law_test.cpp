@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "estimator/simulate/make_law.h"
 #include "tests/support/example_effects.h"
 
 namespace framewatch::estimator {
@@ -14,10 +13,11 @@ namespace element_law_test {
 constexpr double kPeak_m = 6e-3;
 constexpr double kPeriod_s = 0.4;
 constexpr int kStepsPerCycle = 4000;
-/// Of the largest force times the peak: what a closed loop of a law without memory may leave.
+/// Largest remainder of a closed loop of a law without memory, over the largest force times the
+/// peak.
 constexpr double kClosed = 1e-6;
 
-/// A law led through its motion, with midpoint integration of its states.
+/// A law driven along a motion, with midpoint integration of its states.
 class Led {
  public:
   explicit Led(const Effect& effect)

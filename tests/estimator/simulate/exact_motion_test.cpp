@@ -1,4 +1,4 @@
-#include "estimator/simulate/exact_motion.h"
+#include "estimator/simulate/linear_response.h"
 
 #include <cmath>
 #include <complex>
@@ -6,8 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/tools/lab/accuracy_trial.h"
-#include "estimator/simulate/band_noise.h"
-#include "estimator/simulate/linear_response.h"
+#include "estimator/simulate/random.h"
 #include "estimator/structure/matrices.h"
 #include "tests/support/paper_buildings.h"
 

@@ -8,7 +8,7 @@
 namespace framewatch::estimator {
 namespace ground_motion_test {
 
-/// Mean power of the motion around a frequency, by direct Fourier sums.
+/// Returns the mean power of the motion around a frequency, by direct Fourier sums.
 double power(const GroundMotion& motion, double low_hz, double high_hz) {
   double sum = 0;
   int count = 0;

@@ -65,7 +65,7 @@ TEST(LinearBuilding, RampOfTheGroundIsTheClosedForm) {
   }
 }
 
-/// Fourth-order Runge-Kutta on the assembled matrices, 0.1 ms steps: another scheme altogether.
+/// Integrates the assembled matrices independently: fourth-order Runge-Kutta in 0.1 ms steps.
 TEST(LinearBuilding, AgreesWithRungeKutta) {
   const Structure s = test::table2();
   const ParameterTable table(s);

@@ -66,7 +66,7 @@ TEST(LinearResponse, FilteringChannelsIsFilteringTheGround) {
   const Eigen::VectorXd theta = test::table2_theta('c');
   PlanMotion motion = directed(kanai_tajimi({.duration_s = 4, .step_s = 1e-3}), M_PI / 4);
   const Response filtered = linear_response(s, table, theta, motion);
-  // The ground through the same low-pass first, its response unfiltered.
+  // Filter the ground by the same low-pass first and leave its response unfiltered.
   const std::vector<double> taps = anti_alias_taps(10);
   const int half = static_cast<int>(taps.size() / 2);
   const auto low_passed = [&](const GroundMotion& in) {

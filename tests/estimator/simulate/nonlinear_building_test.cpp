@@ -15,12 +15,12 @@
 namespace framewatch::estimator {
 namespace nonlinear_building_test {
 
-/// Share of the response's peak.
+/// Tolerance as a share of the response's peak.
 constexpr double kExact = 1e-9;
-/// Half the step changes the response by less: smooth laws, and laws with corners.
+/// Largest change of the response when the step is halved: smooth laws, and laws with kinks.
 constexpr double kSmooth = 1e-7;
 constexpr double kCorners = 3e-5;
-/// An effect whose size is 0 or, where that cannot be written, tiny.
+/// Returns an effect of size 0 or, if 0 is not allowed, a tiny one.
 constexpr double kNoEffect = 1e-6;
 constexpr double kStep_s = 1e-3;
 constexpr int kSteps = 4000;
@@ -146,7 +146,8 @@ Eigen::VectorXd pair_of(double k, double c) {
   return Eigen::Vector2d(k, c);
 }
 
-/// Classic Runge-Kutta of m x'' + c x' + k x + f(x, v, z) = 0, z' = rate(v, z), with tiny steps.
+/// Integrates m x'' + c x' + k x + f(x, v, z) = 0, z' = rate(v, z) by classic Runge-Kutta with tiny
+/// steps.
 template <class Force, class Rate>
 double free_vibration(double k, double c, double m, double x, double seconds, Force force,
                       Rate rate) {
@@ -223,7 +224,7 @@ TEST(NonlinearBuilding, RotationsSoftenAFrameAsSpringsInSeries) {
   const Structure s = one_mass();
   const double k = 800, turning = 3000, h = 1.5;
   const double series = 1 / (1 / k + h * h / turning);
-  const double share = series / k;  // of the drift that the frame takes
+  const double share = series / k;  // the frame's share of the drift
   LinearBuilding softer(s, ParameterTable(s), pair_of(series, 2 * share * share), kStep_s);
   const Eigen::MatrixXd expected = shake(softer);
   for (const EffectKind kind : {EffectKind::base_rocking, EffectKind::frame_bending}) {
@@ -290,7 +291,7 @@ TEST(NonlinearBuilding, RatiosThatFallWithFrequencyDampTheMasses) {
     dampers.push_back(make_effect(EffectKind::added_damper, place));
     dampers.back().set("c_nspm", kAlpha_ps * s.frame_mass(place.story, place.frame));
   }
-  test::TableModel damped = m;  // floor 1 has its dashpots to the ground in its frames
+  test::TableModel damped = m;  // floor 1 has its dashpots to the ground within its frames
   for (int f = 0; f < s.frames(); ++f)
     damped.theta[m.table().frame_damping(1, f)] += kAlpha_ps * s.frame_mass(1, f);
   const Eigen::MatrixXd by_ratios = shake_with(m, ratios);

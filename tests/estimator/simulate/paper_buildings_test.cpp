@@ -10,7 +10,7 @@
 namespace framewatch::test {
 namespace paper_buildings_test {
 
-/// Half of the last digit method.md section 1 states.
+/// Half of the last digit that method.md section 1 states.
 constexpr double kLowestLimit = 0.005;
 constexpr double kHighestLimit = 0.05;
 

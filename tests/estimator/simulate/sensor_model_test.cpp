@@ -19,7 +19,7 @@ struct Bench {
   std::vector<SensorModel> models{axes.size()};
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(axes.size()));
 
-  /// `count` samples of every axis, [sample][axis].
+  /// Returns `count` samples of every axis, [sample][axis].
   std::vector<std::vector<double>> run(int count, std::uint64_t seed = kSeed) {
     SensorArray array(axes, models, kRate_hz, seed);
     std::vector<std::vector<double>> out;

@@ -1,4 +1,4 @@
-// What a record of a change says and does not say, on windows that are made up.
+// Records of changes over synthetic windows.
 #include "estimator/watch/change_book.h"
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 #include "estimator/simulate/random.h"
 #include "estimator/state/archive.h"
-#include "estimator/watch/change_time.h"
 #include "estimator/watch/watch.h"
+#include "estimator/watch/window_history.h"
 
 namespace framewatch::estimator {
 namespace change_book_test {
@@ -34,10 +34,10 @@ ParameterTable table() {
   return ParameterTable(s);
 }
 
-/// What an element's stiffness is at a time, relative to the baseline.
+/// Returns an element's stiffness at a time, relative to the baseline.
 using Stiffness = std::function<double(int element, double time_s)>;
 
-/// A building of made-up windows: each shows the mean of its time, with an error of its own.
+/// A building of synthetic windows: each shows the mean over its time, plus noise.
 class Building {
  public:
   explicit Building(Stiffness stiffness, std::uint64_t seed = 1)
@@ -75,7 +75,7 @@ class Building {
     return e;
   }
 
-  /// Every window of a stretch, in order of their ends.
+  /// Returns every window of a stretch, in order of their ends.
   void run(Watch& watch, double from_s, double to_s,
            const std::function<void(const Alarm&, double)>& take) {
     for (int tick = static_cast<int>(std::lround(10 * from_s)) + 1; tick <= std::lround(10 * to_s);
@@ -126,7 +126,7 @@ TEST(ChangeBook, IsChangingBeforeItHasANumberAndThenSharpens) {
   EXPECT_LT(at_s[static_cast<std::size_t>(first - news.begin())], kNumber_s);
   const ChangeRecord* record = watch.record(3);
   ASSERT_NE(record, nullptr);
-  EXPECT_EQ(record->change.ratio, news.back().change.ratio);  // the number that was told
+  EXPECT_EQ(record->change.ratio, news.back().change.ratio);  // the published number
   EXPECT_EQ(record->change.std_error, news.back().change.std_error);
   constexpr double kInstant_s = 1;
   EXPECT_NEAR(1e-6 * static_cast<double>(to_microseconds(record->change.since)), kChange_s,
@@ -190,7 +190,7 @@ TEST(ChangeBook, AGainIsNotSaidBesideAnOpenLoss) {
   EXPECT_EQ(named, std::set<int>{3});
 }
 
-/// Whatever a few seconds show: the windows behind them do not.
+/// A deviation of a few seconds that the windows behind it do not confirm.
 TEST(ChangeBook, WhatComesAndGoesIsWithdrawn) {
   Building building([](int element, double time_s) {
     return element == 3 && time_s >= kChange_s && time_s < kChange_s + 8 ? 0.8 : 1;
@@ -200,7 +200,7 @@ TEST(ChangeBook, WhatComesAndGoesIsWithdrawn) {
   EXPECT_EQ(watch.record(3), nullptr);
 }
 
-/// Windows that were held back come after newer ones.
+/// Delayed windows arrive after newer ones.
 TEST(ChangeBook, LateWindowsCount) {
   constexpr double kLate_s = 20;
   Building building(loses({{3, {kChange_s, 0.15}}}));

@@ -1,5 +1,5 @@
-// The one record of a change: its size, its error and what is said of other elements, over
-// simulated changes in buildings that the model does not quite describe.
+// Size, error and neighbors of a change's record, over simulated changes in buildings that the
+// model describes inexactly.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,13 +26,14 @@ namespace framewatch::estimator {
 namespace change_record_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Of stated 95 % intervals, at every second after the announcement.
+/// Coverage of the stated 95 % intervals, at every second after the announcement.
 constexpr double kMinCovered = 0.92;
-/// Share of elements that did not change and are flagged.
+/// Largest share of unchanged elements that are flagged.
 constexpr double kMaxNeighbours = 0.01;
-/// The same of groups that soften with amplitude: beside a loss the others soften in another way.
+/// Largest share for groups that soften with amplitude: next to a loss the others soften
+/// differently.
 constexpr double kMaxNeighboursSoftening = 0.03;
-/// Share of values that lie within two of every earlier error.
+/// Least share of values that lie within two of every earlier error.
 constexpr double kMinSteady = 0.95;
 
 /// FRAMEWATCH_CHANGE_RUNS: cases of each kind of building.
@@ -44,7 +45,7 @@ bool wordy() {
   return std::getenv("FRAMEWATCH_CHANGE_WORDS") != nullptr;
 }
 
-/// What changes, by parameter: the ratio of its stiffness after to before, less 1.
+/// The changes, by parameter: ratio of the stiffness after to before, less 1.
 using Truth = std::map<int, double>;
 
 struct Tally {
@@ -80,7 +81,7 @@ struct Tally {
                   100.0 * n.second / n.first);
     std::fflush(stdout);
   }
-  /// What so many draws of a probability may be at most, by chance.
+  /// Returns the largest count that so many draws of a probability give by chance.
   static double most_of(double probability, int draws) {
     return probability * draws + 2 * std::sqrt(probability * draws) + 1;
   }
@@ -199,8 +200,8 @@ double log_uniform(Random& random, double least, double most) {
   return least * std::pow(most / least, random.uniform());
 }
 
-/// Table 1's building with a sensor everywhere, its masses off by 2 % (standard deviation), 2 to 5
-/// % noise, losing stiffness of one or two frames in the shaking.
+/// Table 1's building with a sensor everywhere, its masses off by 2 % (standard deviation) and 2 to
+/// 5 % noise. One or two frames lose stiffness in the shaking.
 void full(std::uint64_t seed, Tally& tally) {
   constexpr double kLearned_s = 60, kChange_s = 80, kEnd_s = 125, kMassesOff = 0.02;
   Random random(seed);
@@ -260,8 +261,8 @@ void full(std::uint64_t seed, Tally& tally) {
                   take);
 }
 
-/// The tower with sensors on every fifth floor, one story or two of different groups losing
-/// stiffness; softening: of its stories with amplitude.
+/// The tower with sensors on every fifth floor. One story, or two of different groups, lose
+/// stiffness. softening: of its stories with amplitude.
 void partial(std::uint64_t seed, double softening, Tally& tally) {
   constexpr double kSettled_s = 20, kLearned_s = 200, kSoon_s = 20, kEnd_s = 265, kNoise = 0.01;
   Random random(seed);

@@ -21,7 +21,7 @@ TEST(ChangeSize, IsTheWeightedMeanAndSharpens) {
   size.push(-0.10, 0.01);
   size.push(-0.13, 0.02);
   EXPECT_NEAR(size.ratio(), (-0.10 - 0.13 / 4) / 1.25, 1e-12);
-  // Two windows 0.03 apart scatter by 1.8 of what 0.01 and 0.02 explain.
+  // Two windows 0.03 apart scatter by 1.8 times what 0.01 and 0.02 explain.
   const double excess = (ChangeSize::kPriorWindows + 1.8) / (ChangeSize::kPriorWindows + 1);
   EXPECT_NEAR(size.std_error(), 0.01 * std::sqrt(excess / 1.25), 1e-12);
 }
@@ -33,7 +33,7 @@ TEST(ChangeSize, WhatWindowsHaveInCommonStays) {
   EXPECT_GT(size.std_error(), 0.05);
   EXPECT_LT(size.std_error(), 0.051);
   for (int i = 0; i < 100; ++i) size.push(-0.15, kError, 0.001);
-  EXPECT_NEAR(size.ratio(), -0.15, 0.003);  // who knows better counts more
+  EXPECT_NEAR(size.ratio(), -0.15, 0.003);  // the more exact one counts more
   EXPECT_LT(size.std_error(), 0.005);
 }
 
@@ -49,10 +49,10 @@ TEST(ChangeSize, LeavesOutOneWildWindowAndFollowsTwo) {
   EXPECT_NEAR(size.ratio(), -0.4, 1e-9);
 }
 
-/// An alarm of short windows, whose size then comes from the main ones.
+/// An alarm of short windows whose size then comes from the main ones.
 TEST(ChangeSize, AnAlarmIsReportedAgainAsItsErrorShrinks) {
   constexpr double kChange = -0.15, kFrom_s = 100, kEnd_s = 400, kShrinks = 2.5;
-  constexpr SensorClock::duration kSame{2'500'000};  // the instant is found more sharply
+  constexpr SensorClock::duration kSame{2'500'000};  // the instant is refined
   constexpr std::size_t kMaxNews = 12;
   Structure s;
   s.stories = 1;

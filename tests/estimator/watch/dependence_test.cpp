@@ -1,4 +1,5 @@
-// Baselines that follow temperature and amplitude: what they learn, and what is watched then.
+// Baselines that follow temperature and amplitude: what they learn and which changes are then
+// found.
 #include "estimator/watch/dependence.h"
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 #include "daemon/tools/lab/paper_buildings.h"
 #include "estimator/simulate/random.h"
 #include "estimator/state/archive.h"
-#include "estimator/watch/mean_temperature.h"
 #include "estimator/watch/watch.h"
 
 namespace framewatch::estimator {
@@ -18,7 +18,7 @@ namespace dependence_test {
 
 constexpr double kHour_s = 3600;
 constexpr double kError = 0.01;  // of a window's value
-/// Issue 9: a daily swing of this, from trough to crest, raises none.
+/// Issue 9: a daily swing of this, from trough to crest, raises no alarm.
 constexpr double kSwing = 0.03;
 constexpr double kCold_degc = -5, kWarm_degc = 15;
 constexpr double kPerDegc = -kSwing / (kWarm_degc - kCold_degc);
@@ -34,7 +34,7 @@ double degc_at(double hours) {
          (kWarm_degc - kCold_degc) / 2 * std::sin(2 * M_PI * hours / 24);
 }
 
-/// The long window of a parameter table that ends after so many hours.
+/// Returns the long window of a parameter table that ends after so many hours.
 WindowEstimate window(int parameters, double end_hours) {
   WindowEstimate e(static_cast<std::size_t>(parameters));
   e.window = kStrong;
@@ -104,13 +104,13 @@ TEST(MeanTemperature, IsOfTheStretchesAsked) {
   for (int s = 0; s < 40'000; s += 60) mean.push(from_microseconds(1'000'000LL * s), s / 3600.0);
   mean.push(from_microseconds(1'000'000LL * 39'960), 1e9);  // broken
   EXPECT_NEAR(mean.mean(at(9), at(10) - SensorClock::duration(1)), 9.5, 0.02);
-  EXPECT_NEAR(mean.mean(at(11.5), at(11.6)), 11.1, 0.05);  // it still holds
-  EXPECT_TRUE(std::isnan(mean.mean(at(1), at(2))));        // long ago
+  EXPECT_NEAR(mean.mean(at(11.5), at(11.6)), 11.1, 0.05);  // still valid
+  EXPECT_TRUE(std::isnan(mean.mean(at(1), at(2))));        // no longer valid
   EXPECT_TRUE(std::isnan(mean.mean(at(20), at(21))));
 }
 
-/// Sixty days of long windows of a building whose frames all follow the temperature; after forty,
-/// one of them loses a twentieth.
+/// Sixty days of long windows of a building whose frames all follow the temperature. After forty
+/// days one of them loses 5 %.
 struct Months {
   int false_alarms = 0;
   double found_hours = std::numeric_limits<double>::infinity();
@@ -149,12 +149,12 @@ TEST(Watch, ADailySwingOfStiffnessIsNoChangeWhenItFollowsTheTemperature) {
   const Months follows = watch(true), blind = watch(false);
   EXPECT_EQ(follows.false_alarms, 0);
   EXPECT_LT(follows.found_hours, kSoon_hours);
-  // The same building without a thermometer: alarms would come and go, or be missing only because
-  // the baseline's own error has swallowed the swing.
+  // Without a thermometer, alarms come and go, or are missing only because the baseline's error
+  // covers the swing.
   EXPECT_TRUE(blind.false_alarms > 0 || blind.found_hours > follows.found_hours);
 }
 
-/// Ordinary windows all day, and a thermometer that is slower than they are.
+/// Ordinary windows all day, with a thermometer that is slower than they are.
 TEST(Watch, ADailySwingRaisesNothingInOrdinaryWindows) {
   constexpr int kLearn_hours = 24, kDays = 3, kWindow_s = 10, kThermometer_s = 290;
   const ParameterTable table(daemon::table1());

@@ -38,7 +38,7 @@ WatchOptions options() {
   return o;
 }
 
-/// The tower under an estimation.
+/// The tower with its estimation.
 class Watched {
  public:
   Watched(test::SofteningTower& tower, std::function<void(const WindowEstimate&)> take)
@@ -131,7 +131,7 @@ Tally lose_each(double ratio, int motions) {
   return out;
 }
 
-/// Issue 21 asks for 20 of 20 within 7 s; reached is 19, and 20 within kReached_s
+/// Issue 21 asks for 20 of 20 within 7 s; 19 are reached, and 20 within kReached_s
 /// (docs/equations.md).
 TEST(GroupWatch, FindsAFifthLostByOneStoryOfFive) {
   constexpr double kSoon = 0.95;
@@ -149,7 +149,7 @@ TEST(GroupWatch, FindsATenthLostByOneStoryOfFiveMostly) {
   EXPECT_EQ(tally.wrong, 0);
 }
 
-/// Issue 21: none in ten hours.
+/// Issue 21: no alarm in ten hours.
 TEST(GroupWatch, SofteningWhileItMovesIsNoChange) {
   constexpr double kEvent_s = 40, kWeakest = 0.1;
   const double hours = wanted_runs() > 0 ? 2.5 * wanted_runs() : 0.25;
@@ -180,7 +180,7 @@ TEST(GroupWatch, SofteningWhileItMovesIsNoChange) {
   ASSERT_NE(watch.baseline(), nullptr);
   EXPECT_EQ(watch.baseline()->known(), 8);
   EXPECT_EQ(alarms, 0);
-  EXPECT_LT(lowest, 0.93 * highest);  // it did soften
+  EXPECT_LT(lowest, 0.93 * highest);  // the building softened
 }
 
 struct Aftermath {
@@ -188,7 +188,7 @@ struct Aftermath {
   double found_s = kInfinity, ratio = 0, error = 0;
 };
 
-/// Learned in weak motion, shaken ten times as strong as ever, then in weak motion again.
+/// Learned in weak motion, then shaken ten times as strongly as ever, then in weak motion again.
 Aftermath shaken(double lost) {
   constexpr int kStory = 8;
   constexpr double kLearn_s = 240, kStrong_s = 30, kAfter_s = 240, kWeak = 0.1;

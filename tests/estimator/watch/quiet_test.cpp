@@ -1,4 +1,4 @@
-// Changes in weak motion, in which no ordinary window has a value: through the whole pipeline.
+// Changes in weak motion, in which no ordinary window has a value, through the whole pipeline.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -21,8 +21,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kGround = 1e-4;  // m/s^2/sqrt(Hz) at the ground's resonance
 constexpr double kDrop = 0.05;    // of a first-story frame
 
-/// Table 1's building, watched by sensors of a noise density, learned, left alone for a while and
-/// then damaged.
+/// Table 1's building, watched by sensors of a noise density: it learns, stays intact for a while
+/// and is then damaged.
 struct Quiet {
   double noise;  ///< m/s^2/sqrt(Hz)
   double window_s, learn_hours, undamaged_hours, most_hours;
@@ -107,8 +107,8 @@ TEST(QuietWatch, FindsATwentiethLostWithoutAnEarthquake) {
   EXPECT_EQ(found.others, 0);
 }
 
-/// Issue 9: within 24 hours. FRAMEWATCH_QUIET_RUNS=10 tests it, at the noise of every sensor in
-/// FRAMEWATCH_QUIET_NOISE (1e-4, m/s^2/sqrt(Hz)): some minutes each.
+/// Issue 9: within 24 hours. FRAMEWATCH_QUIET_RUNS=10 tests it at the noise of every sensor in
+/// FRAMEWATCH_QUIET_NOISE (1e-4, m/s^2/sqrt(Hz)), some minutes each.
 TEST(QuietWatch, FindsItWithinADay) {
   constexpr double kDay_hours = 24;
   const char* runs = std::getenv("FRAMEWATCH_QUIET_RUNS");

@@ -1,4 +1,4 @@
-// Simulated series behind strong motion: what recovers, what stays, both, too little to say, and an
+// Simulated series behind strong motion: recovery, lasting loss, both, too few windows, and an
 // intact building that is only softer while it moves more.
 #include "estimator/watch/recovery.h"
 
@@ -26,7 +26,7 @@ constexpr double kBaseline = 5e9;  // N/m
 constexpr double kWindow_s = 5, kLong_s = 3600, kDay_s = 86400;
 constexpr double kNoise = 0.01, kLongNoise = 0.004;  // relative, of a window
 constexpr double kStrong_m = 1e-2, kWeak_m = 2e-4;   // rms deformation
-/// As the six-story building of San Bernardino: 13 % over a factor 23.
+/// As in the six-story building of San Bernardino: 13 % over a factor 23.
 constexpr double kPerLog = 0.13 / 3.14;
 
 Time at(double s) {
@@ -45,21 +45,21 @@ AmplitudeCurve learned_curve(double per_log = kPerLog) {
 }
 
 struct Series {
-  /// Loss at a time since the strong motion, s.
+  /// Returns the loss at a time since the strong motion, s.
   std::function<double(double)> loss = [](double) { return 0.0; };
   double until_s = kDay_s;
   double per_log = kPerLog;  ///< of the element, softening per unit of ln(amplitude)
-  bool curve = true;         ///< it was learned
+  bool curve = true;         ///< the curve was learned
   double noise = kNoise;
 };
 
-/// The motion dies away as a structure's coda and its aftershocks do, to the weak motion of
-/// streets.
+/// Returns the amplitude, which decays like a structure's coda and its aftershocks to the weak
+/// motion of street traffic.
 double amplitude_m(double s) {
   return std::max(kWeak_m, 0.3 * kStrong_m * std::min(1.0, 20 / s));
 }
 
-/// Mean over a window.
+/// Returns the mean over a window.
 double mean_loss(const Series& s, double from_s, double to_s) {
   constexpr int kParts = 24;
   double sum = 0;
@@ -71,7 +71,7 @@ double mean_loss(const Series& s, double from_s, double to_s) {
 Recovery after(const Series& s, std::uint64_t seed, double begin_s = 1000) {
   const AmplitudeCurve curve = s.curve ? learned_curve() : AmplitudeCurve();
   Random random(seed);
-  // What the baselines are off by is the same in all windows.
+  // All windows share the error of the baselines.
   const double off = 0.002 * random.normal(), long_off = 0.002 * random.normal();
   Recovery out(0.03);
   out.begin(at(begin_s));
@@ -102,7 +102,7 @@ double recovers(double t) {
 double stays(double) {
   return 0.09;
 }
-/// Recovers for an hour and stays at what is left then.
+/// Recovers for an hour, then stays.
 double both(double t) {
   return recovers(std::min(t, 3600.0));
 }
@@ -146,7 +146,7 @@ TEST(Recovery, ALastingLossIsSaidToLastOnceRecoveryIsExcluded) {
     const Count c = count(s, until_s);
     EXPECT_LE(c.loss_outside, kMaxOutside) << until_s;
     EXPECT_LE(c.of(RecoveryVerdict::recovered), kMaxWrong) << until_s;
-    // Three errors: one of 740 noises looks like a recovery.
+    // Three errors: one of 740 noise series looks like a recovery.
     EXPECT_LE(c.of(RecoveryVerdict::recovering), 2) << until_s;
   }
   EXPECT_GE(count(s, kDay_s).of(RecoveryVerdict::lasting), kMinLastingDay);
@@ -249,7 +249,7 @@ TEST(Recovery, FewWindowsSayWhyNothingIsKnown) {
 TEST(Recovery, LeavesOutWindowsThatOverlapOrBeganInTheMotion) {
   Recovery one, both;
   for (Recovery* r : {&one, &both}) r->begin(at(100));
-  both.push({at(98), at(103), 7, 0.001, 0, 0, 0});  // it began in the motion
+  both.push({at(98), at(103), 7, 0.001, 0, 0, 0});  // began during the motion
   for (int i = 0; i < 100; ++i) {
     const RecoveryWindow w{at(100 + 5 * i), at(105 + 5 * i), -0.1 + 1e-4 * i, 0.01, 0, 0, 0};
     one.push(w);
@@ -275,12 +275,12 @@ TEST(Recovery, IsRenewedAtTenMinutesAnHourAndADayOnce) {
   Recovery r;
   EXPECT_FALSE(r.renewal_due(at(1e9)));
   r.begin(at(0));
-  EXPECT_FALSE(r.renewal_due(at(700)));  // no window has come
+  EXPECT_FALSE(r.renewal_due(at(700)));  // no window yet
   for (int i = 0; i < 20; ++i) r.push({at(5 * i), at(5 * i + 5), -0.1, 0.01, 0, 0, 0});
   EXPECT_FALSE(r.renewal_due(at(599)));
   EXPECT_TRUE(r.renewal_due(at(600)));
   EXPECT_FALSE(r.renewal_due(at(601)));
-  EXPECT_FALSE(r.renewal_due(at(3700)));  // nothing is newer
+  EXPECT_FALSE(r.renewal_due(at(3700)));  // no newer window
   r.push({at(3690), at(3695), -0.1, 0.01, 0, 0, 0});
   EXPECT_TRUE(r.renewal_due(at(3700)));
   r.push({at(90'000), at(90'005), -0.1, 0.01, 0, 0, 0});

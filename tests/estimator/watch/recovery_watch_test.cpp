@@ -1,4 +1,4 @@
-// From instants and windows to the renewals of a finding.
+// The recovery watch from instants and windows to renewals of a finding.
 #include "estimator/watch/recovery_watch.h"
 
 #include <cmath>
@@ -52,7 +52,7 @@ class RecoveryWatchTest : public testing::Test {
     for (double t = from_s; t < from_s + 10; t += 1 / kRate_hz)
       strong_->push({at(t), std::llround(t * kRate_hz), {0.2 + peak_mps2 * std::sin(6 * t), 0.1}});
   }
-  /// Windows of calm; the times of renewals come back.
+  /// Pushes windows of calm and returns the times of renewals.
   std::vector<double> watch(double from_s, double to_s, const std::function<double(double)>& loss,
                             double every_s = kWindow_s) {
     std::vector<double> renewed;
@@ -107,7 +107,7 @@ TEST_F(RecoveryWatchTest, TheFindingIsRenewedThreeTimes) {
   EXPECT_NEAR(renewed[1], 110 + 3600, 60);
   EXPECT_NEAR(renewed[2], 110 + 86'400, 60);
   ASSERT_NE(recovery_->of(0), nullptr);
-  EXPECT_EQ(recovery_->of(1), nullptr);  // it is not watched
+  EXPECT_EQ(recovery_->of(1), nullptr);  // not watched
   const RecoveryLaw law = recovery_->of(0)->law();
   EXPECT_EQ(law.verdict, RecoveryVerdict::lasting);
   EXPECT_NEAR(law.loss, 0.08, 4 * law.std_error);

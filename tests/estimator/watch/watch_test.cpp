@@ -46,7 +46,7 @@ TEST(BaselineLearner, WeighsWindowsThatDoNotOverlap) {
   EXPECT_FALSE(learner.push(window(3, 1.00, 0.01), 4));
   EXPECT_FALSE(learner.push(window(4, 9.00, 0.01)));  // overlaps
   EXPECT_TRUE(learner.push(window(6, 1.03, 0.02), 9));
-  EXPECT_FALSE(learner.push(window(9, 5.00)));  // it is learned
+  EXPECT_FALSE(learner.push(window(9, 5.00)));  // already complete
   const Baseline b = learner.baseline();
   EXPECT_NEAR(b.value[0], (1.00 + 1.03 / 4) / 1.25, 1e-12);
   // Two windows 0.03 apart scatter more than 0.01 and 0.02 explain: 0.03^2 / (0.01^2 + 0.02^2).
@@ -74,7 +74,7 @@ TEST(BaselineLearner, LearnsUntilItIsExact) {
   EXPECT_LE(learner.baseline().std_error[0], exact);
 }
 
-/// Weak motion: the prior's pull is the same in every window, and no mean finds it.
+/// In weak motion every window has the same pull of the prior, which no mean reveals.
 TEST(BaselineLearner, LeavesOutWhatIsPulledTowardTheDesign) {
   BaselineLearner learner({Watched{0.03, 0.1}}, kWindow_s);
   double t = 3;
@@ -110,7 +110,7 @@ TEST(ChangeDetector, FindsAChangeSaysHowMuchAndSeesItGo) {
   EXPECT_LT(gone_s, kTo_s + 10 * kWindow_s);
 }
 
-/// However large the least change is beside the error of a window.
+/// The watch stays silent however small the error of a window is compared with the least change.
 TEST(ChangeDetector, IsWrongAsRarelyAsItsThresholdSays) {
   constexpr double kThreshold = 5;
   constexpr int kWindows = 100'000, kTests = 2 * ChangeDetector::kSizes;
@@ -169,8 +169,8 @@ TEST(ChangeDetector, LeavesAloneWhatIsNotObservableNotWatchedOrWithoutBaseline) 
   EXPECT_FALSE(quiet.changed(0));
 }
 
-/// A building that is learned while it hardly moves, its values pulled toward a design that is too
-/// stiff, moves in traffic, and at last loses a twentieth.
+/// A building is learned while it hardly moves, its values pulled toward a design that is too
+/// stiff. It then moves in traffic and at last loses 5 %.
 TEST(Watch, WhatIsLearnedInWeakMotionIsNoChangeInTraffic) {
   constexpr double kQuiet_s = 600, kDamage_s = 3300, kEnd_s = 3400, kSoon_s = 60;
   constexpr double kPull = 0.03, kPulledShare = 0.3;

@@ -22,6 +22,7 @@
 #include "drivers/lcm/lcm_log.h"
 #include "estimator/motion/acquisition.h"
 #include "estimator/pipeline/pipeline.h"
+#include "estimator/shaking/story_drift.h"
 #include "estimator/shaking/story_response.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "estimator/diagnose/model/make_plant.h"
-#include "estimator/simulate/exact_motion.h"
+#include "estimator/simulate/linear_response.h"
 #include "tests/estimator/diagnose/other_buildings.h"
 
 namespace framewatch::estimator {

@@ -15,7 +15,7 @@
 #include "daemon/tools/lab/accuracy_trial.h"
 #include "daemon/tools/lab/few_sensors.h"
 #include "estimator/pipeline/pipeline.h"
-#include "estimator/simulate/applied_force.h"
+#include "estimator/simulate/building_model.h"
 #include "estimator/simulate/ground_motion.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"

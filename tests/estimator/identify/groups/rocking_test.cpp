@@ -12,7 +12,7 @@
 #include "estimator/diagnose/fit/diagnosis_input.h"
 #include "estimator/diagnose/verdict/diagnose.h"
 #include "estimator/identify/groups/floor_coordinates.h"
-#include "estimator/simulate/applied_force.h"
+#include "estimator/simulate/building_model.h"
 #include "estimator/simulate/ground_motion.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"

@@ -6,7 +6,7 @@
 
 #include "daemon/tools/lab/accuracy_trial.h"
 #include "daemon/tools/lab/paper_method.h"
-#include "estimator/simulate/exact_motion.h"
+#include "estimator/simulate/linear_response.h"
 #include "tests/support/paper_buildings.h"
 
 namespace framewatch::estimator {

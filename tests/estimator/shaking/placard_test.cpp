@@ -1,14 +1,13 @@
-#include "estimator/shaking/fragility.h"
+#include "estimator/shaking/placard.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
 #include "estimator/numeric/nan.h"
-#include "estimator/shaking/placard.h"
 
 namespace framewatch::estimator {
-namespace fragility_test {
+namespace placard_test {
 
 constexpr double kExact = 1e-12;
 const Fragility kFrame{{0.005, 0.01, 0.03, 0.08}, {0.4, 0.4, 0.4, 0.4}};
@@ -79,9 +78,9 @@ TEST(Placard, IsNeverBetterThanRestrictedWhereAStoryIsNotJudged) {
   EXPECT_FALSE(unknown.judged);
   EXPECT_EQ(unknown.story, 2);
   StoryDrift gap = drifted(1, 0.002);
-  gap.unseen_share = StoryDrift::kGap;
+  gap.unseen_share = StoryDrift::kUnseen;
   EXPECT_EQ(placard_of({gap}).placard, Placard::restricted);
-  EXPECT_EQ(placard_of({gap}).reason, PlacardReason::gap);
+  EXPECT_EQ(placard_of({gap}).reason, PlacardReason::interruption);
   EXPECT_EQ(placard_of({drifted(1, 0.002, kNaN)}).reason, PlacardReason::error_unknown);
   EXPECT_EQ(placard_of({drifted(1, 0.002, kNaN)}).placard, Placard::restricted);
 }
@@ -97,5 +96,5 @@ TEST(Placard, AStoryThatDidNotDriftIsNotDamaged) {
   EXPECT_EQ(placard_of({drifted(1, 0)}).placard, Placard::inspected);
 }
 
-}  // namespace fragility_test
+}  // namespace placard_test
 }  // namespace framewatch::estimator
