@@ -33,7 +33,7 @@ class ActionReport {
   /// The event is acknowledged now.
   void acknowledged(const event_t& event);
   /// To be called several times a second; now_us: host clock.
-  void look(std::int64_t now_us);
+  void update(std::int64_t now_us);
 
  private:
   action_status_t status(std::int64_t now_us) const;

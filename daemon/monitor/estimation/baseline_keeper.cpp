@@ -16,7 +16,7 @@ BaselineKeeper::BaselineKeeper(const Config& config)
   if (config.watch->baseline) written_ = *config.watch->baseline;
 }
 
-void BaselineKeeper::look(const Estimation& estimation) {
+void BaselineKeeper::update(const Estimation& estimation) {
   const estimator::Baseline* baseline = estimation.baseline();
   if (path_.empty() || baseline == nullptr || written_.holds(*baseline)) return;
   std::string none;

@@ -12,7 +12,7 @@ namespace framewatch::daemon {
 class BaselineKeeper {
  public:
   explicit BaselineKeeper(const Config& config);
-  void look(const Estimation& estimation);
+  void update(const Estimation& estimation);
 
  private:
   estimator::ParameterTable table_;

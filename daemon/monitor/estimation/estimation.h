@@ -3,30 +3,92 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <framewatch/event_t.hpp>
 #include <framewatch/temperature_t.hpp>
 
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
-#include "daemon/monitor/estimation/absurd_events.h"
-#include "daemon/monitor/estimation/can_events.h"
-#include "daemon/monitor/estimation/channel_events.h"
-#include "daemon/monitor/estimation/estimation_listener.h"
+#include "daemon/monitor/estimation/input_events.h"
 #include "daemon/monitor/estimation/publisher.h"
-#include "daemon/monitor/estimation/sensor_seconds.h"
-#include "daemon/monitor/estimation/state_section.h"
-#include "daemon/monitor/estimation/wanted_axes.h"
+#include "daemon/monitor/event_report/event_report.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/gap/gap_monitor.h"
+#include "estimator/identify/estimate/estimate.h"
+#include "estimator/motion/sample.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/shaking/shaking_watch.h"
 #include "estimator/watch/recovery_watch.h"
 #include "estimator/watch/strong_motion.h"
 
 namespace framewatch::daemon {
+
+/// Tells when a second of sensor time has passed. A single node whose clock jumps does not move it;
+/// kStraysToFollow samples in a row do.
+class SensorSeconds {
+ public:
+  /// True for the first sample and for the first one of each further second.
+  bool passed(std::int64_t time_us);
+  std::int64_t newest_us() const { return newest_us_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(started_);
+    for (std::int64_t* us : {&newest_us_, &next_us_})
+      a.within(*us, -2 * a.kMaxCount, 2 * a.kMaxCount + kSecond_us);
+    a.within(strays_, 0, kStraysToFollow);
+  }
+
+ private:
+  static constexpr std::int64_t kLargestStep_us = 10 * kSecond_us;
+  static constexpr int kStraysToFollow = 1000;  ///< in a row
+
+  bool started_ = false;
+  std::int64_t newest_us_ = 0;
+  std::int64_t next_us_ = 0;
+  int strays_ = 0;
+};
+
+/// The configured axes as the drivers know them.
+std::vector<drivers::WantedAxis> wanted_axes(const Config& config);
+/// How their messages are taken in.
+drivers::IntakeSettings intake_settings(const Config& config);
+
+/// The configuration with PipelineConfig::design_error, change_error and change_leak, predicted for
+/// the usual shaking from the tolerances of masses and stories; unchanged where every story is
+/// identified. Up to seconds for a tall building that bends.
+estimator::PipelineConfig with_design_error(estimator::PipelineConfig config);
+
+/// Receives what an Estimation takes in and finds, beside the messages that it publishes. Override
+/// what you need; arguments are valid during the call.
+class EstimationListener {
+ public:
+  virtual ~EstimationListener() = default;
+
+  /// A sample, before the pipeline takes it.
+  virtual void on_sample(const estimator::AccelSample& /*sample*/) {}
+  virtual void on_temperature(const temperature_t& /*temperature*/) {}
+  /// A calibrated instant.
+  virtual void on_instant(const estimator::SampleSet& /*instant*/) {}
+  /// An estimate of the main window, before it is published.
+  virtual void on_estimate(const estimator::WindowEstimate& /*estimate*/) {}
+  virtual void on_gap(const estimator::GapNews& /*news*/) {}
+  /// An event, after it was published.
+  virtual void on_event(const event_t& /*event*/) {}
+  /// The report of a strong motion that has ended.
+  virtual void on_shaken(const EventReport& /*report*/) {}
+};
+
+/// A part of an estimation's state that is read by itself (docs/formats.md).
+struct StateSection {
+  std::string name;
+  std::vector<std::uint8_t> bytes;
+};
 
 /// Messages in, messages out: intakes (LCM, CAN), pipeline, change detection, gap monitor, events
 /// and publisher. Live and replayed samples take the same path. Uses no clock.

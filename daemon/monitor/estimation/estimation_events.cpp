@@ -9,8 +9,7 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/gap_model.h"
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/events/event_words.h"
-#include "daemon/monitor/events/recovery_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {

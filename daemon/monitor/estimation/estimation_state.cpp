@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "daemon/monitor/estimation/design_error.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/estimation_events.h"
 

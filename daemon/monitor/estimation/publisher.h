@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -14,10 +15,20 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
-#include "daemon/monitor/estimation/message_sink.h"
 #include "estimator/gap/gap_alarm.h"
 
 namespace framewatch::daemon {
+
+/// Where encoded messages go: LCM or a log. `time_us` is sensor time.
+using MessageSink = std::function<void(std::int64_t time_us, const std::string& channel,
+                                       const std::vector<std::uint8_t>& bytes)>;
+
+/// The LCM channels of the estimates, by WindowEstimate::window: the main window, the other windows
+/// and, if it is configured, the long one.
+std::vector<std::string> estimate_channels(const Config& config);
+
+/// Behind the name of a channel: its estimates that come after their time (WindowEstimate::late).
+inline constexpr const char* kLate = "_LATE";
 
 /// Counters of a live process; all zero in replay, so that its output is reproducible.
 struct LiveState {

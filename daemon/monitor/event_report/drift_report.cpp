@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "daemon/monitor/event_report/drift_words.h"
+#include "daemon/base/html_page.h"
+#include "daemon/base/json_values.h"
+#include "daemon/monitor/event_report/report_words.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -128,6 +132,62 @@ std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
   return out;
 }
 
+std::string part(double error, const estimator::StoryDrift& drift) {
+  return std::isfinite(error) && drift.ratio > 0 ? fmt::format("{:.1f}", 100 * error / drift.ratio)
+                                                 : "-";
+}
+
+/// Short: "35 %", "< 1 %".
+std::string in_table(double probability) {
+  if (!std::isfinite(probability)) return "-";
+  return probability < 0.01   ? "&lt; 1 %"
+         : probability > 0.99 ? "&gt; 99 %"
+                              : fmt::format("{:.0f} %", 100 * probability);
+}
+
+constexpr const char* kStates[] = {"slight", "moderate", "extensive", "complete"};
+
+Json story_json(const DriftReport& r, std::size_t i, const Config& config) {
+  const estimator::StoryDrift& d = r.drifts[i];
+  Json out{{"story", d.story},
+           {"peak_drift_ratio", json_value(d.ratio)},
+           {"drift_is", d.measured ? "measured" : "computed"},
+           {"std_error_ratio", json_value(d.std_error)},
+           {"error_parts_ratio",
+            {{"noise", json_value(d.noise_error)},
+             {"corner", json_value(d.slow_error)},
+             {"model", json_value(d.known() ? d.model_error : estimator::kNaN)}}},
+           {"restored_ratio", json_value(d.slow_ratio)},
+           {"frame", d.known() ? Json(config.pipeline.structure.frame_name(d.frame)) : Json()},
+           {"gap_at_peak", d.gap_at_peak()}};
+  if (!r.placard) return out;
+  for (std::size_t state = 0; state < estimator::kDamageStates; ++state)
+    out["probability_or_worse"][kStates[state]] = json_value(r.damage[i][state]);
+  return out;
+}
+
+const char* placard_word(estimator::Placard placard) {
+  constexpr const char* kWords[] = {"inspected", "restricted_use", "unsafe"};
+  return kWords[static_cast<std::size_t>(placard)];
+}
+
+const char* reason_word(estimator::PlacardReason reason) {
+  constexpr const char* kWords[] = {"damage", "no_damage", "drift_unknown", "gap_at_peak",
+                                    "error_unknown"};
+  return kWords[static_cast<std::size_t>(reason)];
+}
+
+Json fragility_json(const FragilitySettings& f) {
+  Json out{{"source", f.source},
+           {"type", f.type.empty() ? Json() : Json(f.type)},
+           {"restricted_probability", f.rules.restricted},
+           {"unsafe_probability", f.rules.unsafe},
+           {"stories", Json::array()}};
+  for (const estimator::Fragility& one : f.by_story)
+    out["stories"].push_back({{"median_drift_ratio", one.median}, {"dispersion", one.dispersion}});
+  return out;
+}
+
 }  // namespace
 
 DriftReport drift_report(const Config& config, const estimator::PipelineConfig& pipeline,
@@ -151,6 +211,88 @@ DriftReport drift_report(const Config& config, const estimator::PipelineConfig& 
                              capitalised(loss), out.reason);
   }
   return out;
+}
+
+std::string placard_section(const DriftReport& r) {
+  if (!r.placard) return "";
+  return "<p class=\"verdict\">Placard: " + html_text(placard_words(*r.placard)) + ". " +
+         html_text(r.reason) + "</p>\n<p>" + placard_caution() + "</p>\n";
+}
+
+std::string drift_table_section(const DriftReport& r, const Config& config) {
+  const estimator::Structure& s = config.pipeline.structure;
+  std::vector<std::string> head{"",
+                                "peak drift, % of the height",
+                                "mm",
+                                "frame",
+                                "that drift is",
+                                "noise, %",
+                                "corner, %",
+                                "model, %"};
+  if (r.placard)
+    for (const char* state : {"slight", "moderate", "extensive", "complete"})
+      head.push_back(state + std::string(" or worse"));
+  if (r.placard) head.back() = "complete";
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = r.drifts.size(); i-- > 0;) {
+    const estimator::StoryDrift& d = r.drifts[i];
+    std::vector<std::string> row{fmt::format("story {}", d.story), drift_with_error(d)};
+    if (d.known()) {
+      row.push_back(fmt::format("{:.2f}", 1e3 * d.ratio * s.story_height[i]));
+      row.push_back(html_text(s.frame_name(d.frame)));
+    } else {
+      row.insert(row.end(), {"-", "-"});
+    }
+    row.push_back(std::string(d.measured ? "measured" : "computed") +
+                  (d.known() && d.gap_at_peak() ? "; gap" : ""));
+    row.insert(row.end(), {part(d.noise_error, d), part(d.slow_error, d),
+                           d.measured ? "-" : part(d.model_error, d)});
+    if (r.placard)
+      for (const double p : r.damage[i]) row.push_back(in_table(p));
+    rows.push_back(std::move(row));
+  }
+  std::string out = "<h2>Drift and damage of every story</h2>\n" + html_table(head, rows) +
+                    "<p>± is one standard error; its parts, in % of the drift: the sensors' noise, "
+                    "what the integration's corner removes, the model of floors without "
+                    "channels.</p>\n";
+  if (r.placard)
+    out += fmt::format(
+        "<p>Probabilities by {}. Restricted use from {:.0f} % for moderate damage, unsafe from "
+        "{:.0f} % for extensive damage, of any story.</p>\n",
+        html_text(config.fragility->source), 100 * config.fragility->rules.restricted,
+        100 * config.fragility->rules.unsafe);
+  else
+    out += "<p>" + html_text(r.reason) + "</p>\n";
+  out += "<ul>\n";
+  for (const std::string& remark : r.remarks) out += "<li>" + html_text(remark) + "</li>\n";
+  return out + "</ul>\n";
+}
+
+void add_drifts(const DriftReport& r, const Config& config, nlohmann::ordered_json& to) {
+  to["stories"] = Json::array();
+  for (std::size_t i = 0; i < r.drifts.size(); ++i)
+    to["stories"].push_back(story_json(r, i, config));
+  to["placard"] = nullptr;
+  if (r.placard)
+    to["placard"] = {{"placard", placard_word(r.placard->placard)},
+                     {"words", placard_words(*r.placard)},
+                     {"because", reason_word(r.placard->reason)},
+                     {"reason", r.reason},
+                     {"story", r.placard->story},
+                     {"stories_not_judged", r.placard->not_judged},
+                     {"caution", placard_caution()}};
+  to["fragility"] = config.fragility ? fragility_json(*config.fragility) : Json();
+  if (!r.placard) to["no_placard"] = r.reason;
+  to["drift_remarks"] = r.remarks;
+}
+
+std::string drifts_json(const DriftReport& r, const Config& config) {
+  Json out{{"schema", "framewatch.drifts/1"},
+           {"building", config.pipeline.structure.name},
+           {"config_sha256", config.sha256},
+           {"version", FRAMEWATCH_VERSION}};
+  add_drifts(r, config, out);
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace framewatch::daemon

@@ -5,8 +5,8 @@
 #include "daemon/base/json_values.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/event_report/event_report.h"
-#include "daemon/monitor/event_report/unheard_words.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/event_report/report_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {

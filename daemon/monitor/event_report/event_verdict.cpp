@@ -4,12 +4,10 @@
 #include <fmt/core.h>
 
 #include "daemon/base/utc_time.h"
-#include "daemon/monitor/event_report/drift_words.h"
 #include "daemon/monitor/event_report/event_report.h"
-#include "daemon/monitor/event_report/unheard_words.h"
+#include "daemon/monitor/event_report/report_words.h"
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/events/event_words.h"
-#include "daemon/monitor/events/place_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {

@@ -3,8 +3,17 @@
 #include <string>
 
 #include "estimator/structure/parameter_table.h"
+#include "estimator/watch/recovery.h"
 
 namespace framewatch::daemon {
+
+/// Where the parameter of a name (estimator::Parameter) is: "story 1, frame y2", "floor 2, panel
+/// x1y1", "stories 6 to 12, along x", "stories 6 to 12, frame y1", "frames along x".
+std::string place_words(const std::string& parameter);
+
+/// What it is of: "frame y2 of story 1", "floor panel x1y1 of floor 2", "stories 6 to 12 along x",
+/// "frame y1 of stories 6 to 12", "bending of frames along x".
+std::string element_words(const std::string& parameter);
 
 /// "0.83 %", "15 %": with as many digits as an error of that size deserves.
 std::string percent_words(double ratio, double std_error);
@@ -31,5 +40,13 @@ inline constexpr const char* kWholeBuilding = "building";
 double loss_of_one_story(const estimator::Parameter& parameter, double loss);
 /// The other way round: what the group loses with one story.
 double loss_of_group(const estimator::Parameter& parameter, double loss_of_story);
+
+/// Stands before recovery_words() in the message of an event.
+inline const std::string kAfterStrongMotion = "; after strong motion: ";
+
+/// What a recovery law says, to follow the name of the element: "lost 9 % at the earthquake, 6 %
+/// after 1 hour, recovering: 4 % (+-1 %) expected after 1 day"; "..., lasting: full recovery is
+/// excluded, at least 6 % stays".
+std::string recovery_words(const estimator::RecoveryLaw& law);
 
 }  // namespace framewatch::daemon

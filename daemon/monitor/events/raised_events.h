@@ -7,7 +7,7 @@
 
 #include <framewatch/event_t.hpp>
 
-#include "daemon/monitor/events/acknowledgement.h"
+#include "daemon/monitor/events/event_messages.h"
 
 namespace framewatch::daemon {
 

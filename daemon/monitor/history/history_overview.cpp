@@ -11,7 +11,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/utc_time.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_files.h"
 
 namespace framewatch::daemon {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "daemon/monitor/history/history_command.h"
 #include "drivers/lcm/accel_messages.h"
 #include "drivers/lcm/lcm_log.h"
 
@@ -47,5 +48,10 @@ std::unique_ptr<RawExport> raw_export(const std::string& path,
 
 /// The rule that the name of an export breaks; empty when it is valid.
 std::string problem_of_raw_name(const std::string& path);
+
+/// Writes the requested raw samples to the file HistoryArguments::raw and prints notes about it.
+/// With a problem there is no file.
+void export_raw_history(const HistoryArguments& arguments, const HistoryRequest& request,
+                        std::vector<std::string>& problems);
 
 }  // namespace framewatch::daemon

@@ -1,7 +1,13 @@
 #include "daemon/monitor/history/summary_store.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "daemon/base/clocks.h"
@@ -35,6 +41,23 @@ constexpr const char* kPutSummary =
     " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 
 }  // namespace
+
+HistoryLock::~HistoryLock() {
+  if (file_ >= 0) ::close(file_);
+}
+
+std::string HistoryLock::take(const std::string& directory) {
+  if (file_ >= 0) return {};
+  const int file = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return std::strerror(errno);
+  if (::flock(file, LOCK_EX | LOCK_NB) == 0) {
+    file_ = file;
+    return {};
+  }
+  const int why = errno;
+  ::close(file);
+  return why == EWOULDBLOCK ? "another program writes this history" : std::strerror(why);
+}
 
 std::string SummaryStore::open() {
   std::error_code none;

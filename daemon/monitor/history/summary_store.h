@@ -14,9 +14,24 @@
 #include "daemon/base/sqlite_file.h"
 #include "daemon/config/keys/history_options.h"
 #include "daemon/monitor/estimates/summary_intake.h"
-#include "daemon/monitor/history/history_lock.h"
 
 namespace framewatch::daemon {
+
+/// A lock, because two programs that write summaries would count every window twice. The kernel
+/// releases it when the program ends, even by a crash.
+class HistoryLock {
+ public:
+  HistoryLock() = default;
+  ~HistoryLock();
+  HistoryLock(const HistoryLock&) = delete;
+  HistoryLock& operator=(const HistoryLock&) = delete;
+
+  /// Takes the lock and keeps it. Returns an empty string, or the reason of a failure.
+  std::string take(const std::string& directory);
+
+ private:
+  int file_ = -1;
+};
 
 /// The database of a history as it is written: summaries of the configured periods, channels,
 /// events. Repeated messages count once: windows that ended before

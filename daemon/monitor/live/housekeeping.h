@@ -6,11 +6,9 @@
 
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/baseline_keeper.h"
-#include "daemon/monitor/estimation/gap_keeper.h"
+#include "daemon/monitor/estimation/gap_files.h"
 #include "daemon/monitor/events/raised_events.h"
-#include "daemon/monitor/live/can_monitor.h"
-#include "daemon/monitor/live/can_warnings.h"
-#include "daemon/monitor/live/intake_warnings.h"
+#include "daemon/monitor/live/intake_monitor.h"
 #include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/live/reloader.h"
 #include "daemon/monitor/live/service_report.h"
@@ -31,7 +29,7 @@ class Housekeeping {
                int state_every_s, const StartCount& starts, bool resumed);
 
   /// To be called several times a second. raised: every event of this process that is raised.
-  void look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
+  void update(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
             const std::vector<RaisedEvents*>& raised);
   /// Reads the configuration anew. Whether it was accepted: then live.config() is a new one.
   bool reload(LiveEstimation& live, ServiceManager& manager);

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "daemon/base/clocks.h"
-#include "daemon/monitor/live/heard_channels.h"
+#include "daemon/monitor/live/live_intake.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,15 +15,58 @@
 #include "daemon/config/keys/option_table.h"
 #include "daemon/config/sections/settings.h"
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/estimation/gap_segments.h"
+#include "daemon/monitor/estimation/gap_files.h"
 #include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/monitor/history/history.h"
 #include "daemon/monitor/live/live_intake.h"
-#include "daemon/monitor/live/live_times.h"
 #include "daemon/monitor/live/raw_backlog.h"
 #include "drivers/can/can_log.h"
 
 namespace framewatch::daemon {
+
+/// A histogram of durations.
+class DurationCounts {
+ public:
+  /// Upper limits, s.
+  static constexpr std::array kLimit_s = {1e-5,
+                                          2.5e-5,
+                                          5e-5,
+                                          1e-4,
+                                          2.5e-4,
+                                          5e-4,
+                                          1e-3,
+                                          2.5e-3,
+                                          5e-3,
+                                          1e-2,
+                                          2.5e-2,
+                                          5e-2,
+                                          1e-1,
+                                          2.5e-1,
+                                          5e-1,
+                                          1.0,
+                                          std::numeric_limits<double>::infinity()};
+
+  void add(double seconds) {
+    const auto limit = std::lower_bound(kLimit_s.begin(), kLimit_s.end() - 1, seconds);
+    ++counts_[static_cast<std::size_t>(limit - kLimit_s.begin())];
+    sum_s_ += seconds;
+  }
+  const std::array<std::int64_t, kLimit_s.size()>& counts() const { return counts_; }
+  double sum_s() const { return sum_s_; }
+
+ private:
+  std::array<std::int64_t, kLimit_s.size()> counts_{};
+  double sum_s_ = 0;
+};
+
+/// How punctual a live process is.
+struct LiveTimes {
+  DurationCounts steps;                 ///< time spent on each message or frame
+  DurationCounts latencies;             ///< from the arrival of a sample to its estimate
+  std::int64_t deadline_missed = 0;     ///< estimates later than the hop between two
+  std::int64_t received_us = 0;         ///< host clock, of the newest sample; 0: none has come
+  std::vector<std::int64_t> newest_us;  ///< sensor time, of each axis; 0: none has come
+};
 
 /// Live estimation: takes samples from one LCM instance and from CAN buses, publishes estimates on
 /// LCM, and feeds the history. All work is done inside poll().

@@ -19,20 +19,97 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
+#include "daemon/monitor/actions/acknowledge.h"
+#include "daemon/monitor/actions/action_report.h"
 #include "daemon/monitor/estimation/state_file.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_report.h"
-#include "daemon/monitor/live/heard_channels.h"
 #include "daemon/monitor/live/housekeeping.h"
-#include "daemon/monitor/live/live_events.h"
+#include "daemon/monitor/live/live_estimation.h"
+#include "daemon/monitor/live/live_intake.h"
 #include "daemon/monitor/live/raw_backlog.h"
+#include "daemon/monitor/service/command_socket.h"
 #include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/monitor/service/start_count.h"
 #include "drivers/files/cut_off_file.h"
+#include "drivers/files/encoded.h"
 #include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {
 namespace {
+
+/// What `framewatch run` does with events: hands those of the estimation and of the history to the
+/// command and the webhook of [actions], and acknowledges them on request.
+class LiveEvents {
+ public:
+  /// All must outlive this.
+  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history);
+  LiveEvents(const LiveEvents&) = delete;
+  LiveEvents& operator=(const LiveEvents&) = delete;
+
+  /// Handles new events and requests. Call it several times a second.
+  void poll();
+  /// Goes on with another configuration, of which [actions] may differ.
+  void reconfigure(const Config& config) { actions_.reconfigure(config); }
+
+  /// Returns the raised events of the estimation and of the history.
+  AcknowledgeDesk::Raised raised() { return {&live_.estimation().raised(), &history_.raised()}; }
+
+ private:
+  void acknowledged(const event_t& event, const Acknowledgement& by);
+  CommandPacket obey(const CommandPacket& command, const std::string& user);
+
+  const Config& config_;
+  LiveEstimation& live_;
+  HistoryReport& history_;
+  ActionReport actions_;
+  AcknowledgeDesk desk_;
+  CommandSocket commands_;
+};
+
+LiveEvents::LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live,
+                       HistoryReport& history)
+    : config_(config),
+      live_(live),
+      history_(history),
+      actions_(config, lcm),
+      desk_(config, lcm,
+            [this](const event_t& event, const Acknowledgement& by) { acknowledged(event, by); }),
+      commands_(config, "run", [this](const CommandPacket& command, const std::string& user) {
+        return obey(command, user);
+      }) {
+  actions_.raised_before(live_.estimation().raised());
+}
+
+void LiveEvents::acknowledged(const event_t& event, const Acknowledgement& by) {
+  actions_.acknowledged(event);
+  if (history_.history() != nullptr)
+    history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED",
+                                drivers::encoded(acknowledged_message(event, by)));
+}
+
+CommandPacket LiveEvents::obey(const CommandPacket& command, const std::string& user) {
+  if (command.channel != "ACKNOWLEDGE") return refused("framewatch run acknowledges, nothing else");
+  const auto answer = desk_.obey(command.bytes, user, raised(), host_clock_us());
+  if (!answer) return refused("the request is not understood: another version?");
+  return {"ACKNOWLEDGED", drivers::encoded(*answer)};
+}
+
+void LiveEvents::poll() {
+  for (const event_t& event : live_.take_events()) {
+    log(event.severity >= severity::warning ? LogLevel::warning : LogLevel::notice,
+        fmt::format("{} {}: {}", event.kind, event.place, event.message));
+    actions_.event(event, live_.estimation().raised().acknowledgement(event.id) != nullptr);
+  }
+  for (const std::vector<std::uint8_t>& request : live_.take_requests())
+    desk_.heard(request, host_clock_us());
+  for (const event_t& event : history_.update(host_clock_us()))
+    actions_.event(event, history_.raised().acknowledgement(event.id) != nullptr);
+  commands_.poll(steady_clock_us());
+  desk_.update(raised(), host_clock_us());
+  actions_.update(host_clock_us());
+}
 
 constexpr int kPoll_ms = 100;
 
@@ -159,7 +236,7 @@ int run(const RunArguments& a) {
                can_log.error().empty() ? "LCM failed to deliver" : "CAN log: " + can_log.error());
       ::usleep(1000 * kPoll_ms);
     }
-    housekeeping.look(live, *lcm, manager, events.raised());
+    housekeeping.update(live, *lcm, manager, events.raised());
     events.poll();
     if (reload_requested() && housekeeping.reload(live, manager)) events.reconfigure(live.config());
   }

@@ -32,7 +32,7 @@ class ServiceReport {
   ServiceReport(const StartCount& starts, bool resumed);
   /// The report; empty when less than a second has passed since the last one. raised: every event
   /// of this process that is raised.
-  std::optional<service_t> look(const LiveEstimation& live,
+  std::optional<service_t> collect(const LiveEstimation& live,
                                 const std::vector<RaisedEvents*>& raised, const StateKeeper& state,
                                 const ReloadCount& reloads, std::int64_t now_us);
 

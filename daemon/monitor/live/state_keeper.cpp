@@ -29,7 +29,7 @@ StateKeeper::~StateKeeper() {
   if (writing_.valid()) writing_.wait();
 }
 
-void StateKeeper::look(const Config& config, Estimation& estimation, std::int64_t now_us) {
+void StateKeeper::update(const Config& config, Estimation& estimation, std::int64_t now_us) {
   if (path_.empty()) return;
   if (next_us_ == 0) next_us_ = now_us + every_us_;
   if (now_us < next_us_ || !written()) return;

@@ -20,7 +20,7 @@ class StateKeeper {
   StateKeeper& operator=(const StateKeeper&) = delete;
 
   /// config: of the estimation.
-  void look(const Config& config, Estimation& estimation, std::int64_t now_us);
+  void update(const Config& config, Estimation& estimation, std::int64_t now_us);
   /// Writes as soon as possible, because the stored state belongs to an old configuration.
   void soon() { next_us_ = 1; }
   /// Writes now, and waits until it is done.

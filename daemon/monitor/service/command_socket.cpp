@@ -20,7 +20,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/base/user_name.h"
-#include "daemon/monitor/service/command_path.h"
+#include "daemon/monitor/service/command_client.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -95,7 +95,7 @@ std::string CommandSocket::open() {
   return "";
 }
 
-void CommandSocket::look(std::int64_t now_us) {
+void CommandSocket::poll(std::int64_t now_us) {
   if (!problem_.empty()) listen(now_us);
   if (!problem_.empty()) return;
   accept(now_us);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "daemon/config/sections/settings.h"
-#include "daemon/monitor/service/command_packet.h"
+#include "daemon/monitor/service/command_client.h"
 #include "drivers/files/descriptor.h"
 
 namespace framewatch::daemon {
@@ -24,7 +24,7 @@ class CommandSocket {
   using Handler =
       std::function<CommandPacket(const CommandPacket& command, const std::string& user)>;
 
-  /// Listens at once; log lines say when it cannot, and look() tries again. service: "run" or
+  /// Listens at once; log lines say when it cannot, and poll() tries again. service: "run" or
   /// "record".
   CommandSocket(const Config& config, const std::string& service, Handler handler);
   ~CommandSocket();
@@ -32,7 +32,7 @@ class CommandSocket {
   CommandSocket& operator=(const CommandSocket&) = delete;
 
   /// Does what there is to do; to be called several times a second. now_us: steady clock.
-  void look(std::int64_t now_us);
+  void poll(std::int64_t now_us);
 
   /// Why nobody listens; empty: this does.
   const std::string& problem() const { return problem_; }

@@ -18,10 +18,8 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/user_name.h"
-#include "daemon/monitor/actions/acknowledge_command.h"
-#include "daemon/monitor/actions/acknowledge_desk.h"
-#include "daemon/monitor/events/acknowledge_messages.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/actions/acknowledge.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "drivers/files/encoded.h"
@@ -92,7 +90,7 @@ class Desk : public testing::Test {
     return desk_.obey(drivers::encoded(request), "alice", {&here_, &there_}, now_us);
   }
   void look(std::int64_t now_us) {
-    desk_.look({&here_, &there_}, now_us);
+    desk_.update({&here_, &there_}, now_us);
     while (lcm_.handleTimeout(50) > 0) {
     }
   }

@@ -1,6 +1,6 @@
 #include <framewatch/event_t.hpp>
 
-#include "daemon/monitor/actions/action_queue.h"
+#include "daemon/monitor/actions/notifier.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "daemon/monitor/actions/hook_command.h"
+#include "daemon/monitor/actions/receivers.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "daemon/monitor/events/event_json.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "tests/daemon/monitor/actions/example_event.h"
 #include "tests/support/child.h"
 #include "tests/support/history_fixture.h"

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/monitor/actions/webhook.h"
-#include "daemon/monitor/events/event_json.h"
+#include "daemon/monitor/actions/receivers.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "tests/daemon/monitor/actions/example_event.h"
 #include "tests/support/child.h"
 #include "tests/support/history_fixture.h"

@@ -1,4 +1,4 @@
-#include "daemon/monitor/actions/webhook.h"
+#include "daemon/monitor/actions/receivers.h"
 
 #include <cstdlib>
 #include <string>

@@ -1,6 +1,6 @@
 #include <framewatch/event_t.hpp>
 
-#include "daemon/monitor/estimation/can_events.h"
+#include "daemon/monitor/estimation/input_events.h"
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "daemon/monitor/estimation/channel_events.h"
+#include "daemon/monitor/estimation/input_events.h"
 
 #include <cmath>
 #include <string>
@@ -9,7 +9,7 @@
 #include <framewatch/accel_t.hpp>
 
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
@@ -44,7 +44,7 @@ class ChannelEventsTest : public ::testing::Test {
         events_.sample({{}, static_cast<int>(a), value});
       }
       second_ += 1;
-      for (const event_t& e : events_.look(counters_, 1'000'000 * second_)) out.push_back(e);
+      for (const event_t& e : events_.update(counters_, 1'000'000 * second_)) out.push_back(e);
     }
     return out;
   }

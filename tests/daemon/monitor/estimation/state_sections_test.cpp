@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/monitor/estimation/state_file.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/support/recorded_table_test.h"

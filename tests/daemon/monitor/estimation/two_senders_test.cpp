@@ -14,7 +14,7 @@
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/tools/replay/replay_command.h"
 #include "drivers/lcm/accel_messages.h"
 #include "drivers/lcm/lcm_log.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/config/config.h"
-#include "daemon/monitor/event_report/drift_words.h"
+#include "daemon/monitor/event_report/report_words.h"
 #include "estimator/numeric/nan.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"

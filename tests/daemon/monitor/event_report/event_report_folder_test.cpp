@@ -1,4 +1,4 @@
-#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 
 #include <filesystem>
 
@@ -16,20 +16,20 @@ std::string report(const std::string& verdict) {
 TEST(NewestEventReport, IsTheOneThatWasWrittenLast) {
   const test::TemporaryDirectory directory;
   NewestEventReport newest(directory.path(""));
-  EXPECT_FALSE(newest.look());
+  EXPECT_FALSE(newest.poll());
   test::write_file(directory.path("event-20261124T000000Z.json"), report("yellow"));
   test::write_file(directory.path("event-other.json"), report("red"));
-  ASSERT_TRUE(newest.look());
+  ASSERT_TRUE(newest.poll());
   EXPECT_EQ(newest.newest()->name, "event-20261124T000000Z");
   EXPECT_EQ(newest.newest()->color, EventColor::yellow);
   EXPECT_EQ(newest.newest()->reason, "why");
   EXPECT_EQ(newest.newest()->end_us, 9);
   test::write_file(directory.path("event-20261124T000100Z.json"), report("green"));
-  EXPECT_EQ(newest.look()->color, EventColor::green);
+  EXPECT_EQ(newest.poll()->color, EventColor::green);
   for (const char* name : {"event-20261124T000000Z.json", "event-20261124T000100Z.json"})
     std::filesystem::remove(directory.path(name));
-  EXPECT_FALSE(newest.look());
-  EXPECT_FALSE(NewestEventReport("").look());
+  EXPECT_FALSE(newest.poll());
+  EXPECT_FALSE(NewestEventReport("").poll());
 }
 
 TEST(NewestEventReport, WhatIsNoReportIsNone) {

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/monitor/history/history_files.h"
 #include "tests/support/child.h"
 #include "tests/support/history_fixture.h"

@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/state_file.h"
-#include "daemon/monitor/estimation/wanted_axes.h"
-#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/monitor/history/history.h"
 #include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/live/raw_backlog.h"

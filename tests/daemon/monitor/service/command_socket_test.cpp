@@ -24,7 +24,6 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/user_name.h"
 #include "daemon/monitor/service/command_client.h"
-#include "daemon/monitor/service/command_path.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/temporary.h"
 
@@ -60,7 +59,7 @@ class Commands : public testing::Test {
     loop_ = std::thread([this, &socket] {
       while (!stopping_) {
         const std::int64_t began_us = steady_clock_us();
-        socket.look(began_us + ahead_us_);
+        socket.poll(began_us + ahead_us_);
         longest_us_ = std::max<std::int64_t>(longest_us_, steady_clock_us() - began_us);
         std::this_thread::sleep_for(5ms);
       }
@@ -131,7 +130,7 @@ TEST_F(Commands, AnotherUserIsNamed) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(::setuid(kNobody) != 0 ? 77 : ask("YES").answered ? 0 : 1);
   int status = 0;
-  while (::waitpid(child, &status, WNOHANG) == 0) socket->look(steady_clock_us());
+  while (::waitpid(child, &status, WNOHANG) == 0) socket->poll(steady_clock_us());
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "there is no other user in this namespace";
   EXPECT_EQ(WEXITSTATUS(status), 0);
   EXPECT_EQ(user_, user_name(kNobody));
@@ -193,7 +192,7 @@ TEST_F(Commands, ADeadProcessSocketIsReplacedALivingOnesIsNot) {
   serve(*first);
   EXPECT_TRUE(ask("YES").answered);
   stop();
-  second->look(steady_clock_us() + 60 * kSecond_us);
+  second->poll(steady_clock_us() + 60 * kSecond_us);
   EXPECT_NE(second->problem(), "");
   first.reset();
   ahead_us_ = 120 * kSecond_us;  // it tries again

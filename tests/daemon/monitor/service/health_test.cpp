@@ -16,7 +16,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
-#include "daemon/monitor/service/unit_state.h"
+#include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/findings/status_command.h"
 #include "daemon/tools/commands/selftest_command.h"
 #include "drivers/lcm/lcm_source.h"

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <future>
+#include <string>
+#include <vector>
+
+#include "daemon/base/once_a_second.h"
+#include "daemon/config/config.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "estimator/motion/sample.h"
+
+namespace framewatch::daemon {
+
+/// Notices that the file of [gap] model was created or exchanged while the program runs, and gives
+/// it to the gap monitor. A file that does not fit the building is reported once and ignored.
+class GapKeeper {
+ public:
+  explicit GapKeeper(const Config& config);
+  /// Continues with another configuration; only its [gap] may differ.
+  void reconfigure(const Config& config) { config_ = &config; }
+  /// Looks once a second; now_us: host clock.
+  void poll(Estimation& estimation, std::int64_t now_us);
+
+ private:
+  const Config* config_;
+  OnceASecond second_;
+  std::filesystem::file_time_type seen_{};
+};
+
+/// Keeps the newest raw samples in memory and, when a gap is raised, writes those around it as an
+/// LCM event log. A thread writes PATH.partial and renames it, so that a slow disk delays no
+/// estimate. Bounded by GapSettings::before_s and after_s.
+class GapSegments {
+ public:
+  explicit GapSegments(const Config& config);
+  /// Writes the segment of a gap whose samples are not yet complete.
+  ~GapSegments();
+  GapSegments(const GapSegments&) = delete;
+  GapSegments& operator=(const GapSegments&) = delete;
+
+  void sample(const estimator::AccelSample& sample);
+  void raised(std::int64_t gap_id);
+
+ private:
+  void write();
+  void finish_writing();
+
+  const Config& config_;
+  std::vector<estimator::AccelSample> ring_;
+  std::size_t next_ = 0, held_ = 0;
+  std::int64_t newest_us_ = INT64_MIN;
+  std::int64_t waiting_ = 0;  ///< gap whose samples are still coming; 0: none
+  std::int64_t raised_us_ = 0;
+  std::future<void> writing_;
+};
+
+}  // namespace framewatch::daemon

@@ -1,0 +1,161 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <framewatch/event_t.hpp>
+
+#include "daemon/config/config.h"
+#include "daemon/monitor/events/raised_events.h"
+#include "drivers/can/can_map.h"
+#include "drivers/can/can_notice.h"
+#include "drivers/lcm/intake_notice.h"
+#include "estimator/motion/sample.h"
+#include "estimator/motion/sample_merger.h"
+#include "estimator/structure/sensors.h"
+
+namespace framewatch::daemon {
+
+/// Says which channels send values that no sensor can have measured (AxisCounters::absurd): an
+/// event for each, raised with the first one and cleared when none has come for kQuiet_s. The id
+/// depends on the channel alone and is larger than the ids of alarms and of CAN events.
+class AbsurdEvents {
+ public:
+  static constexpr std::int64_t kQuiet_s = 600;
+
+  /// `axes` must outlive this.
+  explicit AbsurdEvents(const std::vector<estimator::SensorAxis>& axes);
+
+  /// counters: by axis; time_us: sensor time. What is raised or cleared since the last call.
+  std::vector<event_t> update(const std::vector<estimator::AxisCounters>& counters,
+                            std::int64_t time_us);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(channels_);
+  }
+
+ private:
+  struct Channel {
+    std::int64_t seen = 0, before = 0;  ///< absurd samples: so far, and when it was raised
+    std::int64_t since_us = 0, newest_us = 0;
+    bool raised = false;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      for (std::int64_t* count : {&seen, &before}) a.within(*count, 0, a.kMaxCount);
+      for (std::int64_t* us : {&since_us, &newest_us})
+        a.within(*us, -2 * a.kMaxCount, 2 * a.kMaxCount);
+      a(raised);
+    }
+  };
+  event_t event_of(std::size_t axis, std::int64_t time_us) const;
+
+  const std::vector<estimator::SensorAxis>& axes_;
+  std::vector<Channel> channels_;
+};
+
+/// Turns CAN notices into events: bus_off and interface_gone of buses, emergency, boot_up,
+/// sequence_leap, duplicates and losses of nodes. The id depends on kind and place alone and is
+/// larger than the ids of alarms.
+class CanEvents {
+ public:
+  /// `map` must outlive this.
+  explicit CanEvents(const drivers::CanMap& map);
+
+  /// Empty when nothing changed: the state has already begun, or ends without a beginning.
+  std::optional<event_t> of(const drivers::CanNotice& notice);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(begun_);
+  }
+
+ private:
+  struct Begun {
+    std::int64_t since_us = 0;
+    bool on = false;
+    int code = 0;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a(since_us, on, code);
+    }
+  };
+
+  const drivers::CanMap& map_;
+  std::vector<Begun> begun_;  ///< by kind, then by bus or node
+};
+
+/// Says which channels have died: "channel_silent", no sample for kSilent_s (and the time that late
+/// samples are waited for) while others send; "channel_stuck", most of its samples of kStuck_s were
+/// left out because they did not change while the building moved. Cleared when samples come again,
+/// or change again for kMoving_s. The id depends on kind and channel alone, and is larger than the
+/// ids of all other events.
+class ChannelEvents {
+ public:
+  static constexpr int kSilent_s = 5, kStuck_s = 2, kMoving_s = 3;
+
+  /// `axes` must outlive this. lateness_s: of the estimator's options.
+  ChannelEvents(const std::vector<estimator::SensorAxis>& axes, double lateness_s);
+
+  /// Every sample, as it comes.
+  void sample(const estimator::AccelSample& sample);
+  /// To be called once a second of sensor time. counters: by axis. What is raised or cleared since
+  /// the last call.
+  std::vector<event_t> update(const std::vector<estimator::AxisCounters>& counters,
+                            std::int64_t time_us);
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(channels_);
+  }
+
+ private:
+  /// Of one kind of trouble.
+  struct Trouble {
+    int seconds = 0;  ///< that speak for it; while it is raised, against it
+    bool raised = false;
+    std::int64_t since_us = 0;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      a.within(seconds, 0, a.kMaxCount);
+      a(raised);
+      a.within(since_us, -2 * a.kMaxCount, 2 * a.kMaxCount);
+    }
+  };
+  struct Channel {
+    std::int64_t received = 0, stuck = 0;  ///< as of the last look
+    std::int64_t heard_us = 0;             ///< last look at which samples had come
+    double value = 0;
+    bool changed = false;  ///< its value, since the last look
+    Trouble silent, still;
+
+    template <typename Archive>
+    void archive(Archive& a) {
+      for (std::int64_t* count : {&received, &stuck}) a.within(*count, 0, a.kMaxCount);
+      a.within(heard_us, -2 * a.kMaxCount, 2 * a.kMaxCount);
+      a(value, changed, silent, still);
+    }
+  };
+  /// Whether it is raised or cleared now.
+  static bool turns(Trouble& trouble, bool speaks_for, bool speaks_against, int raise_s,
+                    int clear_s);
+  event_t event_of(std::size_t axis, const Trouble& trouble, bool silent,
+                   std::int64_t time_us) const;
+
+  const std::vector<estimator::SensorAxis>& axes_;
+  int silent_s_;
+  std::vector<Channel> channels_;
+};
+
+/// Trouble with a node's messages as an event: two_senders, sequence_leap, duplicates, losses, and
+/// channel_table for a table that contradicts the configuration. The place is the channel, of a
+/// node the first one it carries; the id depends on kind and place alone, and is larger than the
+/// ids of alarms and of CAN. Empty when it is over and not among the `raised`.
+std::optional<event_t> intake_event(const drivers::IntakeNotice& notice, const Config& config,
+                                    const RaisedEvents& raised, std::int64_t now_us);
+
+}  // namespace framewatch::daemon
