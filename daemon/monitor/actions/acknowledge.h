@@ -16,6 +16,10 @@
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/service/service_manager.h"
 
+namespace lcm {
+class LCM;
+}
+
 namespace framewatch::daemon {
 
 /// Acknowledges events as requests (acknowledge_t) ask it to, and publishes what is acknowledged

@@ -32,7 +32,7 @@ std::string cell(double value) {
   return std::isfinite(value) ? "," + drivers::format_number(value) : ",";
 }
 
-/// The names of the parameters of a log, which must not change in it.
+/// Returns the names of the parameters of a log. Fails if they change within the log.
 std::optional<std::vector<std::string>> parameter_names(const std::string& log,
                                                         std::vector<Problem>& problems) {
   std::optional<std::vector<std::string>> names;
@@ -108,7 +108,7 @@ class LogOutput : public EstimateOutput {
   drivers::LcmLogWriter writer_;
 };
 
-/// The main window's estimates as rows of a table.
+/// Writes the main window's estimates as rows of a table.
 template <typename Writer>
 class TableOutput : public EstimateOutput {
  public:
@@ -231,7 +231,7 @@ bool EstimatesMatWriter::open(const std::string& path, const std::vector<std::st
   if (boxplot)
     for (const char* name : {"q1", "median", "q3", "whisker_low", "whisker_high", "outliers"})
       columns_.push_back({name, {}});
-  // So that a folder that is not there is told before the work.
+  // Opening the file first reports a missing folder before the work begins.
   if (out_.open(path)) return true;
   error_ = out_.error();
   return false;

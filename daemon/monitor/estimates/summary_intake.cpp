@@ -14,7 +14,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kStatusIsEarly_us = 2'000'000;  // windows come after their last sample
+constexpr std::int64_t kStatusIsEarly_us = 2'000'000;  // a window comes after its last sample
 constexpr double kBoxesPerWindow = 10;
 constexpr std::size_t kMaxTaken = 4096;
 
@@ -98,7 +98,7 @@ void PeriodCollector::add_values(const window_estimate_t& e, PeriodData& to) {
 
 void PeriodCollector::add(const status_t& s) {
   const status_t before = std::exchange(status_, s);
-  if (before.name != s.name) return;  // the first: there is nothing to compare with
+  if (before.name != s.name) return;  // the first status: nothing to compare with
   if (empty()) data_.start_us = slot(s.time_us);
   data_.channels.resize(s.name.size());
   const auto now = counts_of(s), then = counts_of(before);

@@ -43,7 +43,7 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
   }
 }
 
-/// "story 2", "stories 1 to 6", "stories 1, 3, 5 and 4 more"; ascending.
+/// Returns "story 2", "stories 1 to 6" or "stories 1, 3, 5 and 4 more". `stories` is ascending.
 std::string stories_words(const std::vector<int>& stories) {
   constexpr std::size_t kMaxNamed = 8;
   if (stories.size() == 1) return fmt::format("story {}", stories.front());
@@ -57,7 +57,7 @@ std::string stories_words(const std::vector<int>& stories) {
   return out;
 }
 
-/// Why the first of the stories that are not judged could not be.
+/// Returns why the first of the `stories`, which are not judged, could not be judged.
 std::string why_not(const std::vector<int>& stories, const std::vector<StoryDrift>& drifts) {
   const StoryDrift& first = drifts[static_cast<std::size_t>(stories.front() - 1)];
   return open_reason(!first.known()        ? PlacardReason::drift_unknown
@@ -84,7 +84,7 @@ std::string reason_words(const PlacardChoice& choice, const std::vector<StoryDri
   return out + ".";
 }
 
-/// One sentence for every thing that a reader of drifts must know.
+/// Returns one sentence for each point that a reader of drifts must know.
 std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
                                     const estimator::PipelineConfig& c,
                                     const estimator::DriftKnowledge& known) {
@@ -137,7 +137,7 @@ std::string part(double error, const estimator::StoryDrift& drift) {
                                                  : "-";
 }
 
-/// Short: "35 %", "< 1 %".
+/// Returns a probability for a table cell: "35 %", "&lt; 1 %".
 std::string in_table(double probability) {
   if (!std::isfinite(probability)) return "-";
   return probability < 0.01   ? "&lt; 1 %"

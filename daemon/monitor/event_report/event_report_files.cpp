@@ -40,7 +40,7 @@ void remove_oldest(const std::string& directory, std::size_t most) {
     }
 }
 
-/// Two reports that end at the same time are written one after the other.
+/// Two reports that end at the same time must be written one after the other.
 std::mutex& one_at_a_time() {
   static std::mutex mutex;
   return mutex;

@@ -31,7 +31,7 @@ const char* before_word(estimator::BeforeFrom from) {
   return "none";
 }
 
-/// Times of which no sample is known; peaks are those of the rest.
+/// Returns the times without samples. The peaks of the report are those of the remaining time.
 Json unheard_json(const estimator::Shaking& shaking) {
   const std::vector<std::string> sentences = unheard_sentences(shaking);
   Json out = Json::array();

@@ -18,7 +18,7 @@ double seconds_of(const estimator::Unheard& u) {
   return 1e-6 * static_cast<double>(to_microseconds(u.to) - to_microseconds(u.from));
 }
 
-/// "28 s", "1.4 s", "2 h 5 min".
+/// Returns "28 s", "1.4 s", "2 h 5 min".
 std::string length_words(double seconds) {
   if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
   const long whole = std::lround(seconds);
@@ -122,7 +122,7 @@ const char* placard_caution() {
 std::string drift_with_error(const estimator::StoryDrift& drift) {
   if (!drift.known()) return "not known";
   if (!std::isfinite(drift.std_error)) return drift_words(drift.ratio) + " or more";
-  // Two digits of the error at most, of the value no more than that.
+  // At most two digits of the error, and no more of the value.
   const double percent = 100 * drift.std_error;
   const int digits =
       percent > 0 ? std::clamp(1 - static_cast<int>(std::floor(std::log10(percent))), 0, 6) : 3;

@@ -10,8 +10,8 @@ namespace {
 
 struct PlaceOfName {
   char quantity = 'k', direction = 'x';
-  std::string stories;  ///< "story 1", "stories 6 to 12", "floor 2"; empty: of the building
-  std::string where;    ///< frames or panel; empty: all of a direction
+  std::string stories;  ///< "story 1", "stories 6 to 12", "floor 2"; empty: the whole building
+  std::string where;    ///< frames or panel; empty: all frames of a direction
 };
 
 PlaceOfName place_of(const std::string& name) {
@@ -35,7 +35,7 @@ const char* frame_word(const PlaceOfName& place) {
   return place.where.find('+') == std::string::npos ? "frame" : "frames";
 }
 
-/// "Up to" is so many standard errors more.
+/// "Up to" adds this many standard errors.
 constexpr double kUpTo = 2;
 
 std::string sure_words(double errors) {
@@ -45,7 +45,7 @@ std::string sure_words(double errors) {
 
 using estimator::RecoveryReason, estimator::RecoveryVerdict;
 
-/// "40 s", "10 minutes", "1 hour", "3 days": rounded to the unit.
+/// Returns a duration rounded to its unit: "40 s", "10 minutes", "1 hour", "3 days".
 std::string time_words(double seconds) {
   const auto words = [](double count, const char* unit) {
     const long whole = std::max(std::lround(count), 1L);
@@ -59,7 +59,7 @@ std::string time_words(double seconds) {
   return words(seconds / kYear, "year");
 }
 
-/// "6 %", "6.2 %", by the error; a gain is no loss.
+/// Returns a loss in percent, rounded by its error: "6 %", "6.2 %". A gain counts as 0.
 std::string loss_words(double loss, double std_error) {
   return percent_words(std::max(loss, 0.0), std_error);
 }

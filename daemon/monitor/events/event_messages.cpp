@@ -12,7 +12,7 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kMaxSaid = 100;  // bytes
+constexpr std::size_t kMaxSaid = 100;  // bytes of a stated name
 
 }  // namespace
 

@@ -24,17 +24,18 @@ enum : std::int32_t { information, warning, alarm };
 }
 inline constexpr std::array kSeverities = {"information", "warning", "alarm"};
 
-/// The word for a number; a number out of range, from another program, gives the nearest word.
+/// Returns the word for `number`. Another program may send a number out of range: it gets the
+/// nearest word.
 template <std::size_t N>
 constexpr const char* word(const std::array<const char*, N>& words, std::int32_t number) {
   return words[static_cast<std::size_t>(std::clamp(number, 0, static_cast<std::int32_t>(N) - 1))];
 }
 
-/// An event as one line of JSON (schema `framewatch.event/1`, docs/actions.md) for commands and
-/// webhooks.
+/// Returns an event as one line of JSON (schema `framewatch.event/1`, docs/actions.md) for commands
+/// and webhooks.
 std::string event_json(const event_t& event, const std::string& building);
 
-/// Who acknowledged an event, and when.
+/// Who acknowledged an event, when, and with which comment.
 struct Acknowledgement {
   std::int64_t time_us = 0;  ///< host clock
   std::string who, comment;
@@ -45,26 +46,26 @@ struct Acknowledgement {
   }
 };
 
-/// As an event's id: every event that is raised, whoever found it. In acknowledged_t it says when
-/// and by whom everything was acknowledged at once, so that a page does it with its own events.
+/// In place of an event's id: every raised event. In acknowledged_t such an entry says when and by
+/// whom all events were acknowledged at once, so that a page can do the same with its own events.
 inline constexpr std::int64_t kAllEvents = 0;
 
-/// A request to acknowledge an event, with a random request number. id kAllEvents: every raised
-/// event.
+/// Makes a request to acknowledge the event with this id (kAllEvents: every raised event), with a
+/// random request number and the time of the host's clock.
 acknowledge_t acknowledge_request(std::int64_t id, const std::string& who,
                                   const std::string& comment);
 
-/// Who gave a command, for people: the user, and what the command says of its giver where it does:
-/// "alice", "alice (says: Bob)". One line.
+/// Returns the author of a command for people, on one line: the user and, if given, the name that
+/// the command itself states: "alice", "alice (says: Bob)".
 std::string who_text(const std::string& user, const std::string& says);
 
 /// Appends one acknowledged event to the message.
 void add_acknowledged(acknowledged_t& message, const event_t& event, const Acknowledgement& by);
 
-/// Appends that everything was acknowledged.
+/// Appends the entry that says that all events were acknowledged.
 void add_all_acknowledged(acknowledged_t& message, const Acknowledgement& by);
 
-/// The message that one event is acknowledged.
+/// Returns a message that says that one event was acknowledged.
 acknowledged_t acknowledged_message(const event_t& event, const Acknowledgement& by);
 
 }  // namespace framewatch::daemon

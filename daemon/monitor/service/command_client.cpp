@@ -22,7 +22,8 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr const char* kInstalledDirectory = "/run/framewatch";  // of framewatch.service
+constexpr const char* kInstalledDirectory =
+    "/run/framewatch";  // RuntimeDirectory of framewatch.service
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
@@ -35,7 +36,8 @@ bool is_ours(const std::string& directory) {
          found.st_uid == ::geteuid();
 }
 
-/// Below $XDG_RUNTIME_DIR when that is this user's: sudo may leave another one's there.
+/// Returns the directory below $XDG_RUNTIME_DIR if that belongs to this user: after sudo it may be
+/// another user's.
 std::string session_directory() {
   const std::string directory = variable("XDG_RUNTIME_DIR");
   return is_ours(directory) ? directory + "/framewatch" : "";
@@ -47,7 +49,7 @@ std::string temporary_directory() {
 
 constexpr timeval kPatience{10, 0};
 
-/// Who may, for one who may not.
+/// Returns who has the permission that this user lacks, and how to get it.
 std::string permission_problem(const std::string& directory, const std::string& path) {
   struct stat found {};
   if (::stat(path.c_str(), &found) != 0 && ::stat(directory.c_str(), &found) != 0)
@@ -59,14 +61,14 @@ std::string permission_problem(const std::string& directory, const std::string& 
       path, user_name(found.st_uid), group, user);
 }
 
-/// Connects; otherwise errno says why not.
+/// Connects. Returns false and sets errno on failure.
 bool connect_to(const drivers::Descriptor& file, const std::string& path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   errno = ENAMETOOLONG;
   if (path.size() >= sizeof address.sun_path) return false;
   path.copy(address.sun_path, sizeof address.sun_path - 1);
-  for (const int option : {SO_SNDTIMEO, SO_RCVTIMEO})  // the first one holds for connect() too
+  for (const int option : {SO_SNDTIMEO, SO_RCVTIMEO})  // the first one holds for connect(), too
     ::setsockopt(file.get(), SOL_SOCKET, option, &kPatience, sizeof kPatience);
   return ::connect(file.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
 }
@@ -116,7 +118,7 @@ std::optional<CommandPacket> packet_of(std::span<const std::uint8_t> bytes) {
 
 std::string command_directory(const Config& config) {
   if (!config.commands.directory.empty()) return config.commands.directory;
-  const std::string unit = variable("RUNTIME_DIRECTORY");  // several are separated by colons
+  const std::string unit = variable("RUNTIME_DIRECTORY");  // systemd separates several by colons
   if (!unit.empty()) return unit.substr(0, unit.find(':'));
   const std::string session = session_directory();
   return session.empty() ? temporary_directory() : session;

@@ -26,13 +26,13 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::int64_t kListenAgain_us = 5'000'000;
-constexpr int kMaxAccepts = 64;  // in one look
+constexpr int kMaxAccepts = 64;  // in one poll()
 
 std::string with_errno(const std::string& path) {
   return fmt::format("{}: {}", path, std::strerror(errno));
 }
 
-/// A directory server that does not answer delays this command alone.
+/// Looks the name up in a thread: a slow directory server then delays only this command.
 std::future<std::string> name_of(uid_t user) {
   try {
     return std::async(std::launch::async, user_name, user);
@@ -76,7 +76,8 @@ std::string CommandSocket::open() {
   path_.copy(address.sun_path, sizeof address.sun_path - 1);
   std::string problem = prepare_command_directory(directory_);
   if (!problem.empty()) return problem;
-  // Whoever holds the lock listens. The file stays: who removes one can no longer tell whose it is.
+  // The holder of the lock listens. The lock file is never removed: otherwise two daemons could
+  // hold locks on two files of that name.
   const std::string lock = path_ + ".lock";
   lock_.reset(::open(lock.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (lock_.get() < 0) return with_errno(lock);
@@ -85,10 +86,10 @@ std::string CommandSocket::open() {
         "{}: another framewatch {} takes them there; two need two prefixes, or "
         "[commands] directory",
         path_, service_);
-  ::unlink(path_.c_str());  // of a process that is dead: it does not hold the lock
+  ::unlink(path_.c_str());  // left by a dead process, as nobody else holds the lock
   socket_.reset(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const auto* const named = reinterpret_cast<const sockaddr*>(&address);
-  // Nobody can connect before listen(), so the mode is right when the first one does.
+  // Nobody can connect before listen(), so the mode is set in time.
   if (socket_.get() < 0 || ::bind(socket_.get(), named, sizeof address) != 0 ||
       ::chmod(path_.c_str(), 0660) != 0 || ::listen(socket_.get(), kMaxConnections) != 0)
     return with_errno(path_);
@@ -150,7 +151,7 @@ CommandSocket::Next CommandSocket::answer(Connection& c) {
   if (c.name.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return Next::wait;
   const CommandPacket out = handler_(c.command, c.name.get());
   const std::vector<std::uint8_t> bytes = packet_bytes(out);
-  // Whoever does not wait for the answer goes without.
+  // A client that does not wait gets no answer.
   (void)::send(c.file.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   return Next::done;
 }
