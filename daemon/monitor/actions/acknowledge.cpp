@@ -25,12 +25,12 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kMaxComment = 500;  // bytes
-constexpr int kMaxAnswered = 200;         // events, so that the answer fits a packet
+constexpr int kMaxAnswered = 200;         // events, so that the answer fits into a packet
 constexpr const char* kNobodyKnown = "LCM";
 
 constexpr int kRefused = 1, kUnreachable = 2;
 
-/// The number of an event; 0 for "all"; nothing when it is neither.
+/// Returns the number of an event, 0 for "all", and nullopt for any other text.
 std::optional<std::int64_t> number_of(const std::string& event) {
   if (event == "all") return 0;
   std::int64_t id = 0;

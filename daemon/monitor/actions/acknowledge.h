@@ -22,29 +22,30 @@ class LCM;
 
 namespace framewatch::daemon {
 
-/// Acknowledges events as requests (acknowledge_t) ask it to, and publishes what is acknowledged
+/// Acknowledges events on request (acknowledge_t) and publishes the acknowledged events
 /// (acknowledged_t) every second and after each request.
 class AcknowledgeDesk {
  public:
-  static constexpr std::size_t kMaxRequests = 16;  ///< of LCM that wait; a sender repeats its own
+  static constexpr std::size_t kMaxRequests = 16;  ///< waiting LCM requests; senders repeat theirs
   using Done = std::function<void(const event_t&, const Acknowledgement&)>;
-  /// The events that can be acknowledged.
+  /// The sets of events that can be acknowledged.
   using Raised = std::vector<RaisedEvents*>;
 
-  /// Both must outlive this. done: is called for each event that is acknowledged.
+  /// `config` and `lcm` must outlive this. Calls `done` for each event that is acknowledged.
   AcknowledgeDesk(const Config& config, lcm::LCM& lcm, Done done);
 
-  /// Obeys a request of this user. The answer has the events it is about, without comments, or the
-  /// reason of a refusal; empty when these bytes are no request. now_us: host clock.
+  /// Executes a request of this user. The answer holds the acknowledged events without their
+  /// comments, or the reason of a refusal. Returns nullopt if the bytes are not a request.
+  /// `now_us`: host clock.
   std::optional<acknowledged_t> obey(std::span<const std::uint8_t> request, const std::string& user,
                                      const Raised& raised, std::int64_t now_us);
 
-  /// A request that came over LCM, from nobody knows whom: update() obeys it where lcm.commands
-  /// allows that; otherwise it is counted, and a log line says so.
+  /// Takes a request that came over LCM, so its user is unknown. update() executes it if
+  /// lcm.commands allows that; otherwise it is counted and logged.
   void heard(std::span<const std::uint8_t> request, std::int64_t now_us);
   std::int64_t not_obeyed() const { return not_obeyed_; }
 
-  /// To be called several times a second.
+  /// Executes waiting requests and publishes. Call it several times a second.
   void update(const Raised& raised, std::int64_t now_us);
 
  private:
@@ -54,24 +55,25 @@ class AcknowledgeDesk {
   const Config& config_;
   lcm::LCM& lcm_;
   Done done_;
-  std::vector<acknowledge_t> requests_;  ///< of LCM
+  std::vector<acknowledge_t> requests_;  ///< from LCM
   std::int64_t not_obeyed_ = 0, answered_ = 0;
   RateLimitedLog warnings_{LogLevel::warning};
   OnceASecond second_;
   bool news_ = false;
   std::string refused_;
-  std::optional<Acknowledgement> all_;  ///< of the newest request for every event
+  std::optional<Acknowledgement> all_;  ///< by the newest request for all events
 };
 
 struct AcknowledgeArguments {
-  std::string event;  ///< its number, or "all"
+  std::string event;  ///< number of the event, or "all"
   std::string config = kInstalledConfig;
-  std::string who;  ///< a remark beside the user's name, which the daemon knows; empty: none
+  std::string who;  ///< a name beside the user's name, which the daemon knows; empty: not given
   std::string comment;
 };
 
-/// `framewatch acknowledge`: tells the running daemon over its socket to acknowledge an event.
-/// Exit code: 1 when the event is not raised, 2 without an answer or with a bad configuration.
+/// Runs `framewatch acknowledge`: asks the running daemon over its socket to acknowledge an event.
+/// Returns the exit code: 1 when the event is not raised, 2 without an answer or with an invalid
+/// configuration.
 int acknowledge_command(const AcknowledgeArguments& arguments);
 
 }  // namespace framewatch::daemon

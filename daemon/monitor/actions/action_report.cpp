@@ -26,7 +26,7 @@ void ActionReport::reconfigure(const Config& config) {
                                            const Abandoned& abandoned) {
       return post_webhook(s, event_json(e, building), abandoned);
     });
-  // A command that failed halfway is not repeated: it might do the first half twice.
+  // A command that failed halfway is not repeated: it might do its first half twice.
   if (command_) command_->configure(settings, 0);
   if (webhook_) webhook_->configure(settings, settings.webhook_patience_s);
 }

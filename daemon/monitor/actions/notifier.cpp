@@ -162,7 +162,7 @@ Notifier::Counters Notifier::counters() const {
   return out;
 }
 
-/// The caller holds the mutex.
+/// Requires that the caller holds the mutex.
 void Notifier::lose(std::int64_t events, const std::string& why) {
   counters_.lost += events;
   counters_.lost_us = host_clock_us();

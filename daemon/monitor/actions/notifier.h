@@ -19,27 +19,29 @@
 
 namespace framewatch::daemon {
 
-/// Decides which events are delivered, when and in which order; bounded. Of each event only the
-/// newest news waits. Pure: times are the caller's, of a clock that is never set.
+/// Decides which events are delivered, when and in which order, with a bounded queue. Of each event
+/// only the newest news waits. Uses no clock: callers pass the time of a clock that is never set.
 class ActionQueue {
  public:
-  static constexpr std::size_t kMax = 256;            ///< events that wait
-  static constexpr std::size_t kMaxDelivered = 4096;  ///< that are remembered as raised
+  static constexpr std::size_t kMax = 256;            ///< waiting events
+  static constexpr std::size_t kMaxDelivered = 4096;  ///< remembered raised events
 
   void configure(const ActionSettings& settings) { settings_ = settings; }
-  /// The event was delivered before this began: only its end is to be delivered.
+  /// Tells that an earlier run has delivered the event: only its end is delivered.
   void delivered_before(const event_t& event);
-  /// Queues an event. acknowledged: only its end is delivered. Returns how many events are lost:
-  /// when the queue is full, the least severe one.
+  /// Queues an event. Of an `acknowledged` event only the end is delivered. Returns the number of
+  /// lost events: if the queue is full, the least severe one is dropped.
   int put(const event_t& event, bool acknowledged, std::int64_t now_us);
-  /// Somebody has acknowledged the event: only its end is still delivered.
+  /// Tells that the event was acknowledged: only its end is still delivered.
   void acknowledged(const event_t& event);
-  /// The next event to deliver; empty when none is due.
+  /// Returns the next event to deliver; nullopt if no event is due.
   std::optional<event_t> take(std::int64_t now_us);
-  /// The next event whatever the rate limit says: the program stops.
+  /// Returns the next event regardless of the rate limit, for the end of the program.
   std::optional<event_t> take_any();
   std::size_t waiting() const { return waiting_.size(); }
-  std::int64_t merged() const { return merged_; }  ///< news replaced by newer news of the event
+  std::int64_t merged() const {
+    return merged_;
+  }  ///< news replaced by newer news of the same event
 
  private:
   using Key = std::pair<std::string, std::int64_t>;  ///< kind and id
@@ -53,23 +55,22 @@ class ActionQueue {
 
   ActionSettings settings_;
   std::map<Key, Waiting> waiting_;
-  std::map<Key, std::int64_t> delivered_us_;  ///< when an event that is still raised was
+  std::map<Key, std::int64_t> delivered_us_;  ///< when a raised event was delivered
   double tokens_ = -1;                        ///< negative: full
   std::int64_t filled_us_ = 0, order_ = 0, merged_ = 0;
 };
 
 /// The outcome of one attempt to deliver an event.
 struct DeliveryResult {
-  std::string trouble = {};  ///< why it was not delivered; empty: it was
+  std::string trouble = {};  ///< why it was not delivered; empty: delivered
   bool retry = false;        ///< another attempt may succeed
 };
 
-/// Whether the delivery is to be given up, because the program stops.
+/// Returns true if the delivery should be given up because the program stops.
 using Abandoned = std::function<bool()>;
 
-/// Delivers events to one receiver (a command or a webhook) from a thread of its own, so that the
-/// caller never waits. Failed deliveries are repeated with growing pauses, for
-/// the receiver's patience (0: not at all).
+/// Delivers events to one receiver (a command or a webhook) from a thread, so that the caller never
+/// waits. Repeats failed deliveries with growing pauses for the time that configure() sets.
 class Notifier {
  public:
   using Deliver =
@@ -78,24 +79,24 @@ class Notifier {
   struct Counters {
     std::int64_t told = 0, lost = 0, merged = 0;  ///< delivered, lost, replaced by newer news
     std::int64_t waiting = 0;
-    std::int64_t lost_us = 0;  ///< host clock when one was last lost; 0: never
-    std::string trouble;       ///< of the newest attempt; empty: it succeeded
+    std::int64_t lost_us = 0;  ///< host clock at the last loss; 0: no loss
+    std::string trouble;       ///< of the newest attempt; empty: success
   };
 
-  /// `name`: in log lines. Delivers nothing before configure().
+  /// `name` is for log lines. Delivers nothing before configure().
   Notifier(std::string name, Deliver deliver);
-  /// Delivers what is queued, for two seconds at most; the rest is lost, and the log says so.
+  /// Delivers queued events for two seconds at most. Logs how many are lost.
   ~Notifier();
   Notifier(const Notifier&) = delete;
   Notifier& operator=(const Notifier&) = delete;
 
-  /// patience_s: how long attempts to deliver one event are repeated.
+  /// `patience_s`: how long attempts to deliver one event are repeated; 0: a single attempt.
   void configure(const ActionSettings& settings, double patience_s);
-  /// An event that an earlier run has delivered: only its end is delivered.
+  /// Tells that an earlier run has delivered the event: only its end is delivered.
   void delivered_before(const event_t& event);
-  /// Queues an event. acknowledged: only its end is delivered.
+  /// Queues an event. Of an `acknowledged` event only the end is delivered.
   void event(const event_t& event, bool acknowledged);
-  /// Somebody has acknowledged the event: only its end is still delivered.
+  /// Tells that the event was acknowledged: only its end is still delivered.
   void acknowledged(const event_t& event);
   Counters counters() const;
 
@@ -107,7 +108,7 @@ class Notifier {
 
   const std::string name_;
   const Deliver deliver_;
-  mutable std::mutex mutex_;  ///< guards what is below
+  mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable wake_;
   ActionSettings settings_;
   double patience_s_ = 0;
@@ -116,7 +117,7 @@ class Notifier {
   RateLimitedLog losses_{LogLevel::error};
   bool stop_ = false;
   std::int64_t give_up_us_ = INT64_MAX;  ///< steady clock
-  std::thread thread_;                   ///< last: it sees everything above
+  std::thread thread_;                   ///< last, because it uses the members above
 };
 
 }  // namespace framewatch::daemon

@@ -32,9 +32,9 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr int kLook_ms = 20;
-constexpr std::int64_t kGrace_us = 1'000'000;  // between asking to end and ending
+constexpr std::int64_t kGrace_us = 1'000'000;  // between SIGTERM and SIGKILL
 constexpr std::size_t kMaxOutput = 200;        // bytes of output that are kept
-constexpr int kMaxReads = 64;                  // in one go
+constexpr int kMaxReads = 64;                  // in one call
 
 bool is_ours(std::string_view entry) {
   for (const char* name : {"NOTIFY_SOCKET=", "WATCHDOG_", "LISTEN_", "FRAMEWATCH_"})
@@ -42,8 +42,8 @@ bool is_ours(std::string_view entry) {
   return false;
 }
 
-/// The environment of this process without what concerns only itself (systemd's variables), and
-/// more.
+/// Returns the environment of this process with `more` variables, without systemd's and
+/// framewatch's own.
 std::vector<std::string> environment_with(
     const std::vector<std::pair<std::string, std::string>>& more) {
   std::vector<std::string> out;
@@ -60,7 +60,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return out;
 }
 
-/// Starts the process; -1, with errno in `failure`, when that fails.
+/// Starts the process. Returns -1 and sets `failure` to an errno on failure.
 pid_t start(std::vector<std::string> arguments, std::vector<std::string> environment, int input,
             int output, int& failure) {
   posix_spawn_file_actions_t files;
@@ -87,7 +87,7 @@ pid_t start(std::vector<std::string> arguments, std::vector<std::string> environ
   return failure == 0 ? pid : -1;
 }
 
-/// Reads what is there, up to kMaxReads blocks, and keeps the last kMaxOutput bytes.
+/// Reads the available output, up to kMaxReads blocks, and keeps its last kMaxOutput bytes.
 void read_some(int file, std::string& output) {
   std::array<char, 4096> buffer;
   for (int i = 0; i < kMaxReads; ++i) {
@@ -104,7 +104,8 @@ std::string last_line(std::string text) {
   return newline == std::string::npos ? text : text.substr(newline + 1);
 }
 
-/// Waits until the process has ended; kills it after timeout_s or when abandoned. Its wait status.
+/// Waits until the process has ended and returns its wait status. Ends it after timeout_s or when
+/// abandoned, and sets `ended_by_us`.
 int wait_for(pid_t pid, int pipe_end, std::string& output, double timeout_s,
              const Abandoned& abandoned, bool& ended_by_us) {
   const std::int64_t until_us = steady_clock_us() + static_cast<std::int64_t>(1e6 * timeout_s);
@@ -118,7 +119,7 @@ int wait_for(pid_t pid, int pipe_end, std::string& output, double timeout_s,
       read_some(pipe_end, output);
       return status;
     }
-    // It may close its output and go on running.
+    // It may close its output and continue to run.
     if ((more.revents & POLLHUP) != 0) ::usleep(1000 * kLook_ms);
     const std::int64_t now_us = steady_clock_us();
     if (!ended_by_us && (now_us >= until_us || abandoned())) {
@@ -162,7 +163,7 @@ void add_lines(Headers& headers, const std::string& text) {
   }
 }
 
-/// Whether another attempt may succeed after this HTTP status.
+/// Returns true if another attempt may succeed after this HTTP status.
 bool may_pass(long status) {
   constexpr std::array<long, 3> kLater = {408, 425, 429};
   return status >= 500 || std::find(kLater.begin(), kLater.end(), status) != kLater.end();
@@ -216,7 +217,7 @@ DeliveryResult run_hook(const ActionSettings& settings, const std::string& input
   const int status =
       wait_for(pid, out.get(), output, settings.command_timeout_s, abandoned, ended_by_us);
   if (ended_by_us) {
-    ::kill(-pid, SIGKILL);  // those of its group that ignored SIGTERM
+    ::kill(-pid, SIGKILL);  // processes of its group that ignored SIGTERM
     return trouble(abandoned() ? "ended, framewatch stops"
                                : fmt::format("ended after {:g} s", settings.command_timeout_s));
   }
@@ -257,7 +258,7 @@ DeliveryResult post_webhook(const ActionSettings& settings, const std::string& j
     set(CURLOPT_CAPATH, static_cast<const char*>(nullptr));
   }
   set(CURLOPT_NOSIGNAL, 1L);
-  set(CURLOPT_QUICK_EXIT, 1L);  // a silent name server does not delay the end of the program
+  set(CURLOPT_QUICK_EXIT, 1L);  // a slow name server must not delay the end of the program
   set(CURLOPT_TIMEOUT_MS, timeout_ms);
   set(CURLOPT_CONNECTTIMEOUT_MS, timeout_ms);
   set(CURLOPT_USERAGENT, "framewatch/" FRAMEWATCH_VERSION);

@@ -42,7 +42,7 @@ class EstimateSeries {
 
   struct Quartiles {
     double q1, median,
-        q3;  ///< of the observable windows, by MATLAB's rule; NaN if there are none
+        q3;                   ///< of the observable windows, by MATLAB's rule; NaN without any
     double observable_ratio;  ///< share of all windows of the range; NaN if it is empty
   };
   Quartiles quartiles(const Series& series, Range range) const;

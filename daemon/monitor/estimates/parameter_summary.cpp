@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSameBending = 0.15;  // relative
 
-/// Returns the index of krx for kx_1to6 and cx_1to6; the size of the table if there is none.
+/// Returns the index of krx for kx_1to6 and cx_1to6; the size of the table if it has no krx.
 std::size_t bending_of(const parameter_table_t& table, std::size_t p) {
   if (p >= table.kind.size()) return table.name.size();
   const int kind = table.kind[p];

@@ -15,7 +15,7 @@ namespace framewatch::daemon {
 /// still being identified.
 std::vector<std::uint8_t> settled_windows(const SessionEstimates& session, std::size_t parameter);
 
-/// Returns the newest value, SI; NaN if there is none.
+/// Returns the newest value, SI; NaN if the parameter has no value yet.
 double last_value(const SessionEstimates& session, std::size_t parameter);
 
 /// Statistics of one parameter over the comparable windows (settled_windows()) of a range.

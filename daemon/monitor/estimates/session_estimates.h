@@ -62,7 +62,7 @@ std::optional<SessionEstimates> read_session_estimates(const std::string& path,
 WindowRange windows_within(const SessionEstimates& session, std::int64_t from_us,
                            std::int64_t to_us);
 
-/// Returns the last model fit that was published within these windows; nullptr if there is none.
+/// Returns the last model fit that was published within these windows; nullptr without any.
 const ModelFitTold* model_fit_at_end(const SessionEstimates& session, WindowRange windows);
 
 /// Returns the statistics that BoxplotWindow gives for these values. Ignores values that are not

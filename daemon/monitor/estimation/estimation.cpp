@@ -14,9 +14,9 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kMaxFindings = 50;
-constexpr double kMost_degc = 200;  // either way: no thermometer on a building says more
+constexpr double kMost_degc = 200;  // absolute value; no thermometer on a building shows more
 
-EstimationListener no_listener;  // it does nothing
+EstimationListener no_listener;  // does nothing
 
 void subtract(const estimator::AxisCounters& before, estimator::AxisCounters& from) {
   from.received -= before.received, from.missing -= before.missing, from.late -= before.late;
@@ -133,7 +133,7 @@ void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
   listener_->on_shaken(report);
 }
 
-/// What [watch] and others found is what the report says.
+/// Adds the findings of [watch] and the open alarms to the report.
 void Estimation::add_records(EventReport& report) const {
   for (const event_t& e : raised_.all())
     if (e.severity == severity::alarm && e.kind != "stiffness_change" && e.kind != "strong_motion")
@@ -174,7 +174,7 @@ void Estimation::main_window(const estimator::WindowEstimate& estimate) {
   if (shaking_) shaking_->push(estimate);
 }
 
-/// Not for the gap monitor, which learns from the newest windows.
+/// The gap monitor does not get late windows: it learns from the newest ones.
 void Estimation::late_window(const estimator::WindowEstimate& estimate) {
   publisher_.late(estimate);
   if (shaking_) shaking_->push(estimate);

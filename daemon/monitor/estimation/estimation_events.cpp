@@ -78,7 +78,7 @@ event_t renewed(event_t raised, estimator::Time now) {
 
 event_t gap_event(const estimator::GapNews& news, const Config& config) {
   const bool raised = news.state != estimator::AlarmState::cleared;
-  const auto worst = static_cast<std::size_t>(news.worst_axis);  // of a state file, perhaps
+  const auto worst = static_cast<std::size_t>(news.worst_axis);  // may come from a state file
   const std::string channel =
       worst < config.pipeline.axes.size() ? config.pipeline.axes[worst].name : "";
   const estimator::ParameterTable table = config.pipeline.parameters();

@@ -17,7 +17,7 @@
 namespace framewatch::daemon {
 namespace {
 
-/// When the file was last written; the epoch when there is none.
+/// Returns when the file was last written; the epoch if it does not exist.
 std::filesystem::file_time_type put_there(const std::string& path) {
   std::error_code none;
   const auto at = std::filesystem::last_write_time(path, none);
@@ -30,7 +30,8 @@ std::int64_t microseconds(double seconds) {
   return std::llround(1e6 * seconds);
 }
 
-/// Samples in order of time, those of one time together.
+/// Writes samples in order of time, those of one time together. Returns an empty string, or the
+/// problem.
 std::string write_log(drivers::AccelMessages messages, std::size_t axes, const std::string& path,
                       const std::vector<estimator::AccelSample>& samples) {
   drivers::LcmLogWriter log;

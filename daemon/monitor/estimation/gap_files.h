@@ -13,14 +13,14 @@
 
 namespace framewatch::daemon {
 
-/// Notices that the file of [gap] model was created or exchanged while the program runs, and gives
-/// it to the gap monitor. A file that does not fit the building is reported once and ignored.
+/// Notices that the file of [gap] model was created or replaced while the program runs, and passes
+/// it to the gap monitor. Reports a file that does not fit the building once and ignores it.
 class GapKeeper {
  public:
   explicit GapKeeper(const Config& config);
-  /// Continues with another configuration; only its [gap] may differ.
+  /// Continues with another configuration, of which only [gap] may differ.
   void reconfigure(const Config& config) { config_ = &config; }
-  /// Looks once a second; now_us: host clock.
+  /// Checks the file once a second; `now_us`: host clock.
   void poll(Estimation& estimation, std::int64_t now_us);
 
  private:
@@ -30,16 +30,17 @@ class GapKeeper {
 };
 
 /// Keeps the newest raw samples in memory and, when a gap is raised, writes those around it as an
-/// LCM event log. A thread writes PATH.partial and renames it, so that a slow disk delays no
-/// estimate. Bounded by GapSettings::before_s and after_s.
+/// LCM event log. A thread writes PATH.partial and renames it, so that a slow disk does not delay
+/// estimates. GapSettings::before_s and after_s limit its size.
 class GapSegments {
  public:
   explicit GapSegments(const Config& config);
-  /// Writes the segment of a gap whose samples are not yet complete.
+  /// Writes the segment of a gap whose samples are still incomplete.
   ~GapSegments();
   GapSegments(const GapSegments&) = delete;
   GapSegments& operator=(const GapSegments&) = delete;
 
+  /// Tells that the gap with this id was raised.
   void sample(const estimator::AccelSample& sample);
   void raised(std::int64_t gap_id);
 
@@ -51,7 +52,7 @@ class GapSegments {
   std::vector<estimator::AccelSample> ring_;
   std::size_t next_ = 0, held_ = 0;
   std::int64_t newest_us_ = INT64_MIN;
-  std::int64_t waiting_ = 0;  ///< gap whose samples are still coming; 0: none
+  std::int64_t waiting_ = 0;  ///< gap whose samples are still coming; 0: no gap
   std::int64_t raised_us_ = 0;
   std::future<void> writing_;
 };

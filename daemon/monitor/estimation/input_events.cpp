@@ -90,7 +90,7 @@ std::size_t kind_of(const IntakeNotice& n) {
   return n.of_table ? drivers::kSequenceTroubles : static_cast<std::size_t>(n.trouble);
 }
 
-/// The text is the sender's: nothing of it but plain characters.
+/// Returns the sender's text with printable ASCII only, shortened.
 std::string plain(const std::string& name) {
   std::string out = name.substr(0, kLongestName);
   std::replace_if(
@@ -167,13 +167,13 @@ AbsurdEvents::AbsurdEvents(const std::vector<estimator::SensorAxis>& axes)
     : axes_(axes), channels_(axes.size()) {}
 
 std::vector<event_t> AbsurdEvents::update(const std::vector<estimator::AxisCounters>& counters,
-                                        std::int64_t time_us) {
+                                          std::int64_t time_us) {
   std::vector<event_t> out;
   for (std::size_t a = 0; a < channels_.size(); ++a) {
     Channel& channel = channels_[a];
     const std::int64_t before = channel.seen;
     channel.seen = counters[a].absurd;
-    channel.newest_us = std::min(channel.newest_us, time_us);  // a clock that was set back
+    channel.newest_us = std::min(channel.newest_us, time_us);  // the clock may have been set back
     if (channel.seen > before) {
       channel.newest_us = time_us;
       if (channel.raised) continue;
@@ -268,7 +268,7 @@ bool ChannelEvents::turns(Trouble& t, bool speaks_for, bool speaks_against, int 
 }
 
 std::vector<event_t> ChannelEvents::update(const std::vector<estimator::AxisCounters>& counters,
-                                         std::int64_t time_us) {
+                                           std::int64_t time_us) {
   std::vector<event_t> out;
   for (std::size_t a = 0; a < channels_.size(); ++a) {
     Channel& c = channels_[a];

@@ -17,9 +17,9 @@
 
 namespace framewatch::daemon {
 
-/// Says which channels send values that no sensor can have measured (AxisCounters::absurd): an
-/// event for each, raised with the first one and cleared when none has come for kQuiet_s. The id
-/// depends on the channel alone and is larger than the ids of alarms and of CAN events.
+/// Reports channels that send values that no sensor can have measured (AxisCounters::absurd).
+/// Raises one event per channel with the first such value and clears it after kQuiet_s without
+/// another. Ids depend only on the channel and are larger than those of alarms and CAN events.
 class AbsurdEvents {
  public:
   static constexpr std::int64_t kQuiet_s = 600;
@@ -27,9 +27,10 @@ class AbsurdEvents {
   /// `axes` must outlive this.
   explicit AbsurdEvents(const std::vector<estimator::SensorAxis>& axes);
 
-  /// counters: by axis; time_us: sensor time. What is raised or cleared since the last call.
+  /// Returns the events raised or cleared since the last call. `counters` are by axis, `time_us` is
+  /// sensor time.
   std::vector<event_t> update(const std::vector<estimator::AxisCounters>& counters,
-                            std::int64_t time_us);
+                              std::int64_t time_us);
 
   template <typename Archive>
   void archive(Archive& a) {
@@ -38,7 +39,7 @@ class AbsurdEvents {
 
  private:
   struct Channel {
-    std::int64_t seen = 0, before = 0;  ///< absurd samples: so far, and when it was raised
+    std::int64_t seen = 0, before = 0;  ///< absurd samples so far, and before the event was raised
     std::int64_t since_us = 0, newest_us = 0;
     bool raised = false;
 
@@ -57,14 +58,14 @@ class AbsurdEvents {
 };
 
 /// Turns CAN notices into events: bus_off and interface_gone of buses, emergency, boot_up,
-/// sequence_leap, duplicates and losses of nodes. The id depends on kind and place alone and is
-/// larger than the ids of alarms.
+/// sequence_leap, duplicates and losses of nodes. Ids depend only on kind and place and are larger
+/// than those of alarms.
 class CanEvents {
  public:
   /// `map` must outlive this.
   explicit CanEvents(const drivers::CanMap& map);
 
-  /// Empty when nothing changed: the state has already begun, or ends without a beginning.
+  /// Returns nullopt if nothing changed: the state has already begun, or ends without a beginning.
   std::optional<event_t> of(const drivers::CanNotice& notice);
 
   template <typename Archive>
@@ -88,24 +89,23 @@ class CanEvents {
   std::vector<Begun> begun_;  ///< by kind, then by bus or node
 };
 
-/// Says which channels have died: "channel_silent", no sample for kSilent_s (and the time that late
-/// samples are waited for) while others send; "channel_stuck", most of its samples of kStuck_s were
-/// left out because they did not change while the building moved. Cleared when samples come again,
-/// or change again for kMoving_s. The id depends on kind and channel alone, and is larger than the
-/// ids of all other events.
+/// Reports dead channels. "channel_silent": no sample for kSilent_s plus the wait for late samples,
+/// while others send; cleared with the next sample. "channel_stuck": most samples of kStuck_s were
+/// left out because they did not change while the building moved; cleared when they change for
+/// kMoving_s. Ids depend only on kind and channel and are larger than those of all other events.
 class ChannelEvents {
  public:
   static constexpr int kSilent_s = 5, kStuck_s = 2, kMoving_s = 3;
 
-  /// `axes` must outlive this. lateness_s: of the estimator's options.
+  /// `axes` must outlive this; `lateness_s` is the estimator's option.
   ChannelEvents(const std::vector<estimator::SensorAxis>& axes, double lateness_s);
 
-  /// Every sample, as it comes.
+  /// Takes every sample.
   void sample(const estimator::AccelSample& sample);
-  /// To be called once a second of sensor time. counters: by axis. What is raised or cleared since
-  /// the last call.
+  /// Returns the events raised or cleared since the last call. Call it once a second of sensor
+  /// time; `counters` are by axis.
   std::vector<event_t> update(const std::vector<estimator::AxisCounters>& counters,
-                            std::int64_t time_us);
+                              std::int64_t time_us);
 
   template <typename Archive>
   void archive(Archive& a) {
@@ -113,9 +113,9 @@ class ChannelEvents {
   }
 
  private:
-  /// Of one kind of trouble.
+  /// The state of one kind of event of a channel.
   struct Trouble {
-    int seconds = 0;  ///< that speak for it; while it is raised, against it
+    int seconds = 0;  ///< consecutive seconds that speak for it; while it is raised, against it
     bool raised = false;
     std::int64_t since_us = 0;
 
@@ -127,10 +127,10 @@ class ChannelEvents {
     }
   };
   struct Channel {
-    std::int64_t received = 0, stuck = 0;  ///< as of the last look
-    std::int64_t heard_us = 0;             ///< last look at which samples had come
+    std::int64_t received = 0, stuck = 0;  ///< at the last update()
+    std::int64_t heard_us = 0;             ///< last update() with new samples
     double value = 0;
-    bool changed = false;  ///< its value, since the last look
+    bool changed = false;  ///< its value changed since the last update()
     Trouble silent, still;
 
     template <typename Archive>
@@ -140,7 +140,7 @@ class ChannelEvents {
       a(value, changed, silent, still);
     }
   };
-  /// Whether it is raised or cleared now.
+  /// Updates the state of an event. Returns true if it is raised or cleared now.
   static bool turns(Trouble& trouble, bool speaks_for, bool speaks_against, int raise_s,
                     int clear_s);
   event_t event_of(std::size_t axis, const Trouble& trouble, bool silent,
@@ -151,10 +151,10 @@ class ChannelEvents {
   std::vector<Channel> channels_;
 };
 
-/// Trouble with a node's messages as an event: two_senders, sequence_leap, duplicates, losses, and
-/// channel_table for a table that contradicts the configuration. The place is the channel, of a
-/// node the first one it carries; the id depends on kind and place alone, and is larger than the
-/// ids of alarms and of CAN. Empty when it is over and not among the `raised`.
+/// Returns an event about a node's messages: two_senders, sequence_leap, duplicates, losses, or
+/// channel_table for a table that contradicts the configuration. The place is a channel, for a node
+/// its first one. Ids depend only on kind and place and are larger than those of alarms and CAN
+/// events. Returns nullopt if the problem is over and its event is not among the `raised`.
 std::optional<event_t> intake_event(const drivers::IntakeNotice& notice, const Config& config,
                                     const RaisedEvents& raised, std::int64_t now_us);
 

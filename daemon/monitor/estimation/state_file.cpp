@@ -23,7 +23,7 @@ struct Description {
   std::vector<std::string> grounds;
 };
 
-/// In the order of the file.
+/// Returns the sections in the order of the file.
 const std::array<Description, 10>& descriptions() {
   static const std::array<Description, 10> all{{
       {"counts", "counters of windows begin at 0", {}},
@@ -56,13 +56,13 @@ const Description* find(std::string_view name) {
 }
 
 const std::string kMagic = "framewatch state\n";
-constexpr std::int32_t kFormat = 17;  ///< goes up whenever archive() of any class changes
+constexpr std::int32_t kFormat = 17;  ///< increase it whenever archive() of any class changes
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMaxBytes = std::int64_t{1} << 30;
-constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head, which has some ten
+constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head; a real one has about ten
 constexpr const char* kUnlike = "has sizes or numbers that cannot be right";
 
-/// A list of the head: `count` of them are there.
+/// Archives a list of the head, with its length.
 template <typename Archive, typename T>
 void archive_list(Archive& a, std::vector<T>& list) {
   const std::size_t count = a.count(list.size());
@@ -71,7 +71,7 @@ void archive_list(Archive& a, std::vector<T>& list) {
   for (T& entry : list) entry.archive(a);
 }
 
-/// Before the sections.
+/// The part of the file before the sections.
 struct Head {
   struct Ground {
     std::string name, digest;
@@ -125,7 +125,8 @@ std::map<std::string, std::string> grounds_of(const Config& config) {
   return out;
 }
 
-/// What a section rests on and is another under this configuration, for a person; empty: nothing.
+/// Returns, for people, on what a section depends that differs in this configuration; empty if it
+/// fits.
 std::string other_grounds(const StateSection& section, const SavedState& state,
                           const std::map<std::string, std::string>& grounds) {
   const auto in = [](const std::map<std::string, std::string>& all, const std::string& name) {
@@ -143,7 +144,7 @@ std::string other_grounds(const StateSection& section, const SavedState& state,
   return out;
 }
 
-/// A state file, with those of its sections that are whole.
+/// A state file with its undamaged sections.
 struct ReadState {
   std::string problem;
   SavedState state;
@@ -203,7 +204,7 @@ bool has(const ReadState& read, const std::string& name) {
                      [&](const StateSection& s) { return s.name == name; });
 }
 
-/// Leaves the sections that rest on the same grounds and do not lack another one.
+/// Keeps the sections that depend on unchanged settings and for which no other section is missing.
 void leave_what_fits(ReadState& read, const Config& config, Estimation& estimation) {
   const std::map<std::string, std::string> grounds = grounds_of(config);
   for (const std::string& name : estimation.section_names()) {
@@ -221,7 +222,7 @@ void leave_what_fits(ReadState& read, const Config& config, Estimation& estimati
     lose(read, "watch", "needs the section baseline");
 }
 
-/// The head and its digest.
+/// Returns the head and its digest.
 std::vector<std::uint8_t> head_bytes(const SavedState& state) {
   Head head;
   head.config_sha256 = state.config_sha256;

@@ -47,7 +47,7 @@ std::string event_report_name(const EventReport& report);
 /// segment is the name of the page.
 event_t event_of(const EventReport& report, const Config& config);
 
-/// A green event is no finding. It is cleared after this time.
+/// A green event is cleared after this time.
 inline constexpr double kGreenShown_s = 600;
 bool green_and_past(const event_t& event, std::int64_t now_us);
 

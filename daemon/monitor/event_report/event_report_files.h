@@ -17,7 +17,7 @@ struct EventReportSummary {
   EventColor color = EventColor::green;
   std::string reason;                             ///< the gravest one
   std::int64_t start_us = 0, end_us = 0;          ///< of the strong motion, sensor time
-  std::string placard = {}, placard_reason = {};  ///< in words; empty: the report has none
+  std::string placard = {}, placard_reason = {};  ///< in words; empty: no placard
 };
 
 /// Returns true if `name` has the form that event_report_name() makes, so it cannot lead to another
@@ -32,7 +32,7 @@ std::optional<EventReportSummary> event_report_summary(const std::string& folder
 /// The newest report of a folder. Reads a report only once.
 class NewestEventReport {
  public:
-  /// An empty `folder` means that there is none.
+  /// An empty `folder`: the building has no reports.
   explicit NewestEventReport(std::string folder);
 
   const std::optional<EventReportSummary>& poll();

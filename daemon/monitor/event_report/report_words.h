@@ -31,11 +31,11 @@ const char* placard_caution();
 /// Returns a drift with its standard error: "1.20 % ± 0.10 %"; "not known" for an unknown drift.
 std::string drift_with_error(const estimator::StoryDrift& drift);
 
-/// Returns one sentence, without its full stop, for each part of a strong motion without samples:
-/// "Nobody listened from 10:03:12 to 10:03:40 (28 s): peaks in that time are not known; drifts are
-/// known again from 10:03:50 on".
+/// Returns one sentence, without its full stop, for each part of a strong motion without samples.
+/// Example: "Nobody listened from 10:03:12 to 10:03:40 (28 s): peaks in that time are not known;
+/// drifts are known again from 10:03:50 on".
 std::vector<std::string> unheard_sentences(const estimator::Shaking& shaking);
-/// Returns the total length of these parts: "28 s of it were not heard". Empty if there are none.
+/// Returns the total length of these parts, "28 s of it were not heard"; empty if all samples came.
 std::string unheard_words(const estimator::Shaking& shaking);
 /// Returns "restart", "restart_without_raw_samples" or "no_samples".
 const char* unheard_why(estimator::UnheardWhy why);

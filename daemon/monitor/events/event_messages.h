@@ -35,7 +35,7 @@ constexpr const char* word(const std::array<const char*, N>& words, std::int32_t
 /// and webhooks.
 std::string event_json(const event_t& event, const std::string& building);
 
-/// Who acknowledged an event, when, and with which comment.
+/// An acknowledgement of an event: by whom, when, and with which comment.
 struct Acknowledgement {
   std::int64_t time_us = 0;  ///< host clock
   std::string who, comment;

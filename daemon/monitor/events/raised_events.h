@@ -33,7 +33,7 @@ class RaisedEvents {
   const event_t* find(const std::string& kind, const std::string& place) const;
   /// Acknowledges a raised event; replaces an earlier acknowledgement.
   void acknowledge(std::int64_t id, const Acknowledgement& by);
-  /// Returns nullptr if nobody has acknowledged the event.
+  /// Returns nullptr if the event is not acknowledged.
   const Acknowledgement* acknowledgement(std::int64_t id) const;
 
   template <typename Archive>

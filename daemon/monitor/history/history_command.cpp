@@ -33,7 +33,8 @@ namespace {
 
 constexpr std::size_t kScreenRows = 30;
 
-/// "90m", "2h", "3d", "45s" or "45" in microseconds.
+/// Parses "90m", "2h", "3d", "45s" or "45". Returns microseconds, or nullopt if `text` is not a
+/// duration > 0.
 std::optional<std::int64_t> read_duration(const std::string& text) {
   double value = 0;
   const char* end = text.data() + text.size();
@@ -275,7 +276,7 @@ std::vector<NamedSummaries> read_summaries(const HistoryRequest& r, SummaryQuery
 void give_summaries(const HistoryArguments& a, const HistoryRequest& r, SummaryQuery& summaries,
                     std::vector<std::string>& problems) {
   const std::vector<NamedSummaries> found = read_summaries(r, summaries);
-  if (!summaries.problem().empty()) return;  // what was read is not all
+  if (!summaries.problem().empty()) return;  // incomplete data must not be written
   if (!a.out.empty()) {
     ProgressLine progress("history", false);
     progress("writing " + a.out, 0);

@@ -37,7 +37,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Byte after the last intact event of a log; 0: there is none, -1: it cannot be read.
+/// Returns the byte after the last intact event of a log; 0 without an intact event, -1 if the log
+/// cannot be read.
 std::int64_t end_of_events(const std::string& path) {
   drivers::LcmLogReader reader;
   drivers::LogEvent event;
@@ -92,7 +93,8 @@ bool within(const accel_counts_t& block, const std::vector<TimeSpan>& spans) {
 
 constexpr double kGigabyte = 1e9;
 
-/// Times around events that show the building, not the instruments. Empty optional: not known.
+/// Returns the times around events that concern the building, not the instruments; nullopt if they
+/// cannot be read.
 std::optional<std::vector<TimeSpan>> spans_of_events(const HistorySettings& settings) {
   const std::string path = summary_file(settings.directory);
   std::vector<TimeSpan> out;
@@ -240,7 +242,7 @@ void HistoryKeeper::work() {
     remove_unfinished_compressions(raw_folder(settings_.directory));
     remove_unfinished_compressions(event_folder(settings_.directory));
   });
-  // Not by nice: the sandbox of a service does not allow it.
+  // nice() is not allowed in the sandbox of a service.
   const sched_param idle{};
   ::pthread_setschedparam(::pthread_self(), SCHED_IDLE, &idle);
   while (!stop_) {
@@ -253,7 +255,7 @@ void HistoryKeeper::work() {
   }
 }
 
-/// What is thrown, for want of memory, is said; the next look begins anew.
+/// Logs an exception, such as a lack of memory; the next round tries again.
 void HistoryKeeper::guarded(const std::function<void()>& work) {
   if (const std::string thrown = drivers::caught(work); !thrown.empty())
     log(LogLevel::error, "history: " + thrown);
@@ -283,7 +285,7 @@ void HistoryKeeper::tidy() {
     const std::lock_guard<std::mutex> lock(mutex_);
     newest_us = newest_us_;
   }
-  // A clock of the sensors that goes wrong makes nothing old.
+  // The host's clock bounds the age, in case the clock of the sensors runs far ahead.
   if (newest_us != INT64_MIN) remove_old_raw_logs(settings_, std::min(newest_us, host_clock_us()));
   const Room room = room_in(settings_.directory);
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -44,7 +44,7 @@ std::string raw_line(const char* what, const RawTotals& raw) {
                      raw.open > 0 ? ", one is being written" : "");
 }
 
-/// The longest period that has a row for the newest time, and that row's start.
+/// Returns the longest period.
 SummaryPeriods newest_of(const std::vector<SummaryPeriods>& periods) {
   return periods.empty() ? SummaryPeriods{} : periods.back();
 }

@@ -18,12 +18,13 @@
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::int64_t kCalm_us = 5'000'000;  // so long all is well before it is said
+constexpr std::int64_t kCalm_us =
+    5'000'000;  // without trouble for this time before the event is cleared
 
 }  // namespace
 
 std::vector<event_t> HistoryMonitor::update(std::int64_t now_us, const history_status_t& status,
-                                          const SetAside& set_aside) {
+                                            const SetAside& set_aside) {
   std::vector<event_t> out;
   if (auto e = news(raw_, "raw", status.raw_trouble, status.raw_dropped, status, now_us))
     out.push_back(std::move(*e));
@@ -88,7 +89,7 @@ std::optional<event_t> HistoryMonitor::news(Part& part, const char* place,
 
 HistoryReport::HistoryReport(const Config& config, lcm::LCM& lcm) : config_(config), lcm_(lcm) {
   if (!config.history) return;
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a disk that is full
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then is an error like a full disk
   history_.emplace(config);
 }
 

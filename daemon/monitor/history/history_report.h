@@ -19,13 +19,13 @@
 namespace framewatch::daemon {
 
 /// Raises an event when samples or summaries cannot be written to the disk, and clears it, with the
-/// number of losses, when they can be written again. Raises another when a corrupt database was set
-/// aside, which a person has to look at: it stays until the program ends.
+/// number of losses, when writing works again. Raises another one when a corrupt database was set
+/// aside; it stays until the program ends, because the operator has to look at it.
 class HistoryMonitor {
  public:
-  /// now_us: the host's clock. Returns the events since the last call.
+  /// Returns the events since the last call. `now_us`: host clock.
   std::vector<event_t> update(std::int64_t now_us, const history_status_t& status,
-                            const SetAside& set_aside = {});
+                              const SetAside& set_aside = {});
 
  private:
   struct Part {
@@ -44,18 +44,19 @@ class HistoryMonitor {
   event_t database_{};
 };
 
-/// The history of a running estimation, where one is configured, and what is to be said about it:
-/// history_status_t every second, events and log lines when the disk stops or begins to take it.
+/// Owns the history of a running estimation, if one is configured, and reports on it:
+/// history_status_t every second, events and log lines when writing fails or works again.
 class HistoryReport {
  public:
-  /// Both must outlive this.
+  /// `config` and `lcm` must outlive this.
   HistoryReport(const Config& config, lcm::LCM& lcm);
 
-  /// Null when none is configured.
+  /// Returns nullptr if no history is configured.
   History* history() { return history_ ? &*history_ : nullptr; }
-  /// Its own events that are raised.
+  /// Returns its raised events.
   RaisedEvents& raised() { return raised_; }
-  /// Call it several times a second. Returns the events that it published. now_us: host clock.
+  /// Stores what is due and publishes. Call it several times a second; `now_us`: host clock.
+  /// Returns the events that it published.
   std::vector<event_t> update(std::int64_t now_us);
 
  private:

@@ -39,7 +39,8 @@ std::vector<drivers::AxisAddress> addresses_of(const std::vector<RawChannel>& ch
   return out;
 }
 
-/// accel_t of the nodes. What a node's sequence leaves out was not received.
+/// Writes accel_t of the nodes. Numbers missing in a node's sequence stand for samples that were
+/// not received.
 class LogExport : public RawExport {
  public:
   LogExport(const std::vector<RawChannel>& channels, double rate_hz)
@@ -105,7 +106,7 @@ class LogExport : public RawExport {
   std::int64_t next_table_us_ = INT64_MIN / 2;
 };
 
-/// A record. Time zero is its first sample.
+/// Writes a record, whose time zero is its first sample.
 class CsvExport : public RawExport {
  public:
   explicit CsvExport(std::size_t channels) : channels_(channels) {}
@@ -120,7 +121,7 @@ class CsvExport : public RawExport {
     }
     auto& row = rows_.try_emplace(time_us, channels_, estimator::kNaN).first->second;
     row[channel] = accel_mps2;
-    // Nodes are never so far behind each other.
+    // Nodes are never this far behind each other.
     while (rows_.size() > 1 && rows_.begin()->first < time_us - kSecond_us)
       if (!write_first()) return false;
     return true;
@@ -206,7 +207,7 @@ class RawJob {
     (*progress_)("looking what there is", 0);
     const std::vector<RawLog> logs =
         raw_logs_between(request_.directory, request_.from_us, request_.to_us);
-    // What is in them first: an export has all of its channels from the start.
+    // Reads everything once first: an export has all of its channels from the start.
     std::vector<std::string> names;
     double rate_hz = 0, resolution_mps2 = 0;
     std::int64_t samples = 0;
@@ -247,7 +248,7 @@ class RawJob {
  private:
   void problem(std::string message) { problems_.push_back(std::move(message)); }
 
-  /// Where the channel of a name travels: where the configuration says, else on a node of its own.
+  /// Returns the LCM address of a channel: from the configuration, otherwise a separate node.
   RawChannel placed(const std::string& name, std::size_t index) const {
     if (request_.config) {
       const auto all = addresses(request_.config->sources);
@@ -259,7 +260,7 @@ class RawJob {
 
   void write_raw(const std::vector<RawLog>& logs, const std::vector<std::string>& names,
                  RawExport& out) {
-    std::vector<std::optional<std::size_t>> place;  // by the log's channel
+    std::vector<std::optional<std::size_t>> place;  // by channel of the log
     std::int64_t seen = 0, samples = 0, beyond = 0;
     bool good = true;
     std::vector<std::string> notes;
@@ -300,7 +301,7 @@ class RawJob {
   const HistoryArguments& a_;
   const HistoryRequest& request_;
   std::vector<std::string>& problems_;
-  std::int64_t expected_ = 0;  ///< samples of every channel
+  std::int64_t expected_ = 0;  ///< total of all channels
   std::optional<ProgressLine> progress_{std::in_place, "history", false};
 };
 

@@ -13,7 +13,7 @@ namespace framewatch::daemon {
 
 namespace {
 
-/// Of rows that `run` can have written: others are of a damaged or a foreign file.
+/// Selects rows that `run` can have written; a damaged or foreign file may hold others.
 constexpr const char* kSound =
     " WHERE period_s BETWEEN 1 AND 1000000000"
     " AND start_us BETWEEN -2000000000000000000 AND 2000000000000000000"
@@ -46,7 +46,7 @@ std::string SummaryQuery::open(const std::string& directory) {
   if (drivers::is_absent(path)) {
     if (raw_logs(raw_folder(directory)).empty() && raw_logs(event_folder(directory)).empty())
       return "there is none";
-    if (!file_.open(":memory:")) return file_.error();  // raw logs alone
+    if (!file_.open(":memory:")) return file_.error();  // only raw logs
     return upgrade(file_, history_schema());
   }
   if (!file_.open_to_read(path)) return told(file_.error());

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kSilent_s = 2;
 
-/// The line that `systemctl status` shows.
+/// Returns the line that `systemctl status` shows.
 std::string status_line(const LiveEstimation& live, const Config& config, std::int64_t now_us) {
   const LiveTimes& times = live.times();
   const std::size_t raised = live.estimation().raised().all().size();
@@ -41,7 +41,7 @@ Housekeeping::Housekeeping(const Config& config, const std::string& text,
       config_(config) {}
 
 void Housekeeping::update(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
-                        const std::vector<RaisedEvents*>& raised) {
+                          const std::vector<RaisedEvents*>& raised) {
   const std::int64_t now_us = host_clock_us();
   Estimation& estimation = live.estimation();
   intake_warnings_.update(live, now_us);

@@ -19,12 +19,12 @@ namespace framewatch::daemon {
 /// the program does not receive.
 class CanMonitor {
  public:
-  /// `config` must outlive this. `statistics`: a folder with one folder per interface.
+  /// `config` must outlive this. `statistics` is a folder with one folder per interface.
   explicit CanMonitor(const Config& config, std::string statistics = "/sys/class/net");
 
-  /// The status once a second; empty in between and without CAN.
-  std::optional<can_status_t> collect(const drivers::CanIntake& can, const drivers::CanSource& source,
-                                   std::int64_t now_us);
+  /// Returns the status once a second; nullopt between, and without CAN.
+  std::optional<can_status_t> collect(const drivers::CanIntake& can,
+                                      const drivers::CanSource& source, std::int64_t now_us);
 
  private:
   struct Counted {
@@ -38,19 +38,19 @@ class CanMonitor {
   std::string statistics_;
   std::vector<std::optional<Counted>> before_;
   std::vector<double> expected_load_;
-  std::vector<bool> extended_, fd_;  ///< whether the nodes of a bus have such frames
+  std::vector<bool> extended_, fd_;  ///< by bus: its nodes have such frames
   OnceASecond second_;
   std::int64_t last_us_ = 0;
 };
 
-/// Log lines about problems of the CAN buses: once a second at most, and only about changes.
+/// Makes log lines about problems of the CAN buses: at most once a second, and only about changes.
 class CanWarnings {
  public:
   explicit CanWarnings(const Config& config);
 
-  /// One line for each bus with news; to be called several times a second. now_us: host clock.
+  /// Returns one line for each bus with news. Call it several times a second; `now_us`: host clock.
   std::vector<std::string> collect(const drivers::CanIntake& can, const drivers::CanSource& source,
-                                std::int64_t now_us);
+                                   std::int64_t now_us);
 
  private:
   struct Bus {
@@ -72,7 +72,8 @@ class CanWarnings {
   std::int64_t dropped_ = 0, steps_ = 0;
 };
 
-/// Logs once a second at most which messages and samples were lost or rejected since the last line.
+/// Logs, at most once a second, which messages and samples were lost or rejected since the last
+/// line.
 class IntakeWarnings {
  public:
   void update(const LiveEstimation& live, std::int64_t now_us);

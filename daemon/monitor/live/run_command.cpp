@@ -39,18 +39,18 @@
 namespace framewatch::daemon {
 namespace {
 
-/// What `framewatch run` does with events: hands those of the estimation and of the history to the
+/// Handles the events of `framewatch run`: passes those of the estimation and of the history to the
 /// command and the webhook of [actions], and acknowledges them on request.
 class LiveEvents {
  public:
-  /// All must outlive this.
+  /// All arguments must outlive this.
   LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history);
   LiveEvents(const LiveEvents&) = delete;
   LiveEvents& operator=(const LiveEvents&) = delete;
 
   /// Handles new events and requests. Call it several times a second.
   void poll();
-  /// Goes on with another configuration, of which [actions] may differ.
+  /// Continues with another configuration, of which [actions] may differ.
   void reconfigure(const Config& config) { actions_.reconfigure(config); }
 
   /// Returns the raised events of the estimation and of the history.
@@ -113,7 +113,7 @@ void LiveEvents::poll() {
 
 constexpr int kPoll_ms = 100;
 
-/// Says which sections of a state were not taken, why, and what that costs. Keeps a copy of the
+/// Logs which sections of a state were not loaded, why, and the consequence. Keeps a copy of the
 /// file.
 void log_lost(const std::string& path, const std::vector<LostSection>& lost) {
   if (lost.empty()) return;
@@ -127,8 +127,8 @@ void log_lost(const std::string& path, const std::vector<LostSection>& lost) {
                              : fmt::format("a copy of the file is {}", aside));
 }
 
-/// Resumes from the state file, if there is one, with every section of it that fits. A file of
-/// which nothing fits is renamed, and the log says why. Whether the window was resumed.
+/// Loads every section of the state file that fits, if the file exists. Renames a file of which
+/// nothing fits and logs why. Returns true if the window was resumed.
 bool resume(const std::string& path, const Config& config, drivers::LcmProvider& lcm,
             drivers::CanLogWriter* can_log, std::optional<LiveEstimation>& live) {
   std::error_code none;
@@ -153,7 +153,7 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
   return false;
 }
 
-/// The stored raw samples that the estimation has to get first.
+/// Returns the stored raw samples that the estimation has to get first.
 RawBacklog missed_samples(const Config& config, const Estimation& estimation, bool resumed) {
   std::vector<std::string> notes;
   RawBacklog out = RawBacklog::read(config, estimation.newest_us(), resumed, notes);
@@ -241,7 +241,7 @@ int run(const RunArguments& a) {
     if (reload_requested() && housekeeping.reload(live, manager)) events.reconfigure(live.config());
   }
   manager.stopping();
-  // With a state file the instants still open are published after the next start.
+  // With a state file, open instants are published after the next start.
   if (a.state.empty()) {
     live.finish();
     events.poll();

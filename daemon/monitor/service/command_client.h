@@ -36,7 +36,7 @@ std::string command_directory(const Config& config);
 std::vector<std::string> command_directories(const Config& config);
 
 /// Creates the directory if necessary and checks that it is safe to listen there: a real directory
-/// of this user or root in which nobody else can create files. Returns an empty string, or the
+/// of this user or root in which no other user can create files. Returns an empty string, or the
 /// problem.
 std::string prepare_command_directory(const std::string& directory);
 

@@ -86,7 +86,7 @@ std::string CommandSocket::open() {
         "{}: another framewatch {} takes them there; two need two prefixes, or "
         "[commands] directory",
         path_, service_);
-  ::unlink(path_.c_str());  // left by a dead process, as nobody else holds the lock
+  ::unlink(path_.c_str());  // left by a dead process: this one holds the lock
   socket_.reset(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const auto* const named = reinterpret_cast<const sockaddr*>(&address);
   // Nobody can connect before listen(), so the mode is set in time.
