@@ -97,9 +97,10 @@ std::optional<acknowledged_t> AcknowledgeDesk::obey(std::span<const std::uint8_t
 void AcknowledgeDesk::heard(std::span<const std::uint8_t> bytes, std::int64_t now_us) {
   if (!config_.lcm.commands) {
     ++not_obeyed_;
-    return warnings_(now_us, fmt::format("commands over LCM are not obeyed (lcm.commands = false): "
-                                         "{} came so far",
-                                         not_obeyed_));
+    return warnings_(now_us,
+                     fmt::format("ignored {} commands over LCM so far (lcm.commands = false): "
+                                 "use framewatch acknowledge",
+                                 not_obeyed_));
   }
   auto request = drivers::decoded<acknowledge_t>(bytes);
   if (request && requests_.size() < kMaxRequests) requests_.push_back(std::move(*request));
@@ -128,7 +129,7 @@ int acknowledge_command(const AcknowledgeArguments& a) {
   const std::optional<std::int64_t> id = number_of(a.event);
   if (!id)
     (void)stop(kUnreachable,
-               fmt::format("'{}' is neither the number of an event nor all", a.event));
+               fmt::format("'{}' is not the number of an event, and not all", a.event));
   if (!config || !id) return kUnreachable;
   const acknowledge_t request = acknowledge_request(*id, a.who, a.comment);
   const CommandAnswer answer =
@@ -136,7 +137,7 @@ int acknowledge_command(const AcknowledgeArguments& a) {
   if (!answer.answered) return stop(kUnreachable, answer.problem);
   if (!answer.problem.empty()) return stop(kRefused, answer.problem);
   const auto done = drivers::decoded<acknowledged_t>(answer.bytes);
-  if (!done) return stop(kUnreachable, "the daemon's answer is not understood: another version?");
+  if (!done) return stop(kUnreachable, "cannot read the daemon's answer: is it another version?");
   if (!done->refused.empty()) return stop(kRefused, done->refused);
   for (std::size_t i = 0; i < done->id.size(); ++i)
     fmt::print("{}\n", printable(fmt::format("{} {} ({}) is acknowledged by {}", done->kind[i],

@@ -144,7 +144,7 @@ void Notifier::event(const event_t& event, bool acknowledged) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     const int lost = queue_.put(event, acknowledged, steady_clock_us());
-    if (lost > 0) lose(lost, "too many wait");
+    if (lost > 0) lose(lost, "too many events are waiting");
   }
   wake_.notify_one();
 }
@@ -166,7 +166,7 @@ Notifier::Counters Notifier::counters() const {
 void Notifier::lose(std::int64_t events, const std::string& why) {
   counters_.lost += events;
   counters_.lost_us = host_clock_us();
-  losses_(host_clock_us(), fmt::format("{}: {} events are lost: {}", name_, events, why));
+  losses_(host_clock_us(), fmt::format("{}: {} events were lost: {}", name_, events, why));
 }
 
 bool Notifier::abandoned() const {
@@ -184,7 +184,7 @@ void Notifier::work() {
       const bool late = steady_clock_us() >= give_up_us_;
       if (stop_ && (late || queue_.waiting() == 0)) {
         if (queue_.waiting() > 0)
-          lose(static_cast<std::int64_t>(queue_.waiting()), "framewatch is stopped");
+          lose(static_cast<std::int64_t>(queue_.waiting()), "framewatch stops");
         return;
       }
       event = stop_ ? queue_.take_any() : queue_.take(steady_clock_us());
@@ -205,7 +205,7 @@ void Notifier::work() {
     if (delivered)
       ++counters_.told;
     else
-      lose(1, fmt::format("{}; it was \"{}\"", counters_.trouble, event->message));
+      lose(1, fmt::format("{}; the event was \"{}\"", counters_.trouble, event->message));
   }
 }
 

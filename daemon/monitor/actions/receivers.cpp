@@ -192,7 +192,7 @@ std::vector<std::pair<std::string, std::string>> event_environment(const event_t
 DeliveryResult run_hook(const ActionSettings& settings, const std::string& input,
                         const std::vector<std::pair<std::string, std::string>>& environment,
                         const Abandoned& abandoned) {
-  if (settings.command.empty()) return {"no command is configured any more", false};
+  if (settings.command.empty()) return {"the command was removed from [actions]", false};
   const std::string& name = settings.command.front();
   const auto trouble = [&](const std::string& why) {
     return DeliveryResult{name + ": " + why, false};
@@ -218,7 +218,7 @@ DeliveryResult run_hook(const ActionSettings& settings, const std::string& input
       wait_for(pid, out.get(), output, settings.command_timeout_s, abandoned, ended_by_us);
   if (ended_by_us) {
     ::kill(-pid, SIGKILL);  // processes of its group that ignored SIGTERM
-    return trouble(abandoned() ? "ended, framewatch stops"
+    return trouble(abandoned() ? "ended because framewatch stops"
                                : fmt::format("ended after {:g} s", settings.command_timeout_s));
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return {};
@@ -230,7 +230,7 @@ DeliveryResult run_hook(const ActionSettings& settings, const std::string& input
 
 DeliveryResult post_webhook(const ActionSettings& settings, const std::string& json,
                             const Abandoned& abandoned) {
-  if (settings.webhook.empty()) return {"no webhook is configured any more", false};
+  if (settings.webhook.empty()) return {"the webhook was removed from [actions]", false};
   Headers headers;
   add(headers, "Content-Type: application/json");
   add(headers, "Expect:");
@@ -243,7 +243,7 @@ DeliveryResult post_webhook(const ActionSettings& settings, const std::string& j
   static const CURLcode ready = ::curl_global_init(CURL_GLOBAL_DEFAULT);
   std::array<char, CURL_ERROR_SIZE> error{};
   const std::unique_ptr<CURL, Free> curl(ready == CURLE_OK ? ::curl_easy_init() : nullptr);
-  if (!curl) return {"libcurl cannot begin", true};
+  if (!curl) return {"libcurl cannot start", true};
   const auto set = [&](CURLoption option, auto value) {
     ::curl_easy_setopt(curl.get(), option, value);
   };

@@ -39,7 +39,7 @@ int tell_command(const TellArguments& a) {
   bool good = true;
   const auto report = [&](const char* receiver, const DeliveryResult& result) {
     fmt::print("{:<8} {}\n", receiver,
-               result.trouble.empty() ? "was told" : printable(result.trouble));
+               result.trouble.empty() ? "delivered" : printable(result.trouble));
     good = good && result.trouble.empty();
   };
   if (!config->actions->command.empty())

@@ -28,10 +28,10 @@ void BaselineKeeper::update(const Estimation& estimation) {
   if (text == there) return;
   const std::string problem = drivers::write_text_file(path_, text);
   if (problem.empty())
-    log(LogLevel::notice,
-        fmt::format("baseline learned of {} parameters, written to {}", baseline->known(), path_));
+    log(LogLevel::notice, fmt::format("learned the baseline of {} parameters and wrote it to {}",
+                                      baseline->known(), path_));
   else
-    log(LogLevel::error, fmt::format("the learned baseline is not stored: {}", problem));
+    log(LogLevel::error, fmt::format("cannot store the learned baseline: {}", problem));
 }
 
 }  // namespace framewatch::daemon

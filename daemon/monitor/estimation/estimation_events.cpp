@@ -110,7 +110,7 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
 event_t withdrawn(event_t raised) {
   raised.state = event_state::cleared;
   raised.severity = severity::information;
-  raised.message = "is not looked for any more: the configuration was changed";
+  raised.message = "withdrawn: the new configuration does not monitor this";
   return raised;
 }
 

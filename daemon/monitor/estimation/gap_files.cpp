@@ -55,7 +55,7 @@ std::string write_log(drivers::AccelMessages messages, std::size_t axes, const s
 }
 
 void log_lost(const std::string& name, const std::string& why) {
-  log(LogLevel::error, fmt::format("{}: samples of a gap are not stored: {}", name, why));
+  log(LogLevel::error, fmt::format("{}: cannot store the samples of a gap: {}", name, why));
 }
 
 void store_segment(drivers::AccelMessages messages, std::size_t axes, const std::string& store,

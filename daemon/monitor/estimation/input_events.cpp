@@ -43,22 +43,25 @@ const char* name_of(Kind kind) {
 std::string message_of(Kind kind, const std::string& place, bool over, int code) {
   switch (kind) {
     case Kind::bus_off:
-      return place + (over ? ": is on the bus again" : ": bus-off, nothing is received");
+      return place + (over ? ": is on the bus again"
+                           : ": bus-off, nothing is received. Check the cable and its termination");
     case Kind::interface_gone:
-      return place + (over ? ": is there again" : ": is down or gone, waiting for it");
+      return place + (over ? ": is there again"
+                           : ": is down or gone; framewatch waits for it. Bring the interface up");
     case Kind::emergency:
-      return over ? place + ": no emergency any more"
+      return over ? place + ": the CANopen emergency is over"
                   : fmt::format("{}: CANopen emergency {:04X}h", place, code);
     case Kind::boot_up:
       return place + ": has booted";
     case Kind::sequence_leap:
-      return place + (over ? ": its numbers go on without leaps"
-                           : ": its numbers leapt: it began anew, or another node has its ids");
+      return place +
+             (over ? ": its sequence numbers are continuous again"
+                   : ": its sequence numbers jumped: it restarted, or another node has its ids");
     case Kind::duplicates:
-      return over ? place + ": its messages come once again"
+      return over ? place + ": its messages no longer come twice"
                   : fmt::format("{}: {} messages came twice within 10 s", place, code);
     case Kind::losses:
-      return over ? place + ": its messages come again"
+      return over ? place + ": its messages are no longer lost"
                   : fmt::format("{}: {} messages were lost within 10 s", place, code);
   }
   return place;
@@ -68,14 +71,16 @@ constexpr std::int64_t kFirstChannelId = std::int64_t{1} << 43;
 
 std::string silent_message(const std::string& name, bool raised, bool ever) {
   if (!raised) return fmt::format("{} sends samples again", name);
-  return ever ? fmt::format("{} is silent: no sample comes from it any more", name)
+  return ever ? fmt::format(
+                    "{} is silent: its samples have stopped. Check the sensor and its connection",
+                    name)
               : fmt::format("{} is silent: no sample has come from it yet", name);
 }
 
 std::string stuck_message(const std::string& name, bool raised) {
   return raised ? fmt::format(
-                      "{} is stuck: its value stands still while the building moves; its "
-                      "samples are left out",
+                      "{} is stuck: its value does not change while the building moves; its "
+                      "samples are left out. Check the sensor",
                       name)
                 : fmt::format("{} moves again", name);
 }
@@ -115,8 +120,8 @@ std::string table_message(const IntakeNotice& n, const Config& config) {
              ? fmt::format("{}, the configuration says that {} is {}: the configuration holds",
                            what, name, address(source.lcm_channel, source.sensor_node, source.axis))
              : fmt::format(
-                   "{}, an earlier one bound {} otherwise, whose samples still come: the "
-                   "earlier one holds",
+                   "{}, an earlier table names another node for {}, whose samples still come: the "
+                   "earlier table is used",
                    what, name);
 }
 
@@ -125,10 +130,11 @@ std::string two_senders_message(const IntakeNotice& n, const Config& config) {
   if (n.over) return fmt::format("{} has one sender again", node);
   const bool none = config.lcm.two_senders == drivers::TwoSenders::none;
   if (n.other == drivers::LcmSender{})
-    return fmt::format("two send under {}: {}", node,
-                       none ? "no sample of it is used"
-                            : "the samples of the first are used where they can be told apart, "
-                              "else none");
+    return fmt::format(
+        "two send under {}: {}", node,
+        none ? "no sample of it is used"
+             : "the samples of the first are used if the senders can be distinguished, "
+               "otherwise none");
   return fmt::format("{} send under {}: {}",
                      drivers::to_text(n.bound) + " and " + drivers::to_text(n.other), node,
                      none ? "no sample of it is used" : "only the samples of the first are used");
@@ -141,18 +147,18 @@ std::string message_of(const IntakeNotice& n, const Config& config) {
     case SequenceTrouble::two_senders:
       return two_senders_message(n, config);
     case SequenceTrouble::leaps:
-      return n.over ? fmt::format("the numbers of {} go on without leaps", node)
+      return n.over ? fmt::format("the sequence numbers of {} are continuous again", node)
                     : fmt::format(
                           "the numbers of {} leapt from {} to {}: it began anew, or they "
                           "are not its own",
                           node, n.from, n.to);
     case SequenceTrouble::duplicates:
       return n.over
-                 ? fmt::format("the messages of {} come once again", node)
+                 ? fmt::format("the messages of {} no longer come twice", node)
                  : fmt::format("{} messages of {} came twice, of {} in 10 s", n.count, node, n.of);
     case SequenceTrouble::losses:
       return n.over
-                 ? fmt::format("the messages of {} come again", node)
+                 ? fmt::format("the messages of {} are no longer lost", node)
                  : fmt::format("{} messages of {} were lost, of {} in 10 s", n.count, node, n.of);
   }
   return node;
@@ -204,12 +210,12 @@ event_t AbsurdEvents::event_of(std::size_t axis, std::int64_t time_us) const {
   m.value = static_cast<double>(count);
   m.std_error = std::numeric_limits<double>::quiet_NaN();
   m.unit = "samples";
-  m.message =
-      channel.raised
-          ? fmt::format(
-                "{} sends values that it cannot have measured, {} so far; they are left out",
-                m.place, count)
-          : fmt::format("{} sends plausible values again; {} were left out", m.place, count);
+  m.message = channel.raised ? fmt::format(
+                                   "{} sends values that no sensor can measure: {} so far, all "
+                                   "left out. Check the sensor",
+                                   m.place, count)
+                             : fmt::format("{} sends plausible values again; {} were left out",
+                                           m.place, count);
   return m;
 }
 

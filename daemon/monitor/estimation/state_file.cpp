@@ -26,23 +26,23 @@ struct Description {
 /// Returns the sections in the order of the file.
 const std::array<Description, 10>& descriptions() {
   static const std::array<Description, 10> all{{
-      {"counts", "counters of windows begin at 0", {}},
+      {"counts", "counters of windows start at 0", {}},
       {"events", "raised findings and their acknowledgements are forgotten", {}},
-      {"lcm", "nodes are heard as for the first time", {"channel", "lcm"}},
-      {"can", "CAN buses are heard as for the first time", {"channel", "can", "estimator"}},
-      {"tuning", "filters are tuned anew", {"structure", "channel", "parameters"}},
-      {"window", "the window begins anew", {"structure", "channel", "estimator", "long window"}},
+      {"lcm", "all nodes count as new", {"channel", "lcm"}},
+      {"can", "all CAN nodes count as new", {"channel", "can", "estimator"}},
+      {"tuning", "filters are tuned again", {"structure", "channel", "parameters"}},
+      {"window", "the window starts empty", {"structure", "channel", "estimator", "long window"}},
       {"baseline",
-       "baselines and their dependence on amplitude and temperature are learned anew",
+       "baselines and their dependence on amplitude and temperature are learned again",
        {"structure", "parameters"}},
       {"watch",
-       "evidence for changes is collected anew, and changes that last are announced again",
+       "evidence for changes is collected again, and lasting changes are announced again",
        {"structure", "parameters", "estimator", "long window", "watch"}},
       {"gap",
-       "the model that runs beside the building is learned anew",
+       "the model of the gap monitor is learned again",
        {"structure", "channel", "estimator", "gap"}},
       {"event_report",
-       "a strong motion under way is reported from here on",
+       "the report of a strong motion under way starts here",
        {"structure", "channel", "estimator"}},
   }};
   return all;
@@ -60,7 +60,7 @@ constexpr std::int32_t kFormat = 17;  ///< increase it whenever archive() of any
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMaxBytes = std::int64_t{1} << 30;
 constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head; a real one has about ten
-constexpr const char* kUnlike = "has sizes or numbers that cannot be right";
+constexpr const char* kUnlike = "has impossible sizes or numbers";
 
 /// Archives a list of the head, with its length.
 template <typename Archive, typename T>
@@ -173,7 +173,7 @@ ReadState read_state(const std::string& path) {
   const std::vector<std::uint8_t>& own = again.bytes();
   std::size_t at = own.size();
   if (!reader.good() || text->substr(at, kDigestBytes) != digest_of(own))
-    return {"is damaged or cut off: the digest of its head is another", {}, {}};
+    return {"is damaged or cut off: the digest of its head does not match", {}, {}};
   at += kDigestBytes;
   out.state.config_sha256 = head.config_sha256;
   out.state.events_before = head.events_before;
@@ -186,7 +186,7 @@ ReadState read_state(const std::string& path) {
     if (size < static_cast<std::size_t>(entry.size))
       out.lost.push_back({entry.name, "is cut off"});
     else if (digest_of(section.bytes) != entry.digest)
-      out.lost.push_back({entry.name, "is damaged: its digest is another"});
+      out.lost.push_back({entry.name, "is damaged: its digest does not match"});
     else
       out.state.sections.push_back(std::move(section));
   }

@@ -15,10 +15,10 @@ namespace framewatch::daemon {
 /// A section that could not be loaded from a state file.
 struct LostSection {
   std::string name;
-  std::string why;  ///< "its digest is another"
+  std::string why;  ///< "is damaged: its digest does not match"
 };
 
-/// Returns the consequence of a missing section, for people: "the window begins anew". Empty if
+/// Returns the consequence of a missing section, for people: "the window starts empty". Empty if
 /// `name` is not a section.
 std::string_view without_section(std::string_view name);
 

@@ -47,7 +47,7 @@ std::mutex& one_at_a_time() {
 }
 
 void log_lost_report(const std::string& name, const std::string& why) {
-  log(LogLevel::error, fmt::format("{}: is not written: {}", name, why));
+  log(LogLevel::error, fmt::format("{}: cannot write the report: {}", name, why));
 }
 
 }  // namespace
@@ -129,7 +129,8 @@ void EventReportFiles::write(const EventReport& report, const Config& config) {
     return one.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   });
   const std::string name = event_report_name(report);
-  if (writing_.size() == kMax) return log_lost_report(name, "others are still being written");
+  if (writing_.size() == kMax)
+    return log_lost_report(name, "too many reports are still being written");
   const std::string thrown = drivers::caught([&] {
     writing_.push_back(std::async(std::launch::async, [report, config, name] {
       std::string problem;

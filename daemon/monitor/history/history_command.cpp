@@ -82,7 +82,7 @@ class RequestReader {
     r_.config = load_config(a_.place, found);
     for (const ConfigProblem& p : found) problem(fmt::format("{}: {}", p.where, p.message));
     if (r_.config && !r_.config->history)
-      problem(a_.place + ": has no [history]: nothing is kept; docs/history.md says how");
+      problem(a_.place + ": has no [history], so nothing is stored: see docs/history.md");
     if (r_.config && r_.config->history) r_.directory = r_.config->history->directory;
   }
 
@@ -98,8 +98,8 @@ class RequestReader {
                           return std::isdigit(c) != 0 || (c >= 'A' && c <= 'Z');
                         });
       if (!good)
-        problem(fmt::format("{}: {} capital letters and digits at most, got \"{}\"", option, most,
-                            text));
+        problem(fmt::format("{}: expected at most {} capital letters and digits, got \"{}\"",
+                            option, most, text));
     };
     code("--network", a_.network, 2);
     code("--station", a_.station, 5);
@@ -120,16 +120,16 @@ class RequestReader {
       if (const auto read = read_utc(text))
         out = *read;
       else
-        problem(fmt::format("{}: \"{}\" is no time such as 2026-11-21T23:15:00Z", option, text));
+        problem(fmt::format("{}: \"{}\" is not a time such as 2026-11-21T23:15:00Z", option, text));
     };
     time("--from", a_.from, r_.from_us);
     time("--to", a_.to, r_.to_us);
     if (!a_.last.empty()) {
       const auto duration = read_duration(a_.last);
       if (!a_.from.empty() || !a_.to.empty())
-        problem("--last goes without --from and --to");
+        problem("--last cannot be combined with --from or --to");
       else if (!duration)
-        problem(fmt::format("--last: \"{}\" is no duration such as 90m, 2h or 3d", a_.last));
+        problem(fmt::format("--last: \"{}\" is not a duration such as 90m, 2h or 3d", a_.last));
       else if (newest_us != INT64_MIN)
         r_.from_us = newest_us - *duration;
     }
@@ -155,7 +155,7 @@ class RequestReader {
     if (a_.period_s != 0 && r_.period_s == 0) {
       std::string all;
       for (const std::string& s : known) all += (all.empty() ? "" : ", ") + s;
-      problem(fmt::format("--period: there are none of {} s; there are {} s", a_.period_s,
+      problem(fmt::format("--period: no summaries of {} s; there are {} s", a_.period_s,
                           all.empty() ? "none" : all));
     }
   }
@@ -229,7 +229,7 @@ std::string write_mat(const std::string& path, std::int64_t period_s,
   }
   const std::size_t cells = start_s.size() * summaries.size();
   if (cells * sizeof(double) > MatFile::kMaxBytes)
-    return path + ": a variable of a MATLAB 5 file holds at most 2 GiB: a shorter time, please";
+    return path + ": a variable of a MATLAB 5 file holds at most 2 GiB: choose a shorter time";
   std::vector<std::string> names, units;
   for (const NamedSummaries& s : summaries) {
     names.push_back(s.parameter.name);

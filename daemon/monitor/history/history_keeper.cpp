@@ -71,7 +71,8 @@ void repair(const std::string& partial) {
   if (end < 0) return;
   if (end == 0) {
     fs::rename(partial, path + ".damaged", failure);
-    log(LogLevel::warning, fmt::format("history: {} holds no whole event", path + ".damaged"));
+    log(LogLevel::warning,
+        fmt::format("history: set aside {}: it has no intact event", path + ".damaged"));
     return;
   }
   if ((end < size && !cut(partial, end)) || std::rename(partial.c_str(), path.c_str()) != 0) {
@@ -79,7 +80,8 @@ void repair(const std::string& partial) {
     return;
   }
   log(LogLevel::notice,
-      fmt::format("history: {} was not closed; {} bytes of an event cut off", path, size - end));
+      fmt::format("history: {} was not closed: cut off {} bytes of an incomplete event", path,
+                  size - end));
 }
 
 bool within(const accel_counts_t& block, const std::vector<TimeSpan>& spans) {
@@ -150,7 +152,7 @@ void compress_raw_log(const std::string& path, const std::atomic<bool>& stop) {
   if (problem.empty())
     fs::remove(path, none);
   else if (!stop)
-    log(LogLevel::warning, "history: not compressed: " + problem);
+    log(LogLevel::warning, "history: cannot compress " + problem);
 }
 
 std::string excerpt_raw_log(const std::string& path, const std::vector<TimeSpan>& spans,
@@ -197,7 +199,7 @@ void remove_old_raw_logs(const HistorySettings& settings, std::int64_t now_us) {
     std::error_code failure;
     if (problem.empty()) std::filesystem::remove(logs[i].path, failure);
     if (!problem.empty() || failure) {
-      log(LogLevel::warning, fmt::format("history: {} stays: {}", logs[i].path,
+      log(LogLevel::warning, fmt::format("history: cannot remove the old log {}: {}", logs[i].path,
                                          problem.empty() ? failure.message() : problem));
       continue;
     }

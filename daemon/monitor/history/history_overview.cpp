@@ -117,7 +117,7 @@ std::string history_overview(const std::string& directory, SummaryQuery& summari
   const std::string structure = summaries.structure();
   std::string out = fmt::format("{}{}{}\n", structure, structure.empty() ? "" : ": ", directory);
   out += raw_line("raw samples", totals(raw_folder(directory)));
-  out += raw_line("for ever", totals(event_folder(directory)));
+  out += raw_line("forever", totals(event_folder(directory)));
   const std::vector<SummaryPeriods> periods = summaries.periods();
   for (const SummaryPeriods& p : periods)
     out += fmt::format("{:<12}{} periods of {} s, {} to {}\n", "summaries", p.count, p.period_s,

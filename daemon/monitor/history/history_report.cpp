@@ -52,8 +52,9 @@ std::optional<event_t> HistoryMonitor::new_database(const SetAside& set_aside,
   database_.place = "database";
   database_.value = static_cast<double>(set_aside.count);
   database_.unit = "databases";
-  database_.message = fmt::format("the database was corrupt ({}): it is now {}, a new one is begun",
-                                  set_aside.reason, set_aside.path);
+  database_.message = fmt::format(
+      "the database was corrupt ({}): renamed it {} and started a new one. Check the disk",
+      set_aside.reason, set_aside.path);
   return database_;
 }
 
@@ -80,10 +81,10 @@ std::optional<event_t> HistoryMonitor::news(Part& part, const char* place,
   e.place = place;
   e.value = static_cast<double>(lost - part.lost_before);
   e.unit = place == std::string("raw") ? "samples" : "windows";
-  e.message =
-      bad ? fmt::format("the disk takes no {}: {}", place,
-                        trouble.empty() ? "it is too slow" : trouble)
-          : fmt::format("the disk takes {} again; {:.0f} {} were lost", place, e.value, e.unit);
+  const char* const what = place == std::string("raw") ? "raw samples" : "summaries";
+  e.message = bad ? fmt::format("cannot write {}: {}. Estimates continue. Check the disk", what,
+                                trouble.empty() ? "the disk is too slow" : trouble)
+                  : fmt::format("writing {} again; {:.0f} {} were lost", what, e.value, e.unit);
   return e;
 }
 

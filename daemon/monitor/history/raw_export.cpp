@@ -137,9 +137,7 @@ class CsvExport : public RawExport {
     if (zero_us_) out.push_back(fmt::format("time zero is {}", utc_text(*zero_us_)));
     if (out_of_order_ > 0)
       out.push_back(
-          fmt::format("{} samples of times that had gone by are left out: the clock went "
-                      "back",
-                      out_of_order_));
+          fmt::format("{} samples are left out because the clock went back", out_of_order_));
     return out;
   }
 
@@ -204,7 +202,7 @@ class RawJob {
       : a_(arguments), request_(request), problems_(problems) {}
 
   void run() {
-    (*progress_)("looking what there is", 0);
+    (*progress_)("looking for raw samples", 0);
     const std::vector<RawLog> logs =
         raw_logs_between(request_.directory, request_.from_us, request_.to_us);
     // Reads everything once first: an export has all of its channels from the start.
@@ -293,7 +291,7 @@ class RawJob {
     progress_.reset();
     std::FILE* const where = a_.raw == drivers::kStandardOutput ? stderr : stdout;
     fmt::print(where, "{}: {} samples of {} channels\n", a_.raw, samples, names.size());
-    if (beyond > 0) fmt::print(where, "{} of them are beyond what was stored\n", beyond);
+    if (beyond > 0) fmt::print(where, "{} of them exceed the stored range\n", beyond);
     for (const std::string& note : notes) fmt::print(where, "{}\n", printable_lines(note));
     for (const std::string& note : out.notes()) fmt::print(where, "{}\n", printable_lines(note));
   }

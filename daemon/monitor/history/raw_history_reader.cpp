@@ -69,7 +69,7 @@ bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std
       if (read != drivers::LogRead::event) {
         if (!log.partial && notes.size() <= kMaxNotes)
           notes.push_back(notes.size() == kMaxNotes
-                              ? "what else is damaged is not listed"
+                              ? "further damage is not listed"
                               : fmt::format("{}: {} bytes from byte {} on are damaged: {}",
                                             log.path, reader.damage().bytes, reader.damage().offset,
                                             reader.damage().reason));

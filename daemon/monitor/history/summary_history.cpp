@@ -120,8 +120,8 @@ bool SummaryHistory::begin_anew(const std::string& reason) {
   SetAside aside = counters().set_aside;
   set_aside_database(database, host_clock_us(), reason, aside);
   if (aside.problem.empty()) {
-    log(LogLevel::error, fmt::format("history: {} is corrupt ({}): it is now {}, a new one is "
-                                     "begun with {} of its events",
+    log(LogLevel::error, fmt::format("history: {} is corrupt ({}): renamed it {} and started a new "
+                                     "one with {} of its events. Check the disk",
                                      database, reason, aside.path, readable.size()));
     waiting().events.insert(waiting().events.begin(), readable.begin(), readable.end());
   }
@@ -153,7 +153,7 @@ void SummaryHistory::commit() {
     bound();
   }
   if (store_.repeated() > std::exchange(repeated_said_, store_.repeated()))
-    log(LogLevel::notice, "windows of a time that was summarised before are not summarised again");
+    log(LogLevel::notice, "skipped windows of a time that was already summarized");
   const bool time_known = intake_.newest_us() != INT64_MIN;
   if (problem.empty() && time_known && Clock::now() >= next_prune_) {
     next_prune_ = Clock::now() + kPrune;

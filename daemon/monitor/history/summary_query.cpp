@@ -45,7 +45,7 @@ std::string SummaryQuery::open(const std::string& directory) {
   const std::string path = summary_file(directory);
   if (drivers::is_absent(path)) {
     if (raw_logs(raw_folder(directory)).empty() && raw_logs(event_folder(directory)).empty())
-      return "there is none";
+      return "does not exist";
     if (!file_.open(":memory:")) return file_.error();  // only raw logs
     return upgrade(file_, history_schema());
   }
@@ -60,7 +60,7 @@ std::string SummaryQuery::problem() const {
 std::string SummaryQuery::told(const std::string& why) const {
   if (!file_.corrupt()) return why;
   return fmt::format(
-      "the database is corrupt{}; `framewatch run` sets it aside and begins a new one",
+      "the database is corrupt{}; `framewatch run` sets it aside and starts a new one",
       why.empty() ? "" : fmt::format(" ({})", why));
 }
 

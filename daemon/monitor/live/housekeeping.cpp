@@ -18,10 +18,10 @@ std::string status_line(const LiveEstimation& live, const Config& config, std::i
   const LiveTimes& times = live.times();
   const std::size_t raised = live.estimation().raised().all().size();
   const std::string events = raised > 0 ? fmt::format("{} events raised; ", raised) : "";
-  if (times.received_us == 0) return events + "waits for the first sample";
+  if (times.received_us == 0) return events + "waiting for the first sample";
   const std::int64_t silent_s = (now_us - times.received_us) / 1'000'000;
   if (silent_s > kSilent_s) return fmt::format("{}no samples for {} s", events, silent_s);
-  return fmt::format("{}estimates {} from {} channels, {} windows so far", events,
+  return fmt::format("{}estimating {} from {} channels, {} windows so far", events,
                      config.pipeline.structure.name, config.pipeline.axes.size(),
                      live.estimation().windows());
 }

@@ -48,8 +48,8 @@ std::optional<CanMonitor::Counted> CanMonitor::counted(const std::string& interf
 }
 
 std::optional<can_status_t> CanMonitor::collect(const drivers::CanIntake& can,
-                                             const drivers::CanSource& source,
-                                             std::int64_t now_us) {
+                                                const drivers::CanSource& source,
+                                                std::int64_t now_us) {
   if (config_.can.empty() || !second_.due(now_us)) return std::nullopt;
   const bool stepped_back = now_us < last_us_;
   if (stepped_back) std::fill(before_.begin(), before_.end(), std::nullopt);
@@ -98,7 +98,7 @@ CanWarnings::CanWarnings(const Config& config)
 std::string CanWarnings::bus_news(std::size_t b, const drivers::CanBusCounters& now, bool open) {
   Bus& bus = buses_[b];
   std::string news;
-  if (open != bus.open) news = open ? "is there" : "is down or gone";
+  if (open != bus.open) news = open ? "is up" : "is down or gone";
   if (now.state != bus.counters.state)
     news += fmt::format("{}{}", news.empty() ? "" : ", ", drivers::to_string(now.state));
   add(news, bus.counters.bus_off, now.bus_off, "times bus-off");
@@ -115,10 +115,10 @@ std::string CanWarnings::node_news(std::size_t n, const drivers::CanNodeCounters
   add(news, before.lost, now.lost, "lost");
   add(news, before.late, now.late, "late");
   add(news, before.duplicates, now.duplicates, "twice");
-  add(news, before.unplaced, now.unplaced, "without a time");
+  add(news, before.unplaced, now.unplaced, "without a timestamp");
   add(news, before.wrong_length, now.wrong_length, "of a wrong length");
-  add(news, before.wrong_kind, now.wrong_kind, "classical for CAN FD or the reverse");
-  add(news, before.not_finite, now.not_finite, "values that are no number");
+  add(news, before.wrong_kind, now.wrong_kind, "classical instead of CAN FD or the reverse");
+  add(news, before.not_finite, now.not_finite, "values that are not numbers");
   add(news, before.restarts, now.restarts, "restarts");
   add(news, before.boot_ups, now.boot_ups, "boot-ups");
   if (now.emergencies > before.emergencies)
@@ -131,7 +131,8 @@ std::string CanWarnings::node_news(std::size_t n, const drivers::CanNodeCounters
 }
 
 std::vector<std::string> CanWarnings::collect(const drivers::CanIntake& can,
-                                           const drivers::CanSource& source, std::int64_t now_us) {
+                                              const drivers::CanSource& source,
+                                              std::int64_t now_us) {
   std::vector<std::string> out;
   if (config_.can.empty() || !second_.due(now_us)) return out;
   if (!std::exchange(begun_, true)) return out;
@@ -150,7 +151,7 @@ std::vector<std::string> CanWarnings::collect(const drivers::CanIntake& can,
   }
   std::string host;
   add(host, dropped_, source.dropped(), "CAN frames dropped by full receive queues");
-  add(host, steps_, source.clock_steps() + can.host_steps(), "steps of the host's clock taken out");
+  add(host, steps_, source.clock_steps() + can.host_steps(), "steps of the host's clock corrected");
   dropped_ = source.dropped();
   steps_ = source.clock_steps() + can.host_steps();
   if (!host.empty()) out.push_back(host);
@@ -182,10 +183,10 @@ void IntakeWarnings::update(const LiveEstimation& live, std::int64_t now_us) {
   add(news, seen_[5], rejected, "samples rejected", rejected_of);
   add(news, seen_[6], estimation.intake().backwards(), "steps back in time");
   add(news, seen_[12], intake.other_sender, "messages of a second sender");
-  add(news, seen_[7], pipeline.interruptions, "gaps that restarted the window");
+  add(news, seen_[7], pipeline.interruptions, "interruptions that restarted the window");
   add(news, seen_[8], dropped.from_elsewhere, "datagrams from elsewhere dropped");
-  add(news, seen_[9], dropped.malformed, "datagrams that are no LCM");
-  add(news, seen_[10], dropped.unfinished, "messages of which a part never came");
+  add(news, seen_[9], dropped.malformed, "datagrams that are not LCM");
+  add(news, seen_[10], dropped.unfinished, "messages dropped because a part never came");
   add(news, seen_[11], dropped.overflowed, "datagrams dropped by the kernel's full buffer");
   if (!news.empty()) log(LogLevel::warning, news);
   for (const std::string& name : estimation.intake().binding().unbound())

@@ -56,7 +56,7 @@ std::string nothing_to_hear(const Config& config, bool by_name) {
   if (any || by_name) return {};
   return config.path +
          ": no channel has a source, so no sample can come: give each [[channel]] one, such as "
-         "source = { lcm = \"ACCEL\", node = 3, axis = \"x\" }; or say --by-name when the nodes "
+         "source = { lcm = \"ACCEL\", node = 3, axis = \"x\" }; or use --by-name when the nodes "
          "themselves name their channels (channel_table_t)";
 }
 

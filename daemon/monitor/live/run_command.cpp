@@ -90,9 +90,10 @@ void LiveEvents::acknowledged(const event_t& event, const Acknowledgement& by) {
 }
 
 CommandPacket LiveEvents::obey(const CommandPacket& command, const std::string& user) {
-  if (command.channel != "ACKNOWLEDGE") return refused("framewatch run acknowledges, nothing else");
+  if (command.channel != "ACKNOWLEDGE")
+    return refused("framewatch run takes no other command than acknowledge");
   const auto answer = desk_.obey(command.bytes, user, raised(), host_clock_us());
-  if (!answer) return refused("the request is not understood: another version?");
+  if (!answer) return refused("cannot read the request: is it from another version?");
   return {"ACKNOWLEDGED", drivers::encoded(*answer)};
 }
 
@@ -124,7 +125,7 @@ void log_lost(const std::string& path, const std::vector<LostSection>& lost) {
   std::error_code none;
   std::filesystem::copy_file(path, aside, std::filesystem::copy_options::overwrite_existing, none);
   log(LogLevel::notice, none ? fmt::format("cannot copy {} to {}: {}", path, aside, none.message())
-                             : fmt::format("a copy of the file is {}", aside));
+                             : fmt::format("kept a copy of the file as {}", aside));
 }
 
 /// Loads every section of the state file that fits, if the file exists. Renames a file of which
@@ -139,7 +140,7 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
   const LoadedState state = load_what_fits(path, config, live->estimation(), anew);
   if (state.problem.empty()) {
     log(LogLevel::notice,
-        fmt::format("goes on from {}: {} windows so far", path, live->estimation().windows()));
+        fmt::format("resumed from {}: {} windows so far", path, live->estimation().windows()));
     log_lost(path, state.lost);
     return std::none_of(state.lost.begin(), state.lost.end(),
                         [](const LostSection& l) { return l.name == "window"; });
@@ -147,9 +148,10 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
   const std::string aside = path + ".refused";
   std::filesystem::rename(path, aside, none);
   log(LogLevel::warning,
-      none ? fmt::format("{}: {}; starts anew, and cannot be put aside as {}: {}", path,
+      none ? fmt::format("{}: {}; started without it, and cannot rename it {}: {}", path,
                          state.problem, aside, none.message())
-           : fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
+           : fmt::format("{}: {}; started without it and renamed it {}", path, state.problem,
+                         aside));
   return false;
 }
 
@@ -160,7 +162,7 @@ RawBacklog missed_samples(const Config& config, const Estimation& estimation, bo
   for (const std::string& note : notes)
     log(LogLevel::warning, fmt::format("stored samples: {}", note));
   if (!out.empty())
-    log(LogLevel::notice, fmt::format("goes on with {:.1f} s of stored samples, from {} on",
+    log(LogLevel::notice, fmt::format("reading {:.1f} s of stored samples first, from {} on",
                                       out.seconds(), sensor_time_text(out.first_us())));
   return out;
 }
@@ -188,8 +190,9 @@ int run(const RunArguments& a) {
     return refuse("run", why);
   if (const std::string names = channels_without_source(*config, a.by_name); !names.empty())
     log(LogLevel::warning,
-        fmt::format("{}: no source: {}: nothing comes from them unless a node names them",
-                    config->path, names));
+        fmt::format(
+            "{}: channels without a source: {}. They get no samples unless a node names them",
+            config->path, names));
   if (!a.state.empty() && !drivers::is_absent(a.state))  // a device would be renamed and replaced
     if (const std::string why = drivers::why_no_file(a.state); !why.empty())
       return refuse("run", fmt::format("{}: {}", a.state, why));
@@ -204,7 +207,7 @@ int run(const RunArguments& a) {
   if (const std::string kept = a.can_log.empty() ? "" : drivers::keep_cut_off(a.can_log);
       !kept.empty())
     log(LogLevel::warning,
-        fmt::format("a run that was cut off left frames behind: they are in {}", kept));
+        fmt::format("a run that was cut off left CAN frames: kept them in {}", kept));
   if (!a.can_log.empty() && !can_log.open(a.can_log))
     return refuse("run", a.can_log + ": " + can_log.error());
   drivers::CanLogWriter* const recorder = a.can_log.empty() ? nullptr : &can_log;
@@ -213,7 +216,7 @@ int run(const RunArguments& a) {
   bool resumed = false;
   if (!a.state.empty()) {
     starts = count_start(a.state, error);
-    if (!error.empty()) log(LogLevel::error, fmt::format("starts are not counted: {}", error));
+    if (!error.empty()) log(LogLevel::error, fmt::format("cannot count this start: {}", error));
     resumed = resume(a.state, *config, *lcm, recorder, estimation);
   }
   LiveEstimation& live = *estimation;
@@ -248,7 +251,9 @@ int run(const RunArguments& a) {
   } else {
     housekeeping.write_state(live);
     error = count_clean_stop(a.state, starts);
-    if (!error.empty()) log(LogLevel::error, fmt::format("the stop is not counted: {}", error));
+    if (!error.empty())
+      log(LogLevel::error,
+          fmt::format("cannot record this stop: {}; the next start will count as unclean", error));
   }
   if (recorder != nullptr && !can_log.close())
     return refuse("run", a.can_log + ": " + can_log.error());

@@ -56,8 +56,8 @@ std::string permission_problem(const std::string& directory, const std::string& 
     return fmt::format("{}: no permission", path);
   const std::string group = group_name(found.st_gid), user = user_name(::geteuid());
   return fmt::format(
-      "{0}: no permission: the user {1} and members of the group {2} may (sudo usermod -aG {2} "
-      "{3}, then log in anew)",
+      "{0}: no permission: only the user {1} and members of the group {2} can give commands. Run "
+      "sudo usermod -aG {2} {3}, then log in again",
       path, user_name(found.st_uid), group, user);
 }
 
@@ -83,13 +83,14 @@ CommandAnswer exchange(const drivers::Descriptor& file, const std::string& path,
     return {false, fmt::format("{}: {}", path, std::strerror(errno)), {}};
   const ssize_t got = ::recv(file.get(), in.data(), in.size(), 0);
   if (got <= 0)
-    return {
-        false,
-        fmt::format("{}: the daemon {}", path,
-                    got == 0 || errno != EAGAIN ? "hung up without an answer" : "does not answer"),
-        {}};
+    return {false,
+            fmt::format("{}: the daemon {}", path,
+                        got == 0 || errno != EAGAIN ? "closed the connection without an answer"
+                                                    : "does not answer"),
+            {}};
   const auto packet = packet_of({in.data(), static_cast<std::size_t>(got)});
-  if (!packet) return {false, fmt::format("{}: what answers is no daemon", path), {}};
+  if (!packet)
+    return {false, fmt::format("{}: the answer is not from a framewatch daemon", path), {}};
   if (packet->channel == CommandPacket::kRefused)
     return {true, {packet->bytes.begin(), packet->bytes.end()}, {}};
   return {true, "", packet->bytes};
@@ -142,12 +143,13 @@ std::string prepare_command_directory(const std::string& directory) {
     return problem(std::strerror(errno));
   struct stat found {};
   if (::lstat(directory.c_str(), &found) != 0) return problem(std::strerror(errno));
-  if (!S_ISDIR(found.st_mode)) return problem("is no directory");
+  if (!S_ISDIR(found.st_mode)) return problem("is not a directory");
   if (found.st_uid != ::geteuid() && found.st_uid != 0)
-    return problem("belongs to another user, who could answer in our place");
+    return problem("belongs to another user, who could answer instead of framewatch");
   const bool sticky = (found.st_mode & S_ISVTX) != 0;
   const bool open = (found.st_mode & S_IWOTH) != 0 || ((found.st_mode & S_IWGRP) != 0 && !sticky);
-  if (open) return problem("others may write there: chmod o-w,g-w, or for a group chmod o-w,+t");
+  if (open)
+    return problem("others may write there: run chmod o-w,g-w, or chmod o-w,+t for a group");
   return "";
 }
 
@@ -179,8 +181,8 @@ CommandAnswer give_command(const Config& config, const std::string& service,
   }
   if (!forbidden.empty()) return {false, forbidden, {}};
   return {false,
-          fmt::format("no framewatch {} takes commands here (looked for {}): does it run with this "
-                      "configuration?",
+          fmt::format("no framewatch {} takes commands here (looked for {}). Start it with this "
+                      "configuration, or name the configuration with which it runs",
                       service, looked),
           {}};
 }

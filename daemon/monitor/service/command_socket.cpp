@@ -64,15 +64,16 @@ void CommandSocket::listen(std::int64_t now_us) {
   const std::string problem = open();
   if (problem == problem_) return;
   problem_ = problem;
-  if (!problem.empty()) log(LogLevel::error, "no commands are taken: " + problem);
+  if (!problem.empty()) log(LogLevel::error, "cannot take commands: " + problem);
 }
 
 std::string CommandSocket::open() {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path_.size() >= sizeof address.sun_path)
-    return fmt::format("{}: a socket's path has {} bytes at most ([commands] directory)", path_,
-                       sizeof address.sun_path - 1);
+    return fmt::format(
+        "{}: the path of a socket has {} bytes at most: set a shorter [commands] directory", path_,
+        sizeof address.sun_path - 1);
   path_.copy(address.sun_path, sizeof address.sun_path - 1);
   std::string problem = prepare_command_directory(directory_);
   if (!problem.empty()) return problem;
@@ -83,7 +84,7 @@ std::string CommandSocket::open() {
   if (lock_.get() < 0) return with_errno(lock);
   if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
     return fmt::format(
-        "{}: another framewatch {} takes them there; two need two prefixes, or "
+        "{}: another framewatch {} takes commands there: give each its own lcm.prefix or "
         "[commands] directory",
         path_, service_);
   ::unlink(path_.c_str());  // left by a dead process: this one holds the lock

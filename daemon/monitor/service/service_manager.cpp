@@ -112,12 +112,14 @@ std::string unit_text(const UnitState& s) {
 
 std::string unit_oddity(const UnitState& s) {
   if (s.active == "failed" && s.result == "start-limit-hit")
-    return "systemd has given up: it came and went too often; journalctl -u framewatch, then "
-           "systemctl reset-failed framewatch";
+    return "systemd has stopped restarting it after too many failures: read journalctl -u "
+           "framewatch, "
+           "then run systemctl reset-failed framewatch";
   if (s.active == "failed") return "the service has failed: " + s.result;
   if (s.sub == "auto-restart")
-    return fmt::format("it comes and goes: systemd has restarted it {}: journalctl -u framewatch",
-                       times(s.restarts));
+    return fmt::format(
+        "it keeps failing: systemd has restarted it {}. Read journalctl -u framewatch",
+        times(s.restarts));
   return {};
 }
 

@@ -205,11 +205,11 @@ TEST_F(StateFile, RunReadsItWritesItAndPutsAForeignOneAside) {
   EXPECT_EQ(run_and_stop(own.path("state"), own.path("first")), 0);
   ASSERT_TRUE(std::filesystem::exists(own.path("state")));
   EXPECT_EQ(run_and_stop(own.path("state"), own.path("second")), 0);
-  EXPECT_NE(read_file(own.path("second")).find("goes on from"), std::string::npos)
+  EXPECT_NE(read_file(own.path("second")).find("resumed from"), std::string::npos)
       << read_file(own.path("second"));
   write_file(own.path("state"), "not ours");
   EXPECT_EQ(run_and_stop(own.path("state"), own.path("third")), 0);
-  EXPECT_NE(read_file(own.path("third")).find("is not a state of framewatch; starts anew"),
+  EXPECT_NE(read_file(own.path("third")).find("is not a state of framewatch; started without it"),
             std::string::npos)
       << read_file(own.path("third"));
   EXPECT_EQ(read_file(own.path("state.refused")), "not ours");

@@ -139,12 +139,12 @@ TEST_F(StateSections, ADamagedOneCostsItself) {
         section.name == "baseline" ? Names{"baseline", "watch"} : Names{section.name};
     EXPECT_EQ(resumed.lost(), expected);
     ASSERT_FALSE(resumed.loaded.lost.empty());
-    EXPECT_EQ(resumed.loaded.lost[0].why, "is damaged: its digest is another");
+    EXPECT_EQ(resumed.loaded.lost[0].why, "is damaged: its digest does not match");
     expect_the_others(config_, *resumed.estimation, expected);
     bool touched = false;
     Estimation whole_or_none(config_, {});
     const std::string problem = load_state(path("state"), config_, whole_or_none, touched).problem;
-    EXPECT_EQ(problem, "section " + section.name + " is damaged: its digest is another");
+    EXPECT_EQ(problem, "section " + section.name + " is damaged: its digest does not match");
     EXPECT_FALSE(touched);
   }
 }

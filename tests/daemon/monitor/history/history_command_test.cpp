@@ -298,7 +298,7 @@ TEST_F(HistoryCommand, TellsEveryProblemAtOnceAndWritesNothing) {
   EXPECT_EQ(ran.code, 2);
   for (const char* part :
        {"s.xlsx: the name for summaries", "r.sac: the name for raw samples",
-        "--from: \"yesterday\"", "--period: there are none of 7 s; there are 1, 2, 4 s",
+        "--from: \"yesterday\"", "--period: no summaries of 7 s; there are 1, 2, 4 s",
         "there is no kx_1_y3; did you mean kx_1_y", "--network"})
     EXPECT_NE(ran.problems.find(part), std::string::npos) << part << "\n" << ran.problems;
   EXPECT_EQ(directory_.names(), before);
@@ -340,7 +340,7 @@ TEST_F(HistoryCommand, NoHistoryIsTold) {
   a.place = test::table_config();
   EXPECT_NE(run(a).problems.find("has no [history]"), std::string::npos);
   a.place = directory_.path("");
-  EXPECT_NE(run(a).problems.find("there is none"), std::string::npos);
+  EXPECT_NE(run(a).problems.find("does not exist"), std::string::npos);
   a.place = directory_.path("nowhere.toml");
   EXPECT_EQ(run(a).code, 2);
 }

@@ -94,7 +94,7 @@ TEST_F(Reloading, AWrongFileAnotherStructureAndNoFileAreRefused) {
   write(wider);
   const std::string said = read(reloader, result);
   EXPECT_NE(said.find("b.toml:8:"), std::string::npos) << said;
-  EXPECT_NE(said.find("node_mass_kg: 20 -> 21: takes a restart"), std::string::npos) << said;
+  EXPECT_NE(said.find("node_mass_kg: 20 -> 21: needs a restart"), std::string::npos) << said;
   EXPECT_NE(said.find("stays in force"), std::string::npos);
   std::filesystem::remove(path_);
   EXPECT_NE(read(reloader, result).find("No such file"), std::string::npos);

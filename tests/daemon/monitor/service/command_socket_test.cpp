@@ -187,7 +187,7 @@ TEST_F(Commands, ADeadProcessSocketIsReplacedALivingOnesIsNot) {
   testing::internal::CaptureStderr();
   auto second = listen();
   const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("no commands are taken: " + path()), std::string::npos) << said;
+  EXPECT_NE(said.find("cannot take commands: " + path()), std::string::npos) << said;
   EXPECT_NE(said.find("another framewatch run"), std::string::npos) << said;
   serve(*first);
   EXPECT_TRUE(ask("YES").answered);
@@ -224,7 +224,7 @@ TEST_F(Commands, ADirectoryThatOthersRuleIsRefused) {
   EXPECT_EQ(listen()->problem(), "");
   std::filesystem::create_directory_symlink(directory, directory_.path("link"));
   config_.commands.directory = directory_.path("link");
-  EXPECT_NE(listen()->problem().find("is no directory"), std::string::npos);
+  EXPECT_NE(listen()->problem().find("is not a directory"), std::string::npos);
   config_.commands.directory = directory_.path("none/none");
   EXPECT_NE(listen()->problem(), "");
   config_.commands.directory = directory_.path(std::string(120, 'x'));

@@ -67,7 +67,7 @@ TEST(ServiceManager, HearsEveryStepOfARun) {
                       "WATCHDOG_USEC=" + std::to_string(kWatchdog_us), FRAMEWATCH_PROGRAM, "run",
                       config, "--url", "memq://", "--quiet"});
   EXPECT_TRUE(systemd.hears("READY=1"));
-  EXPECT_TRUE(systemd.hears("STATUS=waits for the first sample"));
+  EXPECT_TRUE(systemd.hears("STATUS=waiting for the first sample"));
   // Idle, and well: fed more often than the timeout.
   for (int i = 0; i < 5; ++i) {
     const std::int64_t began_us = steady_clock_us();
