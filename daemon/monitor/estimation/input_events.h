@@ -89,10 +89,11 @@ class CanEvents {
   std::vector<Begun> begun_;  ///< by kind, then by bus or node
 };
 
-/// Reports dead channels. "channel_silent": no sample for kSilent_s plus the wait for late samples,
-/// while others send; cleared with the next sample. "channel_stuck": most samples of kStuck_s were
-/// left out because they did not change while the building moved; cleared when they change for
-/// kMoving_s. Ids depend only on kind and channel and are larger than those of all other events.
+/// Reports dead channels with two kinds of events. A "channel_silent" has had no sample for
+/// kSilent_s plus the wait for late samples, while others send; its next sample clears the event. A
+/// "channel_stuck" has had most samples of kStuck_s left out because they did not change while the
+/// building moved; changes for kMoving_s clear the event. Ids depend only on kind and channel and
+/// are larger than those of all other events.
 class ChannelEvents {
  public:
   static constexpr int kSilent_s = 5, kStuck_s = 2, kMoving_s = 3;

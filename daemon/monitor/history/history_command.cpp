@@ -1,180 +1,41 @@
 #include "daemon/monitor/history/history_command.h"
 
-#include <fnmatch.h>
-
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
-#include <filesystem>
+#include <cstdio>
+#include <limits>
 #include <map>
-#include <system_error>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 
-#include "daemon/base/clocks.h"
 #include "daemon/base/exit_code.h"
 #include "daemon/base/mat_file.h"
 #include "daemon/base/printable.h"
 #include "daemon/base/progress.h"
 #include "daemon/base/utc_time.h"
-#include "daemon/config/keys/suggest.h"
+#include "daemon/config/channel_addresses.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_overview.h"
+#include "daemon/monitor/history/history_request.h"
 #include "daemon/monitor/history/raw_export.h"
+#include "daemon/monitor/history/raw_history_reader.h"
+#include "daemon/monitor/history/summary_query.h"
 #include "drivers/files/number_text.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/files/text_output.h"
+#include "drivers/lcm/count_block.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr std::size_t kScreenRows = 30;
-
-/// Parses "90m", "2h", "3d", "45s" or "45". Returns microseconds, or nullopt if `text` is not a
-/// duration > 0.
-std::optional<std::int64_t> read_duration(const std::string& text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  const std::string unit(rest, end);
-  const double seconds = unit.empty() || unit == "s" ? 1
-                         : unit == "m"               ? 60
-                         : unit == "h"               ? 3600
-                         : unit == "d"               ? 86400
-                                                     : 0;
-  if (error != std::errc() || seconds == 0 || !(value > 0) || value * seconds > 1e10)
-    return std::nullopt;
-  return std::llround(1e6 * value * seconds);
-}
-
-class RequestReader {
- public:
-  RequestReader(const HistoryArguments& arguments, SummaryQuery& summaries,
-                std::vector<std::string>& problems)
-      : a_(arguments), summaries_(summaries), problems_(problems) {}
-
-  HistoryRequest read() {
-    find_directory();
-    check_names();
-    if (r_.directory.empty()) return std::move(r_);
-    if (const std::string why = summaries_.open(r_.directory); !why.empty())
-      problem(fmt::format("{}: {}", summary_file(r_.directory), why));
-    else
-      read_request();
-    if (const std::string why = summaries_.problem(); problems_.empty() && !why.empty())
-      problem(fmt::format("{}: {}", summary_file(r_.directory), why));
-    return std::move(r_);
-  }
-
- private:
-  void problem(std::string message) { problems_.push_back(std::move(message)); }
-
-  void find_directory() {
-    std::error_code none;
-    if (std::filesystem::is_directory(a_.place, none)) {
-      r_.directory = a_.place;
-      return;
-    }
-    std::vector<ConfigProblem> found;
-    r_.config = load_config(a_.place, found);
-    for (const ConfigProblem& p : found) problem(fmt::format("{}: {}", p.where, p.message));
-    if (r_.config && !r_.config->history)
-      problem(a_.place + ": has no [history], so nothing is stored: see docs/history.md");
-    if (r_.config && r_.config->history) r_.directory = r_.config->history->directory;
-  }
-
-  void check_names() {
-    if (!a_.out.empty() && a_.out != drivers::kStandardOutput && !a_.out.ends_with(".csv") &&
-        !a_.out.ends_with(".csv.gz") && !a_.out.ends_with(".mat"))
-      problem(a_.out + ": the name for summaries must end in .csv, .csv.gz or .mat");
-    if (!a_.raw.empty())
-      if (const std::string rule = problem_of_raw_name(a_.raw); !rule.empty()) problem(rule);
-    const auto code = [&](const char* option, const std::string& text, std::size_t most) {
-      const bool good = !text.empty() && text.size() <= most &&
-                        std::all_of(text.begin(), text.end(), [](unsigned char c) {
-                          return std::isdigit(c) != 0 || (c >= 'A' && c <= 'Z');
-                        });
-      if (!good)
-        problem(fmt::format("{}: expected at most {} capital letters and digits, got \"{}\"",
-                            option, most, text));
-    };
-    code("--network", a_.network, 2);
-    code("--station", a_.station, 5);
-  }
-
-  void read_request() {
-    read_span();
-    choose_parameters();
-  }
-
-  void read_span() {
-    const std::vector<SummaryPeriods> periods = summaries_.periods();
-    std::int64_t newest_us = summaries_.newest_us().value_or(INT64_MIN);
-    for (const RawLog& log : raw_logs(raw_folder(r_.directory)))
-      newest_us = std::max(newest_us, log.start_us + kSecond_us);
-    const auto time = [&](const char* option, const std::string& text, std::int64_t& out) {
-      if (text.empty()) return;
-      if (const auto read = read_utc(text))
-        out = *read;
-      else
-        problem(fmt::format("{}: \"{}\" is not a time such as 2026-11-21T23:15:00Z", option, text));
-    };
-    time("--from", a_.from, r_.from_us);
-    time("--to", a_.to, r_.to_us);
-    if (!a_.last.empty()) {
-      const auto duration = read_duration(a_.last);
-      if (!a_.from.empty() || !a_.to.empty())
-        problem("--last cannot be combined with --from or --to");
-      else if (!duration)
-        problem(fmt::format("--last: \"{}\" is not a duration such as 90m, 2h or 3d", a_.last));
-      else if (newest_us != INT64_MIN)
-        r_.from_us = newest_us - *duration;
-    }
-    if (r_.from_us >= r_.to_us) problem("--from must be before --to");
-    choose_period(periods);
-  }
-
-  void choose_period(const std::vector<SummaryPeriods>& periods) {
-    std::vector<std::string> known;
-    for (const SummaryPeriods& p : periods) {
-      known.push_back(std::to_string(p.period_s));
-      const std::int64_t from_us = std::max(r_.from_us, p.first_us);
-      const std::int64_t to_us = std::min(r_.to_us, p.last_us + kSecond_us * p.period_s);
-      const auto rows = static_cast<std::size_t>(
-          std::max<std::int64_t>(0, (to_us - from_us) / (kSecond_us * p.period_s)));
-      const bool fits = !a_.out.empty() || rows <= kScreenRows;
-      if (a_.period_s == 0 && (r_.period_s == 0 || !period_fits_)) {
-        r_.period_s = p.period_s;
-        period_fits_ = fits;
-      }
-      if (a_.period_s == p.period_s) r_.period_s = p.period_s;
-    }
-    if (a_.period_s != 0 && r_.period_s == 0) {
-      std::string all;
-      for (const std::string& s : known) all += (all.empty() ? "" : ", ") + s;
-      problem(fmt::format("--period: no summaries of {} s; there are {} s", a_.period_s,
-                          all.empty() ? "none" : all));
-    }
-  }
-
-  void choose_parameters() {
-    const std::vector<SummaryParameter> all = summaries_.parameters();
-    std::vector<std::string> names;
-    for (const SummaryParameter& p : all) {
-      names.push_back(p.name);
-      if (is_chosen(a_.parameters, p.name)) r_.parameters.push_back(p);
-    }
-    check_patterns("--parameter", a_.parameters, names, problems_);
-  }
-
-  const HistoryArguments& a_;
-  SummaryQuery& summaries_;
-  std::vector<std::string>& problems_;
-  HistoryRequest r_;
-  bool period_fits_ = false;
+struct NamedSummaries {
+  SummaryParameter parameter;
+  std::vector<SummaryRow> rows;
 };
 
 struct Column {
@@ -251,6 +112,132 @@ std::string write_mat(const std::string& path, std::int64_t period_s,
   return problem.empty() ? "" : fmt::format("{}: {}", path, problem);
 }
 
+/// Writes summaries of one period to `path`: .csv or .csv.gz with one row per parameter and period,
+/// or .mat, periods x parameters (docs/history.md). Returns an empty string, or the problem; then
+/// no file remains.
+std::string write_summaries(const std::string& path, std::int64_t period_s,
+                            const std::vector<NamedSummaries>& summaries) {
+  return path.ends_with(".mat") ? write_mat(path, period_s, summaries)
+                                : write_csv(path, period_s, summaries);
+}
+
+constexpr std::int64_t kProgressSamples = 1 << 14;
+
+class RawJob {
+ public:
+  RawJob(const HistoryArguments& arguments, const HistoryRequest& request,
+         std::vector<std::string>& problems)
+      : a_(arguments), request_(request), problems_(problems) {}
+
+  void run() {
+    (*progress_)("looking for raw samples", 0);
+    const std::vector<RawLog> logs =
+        raw_logs_between(request_.directory, request_.from_us, request_.to_us);
+    // Reads everything once first: an export has all of its channels from the start.
+    std::vector<std::string> names;
+    double rate_hz = 0, resolution_mps2 = 0;
+    std::int64_t samples = 0;
+    std::vector<std::string> notes;
+    std::string why;
+    const auto fails = [&] {
+      problem(why);
+      return;
+    };
+    if (!read_raw_history(logs, request_.from_us, request_.to_us,
+                          {[&](const auto& now, double rate) {
+                             for (const std::string& name : now)
+                               if (std::find(names.begin(), names.end(), name) == names.end())
+                                 names.push_back(name);
+                             if (rate_hz == 0) rate_hz = rate;
+                           },
+                           [&](const RawCount& c) {
+                             ++samples;
+                             if (resolution_mps2 == 0) resolution_mps2 = c.resolution_mps2;
+                           }},
+                          notes, why))
+      return fails();
+    check_patterns("--channel", a_.channels, names, problems_);
+    if (samples == 0) problem("there are no raw samples in that time");
+    if (!problems_.empty()) return;
+    std::vector<RawChannel> channels;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (is_chosen(a_.channels, names[i])) channels.push_back(placed(names[i], i));
+    std::erase_if(names, [&](const std::string& name) { return !is_chosen(a_.channels, name); });
+    const auto out =
+        raw_export(a_.raw, channels, rate_hz, resolution_mps2, {a_.network, a_.station}, why);
+    if (!out) return fails();
+    expected_ = samples;
+    progress_->part_begins();
+    write_raw(logs, names, *out);
+  }
+
+ private:
+  void problem(std::string message) { problems_.push_back(std::move(message)); }
+
+  /// Returns the LCM address of a channel: from the configuration, otherwise a separate node.
+  RawChannel placed(const std::string& name, std::size_t index) const {
+    if (request_.config) {
+      const auto all = addresses(request_.config->sources);
+      for (std::size_t i = 0; i < all.size(); ++i)
+        if (request_.config->pipeline.axes[i].name == name) return {name, all[i], i};
+    }
+    return {name, {"ACCEL", static_cast<std::int32_t>(index), 0}, index};
+  }
+
+  void write_raw(const std::vector<RawLog>& logs, const std::vector<std::string>& names,
+                 RawExport& out) {
+    std::vector<std::optional<std::size_t>> place;  // by channel of the log
+    std::int64_t seen = 0, samples = 0, beyond = 0;
+    bool good = true;
+    std::vector<std::string> notes;
+    std::string why;
+    const RawVisitor visitor{
+        [&](const std::vector<std::string>& now, double) {
+          place.assign(now.size(), std::nullopt);
+          for (std::size_t i = 0; i < now.size(); ++i)
+            if (const auto at = std::find(names.begin(), names.end(), now[i]); at != names.end())
+              place[i] = static_cast<std::size_t>(at - names.begin());
+        },
+        [&](const RawCount& c) {
+          if (++seen % kProgressSamples == 0)
+            (*progress_)("writing " + a_.raw,
+                         static_cast<double>(seen) / static_cast<double>(expected_));
+          if (!good || !place[c.channel]) return;
+          ++samples;
+          beyond += c.count == drivers::kMaxCount || c.count == -drivers::kMaxCount;
+          const double accel = c.count == drivers::kNoCount
+                                   ? std::numeric_limits<double>::quiet_NaN()
+                                   : c.count * c.resolution_mps2;
+          good = out.put(*place[c.channel], c.time_us, accel);
+        },
+        [&](const drivers::LogEvent& event) { good = good && out.message(event); }};
+    const bool read = read_raw_history(logs, request_.from_us, request_.to_us, visitor, notes, why);
+    if (!read || !good || !out.close()) {
+      problem(read ? fmt::format("{}: {}", a_.raw, out.error()) : why);
+      return;
+    }
+    progress_.reset();
+    std::FILE* const where = a_.raw == drivers::kStandardOutput ? stderr : stdout;
+    fmt::print(where, "{}: {} samples of {} channels\n", a_.raw, samples, names.size());
+    if (beyond > 0) fmt::print(where, "{} of them exceed the stored range\n", beyond);
+    for (const std::string& note : notes) fmt::print(where, "{}\n", printable_lines(note));
+    for (const std::string& note : out.notes()) fmt::print(where, "{}\n", printable_lines(note));
+  }
+
+  const HistoryArguments& a_;
+  const HistoryRequest& request_;
+  std::vector<std::string>& problems_;
+  std::int64_t expected_ = 0;  ///< total of all channels
+  std::optional<ProgressLine> progress_{std::in_place, "history", false};
+};
+
+/// Writes the requested raw samples to the file HistoryArguments::raw and prints notes about it.
+/// After a problem no file remains.
+void export_raw_history(const HistoryArguments& arguments, const HistoryRequest& request,
+                        std::vector<std::string>& problems) {
+  RawJob(arguments, request, problems).run();
+}
+
 constexpr std::int64_t kMaxEvents = 1'000'000;
 
 void print_events(const HistoryRequest& r, SummaryQuery& summaries) {
@@ -304,38 +291,6 @@ int fail(const std::vector<std::string>& problems) {
 }
 
 }  // namespace
-
-bool is_chosen(const std::vector<std::string>& patterns, const std::string& name) {
-  return patterns.empty() || std::any_of(patterns.begin(), patterns.end(), [&](const auto& p) {
-           return ::fnmatch(p.c_str(), name.c_str(), 0) == 0;
-         });
-}
-
-void check_patterns(const char* option, const std::vector<std::string>& patterns,
-                    const std::vector<std::string>& names, std::vector<std::string>& problems) {
-  for (const std::string& pattern : patterns) {
-    if (std::any_of(names.begin(), names.end(),
-                    [&](const auto& name) { return is_chosen({pattern}, name); }))
-      continue;
-    const std::string meant = nearest(pattern, names);
-    problems.push_back(fmt::format("{}: there is no {}{}", option, pattern,
-                                   meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
-  }
-}
-
-std::optional<HistoryRequest> read_history_request(const HistoryArguments& arguments,
-                                                   SummaryQuery& summaries,
-                                                   std::vector<std::string>& problems) {
-  HistoryRequest request = RequestReader(arguments, summaries, problems).read();
-  if (!problems.empty()) return std::nullopt;
-  return request;
-}
-
-std::string write_summaries(const std::string& path, std::int64_t period_s,
-                            const std::vector<NamedSummaries>& summaries) {
-  return path.ends_with(".mat") ? write_mat(path, period_s, summaries)
-                                : write_csv(path, period_s, summaries);
-}
 
 int history(const HistoryArguments& a) {
   std::vector<std::string> problems;

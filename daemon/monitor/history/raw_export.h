@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "daemon/monitor/history/history_command.h"
 #include "drivers/lcm/accel_messages.h"
 #include "drivers/lcm/lcm_log.h"
 
@@ -49,10 +48,5 @@ std::unique_ptr<RawExport> raw_export(const std::string& path,
 
 /// Returns the rule that the name of an export breaks; empty if the name is valid.
 std::string problem_of_raw_name(const std::string& path);
-
-/// Writes the requested raw samples to the file HistoryArguments::raw and prints notes about it.
-/// After a problem no file remains.
-void export_raw_history(const HistoryArguments& arguments, const HistoryRequest& request,
-                        std::vector<std::string>& problems);
 
 }  // namespace framewatch::daemon

@@ -174,18 +174,27 @@ void log_summary(const Estimation& estimation) {
                   counters.interruptions, estimation.intake().lost()));
 }
 
+/// Reads a configuration file and logs its doubts. Returns nullopt, with the problems printed, if
+/// it is invalid; otherwise sets `text` to the contents of the file.
+std::optional<Config> read_configuration(const std::string& path, std::string& text) {
+  std::vector<ConfigProblem> problems;
+  std::string error;
+  const std::optional<std::string> contents = read_text_file(path, error);
+  if (!contents) problems.push_back({path, error});
+  std::optional<Config> config = contents ? parse_config(path, *contents, problems) : std::nullopt;
+  print_problems(problems);
+  if (!config) return std::nullopt;
+  log_doubts(config->doubts);
+  text = *contents;
+  return config;
+}
+
 }  // namespace
 
 int run(const RunArguments& a) {
-  std::vector<ConfigProblem> problems;
-  std::string error;
-  const std::optional<std::string> text = read_text_file(a.config, error);
-  if (!text) problems.push_back({a.config, error});
-  const std::optional<Config> config =
-      text ? parse_config(a.config, *text, problems) : std::nullopt;
-  print_problems(problems);
+  std::string text, error;
+  const std::optional<Config> config = read_configuration(a.config, text);
   if (!config) return kBadInput;
-  log_doubts(config->doubts);
   if (const std::string why = nothing_to_hear(*config, a.by_name); !why.empty())
     return refuse("run", why);
   if (const std::string names = channels_without_source(*config, a.by_name); !names.empty())
@@ -226,7 +235,7 @@ int run(const RunArguments& a) {
   LiveEvents events(*config, *lcm, live, history);
   live.catch_up(std::move(missed));
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
-  Housekeeping housekeeping(*config, *text, a.state, a.state_every_s, starts, resumed);
+  Housekeeping housekeeping(*config, text, a.state, a.state_every_s, starts, resumed);
   if (!a.quiet)
     log(LogLevel::info,
         fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name, config->path,

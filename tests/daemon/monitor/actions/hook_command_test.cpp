@@ -20,14 +20,14 @@ namespace hook_command_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr double kLongestEnd_s = 6;  // until a group is ended that does not want to
+constexpr double kLongestEnd_s = 6;  // to end a process group that ignores SIGTERM
 constexpr double kShortTimeout_s = 0.4;
-constexpr double kTimeToBegin_s = 3;  // of a shell and its child, on a busy machine
-constexpr auto kSoon = 10s;           // for what takes a moment on a machine with time
+constexpr double kTimeToBegin_s = 3;  // a shell and its child start, on a busy machine
+constexpr auto kSoon = 10s;           // for short actions on an idle machine
 
 class Hook : public testing::Test {
  protected:
-  /// A shell script as the command.
+  /// Returns the settings for a shell script as the command.
   ActionSettings script(const std::string& lines, std::vector<std::string> arguments = {}) {
     test::write_file(directory_.path("hook"),
                      "#!/bin/sh\ncd " + directory_.path("") + "\n" + lines);
@@ -97,7 +97,7 @@ TEST_F(Hook, SaysWhyItFailed) {
 }
 
 TEST_F(Hook, IsEndedWithItsGroupWhenItTakesTooLong) {
-  // It does not want to end, and neither does its child.
+  // The command and its child ignore SIGTERM.
   ActionSettings settings = script(
       "trap '' TERM\nsh -c 'trap \"\" TERM; echo $$ >pid; while :; do sleep 0.1; done' &\n"
       "while :; do sleep 0.1; done\n");

@@ -19,9 +19,9 @@ namespace notifier_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr double kNoWaitForAThousand_s = 2;  // that the caller may lose
-constexpr double kLongestEnd_s = 6;  // with a receiver that does not answer: 2 s and the last look
-constexpr auto kSoon = 10s;          // for what takes a moment on a machine with time
+constexpr double kNoWaitForAThousand_s = 2;  // time that the caller may lose
+constexpr double kLongestEnd_s = 6;  // with a receiver that does not answer: 2 s and the last poll
+constexpr auto kSoon = 10s;          // for short actions on an idle machine
 
 TEST(Notifier, NeverKeepsWhoeverHasNewsWaitingAndEndsInTime) {
   std::atomic<int> begun = 0;

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 // Limits.
 constexpr double kShortTimeout_s = 0.4;
-constexpr double kGivenUp_s = 4;  // on a server that answers after six
+constexpr double kGivenUp_s = 4;  // with a server that answers after six
 
 class Webhook : public testing::Test {
  protected:
@@ -97,7 +97,7 @@ TEST_F(Webhook, TrustsNoCertificateOfItsOwnMaking) {
   settings.webhook_ca_file = certificate;
   EXPECT_EQ(post_webhook(settings, "{}", never).trouble, "");
   settings.webhook = "https://localhost:" + std::to_string(server.port()) + "/";
-  EXPECT_NE(post_webhook(settings, "{}", never).trouble, "");  // it is another name
+  EXPECT_NE(post_webhook(settings, "{}", never).trouble, "");  // the certificate has another name
   EXPECT_EQ(server.requests().size(), 1u);
 }
 

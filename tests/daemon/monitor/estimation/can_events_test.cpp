@@ -91,7 +91,7 @@ TEST(CanEvents, EveryBootUpIsToldAndLeavesNothingOpen) {
   heard.estimation.frame(0, frame(0x701, {0}, 1000));
   heard.estimation.frame(0, frame(0x701, {5}, 1500));  // a heartbeat
   heard.estimation.frame(0, frame(0x701, {0}, 2000));
-  heard.estimation.frame(0, frame(0x77F, {0}, 2500));  // nobody's
+  heard.estimation.frame(0, frame(0x77F, {0}, 2500));  // unknown node
   ASSERT_EQ(heard.events.size(), 2u);
   for (const event_t& event : heard.events) {
     EXPECT_EQ(event.kind, "boot_up");

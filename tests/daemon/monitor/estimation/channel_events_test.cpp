@@ -31,7 +31,7 @@ class ChannelEventsTest : public ::testing::Test {
         counters_(config_.pipeline.axes.size()) {}
 
   enum class State { good, silent, stuck };
-  /// So many seconds of sensor time, in which the channel kDead is in this state.
+  /// Feeds `count` seconds of sensor time in which the channel kDead has this state.
   std::vector<event_t> seconds(int count, State state, bool others = true) {
     std::vector<event_t> out;
     for (int i = 0; i < count; ++i) {
@@ -84,7 +84,7 @@ TEST_F(ChannelEventsTest, AStuckChannelIsNamedUntilItMovesAgain) {
   ASSERT_EQ(raised.size(), 1u);
   EXPECT_EQ(raised[0].kind, "channel_stuck");
   EXPECT_EQ(raised[0].place, "F1-Y2");
-  EXPECT_TRUE(seconds(60, State::silent).size() == 1);  // that clears only the silence below
+  EXPECT_TRUE(seconds(60, State::silent).size() == 1);  // clears only the silence below
   const auto after = seconds(10, State::good);
   ASSERT_EQ(after.size(), 2u);
   EXPECT_EQ(after.back().kind, "channel_stuck");
@@ -99,7 +99,7 @@ TEST_F(ChannelEventsTest, AMomentIsNothing) {
   EXPECT_TRUE(seconds(5, State::good).empty());
 }
 
-/// A shaken table whose node 3 falls silent and whose node 4 sticks at half of the record.
+/// A shaken table; at half of the record node 3 falls silent and node 4 sticks.
 TEST(ChannelEventsOfARecord, ADeadAndAStuckSensorAreNamedAndNoOther) {
   constexpr double kSeconds = 30, kDies_s = 12;
   constexpr int kSilent = 3, kStuck = 4;

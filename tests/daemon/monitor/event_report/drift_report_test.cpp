@@ -1,4 +1,4 @@
-// Drift, damage and placard: one computation, in words, as a page and as JSON.
+// Tests drift, damage and placard: one computation, shown in words, as a page and as JSON.
 #include "daemon/monitor/event_report/drift_report.h"
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace framewatch::daemon {
 namespace drift_report_test {
 
-/// The two-story table, 1 m a story, with peaks whose slow part and stiffness are known.
+/// The two-story table with stories of 1 m and with peaks whose slow part and stiffness are known.
 class DriftReportTest : public testing::Test {
  protected:
   DriftReportTest() : config_(*read(kFragility)) {

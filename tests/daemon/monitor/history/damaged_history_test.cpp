@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using test::comes_true;
 
 // Limits.
-constexpr std::chrono::seconds kSoon{30};  // for what takes a second
+constexpr std::chrono::seconds kSoon{30};  // for actions that take a second
 
 event_t gap(std::int64_t id) {
   event_t e{};
@@ -88,7 +88,7 @@ class DamagedHistory : public testing::Test {
     for (const event_t& e : query.events(INT64_MIN / 4, INT64_MAX / 4, 100)) out.push_back(e.id);
     return query.problem().empty() ? out : std::vector<std::int64_t>();
   }
-  /// A history runs, is told of events and windows, and takes them.
+  /// Expects a running history to store the events and windows that it gets.
   void expect_a_new_one(std::vector<std::int64_t> events) const {
     {
       SummaryHistory history(config_);

@@ -33,14 +33,13 @@ namespace history_command_test {
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 constexpr int kRate_hz = 100, kAxes = 10, kInstants = 1000, kLostFrom = 500, kLostTo = 550;
-constexpr int kBetweenReadings = 300;  // of the thermometer, instants
+constexpr int kBetweenReadings = 300;  // instants between two readings of the thermometer
 
 std::int32_t count(int instant, int axis) {
   return (instant * 7919 + axis * 104729) % 2'000'003 - 1'000'000;
 }
 
-/// Ten seconds of the table, half a second of them lost on every channel, and what a history keeps
-/// of them.
+/// Ten seconds of the table, half a second of them lost on every channel, and the history of them.
 class HistoryCommand : public testing::Test {
  protected:
   HistoryCommand() : config_(test::table_with_history(directory_.path("h"))) {

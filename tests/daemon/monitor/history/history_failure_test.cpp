@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using test::comes_true;
 
 // Limits.
-constexpr std::chrono::seconds kSoon{60};  // the keeper's thread runs when nothing else wants to
+constexpr std::chrono::seconds kSoon{60};  // the keeper's thread has idle priority
 constexpr double kRecord_s = 8;
 constexpr std::size_t kSamples = 8010;  // of its ten channels
 
@@ -36,7 +36,7 @@ struct Collected {
   }
 };
 
-/// A live estimation in this process, over memq, with a history or without.
+/// A live estimation in this process, over memq, with or without a history.
 class Live {
  public:
   Live(const Config& config, History* history) : lcm_("memq://"), live_(config, lcm_) {
@@ -175,7 +175,8 @@ TEST_F(HistoryFailure, AFolderThatIsNotThereAtTheStartIsWaitedFor) {
 }
 
 TEST_F(HistoryFailure, AFolderThatMayNotBeWrittenIsWaitedFor) {
-  fs::create_directory_symlink("/proc/self", config_.history->directory);  // not by root either
+  fs::create_directory_symlink("/proc/self",
+                               config_.history->directory);  // even root cannot write there
   History history(config_);
   Live live(config_, &history);
   live.play(log_);
@@ -188,7 +189,7 @@ TEST_F(HistoryFailure, AFolderThatMayNotBeWrittenIsWaitedFor) {
 TEST_F(HistoryFailure, ADatabaseThatIsSlowOrBusyDelaysNobody) {
   {
     History history(config_);
-    // While it is made, one of two that open it may be refused at once.
+    // While it is created, one of two programs that open it may be refused.
     ASSERT_TRUE(comes_true(
         [&] {
           SqliteFile made;

@@ -33,10 +33,10 @@ namespace command_socket_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 30s;                   // for what takes a moment on a machine with time
-constexpr std::int64_t kLook_us = 1'000'000;  // a look never waits; this is for a busy machine
+constexpr auto kSoon = 30s;                   // for short actions on an idle machine
+constexpr std::int64_t kLook_us = 1'000'000;  // poll() never waits; this is for a busy machine
 
-/// A daemon that answers every command with its own bytes and says who gave it.
+/// A daemon that answers every command with its bytes and names its user.
 class Commands : public testing::Test {
  protected:
   Commands() {
@@ -54,7 +54,7 @@ class Commands : public testing::Test {
           return CommandPacket{command.channel, command.bytes};
         });
   }
-  /// Looks in a thread, as a daemon's loop does, until stop().
+  /// Polls in a thread, as a daemon's loop does, until stop().
   void serve(CommandSocket& socket) {
     loop_ = std::thread([this, &socket] {
       while (!stopping_) {
@@ -74,7 +74,7 @@ class Commands : public testing::Test {
   CommandAnswer ask(const std::string& channel, std::vector<std::uint8_t> bytes = {1, 0, 2}) const {
     return give_command(config_, "run", {channel, std::move(bytes)});
   }
-  /// A connection that says nothing; -1 when there is none to be had.
+  /// Opens a connection that sends nothing. Returns -1 if that fails.
   int connect() const {
     const int file = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
     sockaddr_un address{};
@@ -88,7 +88,7 @@ class Commands : public testing::Test {
     ::close(file);
     return -1;
   }
-  /// Whether the daemon ends the connection without a word.
+  /// Returns true if the daemon closes the connection without an answer.
   static bool hung_up(int file) {
     char byte = 0;
     return ::recv(file, &byte, 1, 0) == 0;
@@ -116,7 +116,7 @@ TEST_F(Commands, AreAnsweredAndTheKernelSaysWhoseTheyAre) {
   EXPECT_EQ(answer.bytes, (std::vector<std::uint8_t>{1, 0, 2}));
   const CommandAnswer no = ask("NO");
   EXPECT_TRUE(no.answered);
-  EXPECT_EQ(no.problem, "not now\x1b");  // whoever shows it escapes it
+  EXPECT_EQ(no.problem, "not now\x1b");  // the reader escapes it
   stop();
   EXPECT_EQ(user_, user_name(::geteuid()));
 }
@@ -150,7 +150,7 @@ TEST_F(Commands, WhoMayNotIsToldWhichGroupMay) {
   ASSERT_EQ(::pipe(ends), 0);
   const pid_t child = ::fork();
   if (child == 0) {
-    // Without root's right to everything.
+    // Drops root's right to everything.
     __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
     __user_cap_data_struct none[2]{};
     const bool dropped = ::syscall(SYS_capset, &header, none) == 0;
@@ -172,7 +172,7 @@ TEST_F(Commands, WhoMayNotIsToldWhichGroupMay) {
 
 TEST_F(Commands, ADeadProcessSocketIsReplacedALivingOnesIsNot) {
   ASSERT_EQ(prepare_command_directory(config_.commands.directory), "");
-  {  // what a killed process leaves
+  {  // as a killed process leaves it
     const int file = ::socket(AF_UNIX, SOCK_SEQPACKET, 0);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -253,7 +253,7 @@ TEST_F(Commands, ASilentConnectionDelaysNobodyAndIsEnded) {
   ahead_us_ = CommandSocket::kPatience_us + kSecond_us;
   EXPECT_TRUE(hung_up(silent));
   ::close(silent);
-  // One that does not want its answer.
+  // A client that does not wait for its answer.
   const int rude = connect();
   ASSERT_EQ(::send(rude, "YES\0", 4, 0), 4);
   ::close(rude);
