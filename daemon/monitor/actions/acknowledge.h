@@ -43,6 +43,7 @@ class AcknowledgeDesk {
   /// Takes a request that came over LCM, so its user is unknown. update() executes it if
   /// lcm.commands allows that; otherwise it is counted and logged.
   void heard(std::span<const std::uint8_t> request, std::int64_t now_us);
+  /// Returns how many requests over LCM were ignored.
   std::int64_t not_obeyed() const { return not_obeyed_; }
 
   /// Executes waiting requests and publishes. Call it several times a second.

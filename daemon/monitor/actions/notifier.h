@@ -98,6 +98,7 @@ class Notifier {
   void event(const event_t& event, bool acknowledged);
   /// Tells that the event was acknowledged: only its end is still delivered.
   void acknowledged(const event_t& event);
+  /// Returns the counters so far.
   Counters counters() const;
 
  private:

@@ -24,6 +24,7 @@ class EstimatesCsvWriter {
   void continue_table() { continued_ = true; }
   [[nodiscard]] bool open(const std::string& path, const std::vector<std::string>& names,
                           const std::vector<std::string>& units, bool boxplot);
+  /// Adds a row.
   [[nodiscard]] bool write(const framewatch::window_estimate_t& estimate);
   [[nodiscard]] bool close();
   const std::string& error() const { return fault_.empty() ? file_.error() : fault_; }

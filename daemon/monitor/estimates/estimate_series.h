@@ -20,6 +20,7 @@ class EstimateSeries {
   EstimateSeries(const estimator::ParameterTable& table, bool with_errors,
                  double min_snr = estimator::EstimatorOptions{}.min_snr);
 
+  /// Adds an estimate of the main window.
   void add(const estimator::WindowEstimate& estimate);
 
   struct Series {
@@ -37,6 +38,7 @@ class EstimateSeries {
   struct Range {
     std::size_t begin, end;
   };
+  /// Returns the windows that end in [from_us, to_us].
   Range range(std::int64_t from_us, std::int64_t to_us) const;
   Range all() const { return {0, end_us_.size()}; }
 
@@ -45,6 +47,7 @@ class EstimateSeries {
         q3;                   ///< of the observable windows, by MATLAB's rule; NaN without any
     double observable_ratio;  ///< share of all windows of the range; NaN if it is empty
   };
+  /// Returns the quartiles of a parameter over the windows of a range.
   Quartiles quartiles(const Series& series, Range range) const;
 
  private:

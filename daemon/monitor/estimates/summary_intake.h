@@ -64,7 +64,9 @@ class PeriodCollector {
   void add(const window_estimate_t& estimate);
   /// Adds the values of a window that was counted without values before.
   void add_late(const window_estimate_t& estimate);
+  /// Adds the counters of a status, as the difference to the one before.
   void add(const status_t& status);
+  /// Sets the table that the next estimates refer to.
   void add(const parameter_table_t& table);
 
   bool empty() const { return data_.windows == 0 && data_.channels.empty(); }

@@ -17,6 +17,7 @@ namespace framewatch::daemon {
 /// it to the gap monitor. Reports a file that does not fit the building once and ignores it.
 class GapKeeper {
  public:
+  /// `config` must outlive this, or be replaced by reconfigure().
   explicit GapKeeper(const Config& config);
   /// Continues with another configuration, of which only [gap] may differ.
   void reconfigure(const Config& config) { config_ = &config; }
@@ -34,14 +35,16 @@ class GapKeeper {
 /// estimates. GapSettings::before_s and after_s limit its size.
 class GapSegments {
  public:
+  /// `config` must outlive this.
   explicit GapSegments(const Config& config);
   /// Writes the segment of a gap whose samples are still incomplete.
   ~GapSegments();
   GapSegments(const GapSegments&) = delete;
   GapSegments& operator=(const GapSegments&) = delete;
 
-  /// Tells that the gap with this id was raised.
+  /// Keeps a sample.
   void sample(const estimator::AccelSample& sample);
+  /// Tells that the gap with this id was raised: its segment is written when it is complete.
   void raised(std::int64_t gap_id);
 
  private:

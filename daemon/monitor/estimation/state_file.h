@@ -34,6 +34,7 @@ struct SavedState {
   std::map<std::string, std::string> grounds;  ///< digests of what sections depend on
   std::vector<StateSection> sections;
 };
+
 /// Returns the state of an estimation with this configuration.
 SavedState saved_state(const Config& config, Estimation& estimation, std::int64_t events_before);
 

@@ -24,6 +24,7 @@ struct EventReport {
 };
 
 enum class EventColor { green, yellow, red };
+/// Returns "green", "yellow" or "red".
 const char* color_word(EventColor color);
 
 /// The verdict by the thresholds of [event_report]. `reasons` has one sentence each, the gravest
@@ -35,6 +36,7 @@ struct EventVerdict {
   int worst_story = 0;           ///< 0: no drift is known
   double worst_drift_ratio = 0;  ///< relative to the story's height
 };
+/// Judges a report by the thresholds of [event_report], which `config` must have.
 EventVerdict judge(const EventReport& report, const Config& config);
 /// Computes the drift and damage of every story.
 DriftReport drift_report(const EventReport& report, const Config& config);
@@ -49,8 +51,10 @@ event_t event_of(const EventReport& report, const Config& config);
 
 /// A green event is cleared after this time.
 inline constexpr double kGreenShown_s = 600;
+/// Returns true if `event` is a green one that is to be cleared at `now_us`.
 bool green_and_past(const event_t& event, std::int64_t now_us);
 
+/// Returns the report as a page.
 std::string event_report_html(const EventReport& report, const Config& config);
 /// Returns the report as JSON, schema framewatch.event_report/1 (docs/formats.md).
 std::string event_report_json(const EventReport& report, const Config& config);

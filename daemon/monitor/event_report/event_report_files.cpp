@@ -29,8 +29,6 @@ std::optional<EventColor> color_of_word(const std::string& word) {
   return std::nullopt;
 }
 
-namespace fs = std::filesystem;
-
 void remove_oldest(const std::string& directory, std::size_t most) {
   const std::vector<std::string> names = event_report_names(directory);
   for (std::size_t i = 0; i + most < names.size(); ++i)

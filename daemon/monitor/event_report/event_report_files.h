@@ -35,6 +35,7 @@ class NewestEventReport {
   /// An empty `folder`: the building has no reports.
   explicit NewestEventReport(std::string folder);
 
+  /// Looks for a newer report and reads it. Returns the newest one; nullopt if there is no report.
   const std::optional<EventReportSummary>& poll();
   const std::optional<EventReportSummary>& newest() const {
     return newest_;

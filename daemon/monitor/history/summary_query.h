@@ -50,6 +50,7 @@ class SummaryQuery {
   std::vector<SummaryPeriods> periods();
   /// Returns the end of the newest window; nullopt without any window.
   std::optional<std::int64_t> newest_us();
+  /// Returns the periods of a length that start in [from_us, to_us), in order of time.
   std::vector<SummaryRow> rows(std::int64_t parameter, std::int64_t period_s, std::int64_t from_us,
                                std::int64_t to_us);
   /// Returns the newest period in which the parameter was observable.

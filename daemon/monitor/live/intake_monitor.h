@@ -76,6 +76,7 @@ class CanWarnings {
 /// line.
 class IntakeWarnings {
  public:
+  /// Call it several times a second; `now_us`: host clock.
   void update(const LiveEstimation& live, std::int64_t now_us);
 
  private:

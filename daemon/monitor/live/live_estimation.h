@@ -84,10 +84,12 @@ class LiveEstimation : public EstimationListener {
   /// Waits for messages at most `timeout_ms` and handles all that have come. Returns false when LCM
   /// failed or the log of CAN frames cannot be written. Never throws, never stops on bad input.
   [[nodiscard]] bool poll(int timeout_ms);
+  /// Ends the input of the estimation.
   void finish() { estimation_->finish(); }
   /// Makes poll() pass these samples to the estimation first, for at most kFeed_ms a call, and keep
   /// newer input until they are done. They are not stored again.
   void catch_up(RawBacklog backlog);
+  /// Returns true while the backlog or input kept meanwhile waits.
   bool catching_up() const { return !backlog_.empty() || !later_.empty(); }
   /// Stores samples and published messages in `history` from now on; nullptr stops that.
   void record_to(History* history) { history_ = history; }

@@ -37,6 +37,7 @@ class RawBacklog {
   /// Returns true if the stored samples were read to their end.
   bool read_whole() const { return whole_; }
   double seconds() const;  ///< from the first to the last sample
+  /// Returns the sensor time of the first sample; 0 if empty.
   std::int64_t first_us() const;
 
   /// Calls `sample` and `message` with the remaining data, in order, until `enough()` returns true.

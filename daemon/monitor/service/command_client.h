@@ -20,10 +20,11 @@ struct CommandPacket {
   std::string channel;  ///< kRefused: `bytes` is a sentence that says why
   std::vector<std::uint8_t> bytes;
 };
-/// Makes the answer that refuses a command.
 
+/// Makes the answer that refuses a command. `why` is a sentence.
 CommandPacket refused(const std::string& why);
 
+/// Returns a packet as the bytes to send.
 std::vector<std::uint8_t> packet_bytes(const CommandPacket& packet);
 /// Parses a packet. Returns nullopt if the bytes are not a packet.
 std::optional<CommandPacket> packet_of(std::span<const std::uint8_t> bytes);

@@ -16,6 +16,8 @@ class ProgressWatch {
   /// After this time without a sample the estimator is idle.
   static constexpr std::int64_t kIdle_us = 1'000'000;
 
+  /// Returns false if samples have waited for an instant for longer than kLongest_us. `now_us`:
+  /// steady clock.
   bool well(const estimator::PipelineCounters& counters, std::int64_t now_us) {
     std::int64_t accepted = 0;
     for (const estimator::AxisCounters& axis : counters.axes)

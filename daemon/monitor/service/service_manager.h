@@ -18,6 +18,7 @@ class ServiceManager {
   /// Returns true if systemd listens. The program then waits for a missing network instead of
   /// failing.
   bool listens() const { return listens_; }
+  /// Tells systemd that the service is ready, also after reloading().
   void ready();
   /// Sets the line of `systemctl status`. Sends it only if it differs from the last one.
   void status(const std::string& line);
