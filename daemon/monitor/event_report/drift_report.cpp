@@ -208,7 +208,7 @@ DriftReport drift_report(const Config& config, const estimator::PipelineConfig& 
   if (!loss.empty() && out.placard->placard == Placard::inspected) {
     out.placard->placard = Placard::restricted;
     out.reason = fmt::format("{}, though by its drifts alone the building would pass. {}",
-                             capitalised(loss), out.reason);
+                             capitalized(loss), out.reason);
   }
   return out;
 }

@@ -94,7 +94,7 @@ std::string probability_words(double probability) {
   return fmt::format("{:.0f} %", 100 * probability);
 }
 
-std::string capitalised(std::string text) {
+std::string capitalized(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z')
     text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;

@@ -23,7 +23,7 @@ const char* state_word(estimator::DamageState state);
 /// Returns "35 %", "less than 1 %", "more than 99 %", or "-" for NaN.
 std::string probability_words(double probability);
 /// Returns the text with its first letter in upper case.
-std::string capitalised(std::string text);
+std::string capitalized(std::string text);
 /// Returns "inspected", "restricted use", "restricted use (not judged)" or "unsafe".
 std::string placard_words(const estimator::PlacardChoice& choice);
 /// Returns the caution that a placard is an indication and an engineer decides after an inspection.
