@@ -32,9 +32,8 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
       return fmt::format("the drift of story {} is not known", drift.story);
     case PlacardReason::gap:
       return fmt::format(
-          "the record has a gap in the strong motion of story {}: its peak drift may be larger "
-          "than "
-          "the {} that was seen",
+          "the record is interrupted in the strong motion of story {}: its peak drift may be "
+          "larger than the {} that was seen",
           drift.story, drift_words(drift.ratio));
     default:
       return fmt::format(
@@ -94,11 +93,11 @@ std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
       "that stand out of plumb.");
   double slow = 0;
   bool unknown_slow = false, computed = false;
-  std::vector<int> gaps, unknown;
+  std::vector<int> interrupted, unknown;
   for (const StoryDrift& d : drifts) {
     if (!d.known()) unknown.push_back(d.story);
     if (!d.known()) continue;
-    if (d.gap_at_peak()) gaps.push_back(d.story);
+    if (d.gap_at_peak()) interrupted.push_back(d.story);
     computed = computed || !d.measured;
     unknown_slow = unknown_slow || !std::isfinite(d.slow_ratio);
     if (std::isfinite(d.slow_ratio)) slow = std::max(slow, std::abs(d.slow_ratio) / d.ratio);
@@ -120,10 +119,10 @@ std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
         "Computed: the floor or the one below has no channel. Its motion follows from the measured "
         "floors by the design's shares of the stories between them; a loss in one of these stories "
         "alone is not in its error.");
-  if (!gaps.empty())
+  if (!interrupted.empty())
     out.push_back(
-        fmt::format("The record has a gap in the strong motion of {}: the peak may be larger.",
-                    stories_words(gaps)));
+        fmt::format("The record is interrupted in the strong motion of {}: the peak may be larger.",
+                    stories_words(interrupted)));
   if (!unknown.empty())
     out.push_back(
         fmt::format("The drift of {} is not known: channels failed, or the record begins "
@@ -244,7 +243,7 @@ std::string drift_table_section(const DriftReport& r, const Config& config) {
       row.insert(row.end(), {"-", "-"});
     }
     row.push_back(std::string(d.measured ? "measured" : "computed") +
-                  (d.known() && d.gap_at_peak() ? "; gap" : ""));
+                  (d.known() && d.gap_at_peak() ? "; interrupted" : ""));
     row.insert(row.end(), {part(d.noise_error, d), part(d.slow_error, d),
                            d.measured ? "-" : part(d.model_error, d)});
     if (r.placard)
