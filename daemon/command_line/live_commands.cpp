@@ -1,7 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "daemon/command_line/command_list.h"
-#include "daemon/monitor/actions/acknowledge_command.h"
+#include "daemon/monitor/actions/acknowledge.h"
 #include "daemon/monitor/actions/tell_command.h"
 #include "daemon/monitor/live/run_command.h"
 #include "daemon/page/findings/status_command.h"

@@ -8,7 +8,7 @@
 #include <framewatch/acknowledge_t.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/monitor/events/acknowledge_messages.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "drivers/files/encoded.h"
 #include "drivers/files/number_text.h"
 #include "fleet/message/subject.h"

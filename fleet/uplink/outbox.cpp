@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "daemon/base/clocks.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_schema.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 
 namespace framewatch::fleet {
 namespace {

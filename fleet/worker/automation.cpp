@@ -10,8 +10,7 @@
 
 #include <framewatch/service_t.hpp>
 
-#include "daemon/monitor/events/event_json.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
 
 namespace framewatch::fleet {

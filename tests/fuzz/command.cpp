@@ -2,7 +2,7 @@
 #include <framewatch/acknowledge_t.hpp>
 #include <framewatch/session_command_t.hpp>
 
-#include "daemon/monitor/service/command_packet.h"
+#include "daemon/monitor/service/command_client.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/fuzz/targets.h"

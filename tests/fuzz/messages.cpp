@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/monitor/events/event_json.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_overview.h"
 #include "daemon/page/view/page_json.h"
 #include "drivers/files/encoded.h"

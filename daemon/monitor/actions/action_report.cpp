@@ -2,9 +2,8 @@
 
 #include <lcm/lcm-cpp.hpp>
 
-#include "daemon/monitor/actions/hook_command.h"
-#include "daemon/monitor/actions/webhook.h"
-#include "daemon/monitor/events/event_json.h"
+#include "daemon/monitor/actions/receivers.h"
+#include "daemon/monitor/events/event_messages.h"
 
 namespace framewatch::daemon {
 
@@ -27,7 +26,7 @@ void ActionReport::reconfigure(const Config& config) {
                                            const Abandoned& abandoned) {
       return post_webhook(s, event_json(e, building), abandoned);
     });
-  // A command that failed halfway is not repeated: it might do the first half twice.
+  // A command that failed halfway is not repeated: it might do its first half twice.
   if (command_) command_->configure(settings, 0);
   if (webhook_) webhook_->configure(settings, settings.webhook_patience_s);
 }
@@ -49,7 +48,7 @@ void ActionReport::acknowledged(const event_t& event) {
     if (*notifier) (*notifier)->acknowledged(event);
 }
 
-void ActionReport::look(std::int64_t now_us) {
+void ActionReport::update(std::int64_t now_us) {
   if (!settings_ || !second_.due(now_us)) return;
   const action_status_t now = status(now_us);
   lcm_.publish(prefix_ + "ACTIONS", &now);

@@ -17,28 +17,28 @@ class LCM;
 
 namespace framewatch::daemon {
 
-/// [actions] of a running estimation: delivers events to a command and a webhook, and publishes
-/// every second how that goes (action_status_t).
+/// The [actions] of a running estimation: delivers events to a command and a webhook, and publishes
+/// the state of the deliveries every second (action_status_t).
 class ActionReport {
  public:
   /// `lcm` must outlive this.
   ActionReport(const Config& config, lcm::LCM& lcm);
 
-  /// Goes on with another configuration, of which [actions] may differ.
+  /// Continues with another configuration, of which [actions] may differ.
   void reconfigure(const Config& config);
-  /// Events that an earlier run has delivered: only their end is delivered.
+  /// Tells which events an earlier run has delivered: only their end is delivered.
   void raised_before(const RaisedEvents& raised);
-  /// Never waits. acknowledged: only the end of the event is delivered.
+  /// Queues an event; never waits. Of an `acknowledged` event only the end is delivered.
   void event(const event_t& event, bool acknowledged);
-  /// The event is acknowledged now.
+  /// Tells that the event was acknowledged now.
   void acknowledged(const event_t& event);
-  /// To be called several times a second; now_us: host clock.
-  void look(std::int64_t now_us);
+  /// Publishes the state once a second. Call it several times a second; `now_us`: host clock.
+  void update(std::int64_t now_us);
 
  private:
   action_status_t status(std::int64_t now_us) const;
 
-  std::optional<ActionSettings> settings_;  ///< none: nobody is notified
+  std::optional<ActionSettings> settings_;  ///< empty: without [actions]
   std::string building_, prefix_;
   lcm::LCM& lcm_;
   OnceASecond second_;

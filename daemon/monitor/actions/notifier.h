@@ -1,31 +1,76 @@
 #pragma once
 
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include <framewatch/event_t.hpp>
 
 #include "daemon/base/log.h"
-#include "daemon/monitor/actions/action_queue.h"
+#include "daemon/config/keys/action_options.h"
 
 namespace framewatch::daemon {
 
+/// Decides which events are delivered, when and in which order, with a bounded queue. Of each event
+/// only the newest news waits. Uses no clock: callers pass the time of a clock that is never set.
+class ActionQueue {
+ public:
+  static constexpr std::size_t kMax = 256;            ///< waiting events
+  static constexpr std::size_t kMaxDelivered = 4096;  ///< remembered raised events
+
+  void configure(const ActionSettings& settings) { settings_ = settings; }
+  /// Tells that an earlier run has delivered the event: only its end is delivered.
+  void delivered_before(const event_t& event);
+  /// Queues an event. Of an `acknowledged` event only the end is delivered. Returns the number of
+  /// lost events: if the queue is full, the least severe one is dropped.
+  int put(const event_t& event, bool acknowledged, std::int64_t now_us);
+  /// Tells that the event was acknowledged: only its end is still delivered.
+  void acknowledged(const event_t& event);
+  /// Returns the next event to deliver; nullopt if no event is due.
+  std::optional<event_t> take(std::int64_t now_us);
+  /// Returns the next event regardless of the rate limit, for the end of the program.
+  std::optional<event_t> take_any();
+  std::size_t waiting() const { return waiting_.size(); }
+  std::int64_t merged() const {
+    return merged_;
+  }  ///< news replaced by newer news of the same event
+
+ private:
+  using Key = std::pair<std::string, std::int64_t>;  ///< kind and id
+  struct Waiting {
+    event_t event;
+    std::int64_t due_us, order;
+  };
+
+  bool wanted(const event_t& event) const;
+  void remember(const Key& key, std::int64_t now_us);
+
+  ActionSettings settings_;
+  std::map<Key, Waiting> waiting_;
+  std::map<Key, std::int64_t> delivered_us_;  ///< when a raised event was delivered
+  double tokens_ = -1;                        ///< negative: full
+  std::int64_t filled_us_ = 0, order_ = 0, merged_ = 0;
+};
+
 /// The outcome of one attempt to deliver an event.
 struct DeliveryResult {
-  std::string trouble = {};  ///< why it was not delivered; empty: it was
+  std::string trouble = {};  ///< why it was not delivered; empty: delivered
   bool retry = false;        ///< another attempt may succeed
 };
 
-/// Whether the delivery is to be given up, because the program stops.
+/// Returns true if the delivery should be given up because the program stops.
 using Abandoned = std::function<bool()>;
 
-/// Delivers events to one receiver (a command or a webhook) from a thread of its own, so that the
-/// caller never waits. Failed deliveries are repeated with growing pauses, for
-/// the receiver's patience (0: not at all).
+/// Delivers events to one receiver (a command or a webhook) from a thread, so that the caller never
+/// waits. Repeats failed deliveries with growing pauses for the time that configure() sets.
 class Notifier {
  public:
   using Deliver =
@@ -34,25 +79,26 @@ class Notifier {
   struct Counters {
     std::int64_t told = 0, lost = 0, merged = 0;  ///< delivered, lost, replaced by newer news
     std::int64_t waiting = 0;
-    std::int64_t lost_us = 0;  ///< host clock when one was last lost; 0: never
-    std::string trouble;       ///< of the newest attempt; empty: it succeeded
+    std::int64_t lost_us = 0;  ///< host clock at the last loss; 0: no loss
+    std::string trouble;       ///< of the newest attempt; empty: success
   };
 
-  /// `name`: in log lines. Delivers nothing before configure().
+  /// `name` is for log lines. Delivers nothing before configure().
   Notifier(std::string name, Deliver deliver);
-  /// Delivers what is queued, for two seconds at most; the rest is lost, and the log says so.
+  /// Delivers queued events for two seconds at most. Logs how many are lost.
   ~Notifier();
   Notifier(const Notifier&) = delete;
   Notifier& operator=(const Notifier&) = delete;
 
-  /// patience_s: how long attempts to deliver one event are repeated.
+  /// `patience_s`: how long attempts to deliver one event are repeated; 0: a single attempt.
   void configure(const ActionSettings& settings, double patience_s);
-  /// An event that an earlier run has delivered: only its end is delivered.
+  /// Tells that an earlier run has delivered the event: only its end is delivered.
   void delivered_before(const event_t& event);
-  /// Queues an event. acknowledged: only its end is delivered.
+  /// Queues an event. Of an `acknowledged` event only the end is delivered.
   void event(const event_t& event, bool acknowledged);
-  /// Somebody has acknowledged the event: only its end is still delivered.
+  /// Tells that the event was acknowledged: only its end is still delivered.
   void acknowledged(const event_t& event);
+  /// Returns the counters so far.
   Counters counters() const;
 
  private:
@@ -63,7 +109,7 @@ class Notifier {
 
   const std::string name_;
   const Deliver deliver_;
-  mutable std::mutex mutex_;  ///< guards what is below
+  mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable wake_;
   ActionSettings settings_;
   double patience_s_ = 0;
@@ -72,7 +118,7 @@ class Notifier {
   RateLimitedLog losses_{LogLevel::error};
   bool stop_ = false;
   std::int64_t give_up_us_ = INT64_MAX;  ///< steady clock
-  std::thread thread_;                   ///< last: it sees everything above
+  std::thread thread_;                   ///< last, because it uses the members above
 };
 
 }  // namespace framewatch::daemon

@@ -13,10 +13,8 @@
 #include "daemon/base/printable.h"
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
-#include "daemon/monitor/actions/hook_command.h"
-#include "daemon/monitor/actions/webhook.h"
-#include "daemon/monitor/events/event_json.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/actions/receivers.h"
+#include "daemon/monitor/events/event_messages.h"
 
 namespace framewatch::daemon {
 int tell_command(const TellArguments& a) {
@@ -41,7 +39,7 @@ int tell_command(const TellArguments& a) {
   bool good = true;
   const auto report = [&](const char* receiver, const DeliveryResult& result) {
     fmt::print("{:<8} {}\n", receiver,
-               result.trouble.empty() ? "was told" : printable(result.trouble));
+               result.trouble.empty() ? "delivered" : printable(result.trouble));
     good = good && result.trouble.empty();
   };
   if (!config->actions->command.empty())

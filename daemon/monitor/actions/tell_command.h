@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "daemon/monitor/service/installed_config.h"
+#include "daemon/monitor/service/service_manager.h"
 
 namespace framewatch::daemon {
 
@@ -11,8 +11,8 @@ struct TellArguments {
   std::string message = "a test";
 };
 
-/// `framewatch tell`: delivers an event of kind "test" to the command and the webhook of [actions].
-/// Exit code: 1 when one of them fails.
+/// Runs `framewatch tell`: delivers an event of kind "test" to the command and the webhook of
+/// [actions]. Returns the exit code: 1 when one of them fails.
 int tell_command(const TellArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -7,19 +7,19 @@
 namespace framewatch::daemon {
 namespace {
 
-/// As stored: NaN equals NaN, 0 is not -0.
+/// Compares bit by bit: NaN equals NaN, 0 differs from -0.
 bool same_bits(double a, double b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// NaN where there is no such entry.
+/// Returns NaN if there is no such entry.
 template <typename Value>
 double entry(const std::vector<Value>& values, std::size_t i) {
   return i < values.size() ? static_cast<double>(values[i])
                            : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Held values by parameter.
+/// Returns the held values by parameter.
 std::vector<double> held(const window_estimate_t& e, const std::vector<double>& values) {
   std::vector<double> out(static_cast<std::size_t>(e.parameters),
                           std::numeric_limits<double>::quiet_NaN());

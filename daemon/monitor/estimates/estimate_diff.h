@@ -11,16 +11,17 @@
 
 namespace framewatch::daemon {
 
-/// A field of a message that differs between two logs.
+/// A message field that differs between two logs.
 struct FieldDifference {
   std::string channel, field;
-  std::int64_t end_us = 0;  ///< of the window
+  std::int64_t end_us = 0;  ///< end of the window
   double a = 0, b = 0;
-  /// |a - b| divided by the larger of |a| and |b|; infinite when only one is a number.
+  /// Returns |a - b| divided by the larger of |a| and |b|; infinite if only one of them is a
+  /// number.
   double ratio() const;
 };
 
-/// First and worst difference of one field of one parameter, or of the window as a whole.
+/// The first and the worst difference of one field, of one parameter or of the window as a whole.
 struct DifferenceSpan {
   std::int64_t count = 0;
   FieldDifference first, worst;
@@ -29,7 +30,7 @@ struct DifferenceSpan {
 /// Compares estimates window by window and field by field.
 class EstimateDiff {
  public:
-  /// names: the parameters' names.
+  /// `names` are the names of the parameters.
   explicit EstimateDiff(std::vector<std::string> names) : names_(std::move(names)) {}
 
   /// Compares two messages of the same channel and window.
@@ -38,7 +39,7 @@ class EstimateDiff {
 
   std::int64_t compared() const { return compared_; }
   std::int64_t different() const { return different_; }
-  /// The differences by subject (a parameter's name or "window"), then by field.
+  /// Returns the differences by subject (the name of a parameter, or "window"), then by field.
   const std::map<std::string, std::map<std::string, DifferenceSpan>>& spans() const {
     return spans_;
   }

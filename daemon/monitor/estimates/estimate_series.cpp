@@ -50,7 +50,7 @@ std::array<double, 3> quartiles_of(std::vector<double> values) {
   std::array<double, 3> out;
   out.fill(std::numeric_limits<double>::quiet_NaN());
   if (values.empty()) return out;
-  auto from = values.begin();  // only what the quartiles need is put in order
+  auto from = values.begin();  // sorts only what the quartiles need
   for (std::size_t q = 0; q < out.size(); ++q) {
     const double position = std::clamp(0.25 * static_cast<double>((q + 1) * values.size()) - 0.5,
                                        0.0, static_cast<double>(values.size() - 1));

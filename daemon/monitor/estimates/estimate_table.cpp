@@ -20,9 +20,9 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.5g}", value) : std::string("-");
 }
 
-const double kMinSnr = estimator::EstimatorOptions{}.min_snr;  // of the demo, which sets none
+const double kMinSnr = estimator::EstimatorOptions{}.min_snr;  // of the demo, which configures none
 
-/// NaN in an estimate that does not say it.
+/// Returns NaN if the estimate does not carry it.
 double snr_of(const window_estimate_t& e, std::size_t i) {
   return i < e.snr.size() ? static_cast<double>(e.snr[i]) : estimator::kNaN;
 }

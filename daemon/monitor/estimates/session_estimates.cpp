@@ -26,7 +26,7 @@ class Reader {
   void take(const drivers::LogEvent& event) {
     const auto kind = drivers::fingerprint(event.data);
     if (kind == window_estimate_t::getHash()) {
-      // The other windows' channels have the main one's name and more.
+      // The channels of the other windows extend the name of the main one.
       if (channel_.empty() || event.channel.size() < channel_.size()) follow(event.channel);
       if (event.channel == channel_) estimate(event);
     } else if (kind == parameter_table_t::getHash()) {
@@ -98,7 +98,7 @@ class Reader {
   }
 
   SessionEstimates& session_;
-  const double min_snr_ = estimator::EstimatorOptions{}.min_snr;  // the log does not say it
+  const double min_snr_ = estimator::EstimatorOptions{}.min_snr;  // not in the log
   std::string channel_;
   bool has_table_ = false;
   std::size_t notes_ = 0;

@@ -16,7 +16,7 @@ BaselineKeeper::BaselineKeeper(const Config& config)
   if (config.watch->baseline) written_ = *config.watch->baseline;
 }
 
-void BaselineKeeper::look(const Estimation& estimation) {
+void BaselineKeeper::update(const Estimation& estimation) {
   const estimator::Baseline* baseline = estimation.baseline();
   if (path_.empty() || baseline == nullptr || written_.holds(*baseline)) return;
   std::string none;
@@ -28,10 +28,10 @@ void BaselineKeeper::look(const Estimation& estimation) {
   if (text == there) return;
   const std::string problem = drivers::write_text_file(path_, text);
   if (problem.empty())
-    log(LogLevel::notice,
-        fmt::format("baseline learned of {} parameters, written to {}", baseline->known(), path_));
+    log(LogLevel::notice, fmt::format("learned the baseline of {} parameters and wrote it to {}",
+                                      baseline->known(), path_));
   else
-    log(LogLevel::error, fmt::format("the learned baseline is not stored: {}", problem));
+    log(LogLevel::error, fmt::format("cannot store the learned baseline: {}", problem));
 }
 
 }  // namespace framewatch::daemon

@@ -7,16 +7,17 @@
 
 namespace framewatch::daemon {
 
-/// Adds newly learned parameters of the baseline to the configured file and logs it. Values that
-/// are in the file stay.
+/// Adds newly learned parameters of the baseline to the configured file and logs that. Does not
+/// change values that the file already has.
 class BaselineKeeper {
  public:
   explicit BaselineKeeper(const Config& config);
-  void look(const Estimation& estimation);
+  /// Writes new parameters of the estimation's baseline, if there are any.
+  void update(const Estimation& estimation);
 
  private:
   estimator::ParameterTable table_;
-  std::string path_;  ///< empty: there is no file
+  std::string path_;  ///< empty: no file is configured
   estimator::Baseline written_;
 };
 

@@ -4,19 +4,19 @@
 #include <cmath>
 #include <utility>
 
-#include "daemon/monitor/estimation/design_error.h"
 #include "daemon/monitor/estimation/estimation_events.h"
-#include "daemon/monitor/estimation/intake_events.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/estimation/input_events.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
+#include "estimator/identify/groups/layout_prediction.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kMaxFindings = 50;
-constexpr double kMost_degc = 200;  // either way: no thermometer on a building says more
+constexpr double kMost_degc = 200;  // absolute value; no thermometer on a building shows more
 
-EstimationListener no_listener;  // it does nothing
+EstimationListener no_listener;  // does nothing
 
 void subtract(const estimator::AxisCounters& before, estimator::AxisCounters& from) {
   from.received -= before.received, from.missing -= before.missing, from.late -= before.late;
@@ -25,6 +25,51 @@ void subtract(const estimator::AxisCounters& before, estimator::AxisCounters& fr
 }
 
 }  // namespace
+
+bool SensorSeconds::passed(std::int64_t time_us) {
+  std::int64_t step = 0;
+  const bool near = started_ && !__builtin_sub_overflow(time_us, newest_us_, &step) &&
+                    step <= kLargestStep_us && step >= -kLargestStep_us;
+  if (!started_ || (!near && ++strays_ >= kStraysToFollow)) {
+    started_ = true;
+    strays_ = 0;
+    newest_us_ = time_us;
+    next_us_ = time_us > INT64_MAX - kSecond_us ? INT64_MAX : time_us + kSecond_us;
+    return true;
+  }
+  if (!near) return false;
+  strays_ = 0;
+  if (step <= 0) return false;
+  newest_us_ = time_us;
+  if (newest_us_ < next_us_) return false;
+  while (next_us_ <= newest_us_ && next_us_ <= INT64_MAX - kSecond_us) next_us_ += kSecond_us;
+  return true;
+}
+
+std::vector<drivers::WantedAxis> wanted_axes(const Config& config) {
+  std::vector<drivers::WantedAxis> wanted;
+  for (std::size_t i = 0; i < config.pipeline.axes.size(); ++i) {
+    const AxisSource source = i < config.sources.size() ? config.sources[i] : AxisSource{};
+    wanted.push_back({config.pipeline.axes[i].name, source.lcm_channel, source.sensor_node,
+                      source.axis, source.can.empty()});
+  }
+  return wanted;
+}
+
+drivers::IntakeSettings intake_settings(const Config& config) {
+  return {config.pipeline.options.rate_hz, config.lcm.two_senders};
+}
+
+estimator::PipelineConfig with_design_error(estimator::PipelineConfig config) {
+  if (!config.parameters().grouped()) return config;
+  estimator::LayoutPrediction foreseen =
+      predict_layout(config, estimator::noise_densities(config.axes), {},
+                     {config.profile_tolerance, config.mass_tolerance});
+  config.design_error = std::move(foreseen.design_error);
+  config.change_error = std::move(foreseen.change_error);
+  config.change_leak = std::move(foreseen.change_leak);
+  return config;
+}
 
 Estimation::Estimation(const Config& config, MessageSink sink, EstimationListener* listener)
     : config_(config),
@@ -88,7 +133,7 @@ void Estimation::look_for_shaking(const estimator::SampleSet& instant) {
   listener_->on_shaken(report);
 }
 
-/// What [watch] and others found is what the report says.
+/// Adds the findings of [watch] and the open alarms to the report.
 void Estimation::add_records(EventReport& report) const {
   for (const event_t& e : raised_.all())
     if (e.severity == severity::alarm && e.kind != "stiffness_change" && e.kind != "strong_motion")
@@ -129,7 +174,7 @@ void Estimation::main_window(const estimator::WindowEstimate& estimate) {
   if (shaking_) shaking_->push(estimate);
 }
 
-/// Not for the gap monitor, which learns from the newest windows.
+/// The gap monitor does not get late windows: it learns from the newest ones.
 void Estimation::late_window(const estimator::WindowEstimate& estimate) {
   publisher_.late(estimate);
   if (shaking_) shaking_->push(estimate);
@@ -234,8 +279,8 @@ std::vector<estimator::AxisCounters> Estimation::axis_counters() const {
 void Estimation::publish_state() {
   for (const event_t& event : std::exchange(to_withdraw_, {})) announce(withdrawn(event));
   const std::vector<estimator::AxisCounters> axes = axis_counters();
-  for (const event_t& event : absurd_events_.look(axes, seconds_.newest_us())) announce(event);
-  for (const event_t& event : channel_events_.look(axes, seconds_.newest_us())) announce(event);
+  for (const event_t& event : absurd_events_.update(axes, seconds_.newest_us())) announce(event);
+  for (const event_t& event : channel_events_.update(axes, seconds_.newest_us())) announce(event);
   for (event_t event : std::vector<event_t>(raised_.all())) {
     if (!green_and_past(event, seconds_.newest_us())) continue;
     event.state = event_state::cleared;
@@ -268,6 +313,28 @@ void Estimation::publish_state() {
   publisher_.parameters(seconds_.newest_us(), pipeline_);
   publisher_.status(seconds_.newest_us(), counts, live_);
   if (watch_) publisher_.watch(seconds_.newest_us(), *watch_);
+}
+
+void Estimation::follow_recovery(const estimator::WindowEstimate& estimate) {
+  const bool of_weak_motion = static_cast<std::size_t>(estimate.window) ==
+                              window_lengths_s(config_.pipeline.options).size();
+  recovery_->push(estimate, of_weak_motion, *watch_, strong_);
+  const estimator::ParameterTable table = pipeline_.parameters();
+  for (const int p : recovery_->due()) {
+    const event_t* const raised = raised_.find("stiffness_change", table[p].name);
+    if (raised != nullptr && is_recovering(*raised, p))
+      announce(with_recovery(renewed(*raised, estimate.end), p));
+  }
+}
+
+bool Estimation::is_recovering(const event_t& event, int parameter) const {
+  const estimator::Recovery* recovery = recovery_->of(parameter);
+  return recovery != nullptr && recovery->is_of(estimator::from_microseconds(event.since_us));
+}
+
+event_t Estimation::with_recovery(event_t event, int parameter) const {
+  if (!is_recovering(event, parameter)) return event;
+  return recovering(std::move(event), recovery_->of(parameter)->law());
 }
 
 }  // namespace framewatch::daemon

@@ -3,94 +3,158 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <framewatch/event_t.hpp>
 #include <framewatch/temperature_t.hpp>
 
+#include "daemon/base/clocks.h"
 #include "daemon/config/config.h"
-#include "daemon/monitor/estimation/absurd_events.h"
-#include "daemon/monitor/estimation/can_events.h"
-#include "daemon/monitor/estimation/channel_events.h"
-#include "daemon/monitor/estimation/estimation_listener.h"
+#include "daemon/monitor/estimation/input_events.h"
 #include "daemon/monitor/estimation/publisher.h"
-#include "daemon/monitor/estimation/sensor_seconds.h"
-#include "daemon/monitor/estimation/state_section.h"
-#include "daemon/monitor/estimation/wanted_axes.h"
+#include "daemon/monitor/event_report/event_report.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "drivers/can/can_intake.h"
 #include "drivers/lcm/accel_intake.h"
 #include "estimator/gap/gap_monitor.h"
+#include "estimator/identify/estimate/estimate.h"
+#include "estimator/motion/sample.h"
+#include "estimator/setup/pipeline_config.h"
 #include "estimator/shaking/shaking_watch.h"
 #include "estimator/watch/recovery_watch.h"
 
 namespace framewatch::daemon {
 
-/// Messages in, messages out: intakes (LCM, CAN), pipeline, change detection, gap monitor, events
-/// and publisher. Live and replayed samples take the same path. Uses no clock.
+/// Tells when a second of sensor time has passed. A jump of a single node's clock does not move it;
+/// kStraysToFollow samples in a row do.
+class SensorSeconds {
+ public:
+  /// Returns true for the first sample and for the first sample of each further second.
+  bool passed(std::int64_t time_us);
+  std::int64_t newest_us() const { return newest_us_; }
+
+  template <typename Archive>
+  void archive(Archive& a) {
+    a(started_);
+    for (std::int64_t* us : {&newest_us_, &next_us_})
+      a.within(*us, -2 * a.kMaxCount, 2 * a.kMaxCount + kSecond_us);
+    a.within(strays_, 0, kStraysToFollow);
+  }
+
+ private:
+  static constexpr std::int64_t kLargestStep_us = 10 * kSecond_us;
+  static constexpr int kStraysToFollow = 1000;  ///< in a row
+
+  bool started_ = false;
+  std::int64_t newest_us_ = 0;
+  std::int64_t next_us_ = 0;
+  int strays_ = 0;
+};
+
+/// Returns the configured axes in the form that the drivers need.
+std::vector<drivers::WantedAxis> wanted_axes(const Config& config);
+/// Returns how the drivers take in their messages.
+drivers::IntakeSettings intake_settings(const Config& config);
+
+/// Returns the configuration with PipelineConfig::design_error, change_error and change_leak,
+/// predicted for the usual shaking from the tolerances of masses and stories. Returns it unchanged
+/// if every story is identified. Takes up to seconds for a tall building that bends.
+estimator::PipelineConfig with_design_error(estimator::PipelineConfig config);
+
+/// Receives the input and the findings of an Estimation, in addition to the messages that it
+/// publishes. Override the methods you need; arguments are valid during the call.
+class EstimationListener {
+ public:
+  virtual ~EstimationListener() = default;
+
+  /// A sample, before the pipeline takes it.
+  virtual void on_sample(const estimator::AccelSample& /*sample*/) {}
+  virtual void on_temperature(const temperature_t& /*temperature*/) {}
+  /// A calibrated instant.
+  virtual void on_instant(const estimator::SampleSet& /*instant*/) {}
+  /// An estimate of the main window, before it is published.
+  virtual void on_estimate(const estimator::WindowEstimate& /*estimate*/) {}
+  virtual void on_gap(const estimator::GapNews& /*news*/) {}
+  /// An event, after it was published.
+  virtual void on_event(const event_t& /*event*/) {}
+  /// The report of a strong motion that has ended.
+  virtual void on_shaken(const EventReport& /*report*/) {}
+};
+
+/// A part of an estimation's state that can be read independently (docs/formats.md).
+struct StateSection {
+  std::string name;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// Turns input messages into output messages: intakes (LCM, CAN), pipeline, change detection, gap
+/// monitor, events and publisher. Live and replayed samples take the same path. Uses no clock.
 class Estimation {
  public:
-  /// `config` and `listener` must outlive this. sink: publishes messages; empty: they are not made.
+  /// `config` and `listener` must outlive this. `sink` publishes messages; if it is empty, no
+  /// message is made.
   Estimation(const Config& config, MessageSink sink, EstimationListener* listener = nullptr);
 
-  /// See Pipeline; to be called before the first sample.
+  /// See Pipeline. Call it before the first sample.
   void start_tuned(const estimator::Tuning& tuning) { pipeline_.start_tuned(tuning); }
 
-  /// One LCM message, whatever it is. received_us: see AccelIntake::message().
+  /// Takes any LCM message. `received_us`: see AccelIntake::message().
   drivers::IntakeResult message(const std::string& channel, const void* data, std::size_t size,
                                 const drivers::LcmSender& sender = {},
                                 std::int64_t received_us = 0);
-  /// The messages of another log follow.
+  /// Tells that the messages of another log follow.
   void log_begins() { intake_.log_begins(); }
-  /// One CAN frame of the bus with this index in the configuration.
+  /// Takes one CAN frame of the bus with this index in the configuration.
   void frame(int bus, const drivers::CanFrame& frame) { can_.frame(bus, frame); }
-  /// A state of a CAN bus that no frame reports.
+  /// Takes a state of a CAN bus that no frame reports.
   void notice(const drivers::CanNotice& notice);
-  /// One value from a file that has names instead of messages.
+  /// Takes one value from a file that has channel names instead of messages.
   void sample(const estimator::AccelSample& sample);
-  /// The input has ended: closes open instants, publishes the last table and status.
+  /// Ends the input: closes open instants and publishes the last table and status.
   void finish();
 
-  /// Goes out with the next status.
+  /// Sets the counters that go out with the next status.
   void set_live(const LiveState& live) { live_ = live; }
   const drivers::AccelIntake& intake() const { return intake_; }
   const drivers::CanIntake& can() const { return can_; }
   const estimator::Pipeline& pipeline() const { return pipeline_; }
-  /// What happened to the samples of every axis, before and in the pipeline.
+  /// Returns the counters of every axis, of the intakes and the pipeline together.
   std::vector<estimator::AxisCounters> axis_counters() const;
-  std::int64_t windows() const { return windows_; }  ///< published
-  /// Events that are raised and not cleared.
+  std::int64_t windows() const { return windows_; }  ///< published so far
+  /// Returns the events that are raised and not cleared.
   const RaisedEvents& raised() const { return raised_; }
   RaisedEvents& raised() { return raised_; }
-  /// The gap monitor simulates this model from now on; without [gap] nothing happens.
+  /// Makes the gap monitor simulate this model from now on. Does nothing without [gap].
   void adopt(const estimator::GapModel& model);
-  /// The baseline of the change detection; null while it is learned, and without [watch].
+  /// Returns the baseline of the change detection; nullptr while it is learned and without [watch].
   const estimator::Baseline* baseline() const { return watch_ ? watch_->baseline() : nullptr; }
 
-  /// Takes the state over from `before`, which has the same structure, channels and grid but other
-  /// settings. To be called before the first sample. keep_window: the samples in the window are
+  /// Takes over the state of `before`, which has the same structure, channels and grid but other
+  /// settings. Call it before the first sample. With `keep_window` the samples in the window are
   /// kept, because the new settings weight them alike. Parts whose state does not fit the new
-  /// settings start anew: a gap window of another length, changes against another baseline.
+  /// settings start again: a gap window of another length, changes against another baseline.
   void take_over(Estimation& before, bool keep_window);
 
-  /// The whole state, section by section.
+  /// Returns the whole state, section by section.
   std::vector<StateSection> save();
-  /// Names of the sections that save() gives.
+  /// Returns the names of the sections that save() gives.
   std::vector<std::string> section_names();
-  /// Takes over the sections it is given, before the first sample. Empty on success; else the name
-  /// of the section that does not fit, and this must not be used any more. With all sections of an
-  /// estimation of the same configuration it continues as that one would, to the bit. "watch" needs
-  /// "baseline".
+  /// Loads these sections before the first sample. "watch" needs "baseline". Returns an empty
+  /// string, or the name of the section that does not fit; this object must not be used then. After
+  /// loading all sections of an estimation of the same configuration it continues as that one
+  /// would, bit by bit.
   [[nodiscard]] std::string load(const std::vector<StateSection>& sections);
-  /// After load(): these sections were not among those it was given. Findings that they alone could
-  /// clear are withdrawn with the next status.
+  /// Tells, after load(), which sections were missing. Events that only they could clear are
+  /// withdrawn with the next status.
   void went_without(const std::vector<std::string>& lost);
-  /// Sensor time of the newest sample of every axis that was taken; INT64_MIN: none was.
+  /// Returns the sensor time of the newest sample of every axis; INT64_MIN if an axis has had no
+  /// sample.
   const std::vector<std::int64_t>& newest_us() const { return newest_us_; }
-  /// The process began with the samples up to newest_us(), by a state or from a history, and
-  /// listens from now on: a report of strong motion says what lies between. raw: it read the raw
-  /// samples that the process before had stored last.
+  /// Tells that this process starts with the samples up to newest_us(), from a state or a history,
+  /// and receives samples from now on. A report of strong motion then names the time between.
+  /// `raw`: it has read the last raw samples that the process before stored.
   void came_up(bool raw);
 
  private:
@@ -103,7 +167,7 @@ class Estimation {
   void late_window(const estimator::WindowEstimate& estimate);
   void watch(const estimator::WindowEstimate& estimate);
   void follow_recovery(const estimator::WindowEstimate& estimate);
-  /// Whether a change of this parameter began with the strong motion that its recovery law is of.
+  /// Returns true if the change of this parameter began with the strong motion of its recovery law.
   bool is_recovering(const event_t& event, int parameter) const;
   event_t with_recovery(event_t event, int parameter) const;
   void look_for_gap(const estimator::SampleSet& instant);
@@ -114,25 +178,25 @@ class Estimation {
   void begin_gap();
   void intake_notice(const drivers::IntakeNotice& notice);
   void announce(const event_t& event);
-  /// Clears the raised events of a kind that is not looked for any more.
+  /// Clears the raised events of a kind that is not monitored any more.
   void withdraw(const std::string& kind);
 
   const Config& config_;
   EstimationListener* listener_;  ///< never null
   Publisher publisher_;
   RaisedEvents raised_;
-  const estimator::PipelineConfig foreseen_;  ///< with what the layout makes of errors
+  const estimator::PipelineConfig foreseen_;  ///< with the predicted errors of the layout
   estimator::Pipeline pipeline_;
   std::optional<estimator::Watch> watch_;
   estimator::StrongMotion strong_;
-  std::optional<estimator::RecoveryWatch> recovery_;  ///< with watch_
+  std::optional<estimator::RecoveryWatch> recovery_;  ///< only with watch_
   std::optional<estimator::GapMonitor> gap_;
   std::optional<estimator::ShakingWatch> shaking_;
-  std::vector<estimator::AxisCounters> counted_before_;  ///< when the strong motion began
-  std::vector<event_t> findings_;                        ///< since then
-  std::optional<estimator::Tuning> tuning_;  ///< of the state that was loaded or saved last
-  std::vector<event_t> to_withdraw_;         ///< went_without(), until the next status
-  std::vector<double> noise_density_;        ///< as of the last second
+  std::vector<estimator::AxisCounters> counted_before_;  ///< at the start of the strong motion
+  std::vector<event_t> findings_;                        ///< since the start of the strong motion
+  std::optional<estimator::Tuning> tuning_;              ///< of the state loaded or saved last
+  std::vector<event_t> to_withdraw_;   ///< set by went_without(), until the next status
+  std::vector<double> noise_density_;  ///< of the last second
   drivers::AccelIntake intake_;
   drivers::CanIntake can_;
   CanEvents can_events_;

@@ -9,8 +9,7 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/gap_model.h"
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/events/event_words.h"
-#include "daemon/monitor/events/recovery_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
@@ -79,7 +78,7 @@ event_t renewed(event_t raised, estimator::Time now) {
 
 event_t gap_event(const estimator::GapNews& news, const Config& config) {
   const bool raised = news.state != estimator::AlarmState::cleared;
-  const auto worst = static_cast<std::size_t>(news.worst_axis);  // of a state file, perhaps
+  const auto worst = static_cast<std::size_t>(news.worst_axis);  // may come from a state file
   const std::string channel =
       worst < config.pipeline.axes.size() ? config.pipeline.axes[worst].name : "";
   const estimator::ParameterTable table = config.pipeline.parameters();
@@ -111,7 +110,7 @@ event_t gap_event(const estimator::GapNews& news, const Config& config) {
 event_t withdrawn(event_t raised) {
   raised.state = event_state::cleared;
   raised.severity = severity::information;
-  raised.message = "is not looked for any more: the configuration was changed";
+  raised.message = "withdrawn: the new configuration does not monitor this";
   return raised;
 }
 

@@ -9,22 +9,24 @@
 
 namespace framewatch::daemon {
 
-/// News of a parameter's alarm as an event of kind "stiffness_change"; value and std_error in %,
-/// NaN while the record has no number. Of what every stiffness has in common its place is
+/// Returns news of a parameter's alarm as an event of kind "stiffness_change". Value and std_error
+/// are in %, NaN while the record has no number. The place of a common change of all stiffnesses is
 /// kWholeBuilding.
 event_t stiffness_event(const estimator::Alarm& alarm, const estimator::ParameterTable& table);
 
-/// A raised event of a stiffness with what its recovery law says, unless it is cleared or nothing
-/// is known yet within Recovery::kRenew_s of the strong motion.
+/// Appends the recovery law's statement to the message of a stiffness event. Returns the event
+/// unchanged if it is cleared, or if nothing is known yet within Recovery::kRenew_s of the strong
+/// motion.
 event_t recovering(event_t event, const estimator::RecoveryLaw& law);
-/// A raised event told again at a time, without what was said of its recovery.
+/// Returns a raised event as news at the time `now`, without its earlier statement on recovery.
 event_t renewed(event_t raised, estimator::Time now);
 
-/// News of the gap between simulation and measurement as an event of kind "gap"; value in %. Its
-/// place is the stiffness that has changed, or the channel with the largest gap where none has.
+/// Returns news of the gap between simulation and measurement as an event of kind "gap", with its
+/// value in %. The place is the stiffness that has changed, or the channel with the largest gap if
+/// the change is not located.
 event_t gap_event(const estimator::GapNews& news, const Config& config);
 
-/// The end of a raised event that is not looked for under a new configuration.
+/// Returns the end of a raised event that the new configuration does not monitor.
 event_t withdrawn(event_t raised);
 
 }  // namespace framewatch::daemon

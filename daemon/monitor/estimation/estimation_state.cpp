@@ -1,17 +1,17 @@
-// The state of an estimation, and what a new one takes over.
+// Saves and loads the state of an estimation, and takes it over from another one.
 #include <algorithm>
 #include <iterator>
 #include <limits>
 #include <utility>
 
-#include "daemon/monitor/estimation/design_error.h"
 #include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/estimation_events.h"
 
 namespace framewatch::daemon {
 namespace {
 
-/// What the filters are tuned to, if it is known: parameters of `axes` channels.
+/// Archives the tuning of the filters, if it is known: `parameters` values, and noise of `axes`
+/// channels.
 template <typename Archive>
 void archive_tuning(Archive& a, int parameters, std::size_t axes,
                     std::optional<estimator::Tuning>& tuning) {
@@ -34,7 +34,7 @@ void archive_pipeline(Archive& a, estimator::Pipeline& pipeline) {
     a.refuse();
 }
 
-/// Kinds of events that only a section's part of the estimation can clear.
+/// Returns the kinds of events that only the owner of a section can clear.
 std::vector<std::string> kinds_of(const std::string& section) {
   if (section == "lcm")
     return {"two_senders", "sequence_leap", "duplicates", "losses", "channel_table"};
@@ -48,8 +48,8 @@ std::vector<std::string> kinds_of(const std::string& section) {
 
 }  // namespace
 
-/// visit: gets every section's name and a function that archives it, in an order in which each
-/// needs only those before it.
+/// Calls `visit` with every section's name and a function that archives it, in an order in which
+/// each section needs only earlier ones.
 template <typename Visit>
 void Estimation::each_section(const Visit& visit) {
   visit("counts", [this](auto& a) {
@@ -63,7 +63,8 @@ void Estimation::each_section(const Visit& visit) {
     if (!std::decay_t<decltype(a)>::kReading) tuning_ = pipeline_.tuning();
     archive_tuning(a, pipeline_.parameters().size(), config_.pipeline.axes.size(), tuning_);
   });
-  // What is said of channels compares the pipeline's counters with those it saw before.
+  // The events of channels compare the pipeline's counters with earlier ones, so both are one
+  // section.
   visit("window", [this](auto& a) {
     a(absurd_events_, channel_events_, newest_us_);
     archive_pipeline(a, pipeline_);
@@ -143,7 +144,7 @@ void Estimation::went_without(const std::vector<std::string>& lost) {
 }
 
 void Estimation::take_over(Estimation& before, bool keep_window) {
-  // Both have the same structure, so only settings can keep a part from fitting.
+  // Both have the same structure, so a part can fail to fit only because of its settings.
   const auto copy = [](auto& from, auto& to) {
     estimator::StateWriter writer;
     writer(from);
@@ -179,7 +180,7 @@ void Estimation::take_over(Estimation& before, bool keep_window) {
     begin_watch();
     withdraw("stiffness_change");
   } else if (!keep_window && config_.watch->options.amplitude) {
-    watch_->forget_quiet();  // amplitudes are over the noise, which is another one
+    watch_->forget_quiet();  // amplitudes are relative to the noise, which has changed
   }
   if (shaking_ && before.shaking_ && copy(*before.shaking_, *shaking_)) {
     counted_before_ = before.counted_before_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -14,12 +15,22 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
-#include "daemon/monitor/estimation/message_sink.h"
 #include "estimator/gap/gap.h"
 
 namespace framewatch::daemon {
 
-/// Counters of a live process; all zero in replay, so that its output is reproducible.
+/// Receives encoded messages, for LCM or a log. `time_us` is sensor time.
+using MessageSink = std::function<void(std::int64_t time_us, const std::string& channel,
+                                       const std::vector<std::uint8_t>& bytes)>;
+
+/// Returns the LCM channels of the estimates by WindowEstimate::window: the main window, the other
+/// windows and, if configured, the long one.
+std::vector<std::string> estimate_channels(const Config& config);
+
+/// Suffix of a channel for its late estimates (WindowEstimate::late).
+inline constexpr const char* kLate = "_LATE";
+
+/// Counters of a live process. All are zero in a replay, so that its output is reproducible.
 struct LiveState {
   std::int32_t queue_high_water = 0;
   std::int64_t queue_dropped = 0;
@@ -34,29 +45,35 @@ struct AxisStatus {
 
 struct StatusCounts {
   std::int64_t windows = 0, sample_sets = 0, gaps = 0, rejected_messages = 0;
-  std::vector<AxisStatus> axes;  ///< parallel to the configured ones
+  std::vector<AxisStatus> axes;  ///< in the order of the configured axes
 };
 
-/// Turns results of the estimator into the messages of lcmtypes/ and sends them. No wall clock: the
+/// Turns results of the estimator into the messages of lcmtypes/ and sends them. Uses no clock: the
 /// same estimates give the same bytes.
 class Publisher {
  public:
   /// `config` must outlive this. Without a sink nothing is encoded.
   Publisher(const Config& config, MessageSink sink);
 
+  /// Publishes the parameter table.
   void parameters(std::int64_t time_us, const estimator::Pipeline& pipeline);
-  /// Boxplot statistics go with every LcmSettings::boxplot_every-th window.
+  /// Publishes an estimate of the main window, every LcmSettings::boxplot_every-th one with boxplot
+  /// statistics.
   void estimate(const estimator::WindowEstimate& estimate);
-  /// An estimate of one of the other windows, on its own channel.
+  /// Publishes an estimate of another window on its own channel.
   void other(const estimator::WindowEstimate& estimate);
-  /// An estimate that comes after its time (WindowEstimate::late), on its window's channel with
-  /// _LATE behind it: whoever reads the other one gets windows in order.
+  /// Publishes a late estimate (WindowEstimate::late) on its window's channel plus _LATE, so that
+  /// readers of the main channel get windows in order.
   void late(const estimator::WindowEstimate& estimate);
+  /// Publishes an event.
   void event(const event_t& event);
-  /// The baselines that changes are judged against.
+  /// Publishes the baselines with which changes are compared.
   void watch(std::int64_t time_us, const estimator::Watch& watch);
+  /// Publishes a window of the gap monitor.
   void gap(const estimator::GapWindow& window);
+  /// Publishes how well the model fits.
   void model(const estimator::ModelFit& fit);
+  /// Publishes the status; `time_us` is sensor time.
   void status(std::int64_t time_us, const StatusCounts& counts, const LiveState& live);
 
  private:

@@ -10,18 +10,20 @@
 
 namespace framewatch::daemon {
 
-/// Collects one segment of calibrated instants, as the pipeline would see them.
+/// Collects one segment of calibrated instants, in the form that the pipeline gets.
 class SegmentCollector {
  public:
-  /// from_s, to_s: since the first sample.
+  /// `from_s` and `to_s` count from the first sample.
   SegmentCollector(const estimator::PipelineConfig& config, double from_s, double to_s);
 
+  /// Takes the next sample.
   void push(const estimator::AccelSample& sample);
+  /// Ends the input: keeps the instants that are still open.
   void finish();
 
-  /// instants x axes, m/s^2; NaN where samples are missing.
+  /// Returns the segment: instants x axes, m/s^2; NaN for missing samples.
   Eigen::MatrixXd accel() const;
-  /// The axes with the rest of their delay, which is less than a sample.
+  /// Returns the axes with the rest of their delay, which is less than a sample.
   const std::vector<estimator::SensorAxis>& axes() const { return acquisition_.axes(); }
   bool started() const { return started_; }
   std::int64_t first_us() const { return first_us_; }

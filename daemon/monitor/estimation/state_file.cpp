@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <optional>
@@ -17,14 +18,51 @@
 namespace framewatch::daemon {
 namespace {
 
+struct Description {
+  std::string_view name, without;
+  std::vector<std::string> grounds;
+};
+
+/// Returns the sections in the order of the file.
+const std::array<Description, 10>& descriptions() {
+  static const std::array<Description, 10> all{{
+      {"counts", "counters of windows start at 0", {}},
+      {"events", "raised findings and their acknowledgements are forgotten", {}},
+      {"lcm", "all nodes count as new", {"channel", "lcm"}},
+      {"can", "all CAN nodes count as new", {"channel", "can", "estimator"}},
+      {"tuning", "filters are tuned again", {"structure", "channel", "parameters"}},
+      {"window", "the window starts empty", {"structure", "channel", "estimator", "long window"}},
+      {"baseline",
+       "baselines and their dependence on amplitude and temperature are learned again",
+       {"structure", "parameters"}},
+      {"watch",
+       "evidence for changes is collected again, and lasting changes are announced again",
+       {"structure", "parameters", "estimator", "long window", "watch"}},
+      {"gap",
+       "the model of the gap monitor is learned again",
+       {"structure", "channel", "estimator", "gap"}},
+      {"event_report",
+       "the report of a strong motion under way starts here",
+       {"structure", "channel", "estimator"}},
+  }};
+  return all;
+}
+
+const Description* find(std::string_view name) {
+  const auto& all = descriptions();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const Description& d) { return d.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
 const std::string kMagic = "framewatch state\n";
-constexpr std::int32_t kFormat = 17;  ///< goes up whenever archive() of any class changes
+constexpr std::int32_t kFormat = 17;  ///< increase it whenever archive() of any class changes
 constexpr std::size_t kDigestBytes = 64;
 constexpr std::int64_t kMaxBytes = std::int64_t{1} << 30;
-constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head, which has some ten
-constexpr const char* kUnlike = "has sizes or numbers that cannot be right";
+constexpr std::size_t kMaxEntries = 100;  ///< of a list in the head; a real one has about ten
+constexpr const char* kUnlike = "has impossible sizes or numbers";
 
-/// A list of the head: `count` of them are there.
+/// Archives a list of the head, with its length.
 template <typename Archive, typename T>
 void archive_list(Archive& a, std::vector<T>& list) {
   const std::size_t count = a.count(list.size());
@@ -33,7 +71,7 @@ void archive_list(Archive& a, std::vector<T>& list) {
   for (T& entry : list) entry.archive(a);
 }
 
-/// Before the sections.
+/// The part of the file before the sections.
 struct Head {
   struct Ground {
     std::string name, digest;
@@ -87,7 +125,8 @@ std::map<std::string, std::string> grounds_of(const Config& config) {
   return out;
 }
 
-/// What a section rests on and is another under this configuration, for a person; empty: nothing.
+/// Returns, for people, on what a section depends that differs in this configuration; empty if it
+/// fits.
 std::string other_grounds(const StateSection& section, const SavedState& state,
                           const std::map<std::string, std::string>& grounds) {
   const auto in = [](const std::map<std::string, std::string>& all, const std::string& name) {
@@ -105,7 +144,7 @@ std::string other_grounds(const StateSection& section, const SavedState& state,
   return out;
 }
 
-/// A state file, with those of its sections that are whole.
+/// A state file with its undamaged sections.
 struct ReadState {
   std::string problem;
   SavedState state;
@@ -134,7 +173,7 @@ ReadState read_state(const std::string& path) {
   const std::vector<std::uint8_t>& own = again.bytes();
   std::size_t at = own.size();
   if (!reader.good() || text->substr(at, kDigestBytes) != digest_of(own))
-    return {"is damaged or cut off: the digest of its head is another", {}, {}};
+    return {"is damaged or cut off: the digest of its head does not match", {}, {}};
   at += kDigestBytes;
   out.state.config_sha256 = head.config_sha256;
   out.state.events_before = head.events_before;
@@ -147,7 +186,7 @@ ReadState read_state(const std::string& path) {
     if (size < static_cast<std::size_t>(entry.size))
       out.lost.push_back({entry.name, "is cut off"});
     else if (digest_of(section.bytes) != entry.digest)
-      out.lost.push_back({entry.name, "is damaged: its digest is another"});
+      out.lost.push_back({entry.name, "is damaged: its digest does not match"});
     else
       out.state.sections.push_back(std::move(section));
   }
@@ -165,7 +204,7 @@ bool has(const ReadState& read, const std::string& name) {
                      [&](const StateSection& s) { return s.name == name; });
 }
 
-/// Leaves the sections that rest on the same grounds and do not lack another one.
+/// Keeps the sections that depend on unchanged settings and for which no other section is missing.
 void leave_what_fits(ReadState& read, const Config& config, Estimation& estimation) {
   const std::map<std::string, std::string> grounds = grounds_of(config);
   for (const std::string& name : estimation.section_names()) {
@@ -183,15 +222,7 @@ void leave_what_fits(ReadState& read, const Config& config, Estimation& estimati
     lose(read, "watch", "needs the section baseline");
 }
 
-}  // namespace
-
-SavedState saved_state(const Config& config, Estimation& estimation, std::int64_t events_before) {
-  return {config.sha256, events_before, grounds_of(config), estimation.save()};
-}
-
-namespace {
-
-/// The head and its digest.
+/// Returns the head and its digest.
 std::vector<std::uint8_t> head_bytes(const SavedState& state) {
   Head head;
   head.config_sha256 = state.config_sha256;
@@ -220,6 +251,21 @@ bool write_all(int descriptor, const std::vector<std::uint8_t>& bytes) {
 }
 
 }  // namespace
+
+std::string_view without_section(std::string_view name) {
+  const Description* found = find(name);
+  return found == nullptr ? std::string_view{} : found->without;
+}
+
+const std::vector<std::string>& grounds_of_section(std::string_view name) {
+  static const std::vector<std::string> none;
+  const Description* found = find(name);
+  return found == nullptr ? none : found->grounds;
+}
+
+SavedState saved_state(const Config& config, Estimation& estimation, std::int64_t events_before) {
+  return {config.sha256, events_before, grounds_of(config), estimation.save()};
+}
 
 std::vector<std::uint8_t> state_bytes(const SavedState& state) {
   std::vector<std::uint8_t> bytes = head_bytes(state);

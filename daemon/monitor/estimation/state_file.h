@@ -4,44 +4,62 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/estimation/state_section.h"
 
 namespace framewatch::daemon {
 
-/// The state of an estimation as it goes into a file (docs/formats.md).
+/// A section that could not be loaded from a state file.
+struct LostSection {
+  std::string name;
+  std::string why;  ///< "is damaged: its digest does not match"
+};
+
+/// Returns the consequence of a missing section, for people: "the window starts empty". Empty if
+/// `name` is not a section.
+std::string_view without_section(std::string_view name);
+
+/// Returns the sections of the configuration file, and the further properties in
+/// SavedState::grounds, on which a section of the state depends. A section is refused when one of
+/// them has changed.
+const std::vector<std::string>& grounds_of_section(std::string_view name);
+
+/// The state of an estimation in the form of a file (docs/formats.md).
 struct SavedState {
   std::string config_sha256;
-  std::int64_t events_before = 0;              ///< events that an output has so far
-  std::map<std::string, std::string> grounds;  ///< what sections rest on, and its digest
+  std::int64_t events_before = 0;              ///< events that an output already has
+  std::map<std::string, std::string> grounds;  ///< digests of what sections depend on
   std::vector<StateSection> sections;
 };
+
+/// Returns the state of an estimation with this configuration.
 SavedState saved_state(const Config& config, Estimation& estimation, std::int64_t events_before);
 
-/// The bytes of a state file: head with the digest of every section, digest of the head, sections.
+/// Returns the bytes of a state file: head with the digest of every section, digest of the head,
+/// sections.
 std::vector<std::uint8_t> state_bytes(const SavedState& state);
 
-/// Writes a state file to PATH.partial and renames it when it is on the disk. Empty on success,
-/// else the problem.
+/// Writes a state file to PATH.partial and renames it when it is on the disk. Returns an empty
+/// string, or the problem.
 std::string write_state(const std::string& path, const SavedState& state);
 
 struct LoadedState {
-  std::string problem;  ///< why nothing was taken; empty when something was
+  std::string problem;  ///< why nothing was loaded; empty when something was
   std::int64_t events_before = 0;
-  std::vector<LostSection> lost;  ///< sections that were not taken
+  std::vector<LostSection> lost;  ///< sections that were not loaded
 };
-/// Loads a whole state file into an estimation of the same configuration, or nothing of it. A
-/// problem found in the file itself leaves the estimation as it was; `touched` says that it must
-/// not be used any more.
+/// Loads a whole state file into an estimation of the same configuration, or nothing. A problem of
+/// the file itself leaves the estimation unchanged; `touched` is set if it must not be used any
+/// more.
 LoadedState load_state(const std::string& path, const Config& config, Estimation& estimation,
                        bool& touched);
 
-/// Loads every section of a state file that fits, also when the configuration differs in what the
-/// others rest on. estimation: of `config`, as new. anew: gives another one as new in its place,
-/// because it was spoilt.
+/// Loads every section of a state file that fits, even if the configuration differs in what the
+/// others depend on. `estimation` must be new and of `config`. Calls `anew` for another new one in
+/// its place when a section has spoiled it.
 LoadedState load_what_fits(const std::string& path, const Config& config, Estimation& estimation,
                            const std::function<Estimation&()>& anew);
 

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/core.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
-#include "daemon/monitor/event_report/drift_words.h"
+#include "daemon/base/html_page.h"
+#include "daemon/base/json_values.h"
+#include "daemon/monitor/event_report/report_words.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -28,9 +32,8 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
       return fmt::format("the drift of story {} is not known", drift.story);
     case PlacardReason::interruption:
       return fmt::format(
-          "the record has a gap in the strong motion of story {}: its peak drift may be larger "
-          "than "
-          "the {} that was seen",
+          "the record is interrupted in the strong motion of story {}: its peak drift may be "
+          "larger than the {} that was seen",
           drift.story, drift_words(drift.ratio));
     default:
       return fmt::format(
@@ -39,7 +42,7 @@ std::string open_reason(PlacardReason reason, const StoryDrift& drift) {
   }
 }
 
-/// "story 2", "stories 1 to 6", "stories 1, 3, 5 and 4 more"; ascending.
+/// Returns "story 2", "stories 1 to 6" or "stories 1, 3, 5 and 4 more". `stories` is ascending.
 std::string stories_words(const std::vector<int>& stories) {
   constexpr std::size_t kMaxNamed = 8;
   if (stories.size() == 1) return fmt::format("story {}", stories.front());
@@ -53,7 +56,7 @@ std::string stories_words(const std::vector<int>& stories) {
   return out;
 }
 
-/// Why the first of the stories that are not judged could not be.
+/// Returns why the first of the `stories`, which are not judged, could not be judged.
 std::string why_not(const std::vector<int>& stories, const std::vector<StoryDrift>& drifts) {
   const StoryDrift& first = drifts[static_cast<std::size_t>(stories.front() - 1)];
   return open_reason(!first.known()                ? PlacardReason::drift_unknown
@@ -80,7 +83,7 @@ std::string reason_words(const PlacardChoice& choice, const std::vector<StoryDri
   return out + ".";
 }
 
-/// One sentence for every thing that a reader of drifts must know.
+/// Returns one sentence for each point that a reader of drifts must know.
 std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
                                     const estimator::PipelineConfig& c,
                                     const estimator::DriftKnowledge& known) {
@@ -90,11 +93,11 @@ std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
       "that stand out of plumb.");
   double slow = 0;
   bool unknown_slow = false, computed = false;
-  std::vector<int> gaps, unknown;
+  std::vector<int> interrupted, unknown;
   for (const StoryDrift& d : drifts) {
     if (!d.known()) unknown.push_back(d.story);
     if (!d.known()) continue;
-    if (d.interrupted_at_peak()) gaps.push_back(d.story);
+    if (d.interrupted_at_peak()) interrupted.push_back(d.story);
     computed = computed || !d.measured;
     unknown_slow = unknown_slow || !std::isfinite(d.slow_ratio);
     if (std::isfinite(d.slow_ratio)) slow = std::max(slow, std::abs(d.slow_ratio) / d.ratio);
@@ -116,15 +119,71 @@ std::vector<std::string> remarks_of(const std::vector<StoryDrift>& drifts,
         "Computed: the floor or the one below has no channel. Its motion follows from the measured "
         "floors by the design's shares of the stories between them; a loss in one of these stories "
         "alone is not in its error.");
-  if (!gaps.empty())
+  if (!interrupted.empty())
     out.push_back(
-        fmt::format("The record has a gap in the strong motion of {}: the peak may be larger.",
-                    stories_words(gaps)));
+        fmt::format("The record is interrupted in the strong motion of {}: the peak may be larger.",
+                    stories_words(interrupted)));
   if (!unknown.empty())
     out.push_back(
         fmt::format("The drift of {} is not known: channels failed, or the record begins "
                     "in the motion.",
                     stories_words(unknown)));
+  return out;
+}
+
+std::string part(double error, const estimator::StoryDrift& drift) {
+  return std::isfinite(error) && drift.ratio > 0 ? fmt::format("{:.1f}", 100 * error / drift.ratio)
+                                                 : "-";
+}
+
+/// Returns a probability for a table cell: "35 %", "&lt; 1 %".
+std::string in_table(double probability) {
+  if (!std::isfinite(probability)) return "-";
+  return probability < 0.01   ? "&lt; 1 %"
+         : probability > 0.99 ? "&gt; 99 %"
+                              : fmt::format("{:.0f} %", 100 * probability);
+}
+
+constexpr const char* kStates[] = {"slight", "moderate", "extensive", "complete"};
+
+Json story_json(const DriftReport& r, std::size_t i, const Config& config) {
+  const estimator::StoryDrift& d = r.drifts[i];
+  Json out{{"story", d.story},
+           {"peak_drift_ratio", json_value(d.ratio)},
+           {"drift_is", d.measured ? "measured" : "computed"},
+           {"std_error_ratio", json_value(d.std_error)},
+           {"error_parts_ratio",
+            {{"noise", json_value(d.noise_error)},
+             {"corner", json_value(d.slow_error)},
+             {"model", json_value(d.known() ? d.model_error : estimator::kNaN)}}},
+           {"restored_ratio", json_value(d.slow_ratio)},
+           {"frame", d.known() ? Json(config.pipeline.structure.frame_name(d.frame)) : Json()},
+           {"gap_at_peak", d.interrupted_at_peak()}};
+  if (!r.placard) return out;
+  for (std::size_t state = 0; state < estimator::kDamageStates; ++state)
+    out["probability_or_worse"][kStates[state]] = json_value(r.damage[i][state]);
+  return out;
+}
+
+const char* placard_word(estimator::Placard placard) {
+  constexpr const char* kWords[] = {"inspected", "restricted_use", "unsafe"};
+  return kWords[static_cast<std::size_t>(placard)];
+}
+
+const char* reason_word(estimator::PlacardReason reason) {
+  constexpr const char* kWords[] = {"damage", "no_damage", "drift_unknown", "gap_at_peak",
+                                    "error_unknown"};
+  return kWords[static_cast<std::size_t>(reason)];
+}
+
+Json fragility_json(const FragilitySettings& f) {
+  Json out{{"source", f.source},
+           {"type", f.type.empty() ? Json() : Json(f.type)},
+           {"restricted_probability", f.rules.restricted},
+           {"unsafe_probability", f.rules.unsafe},
+           {"stories", Json::array()}};
+  for (const estimator::Fragility& one : f.by_story)
+    out["stories"].push_back({{"median_drift_ratio", one.median}, {"dispersion", one.dispersion}});
   return out;
 }
 
@@ -148,9 +207,91 @@ DriftReport drift_report(const Config& config, const estimator::PipelineConfig& 
   if (!loss.empty() && out.placard->placard == Placard::inspected) {
     out.placard->placard = Placard::restricted;
     out.reason = fmt::format("{}, though by its drifts alone the building would pass. {}",
-                             capitalised(loss), out.reason);
+                             capitalized(loss), out.reason);
   }
   return out;
+}
+
+std::string placard_section(const DriftReport& r) {
+  if (!r.placard) return "";
+  return "<p class=\"verdict\">Placard: " + html_text(placard_words(*r.placard)) + ". " +
+         html_text(r.reason) + "</p>\n<p>" + placard_caution() + "</p>\n";
+}
+
+std::string drift_table_section(const DriftReport& r, const Config& config) {
+  const estimator::Structure& s = config.pipeline.structure;
+  std::vector<std::string> head{"",
+                                "peak drift, % of the height",
+                                "mm",
+                                "frame",
+                                "that drift is",
+                                "noise, %",
+                                "corner, %",
+                                "model, %"};
+  if (r.placard)
+    for (const char* state : {"slight", "moderate", "extensive", "complete"})
+      head.push_back(state + std::string(" or worse"));
+  if (r.placard) head.back() = "complete";
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = r.drifts.size(); i-- > 0;) {
+    const estimator::StoryDrift& d = r.drifts[i];
+    std::vector<std::string> row{fmt::format("story {}", d.story), drift_with_error(d)};
+    if (d.known()) {
+      row.push_back(fmt::format("{:.2f}", 1e3 * d.ratio * s.story_height[i]));
+      row.push_back(html_text(s.frame_name(d.frame)));
+    } else {
+      row.insert(row.end(), {"-", "-"});
+    }
+    row.push_back(std::string(d.measured ? "measured" : "computed") +
+                  (d.known() && d.interrupted_at_peak() ? "; interrupted" : ""));
+    row.insert(row.end(), {part(d.noise_error, d), part(d.slow_error, d),
+                           d.measured ? "-" : part(d.model_error, d)});
+    if (r.placard)
+      for (const double p : r.damage[i]) row.push_back(in_table(p));
+    rows.push_back(std::move(row));
+  }
+  std::string out = "<h2>Drift and damage of every story</h2>\n" + html_table(head, rows) +
+                    "<p>± is one standard error; its parts, in % of the drift: the sensors' noise, "
+                    "what the integration's corner removes, the model of floors without "
+                    "channels.</p>\n";
+  if (r.placard)
+    out += fmt::format(
+        "<p>Probabilities by {}. Restricted use from {:.0f} % for moderate damage, unsafe from "
+        "{:.0f} % for extensive damage, of any story.</p>\n",
+        html_text(config.fragility->source), 100 * config.fragility->rules.restricted,
+        100 * config.fragility->rules.unsafe);
+  else
+    out += "<p>" + html_text(r.reason) + "</p>\n";
+  out += "<ul>\n";
+  for (const std::string& remark : r.remarks) out += "<li>" + html_text(remark) + "</li>\n";
+  return out + "</ul>\n";
+}
+
+void add_drifts(const DriftReport& r, const Config& config, nlohmann::ordered_json& to) {
+  to["stories"] = Json::array();
+  for (std::size_t i = 0; i < r.drifts.size(); ++i)
+    to["stories"].push_back(story_json(r, i, config));
+  to["placard"] = nullptr;
+  if (r.placard)
+    to["placard"] = {{"placard", placard_word(r.placard->placard)},
+                     {"words", placard_words(*r.placard)},
+                     {"because", reason_word(r.placard->reason)},
+                     {"reason", r.reason},
+                     {"story", r.placard->story},
+                     {"stories_not_judged", r.placard->not_judged},
+                     {"caution", placard_caution()}};
+  to["fragility"] = config.fragility ? fragility_json(*config.fragility) : Json();
+  if (!r.placard) to["no_placard"] = r.reason;
+  to["drift_remarks"] = r.remarks;
+}
+
+std::string drifts_json(const DriftReport& r, const Config& config) {
+  Json out{{"schema", "framewatch.drifts/1"},
+           {"building", config.pipeline.structure.name},
+           {"config_sha256", config.sha256},
+           {"version", FRAMEWATCH_VERSION}};
+  add_drifts(r, config, out);
+  return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace framewatch::daemon

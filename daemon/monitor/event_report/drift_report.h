@@ -13,33 +13,34 @@
 
 namespace framewatch::daemon {
 
-/// What a motion did to the stories, computed once for every page and file that shows it.
+/// Drift and damage of the stories in one motion, computed once for all pages and files that show
+/// them.
 struct DriftReport {
-  std::vector<estimator::StoryDrift> drifts;  ///< from the lowest story up
-  /// By story and damage state: probability of that state or a worse one; empty without
-  /// [fragility], NaN where the drift is not known.
+  std::vector<estimator::StoryDrift> drifts;  ///< by story, from the lowest one up
+  /// By story and damage state, the probability of that state or a worse one. Empty without
+  /// [fragility]; NaN if the drift is not known.
   std::vector<std::array<double, estimator::kDamageStates>> damage;
-  std::optional<estimator::PlacardChoice> placard;  ///< none without [fragility]
-  std::string reason;                ///< of the placard, or that no fragility is configured
-  std::vector<std::string> remarks;  ///< what is to be known of the drifts, one sentence each
+  std::optional<estimator::PlacardChoice> placard;  ///< empty without [fragility]
+  std::string reason;                ///< for the placard, or that no fragility is configured
+  std::vector<std::string> remarks;  ///< notes for the reader of the drifts, one sentence each
 };
 
-/// peak, known: of the motion, for the axes of `pipeline`, which is the configuration's. loss: a
-/// lasting loss of stiffness, in words; with one the placard is restricted use at best. Empty:
-/// none.
+/// Computes the drifts from the peak response of the motion and from what is known of the building,
+/// both for the axes of `pipeline`, which belongs to `config`. `loss` is a lasting loss of
+/// stiffness in words (empty: none); it makes the placard restricted use at best.
 DriftReport drift_report(const Config& config, const estimator::PipelineConfig& pipeline,
                          const estimator::PeakResponse& peak,
                          const estimator::DriftKnowledge& known, const std::string& loss = "");
 
-/// HTML: the placard with its reason, to stand first; empty without [fragility].
+/// Returns HTML for the top of a page: the placard and its reason. Empty without [fragility].
 std::string placard_section(const DriftReport& report);
-/// HTML: a table of every story's drift with its error and of its damage, and the remarks.
+/// Returns HTML: a table with the drift, its error and the damage of every story, and the remarks.
 std::string drift_table_section(const DriftReport& report, const Config& config);
 
-/// Members of the event report's JSON, and the whole of drifts_json(): "stories", "placard",
-/// "fragility" (docs/formats.md).
+/// Adds "stories", "placard", "fragility" (docs/formats.md) to a JSON object, for event reports and
+/// for drifts_json().
 void add_drifts(const DriftReport& report, const Config& config, nlohmann::ordered_json& to);
-/// Schema framewatch.drifts/1.
+/// Returns the drifts as JSON, schema framewatch.drifts/1.
 std::string drifts_json(const DriftReport& report, const Config& config);
 
 }  // namespace framewatch::daemon

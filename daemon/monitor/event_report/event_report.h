@@ -13,44 +13,50 @@
 
 namespace framewatch::daemon {
 
-/// What is told after a strong motion. The same samples give the same.
+/// The results of a strong motion that has ended. The same samples give the same report.
 struct EventReport {
   estimator::Shaking shaking;
-  std::vector<estimator::AxisCounters> axes;  ///< what happened to the samples meanwhile
-  std::vector<event_t> findings;              ///< announced meanwhile
-  /// Of what every stiffness has in common; without an id: nothing.
+  std::vector<estimator::AxisCounters> axes;  ///< counters of the samples during the motion
+  std::vector<event_t> findings;              ///< events announced during the motion
+  /// The common change of all stiffnesses; id 0 means none.
   estimator::ChangeRecord everything{};
-  std::vector<event_t> open{};  ///< alarms of other kinds that are raised when it ends
+  std::vector<event_t> open{};  ///< alarms of other kinds that are raised when the motion ends
 };
 
 enum class EventColor { green, yellow, red };
+/// Returns "green", "yellow" or "red".
 const char* color_word(EventColor color);
 
-/// By the thresholds of [event_report]. reasons: one sentence each, the gravest first; of green
-/// what was looked at.
+/// The verdict by the thresholds of [event_report]. `reasons` has one sentence each, the gravest
+/// first; a green verdict lists what was checked.
 struct EventVerdict {
   EventColor color = EventColor::green;
   std::vector<std::string> reasons;
   std::string loss;              ///< the gravest lasting loss of stiffness, in words; empty: none
   int worst_story = 0;           ///< 0: no drift is known
-  double worst_drift_ratio = 0;  ///< of its height
+  double worst_drift_ratio = 0;  ///< relative to the story's height
 };
+/// Judges a report by the thresholds of [event_report], which `config` must have.
 EventVerdict judge(const EventReport& report, const Config& config);
-/// Drift and damage of every story.
+/// Computes the drift and damage of every story.
 DriftReport drift_report(const EventReport& report, const Config& config);
 
-/// "event-20261124T004628Z", by the time it began; .html and .json of it are written.
+/// Returns the name of the report's .html and .json files without their ending, by the start of the
+/// motion: "event-20261124T004628Z".
 std::string event_report_name(const EventReport& report);
 
-/// As an event of kind "strong_motion": its severity is the color's, its segment the page's name.
+/// Returns the report as an event of kind "strong_motion". Its severity follows the color; its
+/// segment is the name of the page.
 event_t event_of(const EventReport& report, const Config& config);
 
-/// Green is no finding, and is cleared by itself kGreenShown_s later: whether this event is due.
+/// A green event is cleared after this time.
 inline constexpr double kGreenShown_s = 600;
+/// Returns true if `event` is a green one that is to be cleared at `now_us`.
 bool green_and_past(const event_t& event, std::int64_t now_us);
 
+/// Returns the report as a page.
 std::string event_report_html(const EventReport& report, const Config& config);
-/// Schema framewatch.event_report/1, docs/formats.md.
+/// Returns the report as JSON, schema framewatch.event_report/1 (docs/formats.md).
 std::string event_report_json(const EventReport& report, const Config& config);
 
 }  // namespace framewatch::daemon

@@ -8,9 +8,8 @@
 #include "daemon/base/svg_plot.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/event_report/event_report.h"
-#include "daemon/monitor/event_report/response_words.h"
-#include "daemon/monitor/event_report/unheard_words.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/event_report/report_words.h"
+#include "daemon/monitor/events/event_messages.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -5,8 +5,8 @@
 #include "daemon/base/json_values.h"
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/event_report/event_report.h"
-#include "daemon/monitor/event_report/unheard_words.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/event_report/report_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
@@ -31,7 +31,7 @@ const char* before_word(estimator::BeforeFrom from) {
   return "none";
 }
 
-/// Times of which no sample is known; peaks are those of the rest.
+/// Returns the times without samples. The peaks of the report are those of the remaining time.
 Json unheard_json(const estimator::Shaking& shaking) {
   const std::vector<std::string> sentences = unheard_sentences(shaking);
   Json out = Json::array();

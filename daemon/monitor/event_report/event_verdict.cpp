@@ -4,22 +4,20 @@
 #include <fmt/core.h>
 
 #include "daemon/base/utc_time.h"
-#include "daemon/monitor/event_report/drift_words.h"
 #include "daemon/monitor/event_report/event_report.h"
-#include "daemon/monitor/event_report/unheard_words.h"
+#include "daemon/monitor/event_report/report_words.h"
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/events/event_words.h"
-#include "daemon/monitor/events/place_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {
 namespace {
 
-constexpr double kErrors = 3;  // standard errors a loss is beyond
+constexpr double kErrors = 3;  // a loss must exceed this many standard errors
 
 struct Reason {
   EventColor color;
-  double size;  ///< over its threshold
+  double size;  ///< relative to its threshold
   std::string text;
 };
 
@@ -54,7 +52,7 @@ void judge_drifts(const EventReport& r, const Config& config, EventVerdict& out,
   }
 }
 
-/// What is said of an element that has a record: an open alarm is never green.
+/// Returns the reason for an element that has a record. An open alarm is never green.
 Reason reason_of(const estimator::ChangeRecord& record, const estimator::Parameter& p,
                  const EventReportSettings& s) {
   const estimator::Change& c = record.change;
@@ -68,10 +66,10 @@ Reason reason_of(const estimator::ChangeRecord& record, const estimator::Paramet
                       p.last_story > p.story ? " of one story" : "")};
 }
 
-/// Stiffnesses that could be compared, and those of them whose error hides the limit.
+/// Counts of the stiffnesses that could be compared, and of those whose error hides the limit.
 struct Compared {
   int known = 0, hidden = 0;
-  double shows = 0;  ///< of the hidden ones: the least loss of one story that every one would show
+  double shows = 0;  ///< the smallest loss of one story that every hidden one would show
 };
 
 Compared judge_losses(const EventReport& r, const Config& config, EventVerdict& verdict,
@@ -138,7 +136,7 @@ EventVerdict judge(const EventReport& r, const Config& config) {
   std::vector<Reason> reasons;
   judge_drifts(r, config, out, reasons);
   const Compared compared = judge_losses(r, config, out, reasons);
-  // Nobody knows the peaks of the time that was not heard, so it is not green.
+  // The peaks of the time without samples are not known, so the verdict is not green.
   for (const std::string& unheard : unheard_sentences(r.shaking))
     reasons.push_back({EventColor::yellow, 0, unheard});
   std::stable_sort(reasons.begin(), reasons.end(), [](const Reason& a, const Reason& b) {

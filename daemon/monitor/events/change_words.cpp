@@ -5,12 +5,37 @@
 
 #include <fmt/core.h>
 
-#include "daemon/monitor/events/place_words.h"
-
 namespace framewatch::daemon {
 namespace {
 
-/// "Up to" is so many standard errors more.
+struct PlaceOfName {
+  char quantity = 'k', direction = 'x';
+  std::string stories;  ///< "story 1", "stories 6 to 12", "floor 2"; empty: the whole building
+  std::string where;    ///< frames or panel; empty: all frames of a direction
+};
+
+PlaceOfName place_of(const std::string& name) {
+  PlaceOfName out;
+  const std::size_t at = name.find('_');
+  out.quantity = name.empty() ? 'k' : name.front();
+  out.direction =
+      at == 0 || name.empty() ? 'x' : name[at == std::string::npos ? name.size() - 1 : at - 1];
+  if (at == std::string::npos) return out;
+  const std::size_t next = name.find('_', at + 1);
+  const std::string stories = name.substr(at + 1, next == std::string::npos ? next : next - at - 1);
+  const std::size_t to = stories.find("to");
+  out.stories = to != std::string::npos
+                    ? fmt::format("stories {} to {}", stories.substr(0, to), stories.substr(to + 2))
+                    : (out.quantity == 'G' ? "floor " : "story ") + stories;
+  if (next != std::string::npos) out.where = name.substr(next + 1);
+  return out;
+}
+
+const char* frame_word(const PlaceOfName& place) {
+  return place.where.find('+') == std::string::npos ? "frame" : "frames";
+}
+
+/// "Up to" adds this many standard errors.
 constexpr double kUpTo = 2;
 
 std::string sure_words(double errors) {
@@ -18,7 +43,65 @@ std::string sure_words(double errors) {
                       : fmt::format("{:.0f} times its uncertainty", errors);
 }
 
+using estimator::RecoveryReason, estimator::RecoveryVerdict;
+
+/// Returns a duration rounded to its unit: "40 s", "10 minutes", "1 hour", "3 days".
+std::string time_words(double seconds) {
+  const auto words = [](double count, const char* unit) {
+    const long whole = std::max(std::lround(count), 1L);
+    return fmt::format("{} {}{}", whole, unit, whole == 1 ? "" : "s");
+  };
+  constexpr double kMinute = 60, kHour = 3600, kDay = 86400, kYear = 365.25 * kDay;
+  if (seconds < 1.5 * kMinute) return fmt::format("{} s", std::lround(seconds));
+  if (seconds < 0.95 * kHour) return words(seconds / kMinute, "minute");
+  if (seconds < 0.95 * kDay) return words(seconds / kHour, "hour");
+  if (seconds < 0.95 * kYear) return words(seconds / kDay, "day");
+  return words(seconds / kYear, "year");
+}
+
+/// Returns a loss in percent, rounded by its error: "6 %", "6.2 %". A gain counts as 0.
+std::string loss_words(double loss, double std_error) {
+  return percent_words(std::max(loss, 0.0), std_error);
+}
+
+std::string with_error(double loss, double std_error) {
+  return fmt::format("{} (+-{})", loss_words(loss, std_error), percent_words(std_error, std_error));
+}
+
+const char* reason_words(RecoveryReason reason) {
+  switch (reason) {
+    case RecoveryReason::few_windows:
+      return "too few windows have come";
+    case RecoveryReason::short_time:
+      return "too little time has passed";
+    case RecoveryReason::inexact:
+      return "the windows scatter too much";
+    case RecoveryReason::amplitude:
+      return "how it follows the amplitude of the motion is not known well enough";
+    case RecoveryReason::baseline:
+      return "its stiffness before is not known well enough";
+    case RecoveryReason::none:
+      break;
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string place_words(const std::string& parameter) {
+  const PlaceOfName p = place_of(parameter);
+  if (p.stories.empty()) return fmt::format("frames along {}", p.direction);
+  if (p.where.empty()) return fmt::format("{}, along {}", p.stories, p.direction);
+  return fmt::format("{}, {} {}", p.stories, p.quantity == 'G' ? "panel" : frame_word(p), p.where);
+}
+
+std::string element_words(const std::string& parameter) {
+  const PlaceOfName p = place_of(parameter);
+  if (p.stories.empty()) return fmt::format("bending of frames along {}", p.direction);
+  if (p.where.empty()) return fmt::format("{} along {}", p.stories, p.direction);
+  return fmt::format("{} {} of {}", p.quantity == 'G' ? "floor panel" : frame_word(p), p.where,
+                     p.stories);
+}
 
 std::string percent_words(double ratio, double std_error) {
   const double error = 100 * std::abs(std_error);
@@ -70,6 +153,34 @@ std::string common_change_sentence(double ratio, double std_error) {
       "clock by half of it; a scale shows in one channel; what is real began with shaking and "
       "stays",
       verb, size);
+}
+
+std::string recovery_words(const estimator::RecoveryLaw& law) {
+  std::string out;
+  const bool two = law.time_s > 2 * law.first_s;
+  if (law.first_error > 0)
+    out = fmt::format("lost {} at the earthquake", loss_words(law.first_loss, law.first_error));
+  if (two && law.std_error > 0)
+    out +=
+        fmt::format(", {} after {}",
+                    law.verdict == RecoveryVerdict::recovered ? with_error(law.loss, law.std_error)
+                                                              : loss_words(law.loss, law.std_error),
+                    time_words(law.time_s));
+  if (!out.empty()) out += ", ";
+  switch (law.verdict) {
+    case RecoveryVerdict::recovering:
+      return out + fmt::format("recovering: {} expected after {}",
+                               with_error(law.later_loss, law.later_error),
+                               time_words(law.later_s));
+    case RecoveryVerdict::lasting:
+      return out + fmt::format("lasting: full recovery is excluded, at least {} stays",
+                               loss_words(law.stays, law.std_error));
+    case RecoveryVerdict::recovered:
+      return out + "recovered";
+    case RecoveryVerdict::not_known:
+      break;
+  }
+  return out + fmt::format("not known yet whether that lasts: {}", reason_words(law.reason));
 }
 
 }  // namespace framewatch::daemon

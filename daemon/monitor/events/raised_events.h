@@ -7,33 +7,33 @@
 
 #include <framewatch/event_t.hpp>
 
-#include "daemon/monitor/events/acknowledgement.h"
+#include "daemon/monitor/events/event_messages.h"
 
 namespace framewatch::daemon {
 
-/// An event as part of a state.
+/// Archives an event as part of a state.
 template <typename Archive>
 void archive_event(Archive& a, event_t& e) {
   a(e.time_us, e.since_us, e.id, e.state, e.severity, e.kind, e.place, e.value, e.std_error, e.unit,
     e.message, e.segment);
 }
 
-/// The events that are raised and not cleared, in the order they were raised, and who acknowledged
-/// them.
+/// The events that are raised and not yet cleared, in the order in which they were raised, and who
+/// acknowledged them.
 class RaisedEvents {
  public:
-  static constexpr std::size_t kMax = 1000;  ///< beyond, the oldest one is forgotten
+  static constexpr std::size_t kMax = 1000;  ///< with more events, the oldest one is forgotten
 
-  /// Adds or replaces a raised event; a cleared one is removed.
+  /// Adds a raised event or replaces it; removes a cleared one with its acknowledgement.
   void note(const event_t& event);
-  /// Removes and returns the events of a kind.
+  /// Removes and returns the events of this kind.
   std::vector<event_t> take(const std::string& kind);
   const std::vector<event_t>& all() const { return events_; }
-  /// Null when none of this kind is raised at this place.
+  /// Returns nullptr if no event of this kind is raised at this place.
   const event_t* find(const std::string& kind, const std::string& place) const;
-  /// For an event that is raised; replaces an earlier acknowledgement.
+  /// Acknowledges a raised event; replaces an earlier acknowledgement.
   void acknowledge(std::int64_t id, const Acknowledgement& by);
-  /// Null when nobody has acknowledged it.
+  /// Returns nullptr if the event is not acknowledged.
   const Acknowledgement* acknowledgement(std::int64_t id) const;
 
   template <typename Archive>

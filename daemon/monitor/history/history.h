@@ -15,26 +15,26 @@
 namespace framewatch::daemon {
 
 /// Stores the history of a running estimation: raw samples, summaries, events. No call waits for
-/// the disk and none fails; what is lost is counted.
+/// the disk or fails; losses are counted.
 class History {
  public:
-  /// `config`, with its history, must outlive this.
+  /// `config`, which has a history, must outlive this.
   explicit History(const Config& config);
-  /// Writes everything to the disk; gives up after a few seconds when the disk refuses.
+  /// Writes everything to the disk; gives up after a few seconds when the disk fails.
   ~History();
   History(const History&) = delete;
   History& operator=(const History&) = delete;
 
   void sample(const estimator::AccelSample& sample) { raw_.sample(sample); }
   void temperature(const temperature_t& temperature);
-  /// Takes a message that the estimation published.
+  /// Stores a message that the estimation published.
   void message(const std::string& channel, const std::vector<std::uint8_t>& bytes) {
     summaries_.message(channel, bytes);
   }
-  /// To be called several times a second with the time of a steady clock.
+  /// Call it several times a second with the time of a steady clock.
   void tick(std::int64_t now_us);
   history_status_t status() const;
-  /// Corrupt databases that were set aside.
+  /// Returns the corrupt databases that were set aside.
   SetAside set_aside() const { return summaries_.counters().set_aside; }
 
  private:

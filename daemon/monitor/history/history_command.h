@@ -4,7 +4,8 @@
 
 namespace framewatch::daemon {
 
-/// framewatch history: what a history holds, and parts of it as files. Exit code.
+/// Runs `framewatch history`: shows what a history holds, or writes parts of it as files. Returns
+/// the exit code.
 int history(const HistoryArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -39,7 +39,7 @@ std::optional<RawLog> raw_log(const fs::directory_entry& entry) {
   std::error_code failure;
   log.bytes = static_cast<std::int64_t>(entry.file_size(failure));
   if (failure == std::errc::no_such_file_or_directory)
-    log.bytes = 0;  // it has got its next name
+    log.bytes = 0;  // it was renamed meanwhile
   else if (failure)
     return std::nullopt;
   return log;
@@ -62,7 +62,7 @@ std::string summary_file(const std::string& directory) {
 std::string new_raw_log(const std::string& directory, std::int64_t start_us) {
   const fs::path folder = raw_folder(directory);
   std::error_code none;
-  fs::create_directories(folder, none);  // that it is not there shows when the file is made
+  fs::create_directories(folder, none);  // a failure shows when the file is created
   std::string name = utc_stamp(start_us);
   for (int i = 2;; ++i) {
     const std::string path = (folder / (name + kEnding)).string();

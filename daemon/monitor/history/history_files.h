@@ -7,28 +7,28 @@
 
 namespace framewatch::daemon {
 
-/// Places in a history's directory.
+/// Paths in a history's directory.
 std::string raw_folder(const std::string& directory);    ///< raw logs
-std::string event_folder(const std::string& directory);  ///< what of them is kept for ever
+std::string event_folder(const std::string& directory);  ///< raw samples of events, kept forever
 std::string summary_file(const std::string& directory);  ///< the SQLite database
 
-/// A raw log, as its name describes it.
+/// A raw log, as described by its name.
 struct RawLog {
   std::string path;
-  std::int64_t start_us = 0;  ///< sensor time of its first samples, to the second before
+  std::int64_t start_us = 0;  ///< sensor time of the first samples, rounded down to seconds
   std::int64_t bytes = 0;
-  bool partial = false;  ///< still written, or left by a program that was killed
+  bool partial = false;  ///< still being written, or left by a killed program
   bool compressed = false;
 };
 
-/// Path of a new raw log; creates its folders.
+/// Returns the path of a new raw log; creates its folders.
 std::string new_raw_log(const std::string& directory, std::int64_t start_us);
 
-/// The raw logs in a folder, in order of time. A log is named as partial, then plain, then
-/// compressed; when two names exist the later one counts. A log may get its next name before it is
-/// opened.
+/// Returns the raw logs in a folder, in order of time. The name of a log is first partial, then
+/// plain, then compressed; if two names exist, the later one counts. A log may be renamed before
+/// the caller opens it.
 std::vector<RawLog> raw_logs(const std::string& folder);
-/// The plain name of a partial log, which it gets when it is closed and before it is compressed.
+/// Returns the plain name of a log, which it has between closing and compression.
 std::string closed_path(const RawLog& log);
 
 }  // namespace framewatch::daemon

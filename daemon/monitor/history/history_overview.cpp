@@ -11,7 +11,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/utc_time.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_files.h"
 
 namespace framewatch::daemon {
@@ -44,7 +44,7 @@ std::string raw_line(const char* what, const RawTotals& raw) {
                      raw.open > 0 ? ", one is being written" : "");
 }
 
-/// The longest period that has a row for the newest time, and that row's start.
+/// Returns the longest period.
 SummaryPeriods newest_of(const std::vector<SummaryPeriods>& periods) {
   return periods.empty() ? SummaryPeriods{} : periods.back();
 }
@@ -117,7 +117,7 @@ std::string history_overview(const std::string& directory, SummaryQuery& summari
   const std::string structure = summaries.structure();
   std::string out = fmt::format("{}{}{}\n", structure, structure.empty() ? "" : ": ", directory);
   out += raw_line("raw samples", totals(raw_folder(directory)));
-  out += raw_line("for ever", totals(event_folder(directory)));
+  out += raw_line("forever", totals(event_folder(directory)));
   const std::vector<SummaryPeriods> periods = summaries.periods();
   for (const SummaryPeriods& p : periods)
     out += fmt::format("{:<12}{} periods of {} s, {} to {}\n", "summaries", p.count, p.period_s,

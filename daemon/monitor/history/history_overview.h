@@ -6,19 +6,20 @@
 
 namespace framewatch::daemon {
 
-/// What a history holds, on one screen: raw logs, summaries, the last period's boxplots, losses,
-/// events.
+/// Returns an overview of a history on one screen: raw logs, summaries, boxplots of the last
+/// period, losses, events.
 std::string history_overview(const std::string& directory, SummaryQuery& summaries);
 
-/// The same as JSON, schema `framewatch.history/1`.
+/// Returns the overview as JSON, schema `framewatch.history/1`.
 std::string history_json(const std::string& directory, SummaryQuery& summaries);
 
-/// One line per event.
+/// Returns the event as one line.
 std::string event_line(const event_t& event);
 
+/// Returns the acknowledgement as one line.
 std::string acknowledgement_line(const StoredAcknowledgement& acknowledgement);
 
-/// "4.2 MB".
+/// Returns a size such as "4.2 MB".
 std::string size_text(std::int64_t bytes);
 
 }  // namespace framewatch::daemon

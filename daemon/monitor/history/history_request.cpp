@@ -24,7 +24,8 @@ namespace {
 
 constexpr std::size_t kScreenRows = 30;
 
-/// "90m", "2h", "3d", "45s" or "45" in microseconds.
+/// Parses "90m", "2h", "3d", "45s" or "45". Returns microseconds, or nullopt if `text` is not a
+/// duration > 0.
 std::optional<std::int64_t> read_duration(const std::string& text) {
   double value = 0;
   const char* end = text.data() + text.size();
@@ -72,7 +73,7 @@ class RequestReader {
     r_.config = load_config(a_.place, found);
     for (const ConfigProblem& p : found) problem(fmt::format("{}: {}", p.where, p.message));
     if (r_.config && !r_.config->history)
-      problem(a_.place + ": has no [history]: nothing is kept; docs/history.md says how");
+      problem(a_.place + ": has no [history], so nothing is stored: see docs/history.md");
     if (r_.config && r_.config->history) r_.directory = r_.config->history->directory;
   }
 
@@ -88,8 +89,8 @@ class RequestReader {
                           return std::isdigit(c) != 0 || (c >= 'A' && c <= 'Z');
                         });
       if (!good)
-        problem(fmt::format("{}: {} capital letters and digits at most, got \"{}\"", option, most,
-                            text));
+        problem(fmt::format("{}: expected at most {} capital letters and digits, got \"{}\"",
+                            option, most, text));
     };
     code("--network", a_.network, 2);
     code("--station", a_.station, 5);
@@ -110,16 +111,16 @@ class RequestReader {
       if (const auto read = read_utc(text))
         out = *read;
       else
-        problem(fmt::format("{}: \"{}\" is no time such as 2026-11-21T23:15:00Z", option, text));
+        problem(fmt::format("{}: \"{}\" is not a time such as 2026-11-21T23:15:00Z", option, text));
     };
     time("--from", a_.from, r_.from_us);
     time("--to", a_.to, r_.to_us);
     if (!a_.last.empty()) {
       const auto duration = read_duration(a_.last);
       if (!a_.from.empty() || !a_.to.empty())
-        problem("--last goes without --from and --to");
+        problem("--last cannot be combined with --from or --to");
       else if (!duration)
-        problem(fmt::format("--last: \"{}\" is no duration such as 90m, 2h or 3d", a_.last));
+        problem(fmt::format("--last: \"{}\" is not a duration such as 90m, 2h or 3d", a_.last));
       else if (newest_us != INT64_MIN)
         r_.from_us = newest_us - *duration;
     }
@@ -145,7 +146,7 @@ class RequestReader {
     if (a_.period_s != 0 && r_.period_s == 0) {
       std::string all;
       for (const std::string& s : known) all += (all.empty() ? "" : ", ") + s;
-      problem(fmt::format("--period: there are none of {} s; there are {} s", a_.period_s,
+      problem(fmt::format("--period: no summaries of {} s; there are {} s", a_.period_s,
                           all.empty() ? "none" : all));
     }
   }

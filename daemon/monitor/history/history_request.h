@@ -10,25 +10,25 @@
 
 namespace framewatch::daemon {
 
-/// What the command line asks of `framewatch history`.
+/// The command line of `framewatch history`.
 struct HistoryArguments {
-  std::string place;                              ///< configuration file, or a history's directory
-  std::string from, to;                           ///< UTC, or seconds since 1970
-  std::string last;                               ///< "2h" before the newest
-  int period_s = 0;                               ///< 0: what fits
-  std::vector<std::string> parameters;            ///< names, with * and ?; empty: all
-  std::string out;                                ///< summaries: .csv, .csv.gz, .mat
-  std::string raw;                                ///< raw samples: .lcmlog, .csv, .csv.gz, .mseed
-  std::vector<std::string> channels;              ///< of raw samples; empty: all
-  std::string network = "XX", station = "FRAME";  ///< of miniSEED
+  std::string place;                    ///< configuration file, or directory of a history
+  std::string from, to;                 ///< UTC, or seconds since 1970
+  std::string last;                     ///< such as "2h": counted back from the newest data
+  int period_s = 0;                     ///< 0: the one that fits
+  std::vector<std::string> parameters;  ///< names, with * and ?; empty: all
+  std::string out;                      ///< summaries: .csv, .csv.gz, .mat
+  std::string raw;                      ///< raw samples: .lcmlog, .csv, .csv.gz, .mseed
+  std::vector<std::string> channels;    ///< patterns for raw samples; empty: all
+  std::string network = "XX", station = "FRAME";  ///< for miniSEED
   bool events = false;
   bool json = false;
 };
 
-/// The request with times, periods and parameters looked up in the history.
+/// The command line with times, periods and parameters looked up in the history.
 struct HistoryRequest {
   std::string directory;
-  std::optional<Config> config;  ///< none: the directory itself was named
+  std::optional<Config> config;  ///< empty: the directory itself was named
   std::int64_t from_us = -kEver_us, to_us = kEver_us;
   std::int64_t period_s = 0;
   std::vector<SummaryParameter> parameters;
@@ -36,16 +36,17 @@ struct HistoryRequest {
   static constexpr std::int64_t kEver_us = INT64_MAX / 4;
 };
 
-/// Opens the history and looks up what is requested. Empty, with every problem, when something does
-/// not exist or is malformed.
+/// Opens the history and looks up what the arguments name. Returns nullopt, with every problem,
+/// when something does not exist or is malformed.
 std::optional<HistoryRequest> read_history_request(const HistoryArguments& arguments,
                                                    SummaryQuery& summaries,
                                                    std::vector<std::string>& problems);
 
-/// Whether a name matches one of the patterns, with * and ?; without patterns every name does.
+/// Returns true if a name matches one of the patterns, with * and ?, or if there are no patterns.
 bool is_chosen(const std::vector<std::string>& patterns, const std::string& name);
 
-/// Appends a problem for each pattern that matches no name; `option`: where it was given.
+/// Appends a problem for each pattern that matches no name. `option` is where the patterns were
+/// given.
 void check_patterns(const char* option, const std::vector<std::string>& patterns,
                     const std::vector<std::string>& names, std::vector<std::string>& problems);
 

@@ -124,7 +124,7 @@ std::string upgrade(SqliteFile& file, std::span<const char* const> steps) {
       return file.execute(steps[static_cast<std::size_t>(v)]) &&
              file.execute(fmt::format("PRAGMA user_version = {}", v + 1));
     });
-    if (!done) return fmt::format("cannot be brought to schema {}: {}", v + 1, file.error());
+    if (!done) return fmt::format("cannot upgrade to schema {}: {}", v + 1, file.error());
   }
   return {};
 }
@@ -137,7 +137,8 @@ std::string version_problem(SqliteFile& file, std::span<const char* const> steps
   if (version > wanted)
     return fmt::format("a newer framewatch wrote it (schema {}, this one knows {})", version,
                        wanted);
-  return fmt::format("has schema {}, not {}: `framewatch run` brings it there", version, wanted);
+  return fmt::format("has schema {}, not {}: start `framewatch run` to upgrade it", version,
+                     wanted);
 }
 
 }  // namespace framewatch::daemon

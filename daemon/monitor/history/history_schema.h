@@ -7,16 +7,16 @@
 
 namespace framewatch::daemon {
 
-/// SQL that brings the database from version i to version i + 1, for i = 0, 1, ...; docs/history.md
-/// says what the tables mean.
+/// Returns the SQL that upgrades the database from version i to version i + 1, for i = 0, 1, ...
+/// docs/history.md explains the tables.
 std::span<const char* const> history_schema();
 
-/// Upgrades a database to the version after the last of `steps`, each step as one transaction.
-/// Returns an empty string, or the reason of a failure: a newer program wrote it, or a step failed;
-/// then the database is unchanged.
+/// Upgrades a database to the version after the last of `steps`, each step in one transaction.
+/// Returns an empty string, or the reason of a failure: a newer program wrote it, or a step failed.
+/// After a failure that step has changed nothing.
 std::string upgrade(SqliteFile& file, std::span<const char* const> steps);
 
-/// Why a database cannot be read: it has another version. Empty when it can.
+/// Returns why a database of another version cannot be read; empty if it can.
 std::string version_problem(SqliteFile& file, std::span<const char* const> steps);
 
 }  // namespace framewatch::daemon

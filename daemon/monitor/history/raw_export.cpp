@@ -31,7 +31,8 @@ std::vector<drivers::AxisAddress> addresses_of(const std::vector<RawChannel>& ch
   return out;
 }
 
-/// accel_t of the nodes. What a node's sequence leaves out was not received.
+/// Writes accel_t of the nodes. Numbers missing in a node's sequence stand for samples that were
+/// not received.
 class LogExport : public RawExport {
  public:
   LogExport(const std::vector<RawChannel>& channels, double rate_hz)
@@ -97,7 +98,7 @@ class LogExport : public RawExport {
   std::int64_t next_table_us_ = INT64_MIN / 2;
 };
 
-/// A record. Time zero is its first sample.
+/// Writes a record, whose time zero is its first sample.
 class CsvExport : public RawExport {
  public:
   explicit CsvExport(std::size_t channels) : channels_(channels) {}
@@ -112,7 +113,7 @@ class CsvExport : public RawExport {
     }
     auto& row = rows_.try_emplace(time_us, channels_, estimator::kNaN).first->second;
     row[channel] = accel_mps2;
-    // Nodes are never so far behind each other.
+    // Nodes are never this far behind each other.
     while (rows_.size() > 1 && rows_.begin()->first < time_us - kSecond_us)
       if (!write_first()) return false;
     return true;
@@ -128,9 +129,7 @@ class CsvExport : public RawExport {
     if (zero_us_) out.push_back(fmt::format("time zero is {}", utc_text(*zero_us_)));
     if (out_of_order_ > 0)
       out.push_back(
-          fmt::format("{} samples of times that had gone by are left out: the clock went "
-                      "back",
-                      out_of_order_));
+          fmt::format("{} samples are left out because the clock went back", out_of_order_));
     return out;
   }
 

@@ -13,24 +13,24 @@ namespace framewatch::daemon {
 /// One channel of an export.
 struct RawChannel {
   std::string name;
-  drivers::AxisAddress address;  ///< on LCM
-  std::size_t number = 0;        ///< among all channels, from 0: the same whichever are exported
+  drivers::AxisAddress address;  ///< LCM address
+  std::size_t number =
+      0;  ///< among all channels, from 0; does not depend on which ones are exported
 };
 
-/// Writes raw samples of a history in the order in which they were received, m/s^2 before
-/// calibration.
+/// Writes raw samples of a history in the order in which they were received, in m/s^2 before
+/// calibration. Methods return false on failure; error() says why.
 class RawExport {
  public:
   virtual ~RawExport() = default;
-  /// NaN: there was no valid value. False when it cannot be written; error() says why, here and
-  /// below.
+  /// Writes a sample; NaN stands for an invalid value.
   [[nodiscard]] virtual bool put(std::size_t channel, std::int64_t time_us, double accel_mps2) = 0;
-  /// Other messages than samples, for formats that can store them.
+  /// Writes another message, if the format can store it.
   [[nodiscard]] virtual bool message(const drivers::LogEvent&) { return true; }
-  /// The file gets its final name only here.
+  /// Completes the file, which gets its final name only here.
   [[nodiscard]] virtual bool close() = 0;
   virtual std::string error() const = 0;
-  /// Notes about the file for the user, one line each.
+  /// Returns notes about the file for the user, one line each.
   virtual std::vector<std::string> notes() const { return {}; }
 };
 
@@ -38,14 +38,15 @@ struct SeedNames {
   std::string network, station;
 };
 
-/// By the name's end: .lcmlog (accel_t, as `framewatch replay` reads), .csv and .csv.gz (a record)
-/// or .mseed (Steim-2 counts of `resolution_mps2`). Null, and the reason, when it cannot be made.
+/// Makes an export by the ending of its name: .lcmlog (accel_t, as `framewatch replay` reads), .csv
+/// and .csv.gz (a record) or .mseed (Steim-2 counts of `resolution_mps2`). Returns nullptr and sets
+/// `error` on failure.
 std::unique_ptr<RawExport> raw_export(const std::string& path,
                                       const std::vector<RawChannel>& channels, double rate_hz,
                                       double resolution_mps2, const SeedNames& names,
                                       std::string& error);
 
-/// The rule that the name of an export breaks; empty when it is valid.
+/// Returns the rule that the name of an export breaks; empty if the name is valid.
 std::string problem_of_raw_name(const std::string& path);
 
 }  // namespace framewatch::daemon

@@ -72,7 +72,7 @@ void RawHistory::ready_log(std::int64_t time_us) {
   const auto rotate_us = static_cast<std::int64_t>(1e6 * config_.history->rotate_s);
   const std::int64_t slot = seconds_.newest_us() / rotate_us;
   const auto most_bytes = static_cast<std::int64_t>(1e6 * config_.history->rotate_mb);
-  // While the disk refuses, what waits for it stays with the log that it belongs to.
+  // While the disk fails, waiting data stays with the log that it belongs to.
   if (log_ && (slot != log_slot_ || log_bytes_ >= most_bytes) && log_->trouble().empty()) rotate();
   if (log_) return;
   log_ = std::make_unique<drivers::DurableFile>(queue_bytes_);
@@ -88,7 +88,7 @@ void RawHistory::ready_log(std::int64_t time_us) {
 void RawHistory::append(const std::string& channel, std::int64_t time_us,
                         const std::vector<std::uint8_t>& bytes, std::size_t samples) {
   event_.clear();
-  // A number that is missing in the log is a block that was dropped.
+  // A missing number in the log marks a dropped block.
   drivers::append_log_event(event_, log_events_++, time_us, channel, bytes.data(), bytes.size());
   if (log_->append(event_))
     log_bytes_ += static_cast<std::int64_t>(event_.size());

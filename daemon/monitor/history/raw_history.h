@@ -14,31 +14,33 @@
 
 namespace framewatch::daemon {
 
-/// Writes raw samples into one log after the other, as integers (accel_counts_t). Never waits for
+/// Writes raw samples as integers (accel_counts_t) into one log after the other. Never waits for
 /// the disk: the thread of the log's DurableFile writes.
 class RawHistory {
  public:
   static constexpr std::size_t kQueueBytes = std::size_t{32} << 20;
-  /// Called with a log that is to be closed, which may take long.
+  /// Takes a log to close, which may take long.
   using Retire = std::function<void(std::unique_ptr<drivers::DurableFile>)>;
 
   struct Counters {
     std::int64_t samples = 0, dropped = 0;
     std::int64_t bytes = 0;  ///< written
-    std::size_t queued = 0;  ///< bytes that wait
+    std::size_t queued = 0;  ///< waiting bytes
   };
 
-  /// `config`, with its history, must outlive this.
+  /// `config`, which has a history, must outlive this.
   RawHistory(const Config& config, Retire retire, std::size_t queue_bytes = kQueueBytes);
 
+  /// Stores a sample.
   void sample(const estimator::AccelSample& sample);
-  /// What belongs beside the samples, as it was received. Not stored before the first of them.
+  /// Stores another message beside the samples, unchanged. Ignores messages before the first
+  /// sample.
   void message(const std::string& channel, std::int64_t time_us,
                const std::vector<std::uint8_t>& bytes);
-  /// Any clock that is never set, several times a second: what waits for its block to fill does not
-  /// wait long.
+  /// Limits how long samples wait for their block to fill. Call it several times a second with the
+  /// time of a clock that is never set.
   void tick(std::int64_t now_us);
-  /// Writes what is collected to the log and passes the log to Retire.
+  /// Writes the collected samples and passes the log to Retire.
   void finish();
 
   Counters counters() const;
@@ -47,7 +49,7 @@ class RawHistory {
 
  private:
   void end_block();
-  /// The log of now, with the channels' names.
+  /// Makes sure that the current log is open and starts with the channels' names.
   void ready_log(std::int64_t time_us);
   void rotate();
   void append(const std::string& channel, std::int64_t time_us,

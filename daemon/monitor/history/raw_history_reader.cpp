@@ -16,15 +16,15 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::size_t kMaxNotes = 100;
-constexpr std::int64_t kMargin_us = 600'000'000;      // of clocks that step
-constexpr std::int64_t kLongest_us = 86'400'000'000;  // a raw log ends every day at least
+constexpr std::int64_t kMargin_us = 600'000'000;      // for clocks that step
+constexpr std::int64_t kLongest_us = 86'400'000'000;  // a raw log ends after a day at the latest
 
 std::string stem(const RawLog& log) {
   const std::string name = std::filesystem::path(log.path).filename().string();
   return name.substr(0, name.find('.'));
 }
 
-/// Under the name it has by now: it may have been closed, and compressed, since it was listed.
+/// Opens a log under its present name: it may have been closed and compressed since it was listed.
 bool open_log(drivers::LcmLogReader& reader, const RawLog& log) {
   const std::string closed = closed_path(log);
   for (const std::string& path : {log.path, closed, closed + ".zst"}) {
@@ -69,7 +69,7 @@ bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std
       if (read != drivers::LogRead::event) {
         if (!log.partial && notes.size() <= kMaxNotes)
           notes.push_back(notes.size() == kMaxNotes
-                              ? "what else is damaged is not listed"
+                              ? "further damage is not listed"
                               : fmt::format("{}: {} bytes from byte {} on are damaged: {}",
                                             log.path, reader.damage().bytes, reader.damage().offset,
                                             reader.damage().reason));

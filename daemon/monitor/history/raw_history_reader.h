@@ -12,28 +12,28 @@ namespace framewatch::daemon {
 
 struct RawCount {
   std::int64_t time_us;
-  std::size_t channel;  ///< of the newest table
+  std::size_t channel;  ///< index in the newest table
   std::int32_t count;   ///< as in accel_counts_t
   double resolution_mps2;
 };
 
 /// Receives the content of raw logs.
 struct RawVisitor {
-  /// Called before the first sample, and whenever the channels change.
+  /// Called before the first sample and whenever the channels change.
   std::function<void(const std::vector<std::string>& names, double rate_hz)> channels;
   std::function<void(const RawCount&)> sample;
-  /// Other messages than samples; may be empty.
+  /// Gets messages other than samples; may be empty.
   std::function<void(const drivers::LogEvent&)> message = {};
 };
 
-/// The raw logs of a directory that may hold samples from `from_us` on and before `to_us`, those
-/// kept for events too, in order of time.
+/// Returns the raw logs of a directory that may hold samples of [from_us, to_us), including those
+/// kept for events, in order of time.
 std::vector<RawLog> raw_logs_between(const std::string& directory, std::int64_t from_us,
                                      std::int64_t to_us);
 
-/// Reads their samples in the order in which they were received. The intact part of a log that is
-/// still being written, truncated or damaged is read, with a note. False, with the problem, when
-/// one cannot be read.
+/// Reads their samples in the order in which they were received. Reads the intact part of a log
+/// that is being written, truncated or damaged, and adds a note. Returns false and sets `problem`
+/// when a log cannot be read.
 bool read_raw_history(const std::vector<RawLog>& logs, std::int64_t from_us, std::int64_t to_us,
                       const RawVisitor& visitor, std::vector<std::string>& notes,
                       std::string& problem);

@@ -17,7 +17,7 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenPuts{200};
-constexpr std::chrono::seconds kAgain{1};  // after a commit that failed
+constexpr std::chrono::seconds kAgain{1};  // pause after a failed commit
 constexpr std::chrono::hours kPrune{1};
 
 }  // namespace
@@ -58,7 +58,7 @@ SummaryHistory::Counters SummaryHistory::counters() const {
 }
 
 void SummaryHistory::work() {
-  // What was taken already is known before the first window comes.
+  // Reads the stored periods before the first window comes.
   guarded(0, [this] { commit(); });
   for (bool last = false; !last;) {
     std::vector<Message> messages;
@@ -72,14 +72,14 @@ void SummaryHistory::work() {
     guarded(messages.size(), [&] {
       for (const Message& message : messages) take(message);
       const bool due = Clock::now() >= next_commit_;
-      // Sensors that fall silent in the middle of a period leave nothing uncommitted.
+      // Ends the period even if the sensors fall silent in the middle of it.
       if (last || (due && waiting().empty())) end_period();
       if (last || due) commit();
     });
   }
 }
 
-/// What is thrown, for want of memory, costs the messages of that round, not the program.
+/// An exception, such as a lack of memory, costs the messages of one round, not the program.
 void SummaryHistory::guarded(std::size_t messages, const std::function<void()>& round) {
   const std::string thrown = drivers::caught(round);
   if (thrown.empty()) return;
@@ -110,7 +110,7 @@ std::string SummaryHistory::store_waiting() {
   return waiting().empty() ? "" : store_.add(waiting());
 }
 
-/// False when the corrupt database stays where it is.
+/// Sets the corrupt database aside. Returns false if that fails.
 bool SummaryHistory::begin_anew(const std::string& reason) {
   const std::string database = summary_file(config_.history->directory);
   store_.close();
@@ -120,8 +120,8 @@ bool SummaryHistory::begin_anew(const std::string& reason) {
   SetAside aside = counters().set_aside;
   set_aside_database(database, host_clock_us(), reason, aside);
   if (aside.problem.empty()) {
-    log(LogLevel::error, fmt::format("history: {} is corrupt ({}): it is now {}, a new one is "
-                                     "begun with {} of its events",
+    log(LogLevel::error, fmt::format("history: {} is corrupt ({}): renamed it {} and started a new "
+                                     "one with {} of its events. Check the disk",
                                      database, reason, aside.path, readable.size()));
     waiting().events.insert(waiting().events.begin(), readable.begin(), readable.end());
   }
@@ -132,7 +132,7 @@ bool SummaryHistory::begin_anew(const std::string& reason) {
 
 void SummaryHistory::commit() {
   const auto period = std::chrono::seconds(config_.history->summary_s.front());
-  next_commit_ = Clock::now() + period + kAgain;  // when no period ends before
+  next_commit_ = Clock::now() + period + kAgain;  // unless a period ends before
   std::string problem = store_waiting();
   if (store_.corrupt())
     problem = begin_anew(problem) ? store_waiting() : counters().set_aside.problem;
@@ -149,11 +149,11 @@ void SummaryHistory::commit() {
     waiting().acknowledged.clear();
   } else {
     next_commit_ = Clock::now() + kAgain;
-    store_.close();  // a disk that comes back may hold another file
+    store_.close();  // after a failure of the disk the path may name another file
     bound();
   }
   if (store_.repeated() > std::exchange(repeated_said_, store_.repeated()))
-    log(LogLevel::notice, "windows of a time that was summarised before are not summarised again");
+    log(LogLevel::notice, "skipped windows of a time that was already summarized");
   const bool time_known = intake_.newest_us() != INT64_MIN;
   if (problem.empty() && time_known && Clock::now() >= next_prune_) {
     next_prune_ = Clock::now() + kPrune;

@@ -17,9 +17,9 @@
 
 namespace framewatch::daemon {
 
-/// Summaries, channels and events of a running estimation into the database, from a thread of its
-/// own. message() never waits. While the database does not take them, periods wait, bounded, and
-/// are tried again every second. A corrupt database is set aside and a new one begun, with the
+/// Stores summaries, channels and events of a running estimation in the database, from a thread.
+/// message() never waits. While the database cannot be written, a limited number of periods waits
+/// and is tried again every second. A corrupt database is set aside; a new one starts with the
 /// events that could still be read.
 class SummaryHistory {
  public:
@@ -34,15 +34,15 @@ class SummaryHistory {
     SetAside set_aside;
   };
 
-  /// `config`, with its history, must outlive this.
+  /// `config`, which has a history, must outlive this.
   explicit SummaryHistory(const Config& config);
-  /// Commits what there is, once.
+  /// Tries once to commit the waiting data.
   ~SummaryHistory();
   SummaryHistory(const SummaryHistory&) = delete;
   SummaryHistory& operator=(const SummaryHistory&) = delete;
 
-  /// What the estimation published; what is no estimate of the main window, table, status, event or
-  /// acknowledgement is left alone.
+  /// Takes a message that the estimation published. Ignores all but estimates of the main window,
+  /// tables, statuses, events and acknowledgements.
   void message(const std::string& channel, const std::vector<std::uint8_t>& bytes);
   Counters counters() const;
 
@@ -65,19 +65,19 @@ class SummaryHistory {
 
   const Config& config_;
 
-  // Of the thread.
+  // Used only by the thread.
   SummaryStore store_;
-  SummaryIntake intake_;  ///< kind_of() may be asked by any
+  SummaryIntake intake_;  ///< any thread may call kind_of()
   Clock::time_point next_commit_, next_prune_;
   std::int64_t repeated_said_ = 0;
 
-  mutable std::mutex mutex_;  ///< guards what is below
+  mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable wake_;
   std::vector<Message> queue_;
   std::size_t queued_ = 0;  ///< bytes
   Counters counters_;
   bool stop_ = false;
-  std::thread thread_;  ///< last: it sees everything above
+  std::thread thread_;  ///< last, because it uses the members above
 };
 
 }  // namespace framewatch::daemon

@@ -13,7 +13,7 @@ namespace framewatch::daemon {
 
 namespace {
 
-/// Of rows that `run` can have written: others are of a damaged or a foreign file.
+/// Selects rows that `run` can have written; a damaged or foreign file may hold others.
 constexpr const char* kSound =
     " WHERE period_s BETWEEN 1 AND 1000000000"
     " AND start_us BETWEEN -2000000000000000000 AND 2000000000000000000"
@@ -45,8 +45,8 @@ std::string SummaryQuery::open(const std::string& directory) {
   const std::string path = summary_file(directory);
   if (drivers::is_absent(path)) {
     if (raw_logs(raw_folder(directory)).empty() && raw_logs(event_folder(directory)).empty())
-      return "there is none";
-    if (!file_.open(":memory:")) return file_.error();  // raw logs alone
+      return "does not exist";
+    if (!file_.open(":memory:")) return file_.error();  // only raw logs
     return upgrade(file_, history_schema());
   }
   if (!file_.open_to_read(path)) return told(file_.error());
@@ -60,7 +60,7 @@ std::string SummaryQuery::problem() const {
 std::string SummaryQuery::told(const std::string& why) const {
   if (!file_.corrupt()) return why;
   return fmt::format(
-      "the database is corrupt{}; `framewatch run` sets it aside and begins a new one",
+      "the database is corrupt{}; `framewatch run` sets it aside and starts a new one",
       why.empty() ? "" : fmt::format(" ({})", why));
 }
 

@@ -1,7 +1,13 @@
 #include "daemon/monitor/history/summary_store.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 
 #include "daemon/base/clocks.h"
@@ -19,7 +25,7 @@ std::int64_t start_of(std::int64_t time_us, std::int64_t period_s) {
   return time_us - (rest < 0 ? rest + step_us : rest);
 }
 
-/// Binds the columns of a summary from `observable` on.
+/// Binds the columns of a summary from `observable` on, starting at index `at`.
 void bind_summary(SqliteStatement& s, int at, std::int64_t observable, double mean,
                   double std_error, double min, double max, const std::vector<double>& box) {
   const estimator::BoxplotStatistics b = boxplot_of(box);
@@ -35,6 +41,23 @@ constexpr const char* kPutSummary =
     " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)";
 
 }  // namespace
+
+HistoryLock::~HistoryLock() {
+  if (file_ >= 0) ::close(file_);
+}
+
+std::string HistoryLock::take(const std::string& directory) {
+  if (file_ >= 0) return {};
+  const int file = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return std::strerror(errno);
+  if (::flock(file, LOCK_EX | LOCK_NB) == 0) {
+    file_ = file;
+    return {};
+  }
+  const int why = errno;
+  ::close(file);
+  return why == EWOULDBLOCK ? "another program writes this history" : std::strerror(why);
+}
 
 std::string SummaryStore::open() {
   std::error_code none;
@@ -66,7 +89,7 @@ std::string SummaryStore::add(const SummaryBatch& batch) {
   const std::int64_t repeated = repeated_;
   const bool done = file_.transaction([&] {
     if (!add_names(batch)) return false;
-    Grown grown;  // longer periods, each of which is summed up once
+    Grown grown;  // the longer periods, each of which is summed up once
     for (const PeriodData& data : batch.periods)
       if (!add_period(data, grown) || !add_channels(data)) return false;
     for (const auto& [period_s, start_us] : grown)
@@ -172,7 +195,7 @@ bool SummaryStore::add_period(const PeriodData& data, Grown& grown) {
   return true;
 }
 
-/// A longer period, as far as it goes, from the shortest ones in it.
+/// Sums up a longer period from the shortest periods in it so far.
 bool SummaryStore::add_longer(std::int64_t period_s, std::int64_t start_us) {
   const std::int64_t first_s = settings_.summary_s.front();
   const std::int64_t end_us = start_us + period_s * kSecond_us;
@@ -233,7 +256,7 @@ bool SummaryStore::add_channels(const PeriodData& data) {
   return true;
 }
 
-/// The values of the longest period that is running and of the one before stay.
+/// Keeps the values of the longest current period and of the one before it.
 bool SummaryStore::forget_values(std::int64_t newest_us) {
   const std::int64_t longest_s = settings_.summary_s.back();
   const std::int64_t from_us = start_of(newest_us, longest_s) - longest_s * kSecond_us;

@@ -14,36 +14,52 @@
 #include "daemon/base/sqlite_file.h"
 #include "daemon/config/keys/history_options.h"
 #include "daemon/monitor/estimates/summary_intake.h"
-#include "daemon/monitor/history/history_lock.h"
 
 namespace framewatch::daemon {
 
-/// The database of a history as it is written: summaries of the configured periods, channels,
-/// events. Repeated messages count once: windows that ended before
-/// the newest one of their period, or belong to a period that is closed, are left out.
+/// A lock on a history: two programs that write summaries would count every window twice. The
+/// kernel releases it when the program ends, even after a crash.
+class HistoryLock {
+ public:
+  HistoryLock() = default;
+  ~HistoryLock();
+  HistoryLock(const HistoryLock&) = delete;
+  HistoryLock& operator=(const HistoryLock&) = delete;
+
+  /// Takes the lock and keeps it. Returns an empty string, or the reason of a failure.
+  std::string take(const std::string& directory);
+
+ private:
+  int file_ = -1;
+};
+
+/// Writes the database of a history: summaries of the configured periods, channels, events. Counts
+/// repeated messages once: ignores windows that ended before the newest one of their period or
+/// belong to a closed period.
 class SummaryStore {
  public:
   explicit SummaryStore(const HistorySettings& settings) : settings_(settings) {}
 
-  /// Opens, or makes, the database and brings it to this program's schema. Empty, or why not:
-  /// another program may be writing it.
+  /// Opens or creates the database and upgrades it to this program's schema. Returns an empty
+  /// string, or the problem, such as another program that writes it.
   std::string open();
-  /// Makes the database in an empty file that nothing else writes, outside of a history, and fast:
-  /// it is to be kept only when it is whole.
+  /// Creates the database in an empty file outside of a history. Writes fast but not safely: use
+  /// the file only when it is complete.
   std::string open_new(const std::string& path);
   bool is_open() const { return file_.is_open(); }
   void close() { file_.close(); }
-  /// Whether the file that was opened last is damaged.
+  /// Returns true if the file that was opened last is damaged.
   bool corrupt() const { return file_.corrupt(); }
 
-  /// Start and newest window's end of the shortest periods that can still grow.
+  /// Returns start and end of the newest window of the shortest periods that can still grow.
   std::vector<std::pair<std::int64_t, std::int64_t>> open_periods();
-  /// All of it or nothing, as one transaction that is on the disk afterwards. Empty, or why not.
+  /// Stores a batch completely or not at all. It is on the disk when this returns. Returns an empty
+  /// string, or the problem.
   std::string add(const SummaryBatch& batch);
-  /// Periods that were left out, by add(), because their time had been summarised before.
+  /// Returns how many periods add() ignored because their time had been summarized before.
   std::int64_t repeated() const { return repeated_; }
-  /// Removes summaries of the shortest period older than keep_summary_days before `newest_us`; none
-  /// while that is before 1970.
+  /// Removes summaries of the shortest period that are older than keep_summary_days before
+  /// `newest_us`. Removes nothing while that limit is before 1970.
   std::string prune(std::int64_t newest_us);
 
  private:

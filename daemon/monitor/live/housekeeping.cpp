@@ -13,15 +13,15 @@ namespace {
 
 constexpr std::int64_t kSilent_s = 2;
 
-/// The line that `systemctl status` shows.
+/// Returns the line that `systemctl status` shows.
 std::string status_line(const LiveEstimation& live, const Config& config, std::int64_t now_us) {
   const LiveTimes& times = live.times();
   const std::size_t raised = live.estimation().raised().all().size();
   const std::string events = raised > 0 ? fmt::format("{} events raised; ", raised) : "";
-  if (times.received_us == 0) return events + "waits for the first sample";
+  if (times.received_us == 0) return events + "waiting for the first sample";
   const std::int64_t silent_s = (now_us - times.received_us) / 1'000'000;
   if (silent_s > kSilent_s) return fmt::format("{}no samples for {} s", events, silent_s);
-  return fmt::format("{}estimates {} from {} channels, {} windows so far", events,
+  return fmt::format("{}estimating {} from {} channels, {} windows so far", events,
                      config.pipeline.structure.name, config.pipeline.axes.size(),
                      live.estimation().windows());
 }
@@ -40,19 +40,19 @@ Housekeeping::Housekeeping(const Config& config, const std::string& text,
       report_(starts, resumed),
       config_(config) {}
 
-void Housekeeping::look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
-                        const std::vector<RaisedEvents*>& raised) {
+void Housekeeping::update(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
+                          const std::vector<RaisedEvents*>& raised) {
   const std::int64_t now_us = host_clock_us();
   Estimation& estimation = live.estimation();
-  intake_warnings_.look(live, now_us);
-  for (const std::string& news : can_warnings_.look(estimation.can(), live.can(), now_us))
+  intake_warnings_.update(live, now_us);
+  for (const std::string& news : can_warnings_.collect(estimation.can(), live.can(), now_us))
     log(LogLevel::warning, news);
-  if (const auto buses = can_monitor_.look(estimation.can(), live.can(), now_us))
+  if (const auto buses = can_monitor_.collect(estimation.can(), live.can(), now_us))
     lcm.publish(config_.lcm.prefix + "CAN", &*buses);
-  state_.look(live.config(), estimation, now_us);
-  baseline_.look(estimation);
-  gap_.look(estimation, now_us);
-  if (const auto report = report_.look(live, raised, state_, reloader_.count(), now_us)) {
+  state_.update(live.config(), estimation, now_us);
+  baseline_.update(estimation);
+  gap_.poll(estimation, now_us);
+  if (const auto report = report_.collect(live, raised, state_, reloader_.count(), now_us)) {
     lcm.publish(config_.lcm.prefix + "SERVICE", &*report);
     const reception_t reception = reception_report(live, now_us);
     lcm.publish(config_.lcm.prefix + "RECEPTION", &reception);

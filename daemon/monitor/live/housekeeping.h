@@ -6,11 +6,9 @@
 
 #include "daemon/config/config.h"
 #include "daemon/monitor/estimation/baseline_keeper.h"
-#include "daemon/monitor/estimation/gap_keeper.h"
+#include "daemon/monitor/estimation/gap_files.h"
 #include "daemon/monitor/events/raised_events.h"
-#include "daemon/monitor/live/can_monitor.h"
-#include "daemon/monitor/live/can_warnings.h"
-#include "daemon/monitor/live/intake_warnings.h"
+#include "daemon/monitor/live/intake_monitor.h"
 #include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/live/reloader.h"
 #include "daemon/monitor/live/service_report.h"
@@ -21,21 +19,23 @@
 
 namespace framewatch::daemon {
 
-/// The periodic tasks of `framewatch run` beside the estimation: warnings in the log, status
-/// messages, state file, learned baseline, exchanged gap model, systemd's watchdog, and reload.
+/// The periodic tasks of `framewatch run` besides the estimation: warnings in the log, status
+/// messages, state file, learned baseline, replaced gap model, systemd's watchdog, and reload.
 class Housekeeping {
  public:
-  /// `config` must outlive this; text: what it was made of. state_path: empty: no state is kept.
-  /// resumed: the run goes on from a state file.
+  /// `config` must outlive this; `text` is its source. Without a `state_path` no state is written.
+  /// `resumed`: the run continues from a state file.
   Housekeeping(const Config& config, const std::string& text, const std::string& state_path,
                int state_every_s, const StartCount& starts, bool resumed);
 
-  /// To be called several times a second. raised: every event of this process that is raised.
-  void look(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
-            const std::vector<RaisedEvents*>& raised);
-  /// Reads the configuration anew. Whether it was accepted: then live.config() is a new one.
+  /// Does the tasks that are due. Call it several times a second. `raised` holds all raised events
+  /// of this process.
+  void update(LiveEstimation& live, lcm::LCM& lcm, ServiceManager& manager,
+              const std::vector<RaisedEvents*>& raised);
+  /// Reads the configuration file again. Returns true if it was accepted; live.config() is then the
+  /// new one.
   bool reload(LiveEstimation& live, ServiceManager& manager);
-  /// Writes the state and waits for it.
+  /// Writes the state and waits until it is written.
   void write_state(LiveEstimation& live) { state_.keep(live.config(), live.estimation()); }
 
  private:
@@ -48,7 +48,7 @@ class Housekeeping {
   Reloader reloader_;
   ServiceReport report_;
   ProgressWatch progress_;
-  const Config& config_;  ///< the first one: names that no reload changes
+  const Config& config_;  ///< the first one, for names that no reload changes
 };
 
 }  // namespace framewatch::daemon

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "daemon/base/clocks.h"
-#include "daemon/monitor/live/heard_channels.h"
+#include "daemon/monitor/live/live_intake.h"
 
 namespace framewatch::daemon {
 namespace {
@@ -43,8 +43,8 @@ void LiveEstimation::begin_estimation() {
 }
 
 void LiveEstimation::reconfigure(Config next, Reach reach) {
-  segments_.reset();  // writes what it still has under the old settings
-  // Both are held until the new estimation has taken over: the old one refers to its configuration.
+  segments_.reset();  // writes pending samples under the old settings
+  // The old estimation refers to its configuration, so both live until the new one has taken over.
   const std::unique_ptr<const Config> config_before =
       std::exchange(config_, std::make_unique<const Config>(std::move(next)));
   const std::unique_ptr<Estimation> before = std::move(estimation_);
@@ -57,7 +57,7 @@ void LiveEstimation::catch_up(RawBacklog backlog) {
   if (backlog_.empty()) estimation_->came_up(backlog_.read_whole());
 }
 
-/// Gives the estimation what waits for it, first the backlog.
+/// Passes waiting data to the estimation, the backlog first.
 void LiveEstimation::feed() {
   const std::int64_t until_us = steady_clock_us() + 1000 * kFeed_ms;
   const auto enough = [until_us] { return steady_clock_us() >= until_us; };

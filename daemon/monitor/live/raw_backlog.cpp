@@ -16,13 +16,14 @@ namespace framewatch::daemon {
 namespace {
 
 constexpr std::int64_t kEver_us = 2'000'000'000'000'000'000;
-constexpr double kOtherClocks_s = 60;  // by which the stamps of two axes may differ
+constexpr double kOtherClocks_s = 60;  // the stamps of two axes may differ by this
 
 std::int64_t backlog_us(double seconds) {
   return static_cast<std::int64_t>(1e6 * seconds);
 }
 
-/// Index of the configuration's axis by the log's channel; -1: the configuration has no such axis.
+/// Returns the index of the configured axis by channel of the log; -1 for a channel that is not
+/// configured.
 std::vector<int> axes_of(const std::vector<std::string>& names, const Config& config) {
   std::vector<int> out(names.size(), -1);
   const std::vector<estimator::SensorAxis>& axes = config.pipeline.axes;

@@ -12,33 +12,35 @@
 
 namespace framewatch::daemon {
 
-/// Raw samples that the process before stored in its history and that the state of this one lacks,
-/// with the temperatures between them, in the order in which they were received.
+/// Raw samples that an earlier process stored in the history after its last state, with the
+/// temperatures between them, in the order in which they were received.
 class RawBacklog {
  public:
-  /// A strong motion's longest time, and what the estimation gets of the time before it.
+  /// The longest strong motion that is read, and the time before a strong motion that is kept.
   static constexpr double kMost_s = 960, kBefore_s = 60;
-  static constexpr std::size_t kMaxSamples = 8'000'000;  ///< 200 MB; of more sensors fewer seconds
+  static constexpr std::size_t kMaxSamples =
+      8'000'000;  ///< 200 MB; with more sensors it covers fewer seconds
 
   struct Message {
-    std::size_t before = 0;  ///< index of the sample that it came before
+    std::size_t before = 0;  ///< index of the sample that follows it
     drivers::LogEvent event;
   };
 
-  /// Reads the samples after known_us, by axis (Estimation::newest_us()). resumed: the estimation
-  /// goes on from a state; else it gets samples only when they end in a strong motion that
-  /// [event_report] reports, from kBefore_s before it on. Without [history] there are none; notes
-  /// says what cannot be read.
+  /// Reads the samples after `known_us`, by axis (Estimation::newest_us()). `resumed`: the
+  /// estimation continues from a state. Otherwise it keeps samples only if they end in a strong
+  /// motion for [event_report], from kBefore_s before it. Without [history] the result is empty.
+  /// Appends what cannot be read to `notes`.
   static RawBacklog read(const Config& config, const std::vector<std::int64_t>& known_us,
                          bool resumed, std::vector<std::string>& notes);
 
   bool empty() const { return next_ == samples_.size(); }
-  /// The raw samples were read to their end: what the process before had stored last is known.
+  /// Returns true if the stored samples were read to their end.
   bool read_whole() const { return whole_; }
   double seconds() const;  ///< from the first to the last sample
+  /// Returns the sensor time of the first sample; 0 if empty.
   std::int64_t first_us() const;
 
-  /// Calls `sample` and `message` with what is left, in order, until `enough()` is true.
+  /// Calls `sample` and `message` with the remaining data, in order, until `enough()` returns true.
   template <typename Sample, typename Temperature, typename Enough>
   void give(Sample sample, Temperature message, Enough enough) {
     for (; next_ < samples_.size() && !enough(); ++next_) {

@@ -29,17 +29,16 @@ std::optional<Reloader::Result> Reloader::read(const Config& running) {
   std::vector<TextProblem> too_far;
   for (const ConfigChange& change : changes)
     if (change.reach == Reach::restart)
-      too_far.push_back({change.place, change.described() + ": takes a restart"});
+      too_far.push_back({change.place, change.described() + ": needs a restart"});
   if (!too_far.empty()) return refuse(with_file(path_, std::move(too_far)));
 
   Result result{reloaded(running, *fresh), Reach::settings};
   for (const ConfigChange& change : changes) {
-    log(LogLevel::notice, "read anew: " + change.described());
+    log(LogLevel::notice, "changed: " + change.described());
     result.reach = std::max(result.reach, change.reach);
   }
-  log(LogLevel::notice,
-      fmt::format("{} read anew: {} changes, the window {}", path_, changes.size(),
-                  result.reach == Reach::window ? "begins anew" : "goes on"));
+  log(LogLevel::notice, fmt::format("reloaded {}: {} changes, the window {}", path_, changes.size(),
+                                    result.reach == Reach::window ? "starts empty" : "continues"));
   document_ = std::move(document);
   ++count_.done;
   count_.problem.clear();
@@ -49,8 +48,9 @@ std::optional<Reloader::Result> Reloader::read(const Config& running) {
 std::optional<Reloader::Result> Reloader::refuse(const std::vector<ConfigProblem>& problems) {
   for (const ConfigProblem& p : problems)
     log(LogLevel::error, fmt::format("{}: {}", p.where, p.message));
-  log(LogLevel::error,
-      fmt::format("{} is not taken; the configuration of before stays in force", path_));
+  log(LogLevel::error, fmt::format("{} was refused; the running configuration stays in force. "
+                                   "Correct the file and reload again",
+                                   path_));
   ++count_.refused;
   count_.problem = problems.front().where + ": " + problems.front().message;
   return std::nullopt;

@@ -12,18 +12,18 @@
 
 namespace framewatch::daemon {
 
-/// Reads the configuration of a running estimation anew. A file that is wrong, or that changes what
-/// cannot change while it runs, changes nothing: the log says why, line by line.
+/// Reads the configuration file of a running estimation again. A file that is invalid, or that
+/// changes settings that need a restart, is refused: the log says why, line by line.
 class Reloader {
  public:
-  /// text: what `config` was made of.
+  /// `text` is the source of `config`.
   Reloader(const Config& config, const std::string& text);
 
   struct Result {
-    Config config;  ///< a new one: the running one with what may change while it runs
+    Config config;  ///< the running one with the settings that may change at run time
     Reach reach = Reach::settings;
   };
-  /// Empty when the file was refused.
+  /// Returns nullopt if the file was refused.
   std::optional<Result> read(const Config& running);
   const ReloadCount& count() const { return count_; }
 

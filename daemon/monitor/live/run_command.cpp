@@ -19,24 +19,102 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
+#include "daemon/monitor/actions/acknowledge.h"
+#include "daemon/monitor/actions/action_report.h"
 #include "daemon/monitor/estimation/state_file.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history_report.h"
-#include "daemon/monitor/live/heard_channels.h"
 #include "daemon/monitor/live/housekeeping.h"
-#include "daemon/monitor/live/live_events.h"
+#include "daemon/monitor/live/live_estimation.h"
+#include "daemon/monitor/live/live_intake.h"
 #include "daemon/monitor/live/raw_backlog.h"
+#include "daemon/monitor/service/command_socket.h"
 #include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/monitor/service/start_count.h"
 #include "drivers/files/cut_off_file.h"
+#include "drivers/files/encoded.h"
 #include "drivers/files/input_file.h"
 
 namespace framewatch::daemon {
 namespace {
 
+/// Handles the events of `framewatch run`: passes those of the estimation and of the history to the
+/// command and the webhook of [actions], and acknowledges them on request.
+class LiveEvents {
+ public:
+  /// All arguments must outlive this.
+  LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live, HistoryReport& history);
+  LiveEvents(const LiveEvents&) = delete;
+  LiveEvents& operator=(const LiveEvents&) = delete;
+
+  /// Handles new events and requests. Call it several times a second.
+  void poll();
+  /// Continues with another configuration, of which [actions] may differ.
+  void reconfigure(const Config& config) { actions_.reconfigure(config); }
+
+  /// Returns the raised events of the estimation and of the history.
+  AcknowledgeDesk::Raised raised() { return {&live_.estimation().raised(), &history_.raised()}; }
+
+ private:
+  void acknowledged(const event_t& event, const Acknowledgement& by);
+  CommandPacket obey(const CommandPacket& command, const std::string& user);
+
+  const Config& config_;
+  LiveEstimation& live_;
+  HistoryReport& history_;
+  ActionReport actions_;
+  AcknowledgeDesk desk_;
+  CommandSocket commands_;
+};
+
+LiveEvents::LiveEvents(const Config& config, lcm::LCM& lcm, LiveEstimation& live,
+                       HistoryReport& history)
+    : config_(config),
+      live_(live),
+      history_(history),
+      actions_(config, lcm),
+      desk_(config, lcm,
+            [this](const event_t& event, const Acknowledgement& by) { acknowledged(event, by); }),
+      commands_(config, "run", [this](const CommandPacket& command, const std::string& user) {
+        return obey(command, user);
+      }) {
+  actions_.raised_before(live_.estimation().raised());
+}
+
+void LiveEvents::acknowledged(const event_t& event, const Acknowledgement& by) {
+  actions_.acknowledged(event);
+  if (history_.history() != nullptr)
+    history_.history()->message(config_.lcm.prefix + "ACKNOWLEDGED",
+                                drivers::encoded(acknowledged_message(event, by)));
+}
+
+CommandPacket LiveEvents::obey(const CommandPacket& command, const std::string& user) {
+  if (command.channel != "ACKNOWLEDGE")
+    return refused("framewatch run takes no other command than acknowledge");
+  const auto answer = desk_.obey(command.bytes, user, raised(), host_clock_us());
+  if (!answer) return refused("cannot read the request: is it from another version?");
+  return {"ACKNOWLEDGED", drivers::encoded(*answer)};
+}
+
+void LiveEvents::poll() {
+  for (const event_t& event : live_.take_events()) {
+    log(event.severity >= severity::warning ? LogLevel::warning : LogLevel::notice,
+        fmt::format("{} {}: {}", event.kind, event.place, event.message));
+    actions_.event(event, live_.estimation().raised().acknowledgement(event.id) != nullptr);
+  }
+  for (const std::vector<std::uint8_t>& request : live_.take_requests())
+    desk_.heard(request, host_clock_us());
+  for (const event_t& event : history_.update(host_clock_us()))
+    actions_.event(event, history_.raised().acknowledgement(event.id) != nullptr);
+  commands_.poll(steady_clock_us());
+  desk_.update(raised(), host_clock_us());
+  actions_.update(host_clock_us());
+}
+
 constexpr int kPoll_ms = 100;
 
-/// Says which sections of a state were not taken, why, and what that costs. Keeps a copy of the
+/// Logs which sections of a state were not loaded, why, and the consequence. Keeps a copy of the
 /// file.
 void log_lost(const std::string& path, const std::vector<LostSection>& lost) {
   if (lost.empty()) return;
@@ -47,11 +125,11 @@ void log_lost(const std::string& path, const std::vector<LostSection>& lost) {
   std::error_code none;
   std::filesystem::copy_file(path, aside, std::filesystem::copy_options::overwrite_existing, none);
   log(LogLevel::notice, none ? fmt::format("cannot copy {} to {}: {}", path, aside, none.message())
-                             : fmt::format("a copy of the file is {}", aside));
+                             : fmt::format("kept a copy of the file as {}", aside));
 }
 
-/// Resumes from the state file, if there is one, with every section of it that fits. A file of
-/// which nothing fits is renamed, and the log says why. Whether the window was resumed.
+/// Loads every section of the state file that fits, if the file exists. Renames a file of which
+/// nothing fits and logs why. Returns true if the window was resumed.
 bool resume(const std::string& path, const Config& config, drivers::LcmProvider& lcm,
             drivers::CanLogWriter* can_log, std::optional<LiveEstimation>& live) {
   std::error_code none;
@@ -62,7 +140,7 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
   const LoadedState state = load_what_fits(path, config, live->estimation(), anew);
   if (state.problem.empty()) {
     log(LogLevel::notice,
-        fmt::format("goes on from {}: {} windows so far", path, live->estimation().windows()));
+        fmt::format("resumed from {}: {} windows so far", path, live->estimation().windows()));
     log_lost(path, state.lost);
     return std::none_of(state.lost.begin(), state.lost.end(),
                         [](const LostSection& l) { return l.name == "window"; });
@@ -70,20 +148,21 @@ bool resume(const std::string& path, const Config& config, drivers::LcmProvider&
   const std::string aside = path + ".refused";
   std::filesystem::rename(path, aside, none);
   log(LogLevel::warning,
-      none ? fmt::format("{}: {}; starts anew, and cannot be put aside as {}: {}", path,
+      none ? fmt::format("{}: {}; started without it, and cannot rename it {}: {}", path,
                          state.problem, aside, none.message())
-           : fmt::format("{}: {}; starts anew, the file is now {}", path, state.problem, aside));
+           : fmt::format("{}: {}; started without it and renamed it {}", path, state.problem,
+                         aside));
   return false;
 }
 
-/// The stored raw samples that the estimation has to get first.
+/// Returns the stored raw samples that the estimation has to get first.
 RawBacklog missed_samples(const Config& config, const Estimation& estimation, bool resumed) {
   std::vector<std::string> notes;
   RawBacklog out = RawBacklog::read(config, estimation.newest_us(), resumed, notes);
   for (const std::string& note : notes)
     log(LogLevel::warning, fmt::format("stored samples: {}", note));
   if (!out.empty())
-    log(LogLevel::notice, fmt::format("goes on with {:.1f} s of stored samples, from {} on",
+    log(LogLevel::notice, fmt::format("reading {:.1f} s of stored samples first, from {} on",
                                       out.seconds(), sensor_time_text(out.first_us())));
   return out;
 }
@@ -95,24 +174,34 @@ void log_summary(const Estimation& estimation) {
                   counters.interruptions, estimation.intake().lost()));
 }
 
+/// Reads a configuration file and logs its doubts. Returns nullopt, with the problems printed, if
+/// it is invalid; otherwise sets `text` to the contents of the file.
+std::optional<Config> read_configuration(const std::string& path, std::string& text) {
+  std::vector<ConfigProblem> problems;
+  std::string error;
+  const std::optional<std::string> contents = read_text_file(path, error);
+  if (!contents) problems.push_back({path, error});
+  std::optional<Config> config = contents ? parse_config(path, *contents, problems) : std::nullopt;
+  print_problems(problems);
+  if (!config) return std::nullopt;
+  log_doubts(config->doubts);
+  text = *contents;
+  return config;
+}
+
 }  // namespace
 
 int run(const RunArguments& a) {
-  std::vector<ConfigProblem> problems;
-  std::string error;
-  const std::optional<std::string> text = read_text_file(a.config, error);
-  if (!text) problems.push_back({a.config, error});
-  const std::optional<Config> config =
-      text ? parse_config(a.config, *text, problems) : std::nullopt;
-  print_problems(problems);
+  std::string text, error;
+  const std::optional<Config> config = read_configuration(a.config, text);
   if (!config) return kBadInput;
-  log_doubts(config->doubts);
   if (const std::string why = nothing_to_hear(*config, a.by_name); !why.empty())
     return refuse("run", why);
   if (const std::string names = channels_without_source(*config, a.by_name); !names.empty())
     log(LogLevel::warning,
-        fmt::format("{}: no source: {}: nothing comes from them unless a node names them",
-                    config->path, names));
+        fmt::format(
+            "{}: channels without a source: {}. They get no samples unless a node names them",
+            config->path, names));
   if (!a.state.empty() && !drivers::is_absent(a.state))  // a device would be renamed and replaced
     if (const std::string why = drivers::why_no_file(a.state); !why.empty())
       return refuse("run", fmt::format("{}: {}", a.state, why));
@@ -127,7 +216,7 @@ int run(const RunArguments& a) {
   if (const std::string kept = a.can_log.empty() ? "" : drivers::keep_cut_off(a.can_log);
       !kept.empty())
     log(LogLevel::warning,
-        fmt::format("a run that was cut off left frames behind: they are in {}", kept));
+        fmt::format("a run that was cut off left CAN frames: kept them in {}", kept));
   if (!a.can_log.empty() && !can_log.open(a.can_log))
     return refuse("run", a.can_log + ": " + can_log.error());
   drivers::CanLogWriter* const recorder = a.can_log.empty() ? nullptr : &can_log;
@@ -136,7 +225,7 @@ int run(const RunArguments& a) {
   bool resumed = false;
   if (!a.state.empty()) {
     starts = count_start(a.state, error);
-    if (!error.empty()) log(LogLevel::error, fmt::format("starts are not counted: {}", error));
+    if (!error.empty()) log(LogLevel::error, fmt::format("cannot count this start: {}", error));
     resumed = resume(a.state, *config, *lcm, recorder, estimation);
   }
   LiveEstimation& live = *estimation;
@@ -146,7 +235,7 @@ int run(const RunArguments& a) {
   LiveEvents events(*config, *lcm, live, history);
   live.catch_up(std::move(missed));
   for (const std::string& note : live.open_buses()) log(LogLevel::warning, note);
-  Housekeeping housekeeping(*config, *text, a.state, a.state_every_s, starts, resumed);
+  Housekeeping housekeeping(*config, text, a.state, a.state_every_s, starts, resumed);
   if (!a.quiet)
     log(LogLevel::info,
         fmt::format("{} {}: {} channels on {}", config->pipeline.structure.name, config->path,
@@ -159,19 +248,21 @@ int run(const RunArguments& a) {
                can_log.error().empty() ? "LCM failed to deliver" : "CAN log: " + can_log.error());
       ::usleep(1000 * kPoll_ms);
     }
-    housekeeping.look(live, *lcm, manager, events.raised());
+    housekeeping.update(live, *lcm, manager, events.raised());
     events.poll();
     if (reload_requested() && housekeeping.reload(live, manager)) events.reconfigure(live.config());
   }
   manager.stopping();
-  // With a state file the instants still open are published after the next start.
+  // With a state file, open instants are published after the next start.
   if (a.state.empty()) {
     live.finish();
     events.poll();
   } else {
     housekeeping.write_state(live);
     error = count_clean_stop(a.state, starts);
-    if (!error.empty()) log(LogLevel::error, fmt::format("the stop is not counted: {}", error));
+    if (!error.empty())
+      log(LogLevel::error,
+          fmt::format("cannot record this stop: {}; the next start will count as unclean", error));
   }
   if (recorder != nullptr && !can_log.close())
     return refuse("run", a.can_log + ": " + can_log.error());

@@ -8,15 +8,15 @@ namespace framewatch::daemon {
 
 struct RunArguments {
   std::string config;
-  std::string url;  ///< empty: the configuration's
+  std::string url;  ///< empty: as configured
   bool quiet = false;
   bool by_name = false;      ///< nodes name the channels that have no source
-  std::string state = {};    ///< file that keeps the state over a restart; empty: none
-  int state_every_s = 60;    ///< period of its writes
-  std::string can_log = {};  ///< file for the frames of the CAN buses; empty: none
+  std::string state = {};    ///< file that keeps the state over a restart; empty: not kept
+  int state_every_s = 60;    ///< seconds between two writes of the state
+  std::string can_log = {};  ///< file for the frames of the CAN buses; empty: not written
 };
 
-/// framewatch run: until SIGINT or SIGTERM. Exit code.
+/// Runs `framewatch run` until SIGINT or SIGTERM. Returns the exit code.
 int run(const RunArguments& arguments);
 
 }  // namespace framewatch::daemon

@@ -21,7 +21,7 @@ reception_t reception_report(const LiveEstimation& live, std::int64_t now_us) {
 ServiceReport::ServiceReport(const StartCount& starts, bool resumed)
     : starts_(starts), resumed_(resumed), started_us_(host_clock_us()) {}
 
-std::optional<service_t> ServiceReport::look(const LiveEstimation& live,
+std::optional<service_t> ServiceReport::collect(const LiveEstimation& live,
                                              const std::vector<RaisedEvents*>& raised,
                                              const StateKeeper& state, const ReloadCount& reloads,
                                              std::int64_t now_us) {

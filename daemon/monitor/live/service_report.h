@@ -16,25 +16,26 @@
 
 namespace framewatch::daemon {
 
-/// Outcome of the requests to read the configuration anew.
+/// The outcome of the requests to reload the configuration.
 struct ReloadCount {
   std::int64_t done = 0, refused = 0;
   std::string problem;  ///< why the newest one was refused; empty: accepted
 };
 
-/// What LCM's receiver has not taken so far. now_us: host clock.
+/// Returns how many messages and datagrams LCM's receiver has dropped. `now_us`: host clock.
 reception_t reception_report(const LiveEstimation& live, std::int64_t now_us);
 
-/// Reports once a second of the host's clock how the process of `framewatch run` is, whether
-/// samples come or not: a missing report means that the process is not running.
+/// Reports on the process of `framewatch run` once a second of the host's clock, even without
+/// samples: a missing report means that the process does not run.
 class ServiceReport {
  public:
   ServiceReport(const StartCount& starts, bool resumed);
-  /// The report; empty when less than a second has passed since the last one. raised: every event
-  /// of this process that is raised.
-  std::optional<service_t> look(const LiveEstimation& live,
-                                const std::vector<RaisedEvents*>& raised, const StateKeeper& state,
-                                const ReloadCount& reloads, std::int64_t now_us);
+  /// Returns the report, or nullopt within a second after the last one. `raised` holds all raised
+  /// events of this process.
+  std::optional<service_t> collect(const LiveEstimation& live,
+                                   const std::vector<RaisedEvents*>& raised,
+                                   const StateKeeper& state, const ReloadCount& reloads,
+                                   std::int64_t now_us);
 
  private:
   StartCount starts_;

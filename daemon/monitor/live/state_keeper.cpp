@@ -29,7 +29,7 @@ StateKeeper::~StateKeeper() {
   if (writing_.valid()) writing_.wait();
 }
 
-void StateKeeper::look(const Config& config, Estimation& estimation, std::int64_t now_us) {
+void StateKeeper::update(const Config& config, Estimation& estimation, std::int64_t now_us) {
   if (path_.empty()) return;
   if (next_us_ == 0) next_us_ = now_us + every_us_;
   if (now_us < next_us_ || !written()) return;
@@ -40,7 +40,7 @@ void StateKeeper::look(const Config& config, Estimation& estimation, std::int64_
                             return written_or_why(path, state);
                           });
   });
-  if (!thrown.empty()) report("no thread to write it: " + thrown);
+  if (!thrown.empty()) report("cannot start a thread: " + thrown);
 }
 
 void StateKeeper::keep(const Config& config, Estimation& estimation) {
@@ -61,7 +61,10 @@ bool StateKeeper::written() {
 void StateKeeper::report(std::string problem) {
   if (problem.empty()) written_us_ = host_clock_us();
   if (!problem.empty())
-    log(LogLevel::error, fmt::format("{}: state not written: {}", path_, problem));
+    log(LogLevel::error,
+        fmt::format(
+            "{}: cannot write the state: {}. Check the disk: a restart resumes from an older state",
+            path_, problem));
   problem_ = std::move(problem);
 }
 

@@ -20,19 +20,19 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/log.h"
 #include "daemon/base/user_name.h"
-#include "daemon/monitor/service/command_path.h"
+#include "daemon/monitor/service/command_client.h"
 
 namespace framewatch::daemon {
 namespace {
 
 constexpr std::int64_t kListenAgain_us = 5'000'000;
-constexpr int kMaxAccepts = 64;  // in one look
+constexpr int kMaxAccepts = 64;  // in one poll()
 
 std::string with_errno(const std::string& path) {
   return fmt::format("{}: {}", path, std::strerror(errno));
 }
 
-/// A directory server that does not answer delays this command alone.
+/// Looks the name up in a thread: a slow directory server then delays only this command.
 std::future<std::string> name_of(uid_t user) {
   try {
     return std::async(std::launch::async, user_name, user);
@@ -64,38 +64,40 @@ void CommandSocket::listen(std::int64_t now_us) {
   const std::string problem = open();
   if (problem == problem_) return;
   problem_ = problem;
-  if (!problem.empty()) log(LogLevel::error, "no commands are taken: " + problem);
+  if (!problem.empty()) log(LogLevel::error, "cannot take commands: " + problem);
 }
 
 std::string CommandSocket::open() {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (path_.size() >= sizeof address.sun_path)
-    return fmt::format("{}: a socket's path has {} bytes at most ([commands] directory)", path_,
-                       sizeof address.sun_path - 1);
+    return fmt::format(
+        "{}: the path of a socket has {} bytes at most: set a shorter [commands] directory", path_,
+        sizeof address.sun_path - 1);
   path_.copy(address.sun_path, sizeof address.sun_path - 1);
   std::string problem = prepare_command_directory(directory_);
   if (!problem.empty()) return problem;
-  // Whoever holds the lock listens. The file stays: who removes one can no longer tell whose it is.
+  // The holder of the lock listens. The lock file is never removed: otherwise two daemons could
+  // hold locks on two files of that name.
   const std::string lock = path_ + ".lock";
   lock_.reset(::open(lock.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (lock_.get() < 0) return with_errno(lock);
   if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
     return fmt::format(
-        "{}: another framewatch {} takes them there; two need two prefixes, or "
+        "{}: another framewatch {} takes commands there: give each its own lcm.prefix or "
         "[commands] directory",
         path_, service_);
-  ::unlink(path_.c_str());  // of a process that is dead: it does not hold the lock
+  ::unlink(path_.c_str());  // left by a dead process: this one holds the lock
   socket_.reset(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const auto* const named = reinterpret_cast<const sockaddr*>(&address);
-  // Nobody can connect before listen(), so the mode is right when the first one does.
+  // Nobody can connect before listen(), so the mode is set in time.
   if (socket_.get() < 0 || ::bind(socket_.get(), named, sizeof address) != 0 ||
       ::chmod(path_.c_str(), 0660) != 0 || ::listen(socket_.get(), kMaxConnections) != 0)
     return with_errno(path_);
   return "";
 }
 
-void CommandSocket::look(std::int64_t now_us) {
+void CommandSocket::poll(std::int64_t now_us) {
   if (!problem_.empty()) listen(now_us);
   if (!problem_.empty()) return;
   accept(now_us);
@@ -150,7 +152,7 @@ CommandSocket::Next CommandSocket::answer(Connection& c) {
   if (c.name.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return Next::wait;
   const CommandPacket out = handler_(c.command, c.name.get());
   const std::vector<std::uint8_t> bytes = packet_bytes(out);
-  // Whoever does not wait for the answer goes without.
+  // A client that does not wait gets no answer.
   (void)::send(c.file.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   return Next::done;
 }

@@ -8,44 +8,47 @@
 #include <vector>
 
 #include "daemon/config/sections/settings.h"
-#include "daemon/monitor/service/command_packet.h"
+#include "daemon/monitor/service/command_client.h"
 #include "drivers/files/descriptor.h"
 
 namespace framewatch::daemon {
 
-/// Takes commands over a Unix socket (SOCK_SEQPACKET, mode 0660): one packet, one answer, the end.
-/// Who may connect, the file system decides; who did is what the kernel says. Never waits.
+/// Takes commands over a Unix socket (SOCK_SEQPACKET, mode 0660): one packet and one answer per
+/// connection. File permissions decide who may connect; the kernel names the user. Never blocks.
 class CommandSocket {
  public:
-  static constexpr std::size_t kMaxConnections = 16;       ///< the oldest silent one makes room
-  static constexpr std::int64_t kPatience_us = 3'000'000;  ///< with a silent one
+  static constexpr std::size_t kMaxConnections =
+      16;  ///< if there are more, the oldest silent one is closed
+  static constexpr std::int64_t kPatience_us = 3'000'000;  ///< wait for a silent connection
 
-  /// The answer to a command of this user.
+  /// Returns the answer to a command of `user`.
   using Handler =
       std::function<CommandPacket(const CommandPacket& command, const std::string& user)>;
 
-  /// Listens at once; log lines say when it cannot, and look() tries again. service: "run" or
-  /// "record".
+  /// Starts to listen. If that fails, the log says why and poll() tries again. `service` is "run"
+  /// or "record".
   CommandSocket(const Config& config, const std::string& service, Handler handler);
   ~CommandSocket();
   CommandSocket(const CommandSocket&) = delete;
   CommandSocket& operator=(const CommandSocket&) = delete;
 
-  /// Does what there is to do; to be called several times a second. now_us: steady clock.
-  void look(std::int64_t now_us);
+  /// Accepts connections, reads commands and sends answers. Call it several times a second;
+  /// `now_us`: steady clock.
+  void poll(std::int64_t now_us);
 
-  /// Why nobody listens; empty: this does.
+  /// Returns why the socket does not listen; empty if it does.
   const std::string& problem() const { return problem_; }
+  /// Returns the path of the socket.
   const std::string& path() const { return path_; }
-  std::int64_t malformed() const { return malformed_; }  ///< packets that were none
+  std::int64_t malformed() const { return malformed_; }  ///< malformed packets so far
 
  private:
   struct Connection {
     drivers::Descriptor file;
     uid_t user = 0;
     std::int64_t until_us = 0;
-    CommandPacket command;          ///< without a channel: it has not come yet
-    std::future<std::string> name;  ///< of the user, once the command has come
+    CommandPacket command;          ///< empty channel: not received yet
+    std::future<std::string> name;  ///< of the user, requested when the command is received
   };
   enum class Next { wait, done };
 

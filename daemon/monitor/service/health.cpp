@@ -10,7 +10,7 @@
 #include <fmt/core.h>
 
 #include "daemon/base/clocks.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/message_check.h"
 #include "estimator/numeric/nan.h"
 

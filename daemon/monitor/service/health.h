@@ -50,21 +50,22 @@ class Heard {
   std::string prefix_;
 };
 
-/// Index of the event in heard.acknowledged; empty when it is not acknowledged.
+/// Returns the index of the event in heard.acknowledged; nullopt if it is not acknowledged.
 std::optional<std::size_t> acknowledgement_of(const Heard& heard, std::int64_t event_id);
 
-/// The event at that place of heard.service, as far as it says: raised, without numbers.
+/// Returns the raised event at index `at` of a service report, which has no numbers of it.
 event_t raised_event(const service_t& service, std::size_t at);
 
-/// Every problem that is not acknowledged, one sentence each; empty when the daemon is healthy.
-/// Requires heard.service. now_us: host clock. words: of an event, a sentence for people.
+/// Returns every problem that is not acknowledged, one sentence each; empty if the daemon is
+/// healthy. Requires heard.service. `now_us`: host clock. `words` turns an event into a sentence
+/// for people.
 std::vector<std::string> oddities(const Heard& heard, const Config& config, std::int64_t now_us,
                                   const std::function<std::string(const event_t&)>& words);
 
-/// Time since the newest sample; without one, since the start.
+/// Returns the time since the newest sample, or since the start if no sample has come.
 double silent_s(const service_t& service, std::int64_t now_us);
 
-/// "3 d 4 h", "5 min 10 s", "2 s".
+/// Returns a duration such as "3 d 4 h", "5 min 10 s" or "2 s".
 std::string span_text(double seconds);
 
 }  // namespace framewatch::daemon

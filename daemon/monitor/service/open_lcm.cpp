@@ -29,10 +29,10 @@ std::unique_ptr<drivers::LcmProvider> open_lcm_with_retry(const Config& config,
     if (!said) {
       std::istringstream lines(error);
       for (std::string line; std::getline(lines, line);) log(LogLevel::warning, line);
-      log(LogLevel::warning, "waits for it");
+      log(LogLevel::warning, "waiting for LCM, and trying again");
       manager.ready();
     }
-    manager.status("waits for LCM on " + where);
+    manager.status("waiting for LCM on " + where);
     manager.alive(steady_clock_us());
     ::usleep(kRetry_us);
   }

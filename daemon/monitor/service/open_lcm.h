@@ -9,9 +9,9 @@
 
 namespace framewatch::daemon {
 
-/// Opens LCM as configured, or on `url` unless that is empty. Under a service manager it retries
-/// until the network is there, because the machine may have just started. Null, with the reason,
-/// when LCM cannot start or the program is to stop.
+/// Opens LCM on `url`, or as configured if that is empty. Under a service manager it retries until
+/// the network is up, because the machine may just have booted. Returns nullptr and sets `error`
+/// when LCM cannot start or the program is stopped.
 std::unique_ptr<drivers::LcmProvider> open_lcm_with_retry(const Config& config,
                                                           const std::string& url,
                                                           ServiceManager& manager,

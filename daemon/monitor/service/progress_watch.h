@@ -7,15 +7,17 @@
 
 namespace framewatch::daemon {
 
-/// Tells whether the estimator makes progress: accepted samples must become instants. Without
-/// samples it is idle, which is healthy.
+/// Tells whether the estimator makes progress: accepted samples must become instants. An estimator
+/// without samples is idle, which is healthy.
 class ProgressWatch {
  public:
-  /// Longer than any sample waits for the others of its instant.
+  /// No sample waits longer than this for the others of its instant.
   static constexpr std::int64_t kLongest_us = 5'000'000;
-  /// Without a sample for longer than this the estimator is idle.
+  /// After this time without a sample the estimator is idle.
   static constexpr std::int64_t kIdle_us = 1'000'000;
 
+  /// Returns false if samples have waited for an instant for longer than kLongest_us. `now_us`:
+  /// steady clock.
   bool well(const estimator::PipelineCounters& counters, std::int64_t now_us) {
     std::int64_t accepted = 0;
     for (const estimator::AxisCounters& axis : counters.axes)

@@ -1,31 +1,53 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace framewatch::daemon {
 
-/// Reports the state of this process to systemd (sd_notify(3)); does nothing when it was not
-/// started with Type=notify.
+/// The configuration that the package's services use.
+inline constexpr const char* kInstalledConfig = "/etc/framewatch/building.toml";
+
+/// Reports the state of this process to systemd (sd_notify(3)). Does nothing unless the service has
+/// Type=notify.
 class ServiceManager {
  public:
   ServiceManager();
 
-  /// Whether systemd listens; then a missing network is waited for instead of being an error.
+  /// Returns true if systemd listens. The program then waits for a missing network instead of
+  /// failing.
   bool listens() const { return listens_; }
+  /// Tells systemd that the service is ready, also after reloading().
   void ready();
-  /// One line for `systemctl status`; sent when it differs from the last one.
+  /// Sets the line of `systemctl status`. Sends it only if it differs from the last one.
   void status(const std::string& line);
-  /// Feeds the watchdog as often as it needs. To be called only while the program makes progress.
+  /// Feeds the watchdog as often as necessary. Call it only while the program makes progress.
   void alive(std::int64_t now_us);
   void reloading();
   void stopping();
 
  private:
   bool listens_;
-  std::int64_t feed_every_us_ = 0;  ///< 0: there is no watchdog
+  std::int64_t feed_every_us_ = 0;  ///< 0: no watchdog
   std::int64_t next_feed_us_ = 0;
   std::string sent_;
 };
+
+/// The state of a service according to systemd.
+struct UnitState {
+  std::string active, sub, result;  ///< such as "active", "running", "success"
+  std::int64_t restarts = 0;        ///< by systemd, since somebody started the service
+};
+
+/// Asks systemd for the state of a unit. Returns nullopt if systemd does not run this machine or
+/// has no such unit.
+std::optional<UnitState> unit_state(const std::string& unit);
+
+/// Returns "active (running), restarted 3 times by systemd since somebody started it".
+std::string unit_text(const UnitState& state);
+
+/// Returns what is wrong with the service and what to do; empty if all is well.
+std::string unit_oddity(const UnitState& state);
 
 }  // namespace framewatch::daemon

@@ -8,9 +8,8 @@
 
 #include <fmt/core.h>
 
-#include "daemon/monitor/event_report/drift_words.h"
-#include "daemon/monitor/event_report/response_words.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/event_report/report_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/service/health.h"
 
 namespace framewatch::daemon {

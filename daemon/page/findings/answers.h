@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/page/findings/finding.h"
 #include "daemon/page/findings/shaking.h"
 #include "estimator/shaking/story_drift.h"

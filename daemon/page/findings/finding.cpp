@@ -7,9 +7,7 @@
 #include <fmt/core.h>
 
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/events/event_words.h"
-#include "daemon/monitor/events/place_words.h"
-#include "daemon/monitor/events/recovery_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/structure/parameter_table.h"
 
 namespace framewatch::daemon {

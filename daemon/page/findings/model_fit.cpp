@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -20,7 +20,7 @@
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/config/sections/sections.h"
 #include "daemon/monitor/service/health.h"
-#include "daemon/monitor/service/unit_state.h"
+#include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/findings/finding.h"
 #include "daemon/page/findings/status_json.h"
 #include "drivers/lcm/lcm_source.h"

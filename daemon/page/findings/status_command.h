@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "daemon/monitor/service/installed_config.h"
+#include "daemon/monitor/service/service_manager.h"
 
 namespace framewatch::daemon {
 

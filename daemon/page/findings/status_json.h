@@ -7,7 +7,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/monitor/service/health.h"
-#include "daemon/monitor/service/unit_state.h"
+#include "daemon/monitor/service/service_manager.h"
 
 namespace framewatch::daemon {
 

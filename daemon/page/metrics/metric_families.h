@@ -23,7 +23,7 @@
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
-#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/page/metrics/page_use.h"
 
 namespace framewatch::daemon {

@@ -12,7 +12,7 @@
 #include <framewatch/watch_t.hpp>
 #include <framewatch/window_estimate_t.hpp>
 
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/page/metrics/metric_families.h"
 
 namespace framewatch::daemon {

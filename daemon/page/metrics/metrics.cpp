@@ -59,7 +59,7 @@ std::string Metrics::text(std::int64_t now_us, const PageUse& use) {
           (up && name != "ESTIMATE" && name != "UPLINK"))
         fresh[name] = newest.bytes;
     raised = found_here_;
-    report = reports_.look();
+    report = reports_.poll();
   }
   const auto service = drivers::decoded<service_t>(fresh["SERVICE"]);
   const auto status = drivers::decoded<status_t>(fresh["STATUS"]);

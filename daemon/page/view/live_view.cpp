@@ -14,10 +14,10 @@
 #include <framewatch/session_status_t.hpp>
 #include <framewatch/status_t.hpp>
 
-#include "daemon/monitor/estimation/estimate_channels.h"
-#include "daemon/monitor/estimation/wanted_axes.h"
-#include "daemon/monitor/events/acknowledge_messages.h"
-#include "daemon/monitor/live/heard_channels.h"
+#include "daemon/monitor/estimation/estimation.h"
+#include "daemon/monitor/estimation/publisher.h"
+#include "daemon/monitor/events/event_messages.h"
+#include "daemon/monitor/live/live_intake.h"
 #include "daemon/page/view/page_json.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/accel_codec.h"
@@ -221,7 +221,7 @@ void LiveView::flush() {
   if (flushes_ % kFlushesPerSecond == 0) {
     const std::lock_guard<std::mutex> lock(mutex_);
     silent_s_ = seconds_since(motion_at_);
-    (void)reports_.look();
+    (void)reports_.poll();
     push_if_new("baseline", baseline_json(baseline()));
     push_if_new("answers", answers_json(known(), config_));
     push_if_new("last", history_.last_json());

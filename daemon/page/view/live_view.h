@@ -14,7 +14,7 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
-#include "daemon/monitor/estimation/message_sink.h"
+#include "daemon/monitor/estimation/publisher.h"
 #include "daemon/page/findings/answers.h"
 #include "daemon/page/findings/model_fit.h"
 #include "daemon/page/findings/shaking.h"

@@ -7,7 +7,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/watch_t.hpp>
 
-#include "daemon/monitor/estimation/estimate_channels.h"
+#include "daemon/monitor/estimation/publisher.h"
 #include "daemon/page/view/live_view.h"
 #include "drivers/files/encoded.h"
 #include "drivers/lcm/message_check.h"

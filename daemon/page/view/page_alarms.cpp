@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "daemon/monitor/events/acknowledge_messages.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/service/health.h"
 #include "daemon/page/view/page_json.h"
 

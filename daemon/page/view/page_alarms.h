@@ -12,7 +12,7 @@
 #include <framewatch/event_t.hpp>
 #include <framewatch/service_t.hpp>
 
-#include "daemon/monitor/events/acknowledgement.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/page/findings/finding.h"
 
 namespace framewatch::daemon {

@@ -13,7 +13,7 @@
 #include <framewatch/window_estimate_t.hpp>
 
 #include "daemon/config/config.h"
-#include "daemon/monitor/events/acknowledgement.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/page/findings/answers.h"
 
 // Messages as the JSON that the page gets by server-sent events (docs/dashboard.md), one line each.

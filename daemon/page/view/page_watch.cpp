@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "daemon/monitor/estimation/estimation_events.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 
 namespace framewatch::daemon {

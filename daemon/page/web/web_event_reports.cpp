@@ -7,7 +7,7 @@
 
 #include "daemon/base/json_values.h"
 #include "daemon/base/served_file.h"
-#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -13,7 +13,7 @@
 #include "daemon/base/progress.h"
 #include "daemon/config/config.h"
 #include "daemon/config/header_differences.h"
-#include "daemon/monitor/estimates/estimates_csv.h"
+#include "daemon/monitor/estimates/estimate_output.h"
 #include "daemon/tools/commands/lost_headers.h"
 #include "drivers/files/standard_streams.h"
 #include "drivers/formats/record_file.h"

@@ -14,7 +14,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/events/place_words.h"
+#include "daemon/monitor/events/change_words.h"
 #include "daemon/page/view/live_view.h"
 #include "daemon/page/web/web_server.h"
 #include "daemon/page/web/web_socket.h"

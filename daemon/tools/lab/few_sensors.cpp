@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-#include "daemon/monitor/estimation/design_error.h"
+#include "daemon/monitor/estimation/estimation.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/simulate/linear_response.h"
 #include "estimator/simulate/random.h"

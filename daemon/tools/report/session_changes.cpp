@@ -7,10 +7,9 @@
 
 #include <fmt/core.h>
 
-#include "daemon/monitor/estimates/settled_windows.h"
+#include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/events/event_words.h"
-#include "daemon/monitor/events/place_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/parameter_table.h"
 #include "estimator/watch/watch.h"

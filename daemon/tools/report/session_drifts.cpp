@@ -7,8 +7,7 @@
 
 #include "daemon/base/median.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
-#include "daemon/monitor/estimates/settled_windows.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/tools/report/session_floors.h"
 #include "estimator/motion/noise_meter.h"
 #include "estimator/numeric/nan.h"

@@ -7,7 +7,6 @@
 
 #include "daemon/base/json_values.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
-#include "daemon/monitor/estimates/settled_windows.h"
 #include "estimator/identify/elements/guessed_design.h"
 #include "estimator/numeric/nan.h"
 #include "estimator/structure/group_design.h"

@@ -11,7 +11,7 @@
 #include "daemon/base/utc_time.h"
 #include "daemon/monitor/estimates/parameter_summary.h"
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/tools/report/session_report.h"
 #include "estimator/watch/watch.h"
 

@@ -22,7 +22,6 @@
 #include "daemon/base/log.h"
 #include "daemon/base/stop_signal.h"
 #include "daemon/config/sections/config_problems.h"
-#include "daemon/monitor/live/heard_channels.h"
 #include "daemon/monitor/live/live_intake.h"
 #include "daemon/tools/session/recorder.h"
 #include "daemon/tools/session/session_command.h"

@@ -8,9 +8,9 @@
 
 #include "daemon/base/log.h"
 #include "daemon/base/printable.h"
-#include "daemon/monitor/estimation/estimate_channels.h"
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/live/heard_channels.h"
+#include "daemon/monitor/estimation/publisher.h"
+#include "daemon/monitor/live/live_intake.h"
 #include "drivers/can/candump_line.h"
 #include "drivers/files/text_output.h"
 

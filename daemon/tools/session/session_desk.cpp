@@ -20,7 +20,7 @@ SessionDesk::SessionDesk(const Config& config, Recorder& recorder)
       }) {}
 
 void SessionDesk::look() {
-  socket_.look(steady_clock_us());
+  socket_.poll(steady_clock_us());
 }
 
 void SessionDesk::heard(const void* data, std::size_t size, std::int64_t now_us) {

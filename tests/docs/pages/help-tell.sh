@@ -4,5 +4,5 @@ before() {
   printf '[actions]\ncommand = ["/usr/bin/tee", "told.json"]\n' >>building.toml
 }
 expected='
-command +was told
+command +delivered
 '

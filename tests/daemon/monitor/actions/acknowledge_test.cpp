@@ -18,10 +18,8 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/user_name.h"
-#include "daemon/monitor/actions/acknowledge_command.h"
-#include "daemon/monitor/actions/acknowledge_desk.h"
-#include "daemon/monitor/events/acknowledge_messages.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/actions/acknowledge.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/events/raised_events.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "drivers/files/encoded.h"
@@ -38,7 +36,7 @@ namespace acknowledge_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 20s;  // for what takes a second or two on a machine with time
+constexpr auto kSoon = 20s;  // for actions that take a second or two on an idle machine
 
 event_t event(std::int64_t id, int state = event_state::raised) {
   event_t e{};
@@ -92,7 +90,7 @@ class Desk : public testing::Test {
     return desk_.obey(drivers::encoded(request), "alice", {&here_, &there_}, now_us);
   }
   void look(std::int64_t now_us) {
-    desk_.look({&here_, &there_}, now_us);
+    desk_.update({&here_, &there_}, now_us);
     while (lcm_.handleTimeout(50) > 0) {
     }
   }
@@ -153,7 +151,7 @@ TEST_F(Desk, SaysWhenEverythingWasAcknowledged) {
   EXPECT_EQ(answers_[0].id, (std::vector<std::int64_t>{1, kAllEvents}));
   EXPECT_EQ(answers_[0].since_us[1], 7);
   EXPECT_EQ(answers_[0].comment[1], "seen");
-  // A page may have events where run has none.
+  // A page may have events that run does not have.
   here_.note(event(1, event_state::cleared));
   ask(acknowledge_request(kAllEvents, "", ""), 9);
   look(10);
@@ -217,9 +215,9 @@ TEST_F(Desk, WhatComesOverLcmIsObeyedWhereTheConfigurationSaysSo) {
   EXPECT_EQ(desk_.not_obeyed(), 1000);
 }
 
-// --- the daemon, its command, its history
+// The daemon, its command and its history.
 
-/// The tower, whose CAN bus is not there: that is an alarm.
+/// The tower, whose CAN bus is missing, which raises an alarm.
 class Tower : public testing::Test {
  protected:
   void SetUp() override {
@@ -243,7 +241,7 @@ class Tower : public testing::Test {
                           {static_cast<const std::uint8_t*>(m.data), m.size});
                     });
   }
-  /// Appends to the configuration.
+  /// Appends a text to the configuration.
   void add(const std::string& text) const {
     test::write_file(config(), test::read_file(config()) + "\n" + text);
   }
@@ -261,12 +259,12 @@ class Tower : public testing::Test {
     arguments.comment = "no bus here";
     return acknowledge_command(arguments);
   }
-  /// A raised event of the daemon.
+  /// Returns the id of a raised event of the daemon.
   std::int64_t raised() const {
     EXPECT_TRUE(test::comes_true([&] { return told().ends_with('\n'); }, kSoon));
     return told().starts_with("raised interface_gone ") ? std::stoll(told().substr(22)) : 0;
   }
-  /// Sends a request as anybody may who reaches the bus.
+  /// Sends a request as any process on the bus can.
   void forge(std::int64_t id) {
     const acknowledge_t request = acknowledge_request(id, "anybody", "x");
     lcm_->publish("FRAMEWATCH_ACKNOWLEDGE", &request);
@@ -315,7 +313,7 @@ TEST_F(Tower, AnAcknowledgedEventIsKnownOverARestartAndInTheHistory) {
   EXPECT_EQ(stored[0].id, id);
   EXPECT_EQ(stored[0].kind, "interface_gone");
   EXPECT_EQ(stored[0].who, user_name(::geteuid()) + " (says: me)");
-  EXPECT_EQ(acknowledge(id), 2);  // nobody is there
+  EXPECT_EQ(acknowledge(id), 2);  // no daemon runs
   EXPECT_EQ(acknowledge_command({"3x", config(), "", ""}), 2);
 }
 
@@ -326,7 +324,7 @@ TEST_F(Tower, ADatagramAcknowledgesNothing) {
   ASSERT_TRUE(heard([&](const acknowledged_t&) { return true; }));
   for (int i = 0; i < 20; ++i) forge(id);
   const std::int64_t then_us = host_clock_us();
-  // It has been through its loop many times.
+  // By then its loop has run many times.
   ASSERT_TRUE(heard([&](const acknowledged_t& a) { return a.time_us > then_us + 2 * kSecond_us; }));
   EXPECT_EQ(known_->events, 0);
   EXPECT_EQ(acknowledge(id), 0);

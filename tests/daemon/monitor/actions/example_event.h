@@ -7,7 +7,7 @@
 #include <framewatch/event_t.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 
 namespace framewatch::daemon {
 

@@ -7,7 +7,8 @@
 namespace framewatch::daemon {
 namespace parameter_summary_test {
 
-/// A first record finds the bending in its fourth window; the stiffness went with the one before.
+/// Returns a first record that finds the bending in its fourth window; until then the stiffness
+/// depends on an older value.
 SessionEstimates first_record() {
   SessionEstimates out;
   out.table.name = {"kx_1to2", "krx"};

@@ -1,5 +1,5 @@
-// Absurd samples by every way in: messages, record files, CAN. They are counted, the channel is
-// named, and the estimates are those of good input.
+// Sends absurd samples by every input: messages, record files, CAN. They must be counted, the
+// channel named, and the estimates those of good input.
 
 #include <algorithm>
 #include <bit>
@@ -30,7 +30,7 @@ namespace absurd_input_test {
 constexpr double kSeconds = 20;
 constexpr int kNode = 3;
 
-/// What an estimation says.
+/// Collects the findings of an estimation.
 struct Listener : EstimationListener {
   explicit Listener(const Config& config)
       : estimation(
@@ -45,7 +45,7 @@ struct Listener : EstimationListener {
   void on_sample(const estimator::AccelSample& s) override {
     if (std::isfinite(s.accel)) most = std::max(most, std::abs(s.accel));
   }
-  double most = 0;  ///< m/s^2, of all samples
+  double most = 0;  ///< m/s^2, the largest of all samples
   std::vector<event_t> events;
   status_t status;
   std::vector<estimator::WindowEstimate> estimates;
@@ -57,8 +57,8 @@ Config table_config() {
   return *load_config(test::table_config(), problems);
 }
 
-/// Largest change of a value that both have, in standard errors. Nearly all have both or none: a
-/// repaired sample may move one across the gate.
+/// Returns the largest change of a value that both series have, in standard errors. Nearly all have
+/// both or neither: a repaired sample may move one across the gate.
 double moved(const std::vector<estimator::WindowEstimate>& a,
              const std::vector<estimator::WindowEstimate>& b) {
   EXPECT_EQ(a.size(), b.size());
@@ -175,7 +175,8 @@ TEST(AbsurdInput, InARecordFileIsReplayedPast) {
     }
 }
 
-/// Puts `pattern` into the first signal of every 50th frame that has signals; how many it was.
+/// Puts `pattern` into the first signal of every 50th frame with signals. Returns the number of
+/// changed frames.
 std::int64_t spoil(const Config& config, std::vector<drivers::BusFrame>& frames,
                    const std::function<std::uint64_t(std::int64_t)>& pattern) {
   std::int64_t spoiled = 0, count = 0;
@@ -209,7 +210,7 @@ TEST(AbsurdInput, ExtremesOfInt32OnCanAreCountedAndLeftOut) {
 TEST(AbsurdInput, FloatsOnCanAreNotSmearedOverTheGrid) {
   Config config = test::can_example("raw_int16");
   ASSERT_TRUE(config.can.resample);
-  for (drivers::CanNodeMap& node : config.can.nodes)  // one float a frame
+  for (drivers::CanNodeMap& node : config.can.nodes)  // one float per frame
     for (drivers::CanMessageMap& m : node.messages)
       if (!m.readings.empty()) {
         m.readings.resize(1);

@@ -38,7 +38,7 @@ Config table() {
 class StateFile : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    ::mallopt(M_PERTURB, kFilledWith);  // a state has nothing of what the memory held before
+    ::mallopt(M_PERTURB, kFilledWith);  // a state must not depend on old memory contents
     directory_ = new TemporaryDirectory;
     test::record_table_test(log(), kSeconds);
     ASSERT_EQ(run({log()}, "uncut.lcmlog", "", ""), 0);
@@ -55,7 +55,7 @@ class StateFile : public testing::Test {
                                    const std::string& load, const std::string& save) {
     ReplayArguments a{
         test::table_config(), std::move(logs), out.empty() ? "" : path(out), false, true, false};
-    a.one_pass = true;  // as parts are estimated
+    a.one_pass = true;  // because parts are estimated
     if (!load.empty()) a.load_state = path(load);
     if (!save.empty()) a.save_state = path(save);
     return a;
@@ -64,7 +64,7 @@ class StateFile : public testing::Test {
                  const std::string& save) {
     return replay(arguments(std::move(logs), out, load, save));
   }
-  /// Exit code, and what was said, of a replay that goes on from "state".
+  /// Returns the exit code and the output of a replay that resumes from "state".
   static std::pair<int, std::string> refused() {
     testing::internal::CaptureStderr();
     const int code = run({log()}, "est.lcmlog", "state", "");
@@ -81,8 +81,8 @@ TEST_F(StateFile, AReplayCutAnywhereInTwoGivesTheBytesOfTheUncutOne) {
   ASSERT_TRUE(reader.open(log()));
   std::vector<std::int64_t> offsets;
   for (LogEvent e; reader.next(e) == LogRead::event;) offsets.push_back(e.offset);
-  // After the first sample, inside an instant, between a table and its samples, while warming up,
-  // while re-tuning, while values are published, before the last message.
+  // Cuts after the first sample, inside an instant, between a table and its samples, while warming
+  // up, while re-tuning, while values are published, and before the last message.
   for (const std::size_t cut :
        {std::size_t{2}, std::size_t{5}, std::size_t{1001}, std::size_t{4444}, std::size_t{6010},
         std::size_t{7503}, std::size_t{9999}, offsets.size() - 1}) {
@@ -183,7 +183,7 @@ TEST_F(StateFile, TheDaemonSurvivesARestart) {
   EXPECT_EQ(live(config, log(), half, all, path("state"), ""), uncut);
 }
 
-/// framewatch run with a state file; 0 when it stops by itself on SIGTERM.
+/// Runs framewatch run with a state file. Returns 0 if it stops on SIGTERM.
 int run_and_stop(const std::string& state, const std::string& err) {
   const pid_t pid = ::fork();
   if (pid == 0) {
@@ -205,11 +205,11 @@ TEST_F(StateFile, RunReadsItWritesItAndPutsAForeignOneAside) {
   EXPECT_EQ(run_and_stop(own.path("state"), own.path("first")), 0);
   ASSERT_TRUE(std::filesystem::exists(own.path("state")));
   EXPECT_EQ(run_and_stop(own.path("state"), own.path("second")), 0);
-  EXPECT_NE(read_file(own.path("second")).find("goes on from"), std::string::npos)
+  EXPECT_NE(read_file(own.path("second")).find("resumed from"), std::string::npos)
       << read_file(own.path("second"));
   write_file(own.path("state"), "not ours");
   EXPECT_EQ(run_and_stop(own.path("state"), own.path("third")), 0);
-  EXPECT_NE(read_file(own.path("third")).find("is not a state of framewatch; starts anew"),
+  EXPECT_NE(read_file(own.path("third")).find("is not a state of framewatch; started without it"),
             std::string::npos)
       << read_file(own.path("third"));
   EXPECT_EQ(read_file(own.path("state.refused")), "not ours");

@@ -1,5 +1,5 @@
-// Whatever a state file holds, its digests right: a section is refused with a reason, or the
-// estimation goes on with it and is well again soon.
+// Changes the contents of state files and makes their digests match. Each section must be refused
+// with a reason, or the estimation must continue with it and soon be well again.
 
 #include <algorithm>
 #include <cmath>
@@ -86,7 +86,7 @@ TEST(StateMutation, IsRefusedWithAReasonOrHarmless) {
   for (int i = 0; i < kMutations; ++i) {
     std::mt19937 random(static_cast<unsigned>(i));
     SavedState bad = good;
-    // Half of them in the largest one.
+    // Half of the changes are in the largest section.
     StateSection& section = bad.sections[random() % 2 == 0 ? 5 : random() % bad.sections.size()];
     ASSERT_TRUE(good.sections[5].name == "window");
     mutate(random, section.bytes);

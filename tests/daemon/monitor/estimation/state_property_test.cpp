@@ -1,6 +1,6 @@
-// Cut at any instant and gone on with from its state, an estimation says the same bytes as the
-// uncut one: under every fault of the simulator, in buildings of every layout, with any of the
-// options that have a state. FRAMEWATCH_STATE_CASES: so many random cases instead of a few.
+// An estimation that is cut at any instant and resumed from its state must publish the same bytes
+// as the uncut one: under every fault of the simulator, in buildings of every layout, with all
+// options that have a state. FRAMEWATCH_STATE_CASES sets the number of random cases.
 
 #include <algorithm>
 #include <cstdlib>
@@ -47,7 +47,7 @@ std::string channel_text(int node, int floor, const std::string& frame, char alo
       floor, frame, node, along, noise);
 }
 
-/// A building with sensors on these floors, 0: the base; every frame of a floor has one.
+/// Returns a building with sensors on these floors (0: the base), one on every frame of a floor.
 std::string building_text(Random& random, int stories, const std::vector<int>& floors,
                           bool flexible) {
   std::string out = fmt::format(
@@ -75,7 +75,7 @@ std::string building_text(Random& random, int stories, const std::vector<int>& f
   return out;
 }
 
-/// What goes wrong with one channel.
+/// Returns a fault of one channel.
 std::string fault_text(Random& random, const std::string& channel) {
   const double from = between(random, 0, kSeconds);
   const std::string sensor = fmt::format("\n[[sensor]]\nchannel = \"{}\"\n", channel);
@@ -136,8 +136,8 @@ std::string scenario_text(Random& random, const std::vector<int>& floors) {
   return out;
 }
 
-/// What happens to the messages on their way: silence of all, a node that comes and goes every
-/// second, messages that come twice or in another order.
+/// Changes the messages in transit: silence of all, a node that is silent every other second,
+/// messages that come twice or in another order.
 std::vector<drivers::LogEvent> on_their_way(Random& random, std::vector<drivers::LogEvent> events) {
   const std::int64_t start_us = events.front().timestamp_us;
   const auto second_of = [&](const drivers::LogEvent& e) {
@@ -191,8 +191,8 @@ Case recorded(const test::TemporaryDirectory& directory, const std::string& buil
   return out;
 }
 
-/// Layouts in turn: flexible floors and sensors on all, rigid ones, sensors on some floors, on the
-/// base alone and the roof.
+/// Returns a case with one of the layouts in turn: flexible floors and sensors on all, rigid ones,
+/// sensors on some floors, sensors only on the base and the roof.
 Case random_case(const test::TemporaryDirectory& directory, unsigned seed) {
   Random random(seed);
   const int layout = static_cast<int>(seed % 4);
@@ -204,7 +204,7 @@ Case random_case(const test::TemporaryDirectory& directory, unsigned seed) {
   return out;
 }
 
-/// An estimation and all it says.
+/// An estimation and all its output.
 struct Saying {
   explicit Saying(const Config& config)
       : estimation(config, [this](std::int64_t time_us, const std::string& channel,
@@ -244,7 +244,7 @@ void expect_to_go_on(const Case& c, const std::vector<std::string>& uncut, const
         << "message " << i << " after the cut differs: " << resumed.said[i].substr(0, 50);
 }
 
-/// cuts: events before which it is cut.
+/// Cuts the estimation before the events `cuts` and resumes it.
 void cut_and_go_on(const Case& c, std::vector<std::size_t> cuts,
                    const test::TemporaryDirectory& directory) {
   ASSERT_FALSE(c.events.empty());
@@ -279,8 +279,8 @@ TEST(StateProperty, CutAtRandomInstantsUnderEveryFaultGoesOnByteByByte) {
   }
 }
 
-/// After the interruption the errors of the first windows were zero, and the sums of the shaking
-/// infinite.
+/// Regression: after the interruption the errors of the first windows were zero, and the sums of
+/// the shaking infinite.
 TEST(StateProperty, AFloorSensorThatDiesInTheShakingIsNoEnd) {
   const test::TemporaryDirectory directory;
   Random random(7);

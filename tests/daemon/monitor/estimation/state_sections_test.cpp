@@ -1,5 +1,5 @@
-// A state file is read section by section: one that is damaged, missing or of another configuration
-// costs what rests on it and nothing else, and the reader says so.
+// A state file is read section by section. One that is damaged, missing or of another configuration
+// costs only what depends on it, and the reader reports it.
 
 #include <algorithm>
 #include <functional>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "daemon/monitor/estimation/state_file.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "tests/support/recorded_table_test.h"
@@ -44,7 +44,7 @@ class StateSections : public testing::Test {
   static void TearDownTestSuite() { delete directory_; }
   static std::string path(const std::string& name) { return directory_->path(name); }
 
-  /// The table's configuration, changed.
+  /// Returns the table's configuration with a change.
   static Config configured(const std::string& name,
                            const std::function<void(std::string&)>& change) {
     std::string text = test::read_file(test::table_config()) + kSettings;
@@ -62,7 +62,7 @@ class StateSections : public testing::Test {
     });
   }
 
-  /// What goes on from the file "state", and the sections that were lost.
+  /// An estimation resumed from the file "state", and the sections that were lost.
   struct Resumed {
     explicit Resumed(const Config& of) : config(of) {
       estimation.emplace(config, sink());
@@ -88,7 +88,7 @@ class StateSections : public testing::Test {
     LoadedState loaded;
   };
 
-  /// The sections but these are in `estimation` as they were saved.
+  /// Expects all other sections in `estimation` to be as they were saved.
   static void expect_the_others(const Config& config, Estimation& estimation,
                                 const std::vector<std::string>& lost) {
     const SavedState now = saved_state(config, estimation, 0);
@@ -96,7 +96,7 @@ class StateSections : public testing::Test {
     for (std::size_t s = 0; s < now.sections.size(); ++s) {
       const std::string& name = now.sections[s].name;
       const bool was_lost = std::find(lost.begin(), lost.end(), name) != lost.end();
-      // Counters of the lost window are no more what the strong motion began with.
+      // The strong motion began with the counters of the lost window.
       if (!was_lost && name != "event_report") {
         EXPECT_TRUE(now.sections[s].bytes == good_.sections[s].bytes) << name;
       }
@@ -139,12 +139,12 @@ TEST_F(StateSections, ADamagedOneCostsItself) {
         section.name == "baseline" ? Names{"baseline", "watch"} : Names{section.name};
     EXPECT_EQ(resumed.lost(), expected);
     ASSERT_FALSE(resumed.loaded.lost.empty());
-    EXPECT_EQ(resumed.loaded.lost[0].why, "is damaged: its digest is another");
+    EXPECT_EQ(resumed.loaded.lost[0].why, "is damaged: its digest does not match");
     expect_the_others(config_, *resumed.estimation, expected);
     bool touched = false;
     Estimation whole_or_none(config_, {});
     const std::string problem = load_state(path("state"), config_, whole_or_none, touched).problem;
-    EXPECT_EQ(problem, "section " + section.name + " is damaged: its digest is another");
+    EXPECT_EQ(problem, "section " + section.name + " is damaged: its digest does not match");
     EXPECT_FALSE(touched);
   }
 }

@@ -14,7 +14,7 @@
 #include "daemon/config/config.h"
 #include "daemon/config/sections/config_problems.h"
 #include "daemon/monitor/estimation/estimation.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/tools/replay/replay_command.h"
 #include "drivers/lcm/accel_messages.h"
 #include "drivers/lcm/lcm_log.h"
@@ -30,7 +30,7 @@ using drivers::SensorNodeSample;
 
 constexpr double kSeconds = 25, kAttack_s = 12;
 constexpr std::int32_t kNode = 2;     ///< channel F1-Y1
-constexpr double kTwins_ratio = 0.8;  ///< of what the node says
+constexpr double kTwins_ratio = 0.8;  ///< share of the node's own values
 constexpr LcmSender kSensors{0x7F000001, 40000}, kStranger{0x7F000001, 40001};
 
 Config building(const char* more = "") {
@@ -80,7 +80,7 @@ struct Played {
       if (e.state == event_state::raised) out.push_back(e.kind + " " + e.place);
     return out;
   }
-  /// As `framewatch status` judges.
+  /// Returns true if `framewatch status` would find no problem.
   bool well() const {
     const auto& raised = estimation.raised().all();
     return std::none_of(raised.begin(), raised.end(),
@@ -116,7 +116,7 @@ const Played& undisturbed() {
   return *run;
 }
 
-/// A message of the node at every instant after kAttack_s, as `change` makes it of the node's own.
+/// Sends a message of the node at every instant after kAttack_s: the real one, changed by `change`.
 Attack twin(const LcmSender& sender, const std::function<void(SensorNodeSample&)>& change) {
   return [=](Played& run, const drivers::LogEvent& event, double time_s) {
     const auto sample = drivers::decode_accel(event.data.data(), event.data.size());
@@ -245,7 +245,8 @@ TEST(TwoSenders, WhatIsRaisedIsClearedAndGoesOnOverARestart) {
   EXPECT_FALSE(after.well());
   for (std::int64_t i = 500; i < 5000; ++i) send(after, i, kSensors);
   std::erase_if(after.events, [](const event_t& e) { return e.kind == "channel_silent"; });
-  ASSERT_EQ(after.events.size(), 1u);  // beside the other nodes, which send nothing
+  ASSERT_EQ(after.events.size(),
+            1u);  // the events of the other nodes, which send nothing, come on top
   EXPECT_EQ(after.events[0].state, event_state::cleared);
   EXPECT_EQ(after.events[0].id, run.events[0].id);
   EXPECT_EQ(after.events[0].since_us, run.events[0].since_us);

@@ -1,4 +1,4 @@
-// Drift, damage and placard: one computation, in words, as a page and as JSON.
+// Tests drift, damage and placard: one computation, shown in words, as a page and as JSON.
 #include "daemon/monitor/event_report/drift_report.h"
 
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "daemon/config/config.h"
-#include "daemon/monitor/event_report/drift_words.h"
+#include "daemon/monitor/event_report/report_words.h"
 #include "estimator/numeric/nan.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
@@ -15,7 +15,7 @@
 namespace framewatch::daemon {
 namespace drift_report_test {
 
-/// The two-story table, 1 m a story, with peaks whose slow part and stiffness are known.
+/// The two-story table with stories of 1 m and with peaks whose slow part and stiffness are known.
 class DriftReportTest : public testing::Test {
  protected:
   DriftReportTest() : config_(*read(kFragility)) {
@@ -80,7 +80,8 @@ TEST_F(DriftReportTest, IsNotJudgedWithAGapAtThePeak) {
   peak_.unseen_mps2[0] = 1.2;
   const DriftReport r = report();
   EXPECT_EQ(placard_words(*r.placard), "restricted use (not judged)");
-  EXPECT_NE(r.reason.find("gap in the strong motion of story 1"), std::string::npos) << r.reason;
+  EXPECT_NE(r.reason.find("interrupted in the strong motion of story 1"), std::string::npos)
+      << r.reason;
 }
 
 TEST_F(DriftReportTest, WithoutFragilityTellsDriftsOnly) {

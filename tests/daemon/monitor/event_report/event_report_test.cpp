@@ -1,5 +1,5 @@
-// After strong motion: the verdict by thresholds, the files, their number, the event that names
-// them.
+// Tests the report after strong motion: the verdict by thresholds, the files, their number, and the
+// event that names them.
 #include <algorithm>
 #include <filesystem>
 
@@ -10,8 +10,7 @@
 #include "daemon/config/config.h"
 #include "daemon/monitor/event_report/event_report.h"
 #include "daemon/monitor/event_report/event_report_files.h"
-#include "daemon/monitor/events/event_json.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "estimator/numeric/nan.h"
 #include "tests/support/recorded_table_test.h"
 #include "tests/support/temporary.h"
@@ -60,7 +59,7 @@ TEST_F(EventReportTest, IsGreenBelowEveryThreshold) {
   EXPECT_EQ(m.segment, "event-20261124T004628Z.html");
   EXPECT_NE(m.message.find(m.segment), std::string::npos);
   const auto told = nlohmann::json::parse(event_json(m, "the table"));
-  EXPECT_EQ(told["segment"], m.segment);  // what the webhook posts and the command reads
+  EXPECT_EQ(told["segment"], m.segment);  // as the webhook posts it and the command reads it
 }
 
 TEST_F(EventReportTest, IsYellowOrRedByDrift) {

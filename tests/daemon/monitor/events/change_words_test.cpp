@@ -47,4 +47,83 @@ TEST(ChangeWords, WithoutANumberItIsChanging) {
 }
 
 }  // namespace change_words_test
+
+namespace {
+
+TEST(PlaceWords, SayWhereAParameterIs) {
+  EXPECT_EQ(place_words("kx_1_y2"), "story 1, frame y2");
+  EXPECT_EQ(place_words("Gk_2_x1y1"), "floor 2, panel x1y1");
+  EXPECT_EQ(place_words("kx_6to12"), "stories 6 to 12, along x");
+  EXPECT_EQ(place_words("cy_13"), "story 13, along y");
+  EXPECT_EQ(place_words("ky_6to12_x1"), "stories 6 to 12, frame x1");
+  EXPECT_EQ(place_words("kx_1to5_y1+y2"), "stories 1 to 5, frames y1+y2");
+  EXPECT_EQ(place_words("kx_1_y_2"), "story 1, frame y_2") << "names of frames may hold a _";
+  EXPECT_EQ(place_words("kry"), "frames along y");
+}
+
+TEST(PlaceWords, SayWhatAParameterIsOf) {
+  EXPECT_EQ(element_words("kx_1_y2"), "frame y2 of story 1");
+  EXPECT_EQ(element_words("Gk_2_x1y1"), "floor panel x1y1 of floor 2");
+  EXPECT_EQ(element_words("kx_6to12"), "stories 6 to 12 along x");
+  EXPECT_EQ(element_words("ky_6to12_x1"), "frame x1 of stories 6 to 12");
+  EXPECT_EQ(element_words("krx"), "bending of frames along x");
+}
+
+TEST(PlaceWords, TakeAnyText) {
+  for (const char* name : {"", "_", "__", "k_", "k__", "_1_"}) {
+    (void)place_words(name);
+    (void)element_words(name);
+  }
+}
+
+}  // namespace
+
+namespace recovery_words_test {
+
+using estimator::RecoveryLaw, estimator::RecoveryReason, estimator::RecoveryVerdict;
+
+RecoveryLaw law_after(double time_s, double loss) {
+  RecoveryLaw law;
+  law.first_s = 5;
+  law.first_loss = 0.09;
+  law.first_error = 0.01;
+  law.time_s = time_s;
+  law.loss = loss;
+  law.std_error = 0.01;
+  law.later_s = 86400;
+  law.later_loss = 0.04;
+  law.later_error = 0.01;
+  law.stays = 0.06;
+  return law;
+}
+
+TEST(RecoveryWords, SayLossTimeAndWhatIsExpected) {
+  RecoveryLaw law = law_after(3600, 0.06);
+  law.verdict = RecoveryVerdict::recovering;
+  EXPECT_EQ(recovery_words(law),
+            "lost 9 % at the earthquake, 6 % after 1 hour, recovering: 4 % (+-1 %) expected after "
+            "1 day");
+  law.verdict = RecoveryVerdict::lasting;
+  EXPECT_EQ(recovery_words(law),
+            "lost 9 % at the earthquake, 6 % after 1 hour, lasting: full recovery is excluded, at "
+            "least 6 % stays");
+  law.verdict = RecoveryVerdict::recovered;
+  law.time_s = 600;
+  law.loss = -0.001;
+  EXPECT_EQ(recovery_words(law),
+            "lost 9 % at the earthquake, 0 % (+-1 %) after 10 minutes, recovered");
+}
+
+TEST(RecoveryWords, SayWhyNothingIsKnown) {
+  RecoveryLaw law = law_after(40, 0.08);
+  law.reason = RecoveryReason::short_time;
+  EXPECT_EQ(recovery_words(law),
+            "lost 9 % at the earthquake, 8 % after 40 s, not known yet whether that lasts: too "
+            "little time has passed");
+  EXPECT_EQ(recovery_words(RecoveryLaw()),
+            "not known yet whether that lasts: too few windows have come");
+}
+
+}  // namespace recovery_words_test
+
 }  // namespace framewatch::daemon

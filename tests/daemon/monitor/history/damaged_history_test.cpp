@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/monitor/history/history.h"
 #include "daemon/monitor/history/history_command.h"
-#include "daemon/monitor/history/history_monitor.h"
+#include "daemon/monitor/history/history_report.h"
 #include "daemon/monitor/history/summary_query.h"
 #include "drivers/files/encoded.h"
 #include "tests/daemon/monitor/history/summary_program.h"
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using test::comes_true;
 
 // Limits.
-constexpr std::chrono::seconds kSoon{30};  // for what takes a second
+constexpr std::chrono::seconds kSoon{30};  // for actions that take a second
 
 event_t gap(std::int64_t id) {
   event_t e{};
@@ -88,7 +88,7 @@ class DamagedHistory : public testing::Test {
     for (const event_t& e : query.events(INT64_MIN / 4, INT64_MAX / 4, 100)) out.push_back(e.id);
     return query.problem().empty() ? out : std::vector<std::int64_t>();
   }
-  /// A history runs, is told of events and windows, and takes them.
+  /// Expects a running history to store the events and windows that it gets.
   void expect_a_new_one(std::vector<std::int64_t> events) const {
     {
       SummaryHistory history(config_);
@@ -200,9 +200,9 @@ TEST(HistoryMonitor, ADatabaseThatWasSetAsideIsAnAlarmThatStays) {
   HistoryMonitor monitor;
   history_status_t s{};
   SetAside aside;
-  EXPECT_TRUE(monitor.look(kStart_us, s, aside).empty());
+  EXPECT_TRUE(monitor.update(kStart_us, s, aside).empty());
   aside = {1, "/h/history.sqlite.corrupt-1", "malformed", ""};
-  const auto raised = monitor.look(kStart_us, s, aside);
+  const auto raised = monitor.update(kStart_us, s, aside);
   ASSERT_EQ(raised.size(), 1u);
   EXPECT_EQ(raised[0].kind, "history");
   EXPECT_EQ(raised[0].place, "database");
@@ -210,9 +210,9 @@ TEST(HistoryMonitor, ADatabaseThatWasSetAsideIsAnAlarmThatStays) {
   EXPECT_EQ(raised[0].severity, severity::alarm);
   EXPECT_EQ(raised[0].time_us, kStart_us) << "the host's, before a sample has come";
   EXPECT_NE(raised[0].message.find(aside.path), std::string::npos);
-  EXPECT_TRUE(monitor.look(kStart_us + 60'000'000, s, aside).empty());
+  EXPECT_TRUE(monitor.update(kStart_us + 60'000'000, s, aside).empty());
   aside.count = 2;
-  const auto changed = monitor.look(kStart_us + 61'000'000, s, aside);
+  const auto changed = monitor.update(kStart_us + 61'000'000, s, aside);
   ASSERT_EQ(changed.size(), 1u);
   EXPECT_EQ(changed[0].id, raised[0].id);
   EXPECT_EQ(changed[0].state, event_state::changed);

@@ -33,14 +33,13 @@ namespace history_command_test {
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 constexpr int kRate_hz = 100, kAxes = 10, kInstants = 1000, kLostFrom = 500, kLostTo = 550;
-constexpr int kBetweenReadings = 300;  // of the thermometer, instants
+constexpr int kBetweenReadings = 300;  // instants between two readings of the thermometer
 
 std::int32_t count(int instant, int axis) {
   return (instant * 7919 + axis * 104729) % 2'000'003 - 1'000'000;
 }
 
-/// Ten seconds of the table, half a second of them lost on every channel, and what a history keeps
-/// of them.
+/// Ten seconds of the table, half a second of them lost on every channel, and the history of them.
 class HistoryCommand : public testing::Test {
  protected:
   HistoryCommand() : config_(test::table_with_history(directory_.path("h"))) {
@@ -298,7 +297,7 @@ TEST_F(HistoryCommand, TellsEveryProblemAtOnceAndWritesNothing) {
   EXPECT_EQ(ran.code, 2);
   for (const char* part :
        {"s.xlsx: the name for summaries", "r.sac: the name for raw samples",
-        "--from: \"yesterday\"", "--period: there are none of 7 s; there are 1, 2, 4 s",
+        "--from: \"yesterday\"", "--period: no summaries of 7 s; there are 1, 2, 4 s",
         "there is no kx_1_y3; did you mean kx_1_y", "--network"})
     EXPECT_NE(ran.problems.find(part), std::string::npos) << part << "\n" << ran.problems;
   EXPECT_EQ(directory_.names(), before);
@@ -340,7 +339,7 @@ TEST_F(HistoryCommand, NoHistoryIsTold) {
   a.place = test::table_config();
   EXPECT_NE(run(a).problems.find("has no [history]"), std::string::npos);
   a.place = directory_.path("");
-  EXPECT_NE(run(a).problems.find("there is none"), std::string::npos);
+  EXPECT_NE(run(a).problems.find("does not exist"), std::string::npos);
   a.place = directory_.path("nowhere.toml");
   EXPECT_EQ(run(a).code, 2);
 }

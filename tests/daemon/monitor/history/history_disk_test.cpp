@@ -24,7 +24,7 @@ namespace history_disk_test {
 // Limits.
 constexpr std::chrono::seconds kFull{40}, kWell{20};
 
-/// What the daemon says over LCM.
+/// The messages of the daemon on LCM.
 struct Bus {
   history_status_t status{};
   std::vector<event_t> events;
@@ -45,7 +45,7 @@ struct Bus {
   }
 };
 
-/// Whether this process may mount a file system of its own.
+/// Returns true if this process may mount a file system.
 bool may_mount() {
   test::Child child({"/bin/sh", "-c", "unshare -m mount -t tmpfs none /tmp 2>/dev/null"});
   return child.wait() == 0;

@@ -6,7 +6,7 @@
 
 #include "daemon/base/sqlite_file.h"
 #include "daemon/monitor/history/history_files.h"
-#include "daemon/monitor/history/history_monitor.h"
+#include "daemon/monitor/history/history_report.h"
 #include "daemon/monitor/history/history_schema.h"
 #include "daemon/monitor/live/run_command.h"
 #include "drivers/lcm/lcm_log.h"
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using test::comes_true;
 
 // Limits.
-constexpr std::chrono::seconds kSoon{60};  // the keeper's thread runs when nothing else wants to
+constexpr std::chrono::seconds kSoon{60};  // the keeper's thread has idle priority
 constexpr double kRecord_s = 8;
 constexpr std::size_t kSamples = 8010;  // of its ten channels
 
@@ -36,7 +36,7 @@ struct Collected {
   }
 };
 
-/// A live estimation in this process, over memq, with a history or without.
+/// A live estimation in this process, over memq, with or without a history.
 class Live {
  public:
   Live(const Config& config, History* history) : lcm_("memq://"), live_(config, lcm_) {
@@ -107,7 +107,7 @@ TEST_F(HistoryFailure, AFullDiskHarmsNothingAndIsGoneWhenThereIsRoomAgain) {
     ASSERT_TRUE(comes_true(
         [&] { return test::raw_counts(config_.history->directory).size() == kSamples; }, kSoon));
     HistoryMonitor monitor;
-    EXPECT_TRUE(monitor.look(0, history.status()).empty());
+    EXPECT_TRUE(monitor.update(0, history.status()).empty());
     {
       const test::FullDisk full(
           fs::file_size(raw_logs(raw_folder(config_.history->directory))[0].path));
@@ -115,11 +115,11 @@ TEST_F(HistoryFailure, AFullDiskHarmsNothingAndIsGoneWhenThereIsRoomAgain) {
       live.play(log_);
       EXPECT_TRUE(live.estimates() == expected_);
       ASSERT_TRUE(comes_true([&] { return !history.status().raw_trouble.empty(); }, kSoon));
-      const auto news = monitor.look(2'000'000, history.status());
+      const auto news = monitor.update(2'000'000, history.status());
       ASSERT_FALSE(news.empty());
       EXPECT_EQ(news.front().kind, "history");
       EXPECT_EQ(news.front().state, 1);
-      EXPECT_TRUE(monitor.look(4'000'000, history.status()).empty()) << "alarmed once";
+      EXPECT_TRUE(monitor.update(4'000'000, history.status()).empty()) << "alarmed once";
       EXPECT_EQ(test::raw_counts(config_.history->directory).size(), kSamples);
     }
     ASSERT_TRUE(comes_true(
@@ -129,8 +129,8 @@ TEST_F(HistoryFailure, AFullDiskHarmsNothingAndIsGoneWhenThereIsRoomAgain) {
         },
         kSoon));
     EXPECT_EQ(history.status().raw_dropped, 0) << "the queue held what the disk did not take";
-    EXPECT_TRUE(monitor.look(6'000'000, history.status()).empty());
-    const auto over = monitor.look(20'000'000, history.status());
+    EXPECT_TRUE(monitor.update(6'000'000, history.status()).empty());
+    const auto over = monitor.update(20'000'000, history.status());
     ASSERT_FALSE(over.empty());
     EXPECT_EQ(over.front().state, 0);
   }
@@ -175,7 +175,8 @@ TEST_F(HistoryFailure, AFolderThatIsNotThereAtTheStartIsWaitedFor) {
 }
 
 TEST_F(HistoryFailure, AFolderThatMayNotBeWrittenIsWaitedFor) {
-  fs::create_directory_symlink("/proc/self", config_.history->directory);  // not by root either
+  fs::create_directory_symlink("/proc/self",
+                               config_.history->directory);  // even root cannot write there
   History history(config_);
   Live live(config_, &history);
   live.play(log_);
@@ -188,7 +189,7 @@ TEST_F(HistoryFailure, AFolderThatMayNotBeWrittenIsWaitedFor) {
 TEST_F(HistoryFailure, ADatabaseThatIsSlowOrBusyDelaysNobody) {
   {
     History history(config_);
-    // While it is made, one of two that open it may be refused at once.
+    // While it is created, one of two programs that open it may be refused.
     ASSERT_TRUE(comes_true(
         [&] {
           SqliteFile made;
@@ -222,16 +223,16 @@ TEST(HistoryMonitor, ASlowDiskThatLosesSamplesIsAnAlarmToo) {
   HistoryMonitor monitor;
   history_status_t s{};
   s.time_us = 5;
-  EXPECT_TRUE(monitor.look(0, s).empty());
+  EXPECT_TRUE(monitor.update(0, s).empty());
   s.raw_dropped = 40;
-  const auto raised = monitor.look(1'000'000, s);
+  const auto raised = monitor.update(1'000'000, s);
   ASSERT_EQ(raised.size(), 1u);
   EXPECT_EQ(raised.front().place, "raw");
   EXPECT_EQ(raised.front().value, 40);
   EXPECT_NE(raised.front().message.find("too slow"), std::string::npos);
   for (int second = 2; second < 6; ++second)
-    EXPECT_TRUE(monitor.look(second * 1'000'000, s).empty());
-  EXPECT_EQ(monitor.look(20'000'000, s).at(0).state, 0);
+    EXPECT_TRUE(monitor.update(second * 1'000'000, s).empty());
+  EXPECT_EQ(monitor.update(20'000'000, s).at(0).state, 0);
 }
 
 }  // namespace history_failure_test

@@ -25,12 +25,12 @@ namespace history_kill_test {
 
 // Limits.
 constexpr double kMaxLost_s = 1;  // of raw samples, at a kill
-/// From the start to the first sample that is recorded: of the whole storm, which has the machine
-/// to itself, and among other tests.
+/// From the start to the first recorded sample: in the full run, alone on the machine, and among
+/// other tests.
 constexpr double kLongestRestart_s = 3, kLongestAmongOthers_s = 30;
-constexpr std::int64_t kOnTheWay_us = 60'000;  // what the last sample needs to the other process
+constexpr std::int64_t kOnTheWay_us = 60'000;  // the way of the last sample to the other process
 
-constexpr int kKills = 12;  // FRAMEWATCH_KILLS=200 is the whole storm
+constexpr int kKills = 12;  // FRAMEWATCH_KILLS=200 makes the full run
 constexpr unsigned kSeed = 20261121;
 
 int kills() {
@@ -38,8 +38,8 @@ int kills() {
   return count == nullptr ? kKills : std::atoi(count);
 }
 
-/// What comes over LCM while the daemon lives and dies: the newest sample's time, the history's
-/// status.
+/// The input from LCM while the daemon is killed and restarted: time of the newest sample, and
+/// status of the history.
 struct Bus {
   std::int64_t newest_us = 0;
   std::int64_t status_us = 0, committed_us = 0;
@@ -65,7 +65,7 @@ std::string config_with_history(const test::TemporaryDirectory& directory) {
   return path;
 }
 
-/// Windows per shortest period, by its start.
+/// Returns the windows per shortest period, by its start.
 std::map<std::int64_t, std::int64_t> committed(const std::string& directory, bool check) {
   SqliteFile file;
   EXPECT_TRUE(file.open_to_read(summary_file(directory))) << file.error();
@@ -101,7 +101,7 @@ TEST(KillStorm, LosesASecondOfRawSamplesAtMostAndNothingCommitted) {
   std::map<std::int64_t, std::int64_t> before;
   for (int kill = 0; kill < kills(); ++kill) {
     const auto started = std::chrono::steady_clock::now();
-    const std::int64_t started_us = host_clock_us();  // no sample of the daemon before is younger
+    const std::int64_t started_us = host_clock_us();  // all samples of the daemon before are older
     test::Child daemon({FRAMEWATCH_PROGRAM, "run", config, "--quiet", "--state",
                         directory.path("state"), "--state-every", "1"});
     while (bus.status_us <= started_us && lcm->handleTimeout(10'000) > 0) {
@@ -113,7 +113,7 @@ TEST(KillStorm, LosesASecondOfRawSamplesAtMostAndNothingCommitted) {
     worst_restart_s = std::max(worst_restart_s, elapsed());
     for (const double end_s = elapsed() + life_s(random); elapsed() < end_s;) lcm->handleTimeout(5);
     daemon.stop(SIGKILL);
-    // Among other tests the daemon may be a second behind the bus: what it said to have counts.
+    // Among other tests the daemon may be a second behind the bus, so its own status counts.
     const std::int64_t newest_us = kills() > kKills ? bus.newest_us - kOnTheWay_us : bus.status_us;
 
     const auto counts = test::raw_counts(history, newest_us - 60 * kSecond_us);

@@ -7,9 +7,7 @@
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/history/history_files.h"
 #include "daemon/monitor/history/history_keeper.h"
-#include "daemon/monitor/history/history_retention.h"
 #include "daemon/monitor/history/raw_history.h"
-#include "daemon/monitor/history/raw_log_care.h"
 #include "daemon/monitor/history/summary_store.h"
 #include "drivers/lcm/lcm_log.h"
 #include "tests/support/history_fixture.h"
@@ -22,12 +20,12 @@ namespace fs = std::filesystem;
 using test::comes_true;
 
 // Limits.
-constexpr std::chrono::seconds kSoon{60};  // the keeper's thread runs when nothing else wants to
+constexpr std::chrono::seconds kSoon{60};  // the keeper's thread has idle priority
 
 constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
 constexpr int kRate_hz = 100, kAxes = 10;
 
-/// Samples of `seconds` from `from_s` after the start on, all different.
+/// Feeds samples of `seconds`, from `from_s` after the start on, all different.
 void feed(RawHistory& history, int from_s, int seconds) {
   for (int i = from_s * kRate_hz; i < (from_s + seconds) * kRate_hz; ++i)
     for (int axis = 0; axis < kAxes; ++axis)
@@ -120,7 +118,7 @@ TEST(RawHistory, ALogThatGetsItsNextNameAfterItWasListedIsRead) {
   ASSERT_FALSE(fs::exists(path));
   EXPECT_EQ(samples(written), kRate_hz * kAxes);
   EXPECT_EQ(samples(closed), kRate_hz * kAxes);
-  test::write_file(path + ".partial", "");  // listed in the middle of a step to the next name
+  test::write_file(path + ".partial", "");  // listed while it is being renamed
   test::write_file(path, "");
   EXPECT_EQ(samples(listed()), kRate_hz * kAxes);
 }
@@ -168,7 +166,7 @@ TEST(HistoryKeeper, CompressesWhatIsClosedAndReadsTheSame) {
   count_of(test::raw_counts(config.history->directory), 0);
 }
 
-/// A raw log as a program that was killed leaves it.
+/// Returns a raw log in the state that a killed program leaves.
 std::string killed_log(const Config& config) {
   record(config, 0, 4);
   const std::string path = raw_logs(raw_folder(config.history->directory)).at(0).path;
@@ -243,7 +241,7 @@ TEST(RawLogCare, WhatAKilledCompressionLeftIsRemoved) {
   EXPECT_EQ(directory.names(), (std::vector<std::string>{"20261122T000000Z.lcmlog"}));
 }
 
-/// Ten logs of a second each, the first on the hour.
+/// Returns a history with ten logs of a second each, the first on the hour.
 Config ten_logs(const std::string& directory) {
   Config config = test::table_with_history(directory);
   config.history->rotate_s = 1;

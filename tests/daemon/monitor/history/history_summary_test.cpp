@@ -24,7 +24,7 @@ namespace history_summary_test {
 // Limits.
 constexpr double kRounding = 1e-12;  // of sums over at most 10,000 values
 
-/// What the summary of windows [from, to) must be, computed directly.
+/// Computes the summary of the windows [from, to) directly and compares.
 void expect_summary(const Row& row, std::size_t p, std::int64_t from, std::int64_t to) {
   std::vector<double> values, box, squares;
   for (std::int64_t i = from; i < to; ++i) {
@@ -88,7 +88,7 @@ TEST(SummaryStore, AParameterThatIsNeverObservableHasNoNumbers) {
   EXPECT_TRUE(std::isnan(row.mean) && std::isnan(row.min) && std::isnan(row.box.median));
 }
 
-/// Windows from before the filters were tuned: in the period that runs, and in one that was stored.
+/// Windows from before the tuning of the filters: in the current period, and in a stored one.
 TEST(SummaryStore, ValuesThatComeLateAreInThePeriodsOfTheirWindows) {
   const test::TemporaryDirectory directory;
   const HistorySettings s = settings(directory);
@@ -209,10 +209,10 @@ TEST(SummaryStore, ChannelsAreCountedByTheDifferencesOfTheStatus) {
     m.noise_mps2_per_rthz = {1e-4};
     return m;
   };
-  program.collector().add(status(0, 5000, 7));  // counted by an earlier life
+  program.collector().add(status(0, 5000, 7));  // counted before a restart
   program.collector().add(status(1, 5100, 7));
   program.collector().add(status(2, 5190, 17));
-  program.collector().add(status(3, 40, 1));  // counters that began anew
+  program.collector().add(status(3, 40, 1));  // counters that restarted
   program.commit();
   SqliteFile file;
   ASSERT_TRUE(file.open_to_read(summary_file(s.directory)));

@@ -18,7 +18,7 @@
 #include "tests/support/history_fixture.h"
 #include "tests/support/temporary.h"
 
-// Programs that write summaries of known windows into a history, and what its database then holds.
+// Programs that write summaries of known windows into a history, and the contents of its database.
 namespace framewatch::daemon {
 
 inline constexpr std::int64_t kStart_us = 1'795'305'600'000'000;  // 2026-11-22T00:00:00Z
@@ -39,7 +39,7 @@ inline parameter_table_t table() {
   return t;
 }
 
-/// Window number i; the second parameter is observable in every third.
+/// Makes window number i; the second parameter is observable in every third.
 inline window_estimate_t window(std::int64_t i) {
   window_estimate_t e{};
   e.window_end_us = kStart_us + i * kHop_us;
@@ -57,7 +57,7 @@ struct Row {
   std::int64_t windows;
 };
 
-/// The summaries of a parameter as the database has them.
+/// Returns the summaries of a parameter in the database.
 inline std::vector<Row> rows(const HistorySettings& settings, const std::string& parameter,
                              std::int64_t period_s) {
   SqliteFile file;
@@ -82,8 +82,8 @@ inline std::vector<Row> rows(const HistorySettings& settings, const std::string&
   return out;
 }
 
-/// A program that collects and commits; gone when it is destroyed, as by kill -9, with what it had
-/// not committed.
+/// A program that collects and commits. Its destruction is like kill -9: it loses what it has not
+/// committed.
 class Program {
  public:
   explicit Program(const HistorySettings& settings)

@@ -47,8 +47,8 @@ std::string text_of(const std::vector<std::uint8_t>& bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// 400 datagrams: noise, LCM headers with impossible lengths, messages of ours with senseless
-/// contents, other people's channels.
+/// Returns 400 datagrams: noise, LCM headers with impossible lengths, known messages with senseless
+/// contents, foreign channels.
 std::vector<packets::Bytes> garbage() {
   std::mt19937 random(3);
   const std::string accel = text_of(drivers::encoded(accel_t{}));
@@ -117,7 +117,8 @@ std::int64_t samples_received(const Estimation& estimation) {
   return received;
 }
 
-/// A log played over multicast, and beside it straight into an estimation that nobody attacks.
+/// Plays a log over multicast, and at the same time directly into an estimation without an
+/// attacker.
 class AttackedEstimation : public testing::Test {
  protected:
   void SetUp() override {
@@ -132,7 +133,7 @@ class AttackedEstimation : public testing::Test {
     live_.emplace(*config_, *lcm_);
   }
 
-  /// beside: sends what it likes after each message.
+  /// Calls `beside` after each message, to send anything.
   void play(const std::function<void(const drivers::LogEvent&)>& beside) {
     Estimation reference(*config_, [&](std::int64_t, const std::string& channel,
                                        const std::vector<std::uint8_t>& bytes) {

@@ -71,7 +71,7 @@ class Reloading : public testing::Test {
     config_ = *parse_config(path_, test::kGoodConfig, problems);
   }
   void write(const std::string& text) { write_file(path_, text); }
-  /// What is said while the file is read anew.
+  /// Reads the file again and returns the log lines.
   std::string read(Reloader& reloader, std::optional<Reloader::Result>& result) {
     testing::internal::CaptureStderr();
     result = reloader.read(config_);
@@ -94,7 +94,7 @@ TEST_F(Reloading, AWrongFileAnotherStructureAndNoFileAreRefused) {
   write(wider);
   const std::string said = read(reloader, result);
   EXPECT_NE(said.find("b.toml:8:"), std::string::npos) << said;
-  EXPECT_NE(said.find("node_mass_kg: 20 -> 21: takes a restart"), std::string::npos) << said;
+  EXPECT_NE(said.find("node_mass_kg: 20 -> 21: needs a restart"), std::string::npos) << said;
   EXPECT_NE(said.find("stays in force"), std::string::npos);
   std::filesystem::remove(path_);
   EXPECT_NE(read(reloader, result).find("No such file"), std::string::npos);
@@ -108,11 +108,11 @@ TEST_F(Reloading, AWrongFileAnotherStructureAndNoFileAreRefused) {
   EXPECT_EQ(result->config.pipeline.options.min_snr, 20);
   EXPECT_EQ(reloader.count().done, 1);
   EXPECT_EQ(reloader.count().problem, "");
-  // Read once more, nothing has changed since.
+  // A second reading finds no changes.
   EXPECT_NE(read(reloader, result).find("0 changes"), std::string::npos);
 }
 
-/// Estimates, by their window's end, of a log that is played with the configuration changed inside.
+/// The estimates, by the end of their window, of a log during which the configuration changes.
 class ReloadedRun {
  public:
   explicit ReloadedRun(const std::string& more, Reach reach, const std::string& log) {
@@ -165,8 +165,8 @@ TEST_F(Reloading, SettingsThatDoNotTouchTheWindowChangeNoBitOfAnEstimate) {
   EXPECT_EQ(reloaded.lost_, 0);
   EXPECT_TRUE(reloaded.estimates_ == uncut.estimates_);
 
-  // Weights of the rows: what is in the window cannot be weighted otherwise any more, so it begins
-  // anew, and a second later there are values again.
+  // The window starts empty because its samples are weighted by the old weights of the rows. A
+  // second later there are values again.
   const ReloadedRun anew("\n[watch]\n", Reach::window, log);
   EXPECT_GT(uncut.valid_after(anew.before_), 200);
   EXPECT_LT(anew.valid_after(anew.before_), uncut.valid_after(anew.before_) - 80);

@@ -1,4 +1,4 @@
-// The program itself, killed in the middle of an earthquake by a power cut (SIGKILL).
+// Kills the program in the middle of an earthquake, as a power cut does (SIGKILL).
 #include <csignal>
 #include <cstdlib>
 #include <thread>
@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/monitor/history/history_files.h"
 #include "tests/support/child.h"
 #include "tests/support/history_fixture.h"
@@ -20,11 +20,11 @@ namespace restart_kill_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 60s;       // for what takes some seconds on a machine with time
-constexpr double kMaxLost_s = 1;  // of raw samples, at a kill: half a second and its way here
+constexpr auto kSoon = 60s;       // for actions that take some seconds on an idle machine
+constexpr double kMaxLost_s = 1;  // raw samples lost at a kill: half a second and the way to here
 
 constexpr auto kShakenBefore = 3s;
-constexpr auto kAway = 1s;  // a shorter absence is not told
+constexpr auto kAway = 1s;  // a shorter absence is not reported
 constexpr int kSpeed = 2;
 
 TEST(RestartKill, TheReportSpansTheWholeEarthquakeAndSaysWhenNobodyListened) {
@@ -71,11 +71,11 @@ TEST(RestartKill, TheReportSpansTheWholeEarthquakeAndSaysWhenNobodyListened) {
   const auto report = nlohmann::json::parse(test::read_file(reports + "/" + names[0] + ".json"));
   EXPECT_LT(report["start_us"].get<std::int64_t>(), heard_us);
   ASSERT_GE(report["unheard"].size(), 1u);
-  // The first process may have come up in the beginning; the newest one is the kill.
+  // The first process may have started late; the newest entry is the kill.
   const auto& unheard = report["unheard"].back();
   EXPECT_EQ(unheard["why"], "restart") << unheard;
   EXPECT_EQ(unheard["message"].get<std::string>().find("Nobody listened from "), 0u) << unheard;
-  // All that was stored is known, and not only what the state had.
+  // All stored samples are known, not only those of the state.
   EXPECT_NEAR(1e-6 * static_cast<double>(unheard["from_us"].get<std::int64_t>() - heard_us), 0,
               kMaxLost_s * kSpeed);
   EXPECT_NE(report["verdict"], "green");

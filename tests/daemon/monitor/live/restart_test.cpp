@@ -1,5 +1,5 @@
-// A daemon that is killed within an earthquake and started anew: its report has the peaks of what
-// it had heard before, by the raw samples of its history, and says first when nobody listened.
+// Kills and restarts a daemon during an earthquake. Its report must have the peaks of the time
+// before, from the raw samples of its history, and first name the time without samples.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "daemon/monitor/estimation/estimation.h"
 #include "daemon/monitor/estimation/state_file.h"
-#include "daemon/monitor/estimation/wanted_axes.h"
-#include "daemon/monitor/event_report/event_report_folder.h"
+#include "daemon/monitor/event_report/event_report_files.h"
 #include "daemon/monitor/history/history.h"
 #include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/live/raw_backlog.h"
@@ -31,7 +31,7 @@ namespace framewatch::daemon {
 namespace restart_test {
 
 // Limits.
-constexpr double kSame = 1e-3;  // relative, of peaks that were heard: raw samples are rounded
+constexpr double kSame = 1e-3;  // relative, of peaks before the kill: raw samples are rounded
 
 constexpr double kStrong_s = 14, kShaken_s = 26, kSeconds = 48;
 constexpr double kStateAge_s = 2.5, kAfterPeak_s = 1, kAway_s = 4;
@@ -81,7 +81,7 @@ class Restart : public testing::Test {
     return seconds(e.timestamp_us - messages_.front().timestamp_us);
   }
 
-  /// The configuration of one case, whose reports and history are in folders of its name.
+  /// Returns the configuration of one case, whose reports and history are in folders of its name.
   static Config config_of(const std::string& name, bool history) {
     test::write_file(path(name + ".toml"),
                      test::read_file(test::table_config()) + "\n[event_report]\ndirectory = \"" +
@@ -129,7 +129,7 @@ class Restart : public testing::Test {
     bool state = true, history = true;
     double away_s = kAway_s;
   };
-  /// Killed kAfterPeak_s after the last peak; its last state is kStateAge_s old then.
+  /// Kills the daemon kAfterPeak_s after the last peak; its last state is kStateAge_s old then.
   static Reports restarted(const std::string& name, const How& how) {
     const Config config = config_of(name, how.history);
     const double killed_s = last_peak_s_ + kAfterPeak_s;
@@ -188,7 +188,7 @@ class Restart : public testing::Test {
   }
 
  private:
-  /// When the largest drift and the largest force have both been.
+  /// Finds the time after which both the largest drift and the largest force have occurred.
   static void find_peaks() {
     const Config config = config_of("peaks", false);
     double drift = 0, force = 0;
@@ -284,7 +284,8 @@ TEST_F(Restart, WithNothingStoredItSaysThatItCameUpLate) {
 }
 
 TEST_F(Restart, ALongAbsenceIsNoCalm) {
-  // Longer than quiet_s: the motion is still one, and is over only when calm was heard.
+  // Longer than quiet_s: it is still the same motion, which ends only after a calm time with
+  // samples.
   const Reports r = restarted("long", {.away_s = 12});
   ASSERT_EQ(r.json.size(), 1u);
   EXPECT_NEAR(r.json[0]["unheard"][0]["seconds"].get<double>(), 12, 0.5);
@@ -293,7 +294,7 @@ TEST_F(Restart, ALongAbsenceIsNoCalm) {
 TEST_F(Restart, ThePageHasTheSamePeaks) {
   const Reports r = restarted("page", {});
   ASSERT_EQ(r.json.size(), 1u);
-  // The page's own process was not killed.
+  // The page's process was not killed.
   const Config config = config_of("page2", false);
   std::optional<Shaking> shaking;
   estimator::Pipeline pipeline(config.pipeline);

@@ -24,7 +24,6 @@
 #include "daemon/base/clocks.h"
 #include "daemon/base/user_name.h"
 #include "daemon/monitor/service/command_client.h"
-#include "daemon/monitor/service/command_path.h"
 #include "tests/support/history_fixture.h"
 #include "tests/support/temporary.h"
 
@@ -34,10 +33,10 @@ namespace command_socket_test {
 using namespace std::chrono_literals;
 
 // Limits.
-constexpr auto kSoon = 30s;                   // for what takes a moment on a machine with time
-constexpr std::int64_t kLook_us = 1'000'000;  // a look never waits; this is for a busy machine
+constexpr auto kSoon = 30s;                   // for short actions on an idle machine
+constexpr std::int64_t kLook_us = 1'000'000;  // poll() never waits; this is for a busy machine
 
-/// A daemon that answers every command with its own bytes and says who gave it.
+/// A daemon that answers every command with its bytes and names its user.
 class Commands : public testing::Test {
  protected:
   Commands() {
@@ -55,12 +54,12 @@ class Commands : public testing::Test {
           return CommandPacket{command.channel, command.bytes};
         });
   }
-  /// Looks in a thread, as a daemon's loop does, until stop().
+  /// Polls in a thread, as a daemon's loop does, until stop().
   void serve(CommandSocket& socket) {
     loop_ = std::thread([this, &socket] {
       while (!stopping_) {
         const std::int64_t began_us = steady_clock_us();
-        socket.look(began_us + ahead_us_);
+        socket.poll(began_us + ahead_us_);
         longest_us_ = std::max<std::int64_t>(longest_us_, steady_clock_us() - began_us);
         std::this_thread::sleep_for(5ms);
       }
@@ -75,7 +74,7 @@ class Commands : public testing::Test {
   CommandAnswer ask(const std::string& channel, std::vector<std::uint8_t> bytes = {1, 0, 2}) const {
     return give_command(config_, "run", {channel, std::move(bytes)});
   }
-  /// A connection that says nothing; -1 when there is none to be had.
+  /// Opens a connection that sends nothing. Returns -1 if that fails.
   int connect() const {
     const int file = ::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
     sockaddr_un address{};
@@ -89,7 +88,7 @@ class Commands : public testing::Test {
     ::close(file);
     return -1;
   }
-  /// Whether the daemon ends the connection without a word.
+  /// Returns true if the daemon closes the connection without an answer.
   static bool hung_up(int file) {
     char byte = 0;
     return ::recv(file, &byte, 1, 0) == 0;
@@ -117,7 +116,7 @@ TEST_F(Commands, AreAnsweredAndTheKernelSaysWhoseTheyAre) {
   EXPECT_EQ(answer.bytes, (std::vector<std::uint8_t>{1, 0, 2}));
   const CommandAnswer no = ask("NO");
   EXPECT_TRUE(no.answered);
-  EXPECT_EQ(no.problem, "not now\x1b");  // whoever shows it escapes it
+  EXPECT_EQ(no.problem, "not now\x1b");  // the reader escapes it
   stop();
   EXPECT_EQ(user_, user_name(::geteuid()));
 }
@@ -131,7 +130,7 @@ TEST_F(Commands, AnotherUserIsNamed) {
   const pid_t child = ::fork();
   if (child == 0) ::_exit(::setuid(kNobody) != 0 ? 77 : ask("YES").answered ? 0 : 1);
   int status = 0;
-  while (::waitpid(child, &status, WNOHANG) == 0) socket->look(steady_clock_us());
+  while (::waitpid(child, &status, WNOHANG) == 0) socket->poll(steady_clock_us());
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "there is no other user in this namespace";
   EXPECT_EQ(WEXITSTATUS(status), 0);
   EXPECT_EQ(user_, user_name(kNobody));
@@ -151,7 +150,7 @@ TEST_F(Commands, WhoMayNotIsToldWhichGroupMay) {
   ASSERT_EQ(::pipe(ends), 0);
   const pid_t child = ::fork();
   if (child == 0) {
-    // Without root's right to everything.
+    // Drops root's right to everything.
     __user_cap_header_struct header{_LINUX_CAPABILITY_VERSION_3, 0};
     __user_cap_data_struct none[2]{};
     const bool dropped = ::syscall(SYS_capset, &header, none) == 0;
@@ -173,7 +172,7 @@ TEST_F(Commands, WhoMayNotIsToldWhichGroupMay) {
 
 TEST_F(Commands, ADeadProcessSocketIsReplacedALivingOnesIsNot) {
   ASSERT_EQ(prepare_command_directory(config_.commands.directory), "");
-  {  // what a killed process leaves
+  {  // as a killed process leaves it
     const int file = ::socket(AF_UNIX, SOCK_SEQPACKET, 0);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
@@ -188,12 +187,12 @@ TEST_F(Commands, ADeadProcessSocketIsReplacedALivingOnesIsNot) {
   testing::internal::CaptureStderr();
   auto second = listen();
   const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("no commands are taken: " + path()), std::string::npos) << said;
+  EXPECT_NE(said.find("cannot take commands: " + path()), std::string::npos) << said;
   EXPECT_NE(said.find("another framewatch run"), std::string::npos) << said;
   serve(*first);
   EXPECT_TRUE(ask("YES").answered);
   stop();
-  second->look(steady_clock_us() + 60 * kSecond_us);
+  second->poll(steady_clock_us() + 60 * kSecond_us);
   EXPECT_NE(second->problem(), "");
   first.reset();
   ahead_us_ = 120 * kSecond_us;  // it tries again
@@ -225,7 +224,7 @@ TEST_F(Commands, ADirectoryThatOthersRuleIsRefused) {
   EXPECT_EQ(listen()->problem(), "");
   std::filesystem::create_directory_symlink(directory, directory_.path("link"));
   config_.commands.directory = directory_.path("link");
-  EXPECT_NE(listen()->problem().find("is no directory"), std::string::npos);
+  EXPECT_NE(listen()->problem().find("is not a directory"), std::string::npos);
   config_.commands.directory = directory_.path("none/none");
   EXPECT_NE(listen()->problem(), "");
   config_.commands.directory = directory_.path(std::string(120, 'x'));
@@ -254,7 +253,7 @@ TEST_F(Commands, ASilentConnectionDelaysNobodyAndIsEnded) {
   ahead_us_ = CommandSocket::kPatience_us + kSecond_us;
   EXPECT_TRUE(hung_up(silent));
   ::close(silent);
-  // One that does not want its answer.
+  // A client that does not wait for its answer.
   const int rude = connect();
   ASSERT_EQ(::send(rude, "YES\0", 4, 0), 4);
   ::close(rude);

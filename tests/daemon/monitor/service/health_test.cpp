@@ -16,7 +16,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/base/file_digest.h"
-#include "daemon/monitor/service/unit_state.h"
+#include "daemon/monitor/service/service_manager.h"
 #include "daemon/page/findings/status_command.h"
 #include "daemon/tools/commands/selftest_command.h"
 #include "drivers/lcm/lcm_source.h"
@@ -29,7 +29,7 @@ namespace health_test {
 
 constexpr std::int64_t kNow_us = 1'000'000 * kSecond_us;
 
-/// Two reports, one second apart, of a daemon that is well.
+/// Two reports, one second apart, of a healthy daemon.
 Heard well(const Config& config) {
   service_t s{};
   s.started_us = kNow_us - 3600 * kSecond_us;
@@ -61,7 +61,7 @@ Heard well(const Config& config) {
   return heard;
 }
 
-/// The one thing that is odd.
+/// Returns the only oddity.
 std::string odd(const Heard& heard, const Config& config, std::int64_t now_us = kNow_us) {
   const std::vector<std::string> found =
       oddities(heard, config, now_us, [](const event_t& e) { return e.message; });
@@ -97,7 +97,7 @@ TEST(Health, SaysThatTheHubIsSilent) {
   h.uplink->started_us = kNow_us - 8 * 3600 * kSecond_us;
   h.uplink->acknowledged_us = kNow_us - 3500 * kSecond_us;
   EXPECT_EQ(odd(h, config), "0 oddities");
-  h.uplink->connected = 1;  // which says nothing
+  h.uplink->connected = 1;  // the connection alone proves nothing
   h.uplink->acknowledged_us = kNow_us - 3 * 3600 * kSecond_us;
   EXPECT_EQ(odd(h, config), "the hub has acknowledged nothing for 3 h 0 min");
   h.uplink->started_us = kNow_us - 60 * kSecond_us;
@@ -205,7 +205,7 @@ TEST(StatusCommand, TellsWellFromNotWellFromNotThere) {
     const int code = status_command({test::table_config(), "", true});
     const auto told = nlohmann::json::parse(testing::internal::GetCapturedStdout());
     EXPECT_EQ(code, told["well"] ? 0 : 1);
-    for (const std::string sentence : told["odd"])  // a busy machine may be late, nothing else
+    for (const std::string sentence : told["odd"])  // only lateness is possible, on a busy machine
       EXPECT_NE(sentence.find("late"), std::string::npos) << sentence;
     EXPECT_EQ(told["version"], FRAMEWATCH_VERSION);
     EXPECT_LT(told["silent_s"], 1.0);

@@ -25,7 +25,7 @@ namespace service_manager_test {
 constexpr int kLongestWait_ms = 20'000;
 constexpr int kWatchdog_us = 1'000'000;
 
-/// What a service manager hears.
+/// The end of a service manager's socket.
 class Listener {
  public:
   explicit Listener(const std::string& path) : socket_(::socket(AF_UNIX, SOCK_DGRAM, 0)) {
@@ -38,7 +38,7 @@ class Listener {
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
 
-  /// The next datagram; empty when none comes in that time.
+  /// Returns the next datagram; empty if none comes in that time.
   std::string next(int timeout_ms) {
     pollfd waiting{socket_, POLLIN, 0};
     if (::poll(&waiting, 1, timeout_ms) <= 0) return "";
@@ -47,7 +47,7 @@ class Listener {
     text.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
     return text;
   }
-  /// Whether one that begins like that comes.
+  /// Returns true if a datagram comes that begins with `beginning`.
   bool hears(const std::string& beginning) {
     for (std::string text = next(kLongestWait_ms); !text.empty(); text = next(kLongestWait_ms))
       if (text.starts_with(beginning)) return true;
@@ -67,7 +67,7 @@ TEST(ServiceManager, HearsEveryStepOfARun) {
                       "WATCHDOG_USEC=" + std::to_string(kWatchdog_us), FRAMEWATCH_PROGRAM, "run",
                       config, "--url", "memq://", "--quiet"});
   EXPECT_TRUE(systemd.hears("READY=1"));
-  EXPECT_TRUE(systemd.hears("STATUS=waits for the first sample"));
+  EXPECT_TRUE(systemd.hears("STATUS=waiting for the first sample"));
   // Idle, and well: fed more often than the timeout.
   for (int i = 0; i < 5; ++i) {
     const std::int64_t began_us = steady_clock_us();
@@ -82,7 +82,7 @@ TEST(ServiceManager, HearsEveryStepOfARun) {
   daemon.signal(SIGSTOP);
   while (systemd.next(kWatchdog_us / 1000) != "") {
   }
-  EXPECT_EQ(systemd.next(2 * kWatchdog_us / 1000), "");  // a hung one says nothing
+  EXPECT_EQ(systemd.next(2 * kWatchdog_us / 1000), "");  // a hung program sends nothing
   daemon.signal(SIGCONT);
   EXPECT_TRUE(systemd.hears("WATCHDOG=1"));
   daemon.signal(SIGTERM);
@@ -99,7 +99,7 @@ estimator::PipelineCounters counters(std::int64_t received, std::int64_t late, s
   return c;
 }
 
-/// Whether it was well all the time; every 0.1 s `step` makes the counters.
+/// Returns true if the estimator was well all the time; `step` sets the counters every 0.1 s.
 template <typename Step>
 bool well_for(ProgressWatch& watch, std::int64_t& now_us, double seconds, const Step& step) {
   bool well = true;
@@ -114,13 +114,13 @@ TEST(ProgressWatch, IdleAndWorkingAreWellStuckIsNot) {
   const double longest_s = 1e-6 * ProgressWatch::kLongest_us;
   EXPECT_TRUE(well_for(watch, now_us, 60, [&] { return counters(0, 0, 0); }));
   EXPECT_TRUE(well_for(watch, now_us, 60, [&] { return ++n, counters(n, 0, n); }));
-  // Idle for an hour, then the first samples, not yet an instant.
+  // Idle for an hour, then the first samples, without an instant yet.
   const std::int64_t sets = n;
   EXPECT_TRUE(well_for(watch, now_us, 3600, [&] { return counters(n, 0, sets); }));
   EXPECT_TRUE(well_for(watch, now_us, longest_s - 1, [&] { return counters(++n, 0, sets); }));
-  // One burst that is never completed is idleness too.
+  // An incomplete burst followed by silence counts as idle.
   EXPECT_TRUE(well_for(watch, now_us, 60, [&] { return counters(n, 0, sets); }));
-  // Samples that are refused are nobody's progress.
+  // Refused samples are no progress.
   std::int64_t late = 0;
   EXPECT_TRUE(well_for(watch, now_us, 60, [&] { return ++late, counters(n + late, late, sets); }));
   EXPECT_FALSE(

@@ -4,10 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/monitor/event_report/response_words.h"
+#include "daemon/monitor/event_report/report_words.h"
 #include "daemon/monitor/events/change_words.h"
-#include "daemon/monitor/events/event_words.h"
-#include "daemon/monitor/events/recovery_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/page/findings/model_fit.h"
 #include "tests/support/config_fixture.h"
 

@@ -14,7 +14,7 @@
 #include <lcm/lcm-cpp.hpp>
 
 #include "daemon/base/clocks.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "tests/support/recorded_table_test.h"
 
 namespace framewatch::daemon {

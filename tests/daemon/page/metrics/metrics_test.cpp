@@ -19,7 +19,7 @@
 
 #include "daemon/base/clocks.h"
 #include "daemon/monitor/events/raised_events.h"
-#include "daemon/monitor/live/live_times.h"
+#include "daemon/monitor/live/live_estimation.h"
 #include "daemon/monitor/service/start_count.h"
 #include "drivers/files/encoded.h"
 #include "estimator/numeric/nan.h"

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/monitor/events/acknowledge_messages.h"
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "tests/support/config_fixture.h"
 
 namespace framewatch::daemon {

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/monitor/events/event_words.h"
+#include "daemon/monitor/events/event_messages.h"
 #include "daemon/page/findings/finding.h"
 #include "estimator/numeric/nan.h"
 #include "tests/support/config_fixture.h"

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/monitor/estimation/gap_keeper.h"
+#include "daemon/monitor/estimation/gap_files.h"
 #include "daemon/monitor/live/run_command.h"
 #include "daemon/tools/diagnosis/adopt_command.h"
 #include "daemon/tools/diagnosis/diagnose_command.h"
@@ -142,7 +142,7 @@ TEST_F(GapLoop, IsClosedLive) {
     }
   };
   std::int64_t now_us = 0;
-  keeper.look(live.estimation(), now_us);
+  keeper.poll(live.estimation(), now_us);
   play_to(kAdopted_s);
   ASSERT_EQ(heard.events.size(), 1u);
   const framewatch::event_t raised = heard.events.front();
@@ -174,7 +174,7 @@ TEST_F(GapLoop, IsClosedLive) {
   EXPECT_EQ(page.find("misfit"), std::string::npos);
   ASSERT_EQ(adopt({path("building.toml"), path("diagnosis/model.toml"), true}), 0);
   testing::internal::CaptureStderr();
-  keeper.look(live.estimation(), now_us += 1'000'000);
+  keeper.poll(live.estimation(), now_us += 1'000'000);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("adopted"), std::string::npos);
 
   play_to(kSeconds);

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/monitor/live/can_monitor.h"
+#include "daemon/monitor/live/intake_monitor.h"
 #include "daemon/tools/session/recorder.h"
 #include "daemon/tools/session/session_finish.h"
 #include "daemon/tools/simulation/scenario.h"
@@ -84,22 +84,22 @@ TEST(CanMonitor, TellsRateAndLoadOfEveryFrameOnTheBus) {
   const drivers::CanSource source(config.can, false, [](int, const drivers::CanFrame&) {});
   CanMonitor monitor(config, directory.path(""));
   count(5000, 40000);
-  const auto first = monitor.look(intake, source, 10'000'000);
+  const auto first = monitor.collect(intake, source, 10'000'000);
   ASSERT_TRUE(first);
   EXPECT_TRUE(std::isnan(first->load[0]));
   EXPECT_EQ(first->state[0], -1);
   EXPECT_EQ(first->expected_load[0], drivers::bus_load(config.can, 0).share);
-  EXPECT_FALSE(monitor.look(intake, source, 10'900'000));
+  EXPECT_FALSE(monitor.collect(intake, source, 10'900'000));
   count(7000, 56000);
-  const auto second = monitor.look(intake, source, 12'000'000);
+  const auto second = monitor.collect(intake, source, 12'000'000);
   ASSERT_TRUE(second);
   EXPECT_EQ(second->frames_hz[0], 1000);
   EXPECT_NEAR(second->load[0], 1000.0 * drivers::worst_classical_bits(8, false) / bus.bit_rate,
               kLoadError);
   count(10, 80);  // set up again
-  EXPECT_TRUE(std::isnan(monitor.look(intake, source, 13'000'000)->frames_hz[0]));
+  EXPECT_TRUE(std::isnan(monitor.collect(intake, source, 13'000'000)->frames_hz[0]));
   std::filesystem::remove_all(at);
-  EXPECT_TRUE(std::isnan(monitor.look(intake, source, 14'000'000)->load[0]));
+  EXPECT_TRUE(std::isnan(monitor.collect(intake, source, 14'000'000)->load[0]));
 }
 
 }  // namespace record_can_test

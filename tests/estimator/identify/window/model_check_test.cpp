@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "daemon/monitor/estimation/design_error.h"
+#include "daemon/monitor/estimation/estimation.h"
 #include "daemon/tools/lab/few_sensors.h"
 
 namespace framewatch::estimator {
