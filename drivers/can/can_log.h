@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "drivers/can/can_frame.h"
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/files/text_output.h"
 #include "drivers/records/record.h"
 

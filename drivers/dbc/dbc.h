@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drivers/can/can_field.h"
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/records/record.h"
 
 namespace framewatch::drivers {

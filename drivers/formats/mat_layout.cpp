@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "drivers/files/unpack_limit.h"
+#include "drivers/files/input_file.h"
 #include "drivers/formats/mat_signature.h"
 
 namespace framewatch::drivers {

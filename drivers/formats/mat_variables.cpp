@@ -10,7 +10,6 @@
 #include <fmt/core.h>
 
 #include "drivers/files/input_file.h"
-#include "drivers/files/unpack_limit.h"
 #include "drivers/formats/hdf5_guard.h"
 #include "drivers/formats/mat_layout.h"
 #include "drivers/formats/mat_signature.h"

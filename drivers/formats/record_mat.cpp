@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "drivers/files/caught.h"
 #include "drivers/files/input_file.h"
-#include "drivers/files/trial_process.h"
 #include "drivers/formats/mat_signature.h"
 #include "drivers/formats/mat_variables.h"
 #include "drivers/formats/record_formats.h"
@@ -264,7 +264,7 @@ bool is_hdf5_mat(InputFile& file) {
 constexpr int kHdf5Least_s = 20, kHdf5BytesPerSecond = 2'000'000;
 
 /// libhdf5 does not survive every damaged file: one in some hundreds ends it, or never ends.
-Trial hdf5_trial(const RecordOptions& options, const std::string& path, std::int64_t bytes) {
+AttemptEnd hdf5_trial(const RecordOptions& options, const std::string& path, std::int64_t bytes) {
   const auto attempt = [&] {
     std::vector<Problem> unsaid;
     FileProblems problems(path, unsaid);
@@ -279,13 +279,13 @@ Trial hdf5_trial(const RecordOptions& options, const std::string& path, std::int
 std::optional<Record> read_mat(const RecordOptions& options, FileProblems& problems) {
   InputFile file(problems.path());
   if (is_hdf5_mat(file)) {
-    const Trial trial = hdf5_trial(options, problems.path(), file.size());
-    if (trial == Trial::crashed)
+    const AttemptEnd trial = hdf5_trial(options, problems.path(), file.size());
+    if (trial == AttemptEnd::crashed)
       problems.add(
           0, "is damaged in a way that the library for such files (libhdf5) does not survive");
-    if (trial == Trial::too_long)
+    if (trial == AttemptEnd::too_long)
       problems.add(0, "takes the library for such files (libhdf5) longer than a sound one would");
-    if (trial == Trial::not_begun)
+    if (trial == AttemptEnd::not_begun)
       problems.add(0, "is first read in a process of its own, and none can be begun");
   }
   if (problems.any()) return std::nullopt;

@@ -9,8 +9,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/files/gzip_input.h"
 #include "drivers/files/number_text.h"
+#include "drivers/files/packed_file.h"
 #include "drivers/formats/mat_signature.h"
 #include "drivers/stations/sac_header.h"
 

@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/files/trouble.h"
 #include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/axis_binding.h"
 #include "drivers/lcm/heard_node.h"
 #include "drivers/lcm/intake_notice.h"
 #include "drivers/lcm/intake_settings.h"
 #include "drivers/lcm/multicast/lcm_sender.h"
+#include "drivers/lcm/sequence_watch.h"
 
 namespace framewatch::drivers {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/lcm/accel_messages.h"
 #include "drivers/records/record.h"
 

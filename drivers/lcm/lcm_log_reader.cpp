@@ -3,7 +3,7 @@
 #include <cstring>
 #include <utility>
 
-#include "drivers/files/zstd_file.h"
+#include "drivers/files/packed_file.h"
 #include "drivers/lcm/lcm_log.h"
 
 namespace framewatch::drivers {

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <string>
 
-#include "drivers/files/file_window.h"
 #include "drivers/files/input_file.h"
 
 namespace framewatch::drivers {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/records/record.h"
 
 namespace framewatch::drivers {

@@ -13,7 +13,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/files/gzip_input.h"
+#include "drivers/files/packed_file.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_merge.h"
 #include "drivers/stations/count_meanings.h"

@@ -12,8 +12,8 @@
 
 #include <fmt/core.h>
 
-#include "drivers/files/gzip_input.h"
 #include "drivers/files/number_text.h"
+#include "drivers/files/packed_file.h"
 #include "drivers/records/accel_unit.h"
 #include "drivers/records/time_text.h"
 

@@ -5,7 +5,7 @@
 
 #include <framewatch/window_estimate_t.hpp>
 
-#include "drivers/files/problem.h"
+#include "drivers/files/file_problems.h"
 #include "drivers/files/text_output.h"
 #include "drivers/records/record.h"
 

@@ -27,8 +27,8 @@
 #include "daemon/monitor/service/open_lcm.h"
 #include "daemon/monitor/service/service_manager.h"
 #include "daemon/monitor/service/start_count.h"
-#include "drivers/files/cut_off_file.h"
 #include "drivers/files/input_file.h"
+#include "drivers/files/partial_file.h"
 
 namespace framewatch::daemon {
 namespace {

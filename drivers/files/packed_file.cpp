@@ -1,11 +1,13 @@
-#include "drivers/files/zstd_file.h"
+#include "drivers/files/packed_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 #include <zstd.h>
 #include <zstd_errors.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -17,35 +19,27 @@
 
 #include <fmt/core.h>
 
+#include "drivers/files/descriptor.h"
 #include "drivers/files/input_file.h"
 #include "drivers/files/partial_file.h"
-#include "drivers/files/unpack_limit.h"
 
 namespace framewatch::drivers {
 namespace {
 
+constexpr std::int64_t kMaxOfGzread = std::int64_t{1} << 20;
+
+/// Returns a temporary file without a name, or -1.
 int unnamed_file() {
   std::error_code none;
   std::filesystem::path folder = std::filesystem::temp_directory_path(none);
   if (none) folder = "/tmp";
   const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0) return file;
-  std::string name =
-      (folder / "framewatch-XXXXXX").string();  // not every file system has O_TMPFILE
+  // Not every file system has O_TMPFILE.
+  std::string name = (folder / "framewatch-XXXXXX").string();
   const int named = ::mkostemp(name.data(), O_CLOEXEC);
   if (named >= 0) ::unlink(name.c_str());
   return named;
-}
-
-bool write_all(int file, const std::uint8_t* bytes, std::size_t size) {
-  while (size > 0) {
-    const ssize_t written = ::write(file, bytes, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes += written;
-    size -= static_cast<std::size_t>(written);
-  }
-  return true;
 }
 
 UnpackedFile refused(UnpackedFile out, std::string why) {
@@ -59,9 +53,9 @@ UnpackedFile failed(UnpackedFile out, const char* what) {
   return refused(std::move(out), fmt::format("{}: {}", what, std::strerror(errno)));
 }
 
-/// False, with errno, when something of `in` could not be read or written.
+/// Compresses `in` into `out`. Returns false with errno when reading, writing or memory fails.
 bool pack(int in, int out, const std::atomic<bool>& stop) {
-  constexpr int kLevel = 3;  // -19 buys a tenth for forty times the time
+  constexpr int kLevel = 3;  // level 19 saves a tenth and takes forty times as long
   const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context(ZSTD_createCCtx(),
                                                                      &ZSTD_freeCCtx);
   ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kLevel);
@@ -85,7 +79,7 @@ bool pack(int in, int out, const std::atomic<bool>& stop) {
         errno = ENOMEM;
         return false;
       }
-      if (!write_all(out, packed.data(), output.pos)) return false;
+      if (!write_fully(out, packed.data(), output.pos)) return false;
       done = last ? left == 0 : input.pos == input.size;
     }
   }
@@ -93,6 +87,49 @@ bool pack(int in, int out, const std::atomic<bool>& stop) {
 }
 
 }  // namespace
+
+GzipInput::~GzipInput() {
+  if (file_ != nullptr) gzclose(file_);
+}
+
+bool GzipInput::open(const std::string& path) {
+  InputFile input;
+  if (!input.open(path)) {
+    error_ = "cannot be opened: " + input.error();
+    return false;
+  }
+  packed_bytes_ = input.size();
+  file_ = gzdopen(input.release(), "rb");
+  if (file_ == nullptr) error_ = "cannot be opened: out of memory";
+  return file_ != nullptr;
+}
+
+std::int64_t GzipInput::read(void* to, std::int64_t bytes) {
+  std::int64_t done = 0;
+  while (file_ != nullptr && error_.empty() && done < bytes) {
+    errno = 0;
+    const std::int64_t wanted = std::min(bytes - done, kMaxOfGzread);
+    const z_off_t before = gzoffset(file_);
+    const int got = gzread(file_, static_cast<char*>(to) + done, static_cast<unsigned int>(wanted));
+    count_bytes_read(gzoffset(file_) - before);
+    done += std::max(got, 0);
+    unpacked_bytes_ += std::max(got, 0);
+    if (gzdirect(file_) == 0 && unpacked_bytes_ > unpack_limit(packed_bytes_)) {
+      error_ = over_unpack_limit(packed_bytes_);
+    } else if (got < wanted) {
+      int code = Z_OK;
+      const char* text = gzerror(file_, &code);
+      if (code == Z_BUF_ERROR)
+        error_ = "the gzip stream is cut off";
+      else if (code == Z_ERRNO)
+        error_ = fmt::format("cannot be read: {}", std::strerror(errno));
+      else if (code != Z_OK && code != Z_STREAM_END)
+        error_ = fmt::format("the gzip stream is damaged: {}", text);
+      break;
+    }
+  }
+  return error_.empty() ? done : -1;
+}
 
 std::string pack_zstd(const std::string& from, const std::string& to,
                       const std::atomic<bool>& stop) {
@@ -108,7 +145,7 @@ std::string pack_zstd(const std::string& from, const std::string& to,
 UnpackedFile unpack_zstd(int file) {
   UnpackedFile out;
   out.file = unnamed_file();
-  if (out.file < 0) return failed(out, "no temporary file to unpack to");
+  if (out.file < 0) return failed(out, "cannot create a temporary file to unpack to");
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(),
                                                                      &ZSTD_freeDCtx);
   ZSTD_DCtx_setParameter(context.get(), ZSTD_d_windowLogMax, kUnpackMemoryLog2);
@@ -117,7 +154,7 @@ UnpackedFile unpack_zstd(int file) {
   const std::int64_t most_bytes = unpack_limit(status.st_size);
   std::vector<std::uint8_t> packed(ZSTD_DStreamInSize()), plain(ZSTD_DStreamOutSize());
   std::int64_t read_bytes = 0;
-  std::size_t wanted = 1;  // 0: a frame is whole
+  std::size_t wanted = 1;  // 0: the frame is complete
   for (;;) {
     const ssize_t got = ::pread(file, packed.data(), packed.size(), read_bytes);
     if (got < 0 && errno == EINTR) continue;
@@ -129,7 +166,7 @@ UnpackedFile unpack_zstd(int file) {
       wanted = ZSTD_decompressStream(context.get(), &output, &input);
       out.bytes += static_cast<std::int64_t>(output.pos);
       if (out.bytes > most_bytes) return refused(out, over_unpack_limit(status.st_size));
-      if (!write_all(out.file, plain.data(), output.pos))
+      if (!write_fully(out.file, plain.data(), output.pos))
         return failed(out, "cannot be unpacked to a temporary file");
       if (ZSTD_isError(wanted) == 0) continue;
       if (ZSTD_getErrorCode(wanted) == ZSTD_error_frameParameter_windowTooLarge)

@@ -1,4 +1,4 @@
-#include "drivers/files/unpack_limit.h"
+#include "drivers/files/packed_file.h"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -12,11 +12,10 @@
 
 #include "drivers/files/input_file.h"
 #include "drivers/files/line_reader.h"
-#include "drivers/files/zstd_file.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::drivers {
-namespace unpack_limit_test {
+namespace packed_file_test {
 
 using test::read_file;
 using test::TemporaryDirectory;
@@ -148,5 +147,5 @@ TEST(UnpackLimit, OnlyAFileIsPacked) {
   EXPECT_TRUE(directory.names().empty());
 }
 
-}  // namespace unpack_limit_test
+}  // namespace packed_file_test
 }  // namespace framewatch::drivers
