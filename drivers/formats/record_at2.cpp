@@ -7,8 +7,8 @@
 #include "drivers/files/line_reader.h"
 #include "drivers/files/number_text.h"
 #include "drivers/formats/record_formats.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -8,9 +8,8 @@
 #include "drivers/formats/record_formats.h"
 #include "drivers/formats/table_header.h"
 #include "drivers/formats/table_text.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/time_text.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -12,7 +12,7 @@
 #include "drivers/files/number_text.h"
 #include "drivers/files/packed_file.h"
 #include "drivers/formats/mat_signature.h"
-#include "drivers/stations/sac_header.h"
+#include "drivers/stations/station_formats.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "drivers/files/number_text.h"
-#include "drivers/records/accel_unit.h"
 #include "drivers/records/record_builder.h"
 #include "drivers/records/record_options.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "drivers/files/number_text.h"
-#include "drivers/records/time_text.h"
+#include "drivers/records/unit_text.h"
 
 namespace framewatch::drivers {
 namespace {

@@ -15,7 +15,6 @@
 #include "drivers/lcm/log_events.h"
 #include "drivers/lcm/message_check.h"
 #include "drivers/records/record_builder.h"
-#include "drivers/records/record_merge.h"
 
 namespace framewatch::drivers {
 namespace {

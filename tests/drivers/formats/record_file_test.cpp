@@ -114,7 +114,7 @@ TEST_F(RecordFile, RefusesMalformedCsv) {
   expect_refused("time_s,a\n0,1\n", 0, "at least 2 samples");
   expect_refused("time_s,a,a\n0,1,1\n1,1,1\n", 1, "appears twice");
   expect_refused("time_s,a,\n0,1,1\n1,1,1\n", 1, "name is empty");
-  expect_refused("time_s,\"a\"\"b\"\n0,1\n1,1\n", 1, "no quotes");
+  expect_refused("time_s,\"a\"\"b\"\n0,1\n1,1\n", 1, "must not contain");
   expect_refused("time_s,a\n0,1\n1,2,3\n2,1\n", 3, "3 fields where the header has 2");
   expect_refused("time_s,a\n0,1\n1\n2,1\n", 3, "1 fields");
   expect_refused("time_s,a\n0,1\n1,x2\n2,1\n", 3, "a: \"x2\"");

@@ -153,19 +153,18 @@ TEST_F(Miniseed, WhatIsThereTwiceIsTakenOnceWhereItIsAlikeAndRefusedWhereNot) {
   ASSERT_TRUE(record) << said(record);
   ASSERT_EQ(record->time_s.size(), 800U);
   expect_counts(*record, 0, 0, 0, 800);
-  expect_said(record, "700 samples are there twice, alike: taken once");
+  expect_said(record, "700 samples appear twice with equal values: used once");
   test::SeedSpan other = span(500, 300);
   other.values[0] += 1;
   record = read(first + miniseed(other));
-  expect_said(record,
-              "samples from 2026-11-24T00:00:05.250000Z on are there twice, with different");
+  expect_said(record, "samples from 2026-11-24T00:00:05.250000Z on appear twice, with different");
 }
 
 TEST_F(Miniseed, SamplesBetweenTheStepsAreRefused) {
   test::SeedSpan later = span(600, 600);
   later.start_us += 3'000;
   const auto record = read(miniseed(span(0, 600)) + miniseed(later));
-  expect_said(record, "lie 0.30 of a step off those before");
+  expect_said(record, "are 0.30 of a step off those before");
 }
 
 TEST_F(Miniseed, AClockThatIsALittleOffItsRateKeepsItsTimes) {

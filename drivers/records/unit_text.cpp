@@ -1,7 +1,12 @@
-#include "drivers/records/time_text.h"
+#include "drivers/records/unit_text.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
 
 #include "drivers/files/file_problems.h"
 #include "drivers/files/number_text.h"
@@ -9,11 +14,54 @@
 namespace framewatch::drivers {
 namespace {
 
+struct NamedUnit {
+  std::string_view name;
+  double in_si;
+};
+
+constexpr std::array kAccelUnits = {
+    NamedUnit{"g", 9.80665},   NamedUnit{"mg", 9.80665e-3}, NamedUnit{"gal", 0.01},
+    NamedUnit{"mps2", 1},      NamedUnit{"m/s2", 1},        NamedUnit{"m/s/s", 1},
+    NamedUnit{"m/sec2", 1},    NamedUnit{"ms-2", 1},        NamedUnit{"cm/s2", 0.01},
+    NamedUnit{"cm/s/s", 0.01}, NamedUnit{"cm/sec2", 0.01},  NamedUnit{"cms-2", 0.01},
+    NamedUnit{"mm/s2", 0.001}, NamedUnit{"mm/s/s", 0.001},  NamedUnit{"mms-2", 0.001},
+};
+constexpr std::array kForceUnits = {NamedUnit{"n", 1}, NamedUnit{"kn", 1e3}};
+constexpr std::array kTimeUnits = {
+    NamedUnit{"s", 1},       NamedUnit{"sec", 1},   NamedUnit{"second", 1}, NamedUnit{"ms", 1e-3},
+    NamedUnit{"msec", 1e-3}, NamedUnit{"us", 1e-6}, NamedUnit{"ns", 1e-9},  NamedUnit{"seconds", 1},
+};
+
+/// Returns a unit in lower case, without blanks and signs for powers and products: "m / s^2",
+/// "m/s\u00b2" and "m/s**2" become "m/s2", "m s^-2" becomes "ms-2". The micro sign becomes "u".
+std::string plain_unit(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned char c = static_cast<unsigned char>(text[i]);
+    if (c == 0xC2 || c == 0xCE) continue;  // first byte of these signs in UTF-8
+    if (c == 0xB2)
+      plain += '2';
+    else if (c == 0xB5 || c == 0xBC)
+      plain += 'u';
+    else if (c != ' ' && c != '^' && c != '*' && c != '.' && c != 0xB7)
+      plain += static_cast<char>(std::tolower(c));
+  }
+  return plain;
+}
+
+template <std::size_t Count>
+std::optional<double> unit_of(const std::array<NamedUnit, Count>& units, std::string_view text) {
+  const std::string plain = plain_unit(text);
+  for (const NamedUnit& unit : units)
+    if (unit.name == plain) return unit.in_si;
+  return std::nullopt;
+}
+
 bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Whether the text has this shape, in which 0 stands for any digit.
+/// Returns true if the text has this shape, in which 0 stands for any digit.
 bool has_shape(std::string_view text, std::string_view shape) {
   return std::equal(text.begin(), text.end(), shape.begin(), shape.end(),
                     [](char c, char s) { return s == '0' ? is_digit(c) : c == s; });
@@ -26,6 +74,24 @@ int digits(std::string_view text, std::size_t at, std::size_t count) {
 }
 
 }  // namespace
+
+std::optional<double> mps2_per(std::string_view unit) {
+  return unit_of(kAccelUnits, unit);
+}
+
+std::optional<double> newtons_per(std::string_view unit) {
+  return unit_of(kForceUnits, unit);
+}
+
+std::optional<double> declared_unit(std::string_view text) {
+  if (const auto number = parse_number(text))
+    return std::isfinite(*number) && *number > 0 ? number : std::nullopt;
+  return mps2_per(text);
+}
+
+std::optional<double> seconds_per(std::string_view unit) {
+  return unit_of(kTimeUnits, unit);
+}
 
 std::optional<int> parse_zone(std::string_view text) {
   if (text == "Z" || text == "z" || text == "UTC") return 0;
@@ -71,14 +137,14 @@ std::string why_no_time(std::string_view text) {
       text.find('/') != std::string_view::npos || std::count(text.begin(), text.end(), '.') >= 2;
   if (!text.empty() && is_digit(text[0]) && slashes)
     return shown +
-           ": day and month of such a date can be exchanged: write it as "
+           ": a date like this does not say which number is the month: write it as "
            "2026-11-21T17:00:00.01Z";
   if (has_shape(text.substr(0, 5), "0000-")) return shown + ": no such time";
   if (!text.empty() && is_digit(text[0]) && text.find(':') != std::string_view::npos)
     return shown +
-           ": a clock time without its date is not read: write seconds, or "
+           ": a time of day without its date cannot be read: write seconds, or "
            "2026-11-21T17:00:00.01Z";
-  return shown + ": no number";
+  return shown + ": not a number";
 }
 
 }  // namespace framewatch::drivers

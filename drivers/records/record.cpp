@@ -1,4 +1,4 @@
-#include "drivers/records/plausibility.h"
+#include "drivers/records/record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +19,15 @@ std::string place_in(const Record& record, const std::string& path, std::size_t 
 
 }  // namespace
 
+std::string direction_text(const AxisHeader& header) {
+  if (is_vertical(header)) return *header.elevation_deg > 0 ? "up" : "down";
+  if (is_horizontal(header)) return fmt::format("azimuth {:g} deg", *header.azimuth_deg);
+  if (header.azimuth_deg)
+    return fmt::format("azimuth {:g} deg, {:g} deg above the horizontal", *header.azimuth_deg,
+                       *header.elevation_deg);
+  return "direction unknown";
+}
+
 std::vector<std::string> implausible(
     const Record& record, const std::string& path,
     const std::function<PlausibleRange(const std::string& name)>& range_of,
@@ -38,7 +47,7 @@ std::vector<std::string> implausible(
     if (std::abs(values[worst]) > kMaxValue) {
       problems.push_back(
           {place_in(record, path, worst),
-           fmt::format("{}: {:g} is no acceleration", record.names[c], values[worst])});
+           fmt::format("{}: {:g} is not an acceleration", record.names[c], values[worst])});
       continue;
     }
     std::string doubt =

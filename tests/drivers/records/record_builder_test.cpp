@@ -1,4 +1,4 @@
-#include "drivers/records/record_merge.h"
+#include "drivers/records/record_builder.h"
 
 #include <cmath>
 #include <utility>
@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace framewatch::drivers {
-namespace record_merge_test {
+namespace record_builder_test {
 
 /// Values 0, 1, 2, ... in one column of `name`.
 Record ramp(const std::string& name, double begin_s, double step_s, std::size_t rows) {
@@ -55,12 +55,12 @@ TEST(RecordMerge, RefusesWhatDoesNotBelongTogether) {
   EXPECT_EQ(problem({a, ramp("b", 2, 0.01, 100)}).substr(0, 29), "b: the clocks do not overlap:");
   EXPECT_EQ(problem({a, ramp("b", 0, 0.02, 50)}).substr(0, 15), "b: rates differ");
   EXPECT_EQ(problem({a, ramp("b", 0.004, 0.01, 100)}).substr(0, 32),
-            "b: the clocks are not synchronis");
+            "b: the clocks are not synchroniz");
   EXPECT_EQ(problem({ramp("a", 0, 0.01, 1000), ramp("b", 0, 0.010005, 1000)}).substr(0, 32),
-            "b: the clocks are not synchronis");
+            "b: the clocks are not synchroniz");
   EXPECT_EQ(problem({a, a}), "b: channel name a appears twice");
   EXPECT_NE(problem({a, ramp("b", 0.99, 0.01, 100)}).find("fewer than 2"), std::string::npos);
 }
 
-}  // namespace record_merge_test
+}  // namespace record_builder_test
 }  // namespace framewatch::drivers
