@@ -208,7 +208,7 @@ TEST_F(RecordFile, RefusesMalformedColumns) {
   expect_refused("1 2 3\n4 5\n6 7 8\n", 2, "ragged", declared(kG, 1));
   expect_refused("1 2 3\n4 5 6 7\n", 2, "ragged", declared(kG, 1));
   expect_refused("1\n2\nend\n", 3, "\"end\"", declared(kG, 1));
-  expect_refused("1\n2\n*** End\n3\n", 4, "more after", declared(kG, 1));
+  expect_refused("1\n2\n*** End\n3\n", 4, "more rows after", declared(kG, 1));
 }
 
 const char* const kXsensHead =
@@ -242,7 +242,7 @@ TEST_F(RecordFile, RefusesMalformedXsens) {
   const std::string head = kXsensHead;
   expect_refused(head, 0, "at least 2 samples");
   expect_refused(head + "0,1,1,1,1,1\n1,8334,1,1,1\n", 7, "5 fields");
-  expect_refused(head + "0,1,1,1,1,1\n1,8334.5,1,1,1,1\n", 7, "no whole number");
+  expect_refused(head + "0,1,1,1,1,1\n1,8334.5,1,1,1,1\n", 7, "not a whole number");
   expect_refused(head + "0,1,1,1,1,1\n1,4294967296,1,1,1,1\n", 7, "32 bits");
   expect_refused(head + "0,8334,1,1,1,1\n1,1,1,1,1,1\n2,16667,1,1,1,1\n", 7, "must increase");
   expect_refused(head + "0,1,1,1,1,1\n1,8334,1,1,ab,1\n", 7, "Acc_Y");

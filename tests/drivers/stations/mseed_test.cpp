@@ -235,7 +235,7 @@ TEST_F(Miniseed, GzipIsReadAsItIs) {
 
 TEST_F(Miniseed, KinsmenThatAreNotReadAreCalledByTheirName) {
   auto record = read("MS\x03" + std::string(100, '\0'));
-  expect_said(record, "is miniSEED 3, which is not read: write miniSEED 2");
+  expect_said(record, "is miniSEED 3, which is not supported: write miniSEED 2");
   record = read("000001V 010009502.3121992,001" + std::string(300, ' '));
   expect_said(record, "is a full SEED volume");
 }
@@ -258,7 +258,7 @@ TEST(UnreadFormats, AreRefusedWithWhatHelps) {
   const std::string instead = "export it as CSV or MATLAB .mat";
   for (const auto& [name, bytes, word] : std::vector<std::array<std::string, 3>>{
            {"a.mf4", "MDF     4.10    " + std::string(200, '\0'), "ASAM MDF"},
-           {"a.mdf", "UnFinMF 4.10    " + std::string(200, '\0'), "ASAM MDF, not finished"},
+           {"a.mdf", "UnFinMF 4.10    " + std::string(200, '\0'), "ASAM MDF, unfinished"},
            {"a.uff", "    -1\n    58\nAcceleration\n", "a Universal File (UFF, UNV)"},
            {"b.unv", "    -1\r\n    58b     1     2\r\n", "a Universal File (UFF, UNV)"},
            {"a.h5", "\x89HDF\r\n\x1a\n" + std::string(200, '\0'), "HDF5"}}) {
