@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/can/can_field.h"
+#include "drivers/can/can_frame.h"
 #include "drivers/files/file_problems.h"
 #include "drivers/records/record.h"
 

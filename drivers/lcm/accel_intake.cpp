@@ -194,7 +194,7 @@ void AccelIntake::look(std::int64_t arrival_us) {
 void AccelIntake::look_at_table(std::size_t axis, std::int64_t arrival_us,
                                 const AxisBinding::Contradiction* against,
                                 const std::string& stream) {
-  const auto found = contradicted_[axis].look(against != nullptr, arrival_us);
+  const auto found = contradicted_[axis].update(against != nullptr, arrival_us);
   if (!found) return;
   IntakeNotice news;
   news.of_table = true;
@@ -207,7 +207,7 @@ void AccelIntake::look_at_table(std::size_t axis, std::int64_t arrival_us,
 }
 
 void AccelIntake::look_at(const std::string& stream, std::int32_t number, HeardNode& node) {
-  for (const auto& found : node.watch.look(node.counts(), arrival_us_)) {
+  for (const auto& found : node.watch.update(node.counts(), arrival_us_)) {
     if (!found) continue;
     IntakeNotice news;
     news.trouble = found->trouble;

@@ -13,7 +13,7 @@ bool is_rate(std::int64_t count, std::int64_t of) {
 
 }  // namespace
 
-std::array<std::optional<SequenceWatch::News>, kSequenceTroubles> SequenceWatch::look(
+std::array<std::optional<SequenceWatch::News>, kSequenceTroubles> SequenceWatch::update(
     const Counts& now, std::int64_t arrival_us) {
   const Counts newest = seconds_[(at_ + kSpan_s - 1) % kSpan_s];
   const Counts before = std::exchange(seconds_[at_ % kSpan_s], now);
@@ -34,7 +34,7 @@ std::array<std::optional<SequenceWatch::News>, kSequenceTroubles> SequenceWatch:
   };
   std::array<std::optional<News>, kSequenceTroubles> out;
   for (std::size_t t = 0; t < kSequenceTroubles; ++t) {
-    const auto news = troubles_[t].look(judged[t].bad, arrival_us);
+    const auto news = troubles_[t].update(judged[t].bad, arrival_us);
     if (news)
       out[t] = News{static_cast<SequenceTrouble>(t), *news == Trouble::News::over, judged[t].count,
                     judged[t].of};

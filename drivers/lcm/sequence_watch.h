@@ -16,7 +16,7 @@ class Trouble {
   enum class News { begins, over };
 
   /// bad: it was seen now. now_us: a clock that may be set back.
-  std::optional<News> look(bool bad, std::int64_t now_us) {
+  std::optional<News> update(bool bad, std::int64_t now_us) {
     bad_us_ = bad ? now_us : std::min(bad_us_, now_us);
     // Clocks of foreign logs may be any number: a difference that fits no int64 is calm.
     const std::uint64_t calm_us =
@@ -70,8 +70,8 @@ class SequenceWatch {
   };
 
   /// To be called once a second; arrival_us: by the receiver's clock. News by trouble.
-  std::array<std::optional<News>, kSequenceTroubles> look(const Counts& now,
-                                                          std::int64_t arrival_us);
+  std::array<std::optional<News>, kSequenceTroubles> update(const Counts& now,
+                                                            std::int64_t arrival_us);
 
   template <typename Archive>
   void archive(Archive& a) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "drivers/can/can_map.h"
-#include "drivers/can/can_notice.h"
+#include "drivers/can/can_status.h"
 
 namespace framewatch::daemon {
 

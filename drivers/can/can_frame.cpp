@@ -1,4 +1,4 @@
-#include "drivers/can/can_field.h"
+#include "drivers/can/can_frame.h"
 
 #include <algorithm>
 #include <bit>
@@ -14,7 +14,7 @@ double integer_value(const CanField& field, std::uint64_t raw) {
   return static_cast<double>(static_cast<std::int64_t>(raw << unused) >> unused);
 }
 
-/// Nearest whole number that the field can hold, as its bit pattern.
+/// Returns the bit pattern of the nearest whole number that the field can hold.
 std::uint64_t clamped(const CanField& field, double value) {
   if (!(value == value)) value = 0;
   const double span = std::ldexp(1.0, field.bits);

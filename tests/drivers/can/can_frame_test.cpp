@@ -1,4 +1,4 @@
-#include "drivers/can/can_field.h"
+#include "drivers/can/can_frame.h"
 
 #include <array>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace framewatch::drivers {
-namespace can_field_test {
+namespace can_frame_test {
 
 using Data = std::array<std::uint8_t, 64>;
 
@@ -92,5 +92,5 @@ TEST(CanField, ClampsWhatDoesNotFit) {
   EXPECT_EQ(raw_integer(field, data), -1234);
 }
 
-}  // namespace can_field_test
+}  // namespace can_frame_test
 }  // namespace framewatch::drivers

@@ -1,15 +1,14 @@
-#include "drivers/can/candump_line.h"
+#include "drivers/can/can_log.h"
 
 #include <fstream>
 
 #include <gtest/gtest.h>
 
-#include "drivers/can/can_log.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary.h"
 
 namespace framewatch::drivers {
-namespace candump_line_test {
+namespace can_log_test {
 
 CanFrame good(const std::string& line) {
   CanFrame frame;
@@ -104,5 +103,5 @@ TEST(CanLog, TellsWhichLinesAreNone) {
   EXPECT_TRUE(problems[1].where.ends_with("a.log:3"));
 }
 
-}  // namespace candump_line_test
+}  // namespace can_log_test
 }  // namespace framewatch::drivers
