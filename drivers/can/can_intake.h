@@ -14,7 +14,6 @@
 #include "drivers/can/stream_timer.h"
 #include "drivers/can/sync_matcher.h"
 #include "drivers/lcm/sequence_counter.h"
-#include "drivers/lcm/sequence_watch.h"
 #include "estimator/motion/sample.h"
 
 namespace framewatch::drivers {

@@ -198,7 +198,7 @@ constexpr double kSameRateRatio = 1e-3;
 std::string note_of(const StationXmlChannel& channel, double unit_mps2, double rate_hz,
                     const std::string& path) {
   const AxisHeader& header = channel.header;
-  std::string out = fmt::format("{}: {}{}{}, {:.6g} m/s2 a count ({}, line {})", channel.name,
+  std::string out = fmt::format("{}: {}{}{}, {:.6g} m/s2 per count ({}, line {})", channel.name,
                                 direction_text(header), header.place.empty() ? "" : ", ",
                                 header.place, unit_mps2, path, channel.line);
   if (channel.rate_hz && std::abs(*channel.rate_hz / rate_hz - 1) > kSameRateRatio)

@@ -9,9 +9,8 @@
 #include <fmt/core.h>
 
 #include "drivers/files/number_text.h"
-#include "drivers/lcm/log_events.h"
+#include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
-#include "drivers/lcm/message_types.h"
 
 namespace framewatch::daemon {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "daemon/config/config.h"
 #include "daemon/monitor/events/raised_events.h"
-#include "drivers/lcm/intake_notice.h"
+#include "drivers/lcm/accel_intake.h"
 
 namespace framewatch::daemon {
 

@@ -114,7 +114,7 @@ TEST_F(AccelLog, RefusesForeignAndDamagedLogs) {
   foreign[whole.find("ACCEL") + 5] ^= 1;
   test::write_file(path_, foreign);
   EXPECT_FALSE(read_accel_log(path_, "ACCEL", problems_));
-  EXPECT_EQ(problems_.at(0).message, "ACCEL: the message is no accel_t");
+  EXPECT_EQ(problems_.at(0).message, "ACCEL: the message is not an accel_t");
 }
 
 }  // namespace accel_log_test

@@ -1,4 +1,4 @@
-#include "drivers/lcm/accel_messages.h"
+#include "drivers/lcm/accel_codec.h"
 
 #include <chrono>
 #include <cmath>

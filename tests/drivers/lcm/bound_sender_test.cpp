@@ -1,4 +1,4 @@
-#include "drivers/lcm/bound_sender.h"
+#include "drivers/lcm/accel_intake.h"
 
 #include <gtest/gtest.h>
 

@@ -286,7 +286,8 @@ TEST(LcmLogReader, RefusesEveryEventThatIsReachedOver) {
   const std::string log = reaching_to_the_end(64 * 100);
   const Reading reading = read_bytes(log);
   EXPECT_EQ(reading.other, 1);  // the one that reaches over the others
-  EXPECT_EQ(reading.damage.front().reason, "event's lengths reach over the start of the next one");
+  EXPECT_EQ(reading.damage.front().reason,
+            "the event's lengths reach beyond the start of the next one");
 }
 
 TEST(LcmLogReader, ReadsForeignLogsToTheLastByte) {

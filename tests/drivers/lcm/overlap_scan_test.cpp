@@ -1,4 +1,4 @@
-#include "drivers/lcm/overlap_scan.h"
+#include "drivers/lcm/log_scan.h"
 
 #include <cstddef>
 #include <random>

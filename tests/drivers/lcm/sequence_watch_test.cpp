@@ -1,4 +1,4 @@
-#include "drivers/lcm/sequence_watch.h"
+#include "drivers/lcm/sequence_counter.h"
 
 #include <vector>
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/lcm/accel_codec.h"
 #include "drivers/lcm/accel_intake.h"
-#include "drivers/lcm/accel_messages.h"
 
 namespace framewatch::drivers {
 namespace two_senders_test {

@@ -91,7 +91,8 @@ TEST_F(StationXml, SaysWhatACountIsAndWhereAChannelSits) {
       if (note.find(words) != std::string::npos) return true;
     return false;
   };
-  EXPECT_TRUE(said("XX.TEST.01.HN1: azimuth 20 deg, 7th floor & E side, 2.34375e-06 m/s2 a count"));
+  EXPECT_TRUE(
+      said("XX.TEST.01.HN1: azimuth 20 deg, 7th floor & E side, 2.34375e-06 m/s2 per count"));
   EXPECT_TRUE(said("not used: the response's stages, elevation, depth"));
 }
 

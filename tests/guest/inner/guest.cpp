@@ -14,7 +14,7 @@
 #include "daemon/tools/simulation/scenario.h"
 #include "daemon/tools/simulation/simulation.h"
 #include "drivers/can/can_encoder.h"
-#include "drivers/lcm/accel_messages.h"
+#include "drivers/lcm/accel_codec.h"
 
 namespace framewatch::test {
 

@@ -1,10 +1,14 @@
+#include "drivers/lcm/lcm_log.h"
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "drivers/files/packed_file.h"
-#include "drivers/lcm/lcm_log.h"
 
 namespace framewatch::drivers {
 namespace {
@@ -18,6 +22,26 @@ Magic magic_of(InputFile& file) {
   Magic magic{};
   if (file.read(magic.data(), magic.size(), 0) != std::ssize(magic)) return {};
   return magic;
+}
+
+constexpr std::size_t kBufferBytes = 1 << 18;
+
+template <typename Integer>
+std::uint8_t* put_big_endian(std::uint8_t* out, Integer value) {
+  for (int shift = 8 * static_cast<int>(sizeof value) - 8; shift >= 0; shift -= 8)
+    *out++ = static_cast<std::uint8_t>(value >> shift);
+  return out;
+}
+
+std::array<std::uint8_t, kHeaderBytes> header_of(std::int64_t number, std::int64_t timestamp_us,
+                                                 std::size_t channel_bytes, std::size_t size) {
+  std::array<std::uint8_t, kHeaderBytes> header{};
+  std::uint8_t* out = put_big_endian(header.data(), std::uint32_t{0xEDA1DA01});
+  out = put_big_endian(out, number);
+  out = put_big_endian(out, timestamp_us);
+  out = put_big_endian(out, static_cast<std::int32_t>(channel_bytes));
+  put_big_endian(out, static_cast<std::int32_t>(size));
+  return header;
 }
 
 }  // namespace
@@ -41,7 +65,7 @@ bool LcmLogReader::open(const std::string& path) {
   return opened && unpack();
 }
 
-/// Goes on with the log inside when the file is a zstd one.
+/// Unpacks a zstd file and continues with the log in it.
 bool LcmLogReader::unpack() {
   if (magic_of(file_) != kZstdMagic) return true;
   UnpackedFile unpacked = unpack_zstd(file_.descriptor());
@@ -55,7 +79,7 @@ std::int64_t LcmLogReader::examined_bytes() const {
   return here_.examined_bytes() + certain_scan_.examined_bytes() + overlap_scan_.examined_bytes();
 }
 
-/// First well-followed event that starts in [from, limit), or limit.
+/// Returns the start of the first well-followed event in [from, limit), or limit.
 std::int64_t LcmLogReader::first_certain_event(std::int64_t from, std::int64_t limit) {
   if (from < clear_from_ || from > clear_to_) clear_from_ = clear_to_ = from;
   while (clear_to_ < limit && clear_to_ != certain_) {
@@ -71,8 +95,8 @@ std::int64_t LcmLogReader::first_certain_event(std::int64_t from, std::int64_t l
   return std::min(clear_to_, limit);
 }
 
-/// Whether something like an event begins inside the event at position_ and reaches past its end.
-/// Precondition: that one ends within the file.
+/// Returns true if something like an event begins inside the event at position_ and reaches past
+/// its end. Precondition: that event ends within the file.
 bool LcmLogReader::reached_over(const LogEventHeader& event) {
   if (overlap_to_ <= position_) {
     overlaps_.clear();
@@ -90,8 +114,9 @@ bool LcmLogReader::reached_over(const LogEventHeader& event) {
   return overlaps_.reached_over_at() < event.end;
 }
 
-/// Where the next event to be given starts at or after `from`; size() when there is none.
-std::int64_t LcmLogReader::resynchronise(std::int64_t from) {
+/// Returns the start of the next event to return at or after `from`; size() when there is no
+/// further event.
+std::int64_t LcmLogReader::find_next_event(std::int64_t from) {
   const std::int64_t certain = first_certain_event(from, size());
   for (std::int64_t start = here_.find_sync(from, certain); start < certain;
        start = here_.find_sync(start + 1, certain)) {
@@ -115,7 +140,7 @@ bool LcmLogReader::zeros_to_end(std::int64_t from) {
 LogRead LcmLogReader::skip_damage(const LogEventHeader& header, bool plausible, const char* why) {
   const std::int64_t start = position_;
   const bool at_sync = here_.sync_at(start);
-  const std::int64_t resume = resynchronise(start + 1);
+  const std::int64_t resume = find_next_event(start + 1);
   LogRead result = LogRead::damage;
   if (resume == size() && at_sync && start + kHeaderBytes > size()) {
     result = LogRead::truncated;
@@ -126,7 +151,7 @@ LogRead LcmLogReader::skip_damage(const LogEventHeader& header, bool plausible, 
     result = LogRead::truncated;
     why = "zeros up to the end of the file";
   } else if (plausible) {
-    why = "event's lengths reach over the start of the next one";
+    why = "the event's lengths reach beyond the start of the next one";
   }
   if (!error_.empty()) return LogRead::error;
   damage_ = {start, resume - start, why};
@@ -162,6 +187,106 @@ LogRead LcmLogReader::next(LogEvent& event) {
   event.data.assign(payload, payload + header.payload_length);
   position_ = header.end;
   return LogRead::event;
+}
+
+bool for_each_event(const std::string& path, const std::function<bool(const LogEvent&)>& take,
+                    std::vector<Problem>& problems) {
+  LcmLogReader log;
+  if (!log.open(path)) {
+    problems.push_back({path, log.error()});
+    return false;
+  }
+  for (LogEvent event;;) {
+    switch (log.next(event)) {
+      case LogRead::event:
+        if (!take(event)) return true;
+        break;
+      case LogRead::end:
+        return true;
+      case LogRead::error:
+        problems.push_back({path, log.error()});
+        return false;
+      case LogRead::damage:
+      case LogRead::truncated:
+        problems.push_back({fmt::format("{}: byte {}", path, log.damage().offset),
+                            fmt::format("{} bytes are not an LCM event: {}", log.damage().bytes,
+                                        log.damage().reason)});
+        return false;
+    }
+  }
+}
+
+std::string place_of(const std::string& path, const LogEvent& event) {
+  return fmt::format("{}: event {} (byte {})", path, event.number, event.offset);
+}
+
+void append_log_event(std::string& out, std::int64_t number, std::int64_t timestamp_us,
+                      std::string_view channel, const void* data, std::size_t size) {
+  const auto header = header_of(number, timestamp_us, channel.size(), size);
+  out.append(header.begin(), header.end());
+  out += channel;
+  out.append(static_cast<const char*>(data), size);
+}
+
+LcmLogWriter::~LcmLogWriter() {
+  discard();
+}
+
+bool LcmLogWriter::open(const std::string& path) {
+  discard();
+  number_ = 0;
+  error_.clear();
+  if (partial_.open(path)) file_ = partial_.stream();
+  if (file_ == nullptr) {
+    error_ = partial_.error();
+    partial_.discard();
+    return false;
+  }
+  // glibc ignores the size when it allocates the buffer itself.
+  buffer_.resize(kBufferBytes);
+  std::setvbuf(file_, buffer_.data(), _IOFBF, buffer_.size());
+  return true;
+}
+
+bool LcmLogWriter::copy(const LogEvent& event) {
+  number_ = event.number;
+  return write(event.timestamp_us, event.channel, event.data.data(), event.data.size());
+}
+
+bool LcmLogWriter::write(std::int64_t timestamp_us, const std::string& channel, const void* data,
+                         std::size_t size) {
+  if (file_ == nullptr || !error_.empty()) return false;
+  if (channel.empty() || channel.size() > LcmLogReader::kMaxChannel) {
+    error_ = "channel name must have 1 to 63 bytes";
+    return false;
+  }
+  if (size > LcmLogReader::kMaxPayload) {
+    error_ = "payload is larger than 16 MiB";
+    return false;
+  }
+  const auto header = header_of(number_, timestamp_us, channel.size(), size);
+  if (std::fwrite(header.data(), 1, header.size(), file_) != header.size() ||
+      std::fwrite(channel.data(), 1, channel.size(), file_) != channel.size() ||
+      (size > 0 && std::fwrite(data, 1, size, file_) != size)) {
+    error_ = std::strerror(errno);
+    return false;
+  }
+  ++number_;
+  return true;
+}
+
+bool LcmLogWriter::close() {
+  if (file_ == nullptr) return false;
+  const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (error_.empty() && !closed) error_ = std::strerror(errno);
+  if (error_.empty() && !partial_.commit()) error_ = partial_.error();
+  discard();
+  return error_.empty();
+}
+
+void LcmLogWriter::discard() {
+  if (file_ != nullptr) std::fclose(std::exchange(file_, nullptr));
+  partial_.discard();
 }
 
 }  // namespace framewatch::drivers

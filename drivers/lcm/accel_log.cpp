@@ -1,3 +1,5 @@
+#include "drivers/lcm/accel_log.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,9 +12,7 @@
 
 #include <fmt/core.h>
 
-#include "drivers/lcm/accel_log.h"
-#include "drivers/lcm/channel_table.h"
-#include "drivers/lcm/log_events.h"
+#include "drivers/lcm/lcm_log.h"
 #include "drivers/lcm/message_check.h"
 #include "drivers/records/record_builder.h"
 
@@ -25,7 +25,7 @@ std::string default_name(std::int32_t node, std::int32_t axis) {
   return fmt::format("node{}.{}", node, kAxes[static_cast<std::size_t>(axis)]);
 }
 
-/// 1 / the median step of sorted samples; 0 when they have none.
+/// Returns 1 / the median step of sorted samples; 0 when no step is positive.
 double usual_rate(const std::vector<SensorNodeSample>& samples) {
   std::vector<std::int64_t> steps_us;
   for (std::size_t i = 1; i < samples.size(); ++i)
@@ -37,7 +37,7 @@ double usual_rate(const std::vector<SensorNodeSample>& samples) {
   return 1e6 / static_cast<double>(*middle);
 }
 
-/// Everything on one channel and its table.
+/// Collects the samples of one channel and its table.
 class AccelLog {
  public:
   AccelLog(std::string path, std::string channel, std::vector<Problem>& problems)
@@ -62,8 +62,8 @@ class AccelLog {
     }
     if (samples_.size() * most > RecordBuilder::kMaxValues / 4)
       problems_.push_back(
-          {path_, fmt::format("{} nodes with up to {} samples are more than {}", samples_.size(),
-                              most, RecordBuilder::kMaxValues / 4)});
+          {path_, fmt::format("{} nodes with up to {} samples exceed the limit of {} samples",
+                              samples_.size(), most, RecordBuilder::kMaxValues / 4)});
     if (!problems_.empty()) return std::nullopt;
     std::vector<Record> nodes;
     std::vector<std::string> where;
@@ -86,7 +86,7 @@ class AccelLog {
 
   bool take_sample(const LogEvent& event) {
     const auto sample = decode_accel(event.data.data(), event.data.size());
-    if (!sample) return refuse(event, fmt::format("{}: the message is no accel_t", channel_));
+    if (!sample) return refuse(event, fmt::format("{}: the message is not an accel_t", channel_));
     if (++count_ > RecordBuilder::kMaxValues / 4)
       return refuse(event, fmt::format("more than {} samples", RecordBuilder::kMaxValues / 4));
     samples_[sample->node].push_back(*sample);
@@ -95,7 +95,7 @@ class AccelLog {
 
   bool take_table(const LogEvent& event) {
     auto table = decode_channel_table(event.data.data(), event.data.size());
-    if (!table) return refuse(event, fmt::format("{}: no channel_table_t", event.channel));
+    if (!table) return refuse(event, fmt::format("{}: not a channel_table_t", event.channel));
     std::vector<std::string> names;
     for (const ChannelTable::Entry& entry : table->entries) names.push_back(entry.name);
     FileProblems problems(place_of(path_, event), problems_);
@@ -103,9 +103,10 @@ class AccelLog {
     if (problems.any()) return false;
     for (const ChannelTable::Entry& entry : table->entries)
       if (entry.axis < 0 || entry.axis > 2)
-        return refuse(event, fmt::format("axis {} is not 0, 1, 2", entry.axis));
+        return refuse(event, fmt::format("axis {} must be 0, 1 or 2", entry.axis));
     if (table_ && *table_ != *table)
-      return refuse(event, "the channel table changes: convert its parts one by one");
+      return refuse(event,
+                    "the channel table changes within the log: convert the parts separately");
     table_ = std::move(table);
     return true;
   }
@@ -135,7 +136,7 @@ class AccelLog {
     }
     auto record = builder.finish();
     if (!record) return std::nullopt;
-    // An axis a node does not have is no news.
+    // A node need not have all three axes.
     std::erase_if(record->notes, [&](const std::string& note) {
       return note.find("have no value") != std::string::npos;
     });
@@ -180,7 +181,37 @@ class AccelLog {
   std::optional<ChannelTable> table_;
 };
 
+constexpr std::int64_t kTablePeriodUs = 1'000'000;
+
+bool write_messages(LcmLogWriter& log, std::int64_t time_us, const std::vector<Message>& messages) {
+  for (const Message& message : messages)
+    if (!log.write(time_us, message.channel, message.bytes.data(), message.bytes.size()))
+      return false;
+  return true;
+}
+
 }  // namespace
+
+std::string write_accel_log(const std::string& path, const Record& record,
+                            const std::vector<AxisAddress>& addresses, std::int64_t start_us,
+                            const std::function<void(double)>& progress) {
+  AccelMessages messages(record.names, addresses, record.rate_hz);
+  LcmLogWriter log;
+  if (!log.open(path)) return log.error();
+  std::vector<double> values(record.names.size());
+  std::int64_t next_table_us = INT64_MIN;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const std::int64_t time_us = start_us + std::llround(record.time_s[i] * 1e6);
+    if (time_us >= next_table_us) {
+      if (!write_messages(log, time_us, messages.tables(time_us))) return log.error();
+      next_table_us = time_us + kTablePeriodUs;
+      if (progress) progress(static_cast<double>(i) / static_cast<double>(record.time_s.size()));
+    }
+    for (std::size_t c = 0; c < values.size(); ++c) values[c] = record.accel_mps2[c][i];
+    if (!write_messages(log, time_us, messages.samples(time_us, values))) return log.error();
+  }
+  return log.close() ? "" : log.error();
+}
 
 std::optional<LogContents> log_contents(const std::string& path, std::vector<Problem>& problems) {
   LogContents contents;
