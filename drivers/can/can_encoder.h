@@ -28,7 +28,7 @@ class CanEncoder {
   std::vector<BusFrame> instant(const std::vector<double>& values);
 
   /// Returns a value as CanIntake decodes it after encoding.
-  double quantised(int axis, double value) const;
+  double quantized(int axis, double value) const;
 
  private:
   void add_node(std::size_t index, const std::vector<double>& values, std::vector<BusFrame>& out);

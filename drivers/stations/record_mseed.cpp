@@ -43,9 +43,9 @@ struct SeedTrace {
 /// Times without blockette 1001 are rounded to this.
 constexpr double kTimeResolution_us = 100;
 constexpr double kMaxSlackSteps = 0.4;
-/// Relative error allowed for the clock over a gap.
-constexpr double kDriftOverGap = 1e-4;
-constexpr std::size_t kMaxGapsNoted = 10;
+/// Relative error allowed for the clock over an interruption.
+constexpr double kDriftOverInterruption = 1e-4;
+constexpr std::size_t kMaxNoted = 10;
 
 std::string time_text_of(double time_us) {
   std::array<char, 64> text{};
@@ -53,7 +53,7 @@ std::string time_text_of(double time_us) {
   return std::string(text.data()) + "Z";
 }
 
-/// Samples without a gap. The start times of the first and the last piece give the step.
+/// Samples without an interruption. The start times of the first and the last piece give the step.
 struct SeedRun {
   double start_us = 0, last_us = 0;  ///< start times of the first and the last piece
   std::size_t last = 0;              ///< index of the first sample of the last piece
@@ -77,14 +77,14 @@ class TraceJoiner {
     const double due_us =
         run.last_us + static_cast<double>(run.values.size() - run.last) * step_us_;
     const double off_steps = (start_us - due_us) / step_us_, whole = std::round(off_steps);
-    if (std::abs(off_steps - whole) > slack_steps_ + kDriftOverGap * std::abs(whole))
+    if (std::abs(off_steps - whole) > slack_steps_ + kDriftOverInterruption * std::abs(whole))
       problems_.add(
           0, fmt::format("{}: the samples from {} on are {:.2f} of a step off those before", name_,
                          time_text_of(start_us), std::abs(off_steps - whole)));
     else if (whole < 0)
       add_overlapping(start_us, static_cast<std::size_t>(-whole), piece);
     else if (whole > 0)
-      begin_run_after_gap(due_us, start_us, std::move(piece));
+      begin_run_after_interruption(due_us, start_us, std::move(piece));
     else
       append(run, start_us, piece, 0);
   }
@@ -93,9 +93,10 @@ class TraceJoiner {
   double step_us() const { return step_us_; }
 
   std::vector<std::string> notes() const {
-    std::vector<std::string> out = gaps_;
-    if (gap_count_ > gaps_.size())
-      out.push_back(fmt::format("{} more gaps", gap_count_ - gaps_.size()));
+    std::vector<std::string> out = interruptions_;
+    if (interruption_count_ > interruptions_.size())
+      out.push_back(
+          fmt::format("{} more interruptions", interruption_count_ - interruptions_.size()));
     if (twice_ > 0)
       out.push_back(fmt::format("{} samples appear twice with equal values: used once", twice_));
     return out;
@@ -106,10 +107,10 @@ class TraceJoiner {
     runs_.push_back({start_us, start_us, 0, std::move(piece.values)});
   }
 
-  void begin_run_after_gap(double due_us, double start_us, SeedPiece piece) {
-    if (gap_count_++ < kMaxGapsNoted)
-      gaps_.push_back(fmt::format("a gap of {:.6g} s from {} on", 1e-6 * (start_us - due_us),
-                                  time_text_of(due_us)));
+  void begin_run_after_interruption(double due_us, double start_us, SeedPiece piece) {
+    if (interruption_count_++ < kMaxNoted)
+      interruptions_.push_back(fmt::format("an interruption of {:.6g} s from {} on",
+                                           1e-6 * (start_us - due_us), time_text_of(due_us)));
     begin_run(start_us, std::move(piece));
   }
 
@@ -144,13 +145,13 @@ class TraceJoiner {
   double step_us_, slack_steps_;
   FileProblems& problems_;
   std::vector<SeedRun> runs_;
-  std::vector<std::string> gaps_;
-  std::size_t gap_count_ = 0, twice_ = 0;
+  std::vector<std::string> interruptions_;
+  std::size_t interruption_count_ = 0, twice_ = 0;
 };
 
-/// Makes a record of a trace: sorts its pieces by time and joins them. Fills gaps with NaN and
-/// takes samples that appear twice with equal values once; notes both. `unit_mps2` is the m/s^2 of
-/// one count. Returns nullopt with a problem in two cases. Samples appear twice with different
+/// Makes a record of a trace: sorts its pieces by time and joins them. Fills interruptions with NaN
+/// and takes samples that appear twice with equal values once; notes both. `unit_mps2` is the m/s^2
+/// of one count. Returns nullopt with a problem in two cases. Samples appear twice with different
 /// values. A piece is off the steps of the others by more than a tenth of a step and by more than
 /// 100 us, to which SEED may round times.
 std::optional<Record> record_of_trace(SeedTrace trace, double unit_mps2, FileProblems& problems) {

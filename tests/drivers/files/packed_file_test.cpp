@@ -25,7 +25,7 @@ constexpr std::int64_t kMiB = std::int64_t{1} << 20;
 constexpr std::int64_t kBombBytes = 100 * kMiB;
 constexpr const char* kRefusal = "unpacks to more than 64 MiB, from ";
 
-/// --max-size of one test.
+/// Sets --max-size for one test.
 struct MaxSize {
   explicit MaxSize(std::int64_t bytes) { set_unpack_limit(bytes); }
   ~MaxSize() { set_unpack_limit(0); }
@@ -39,7 +39,7 @@ void gzip_lines(const std::string& path, std::int64_t bytes) {
   ASSERT_EQ(gzclose(file), Z_OK);
 }
 
-/// Reads every line; what went wrong.
+/// Reads every line and returns the problem.
 std::string read_lines(const std::string& path, std::int64_t& lines) {
   std::vector<Problem> found;
   FileProblems problems(path, found);

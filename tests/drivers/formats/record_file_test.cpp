@@ -16,7 +16,7 @@ namespace record_file_test {
 constexpr double kG = 9.80665;
 constexpr double kGal = 0.01;
 
-/// Reads `text` as a file of the given name; ends with what was found.
+/// Reads texts as record files and checks the record or the problems.
 class RecordFile : public testing::Test {
  protected:
   std::optional<Record> read(const std::string& text, const RecordOptions& options = {}) {
@@ -27,7 +27,7 @@ class RecordFile : public testing::Test {
     return record;
   }
 
-  /// The text must be refused, at this place (line 0: the file), for a reason that says `rule`.
+  /// Expects a problem at this line (0: the file) that contains `rule`.
   void expect_refused(const std::string& text, int line, const std::string& rule,
                       const RecordOptions& options = {}) {
     SCOPED_TRACE(text.substr(0, 200));

@@ -16,7 +16,7 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 class AccelLog : public testing::Test {
  protected:
-  /// A log of single samples: {time_us, node, x}.
+  /// Writes a log of single samples {time_us, node, x}.
   void write_samples(const std::vector<std::tuple<std::int64_t, std::int32_t, double>>& samples) {
     LcmLogWriter log;
     ASSERT_TRUE(log.open(path_));

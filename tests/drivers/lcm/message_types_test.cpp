@@ -16,7 +16,7 @@
 namespace framewatch::drivers {
 namespace message_types_test {
 
-// A log of the first release decodes for ever: a message with new fields is a new type, and this
+// Logs of the first release must stay readable: a message with new fields is a new type, and this
 // number never changes.
 constexpr std::uint64_t kAccelFingerprint = 0xecb49719e8cabe05;
 

@@ -1,4 +1,4 @@
-// miniSEED of framewatch and of other people's recorders.
+// miniSEED files of framewatch and of recorders.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,7 +34,7 @@ class Miniseed : public testing::Test {
     return record;
   }
 
-  /// Samples `from` on, of the channel's one clock.
+  /// Returns the samples from index `from` on, on the clock of the channel.
   static test::SeedSpan span(int from, int count) {
     test::SeedSpan out;
     out.start_us = kStart_us + from * std::int64_t{10'000};
@@ -144,7 +144,7 @@ TEST_F(Miniseed, AGapIsFilledAndSaid) {
   expect_counts(*record, 0, 0, 0, 600);
   expect_counts(*record, 0, 750, 750, 600);
   for (std::size_t i = 600; i < 750; ++i) ASSERT_TRUE(std::isnan(record->accel_mps2[0][i]));
-  expect_said(record, "a gap of 1.5 s from 2026-11-24T00:00:06.250000Z on");
+  expect_said(record, "an interruption of 1.5 s from 2026-11-24T00:00:06.250000Z on");
 }
 
 TEST_F(Miniseed, WhatIsThereTwiceIsTakenOnceWhereItIsAlikeAndRefusedWhereNot) {

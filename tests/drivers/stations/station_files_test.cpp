@@ -1,4 +1,4 @@
-// Records as networks of strong-motion stations publish them.
+// Records in the formats of strong-motion networks.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -39,7 +39,7 @@ class StationFile : public testing::Test {
     SCOPED_TRACE(rule);
     EXPECT_FALSE(read(text, options));
     ASSERT_FALSE(problems_.empty());
-    if (line >= 0) {  // -1: wherever that is
+    if (line >= 0) {  // -1: at any line
       EXPECT_EQ(problems_[0].where, line > 0 ? fmt::format("{}:{}", path_, line) : path_);
     }
     EXPECT_NE(problems_[0].message.find(rule), std::string::npos) << problems_[0].message;
@@ -233,7 +233,7 @@ TEST_F(StationFile, OfSacThatIsDamagedOrNoAccelerationIsRefused) {
   refused(sac(false, {{79, 1 << 30}}), "at most");
 }
 
-/// Every file in `folder` that has this ending.
+/// Returns every file in `folder` with this ending.
 std::vector<std::string> files_of(const std::string& folder, const std::string& ending) {
   std::vector<std::string> out;
   std::error_code error;
@@ -260,7 +260,7 @@ TEST_F(StationFile, OfARealBuildingIsReadAsAWholeStation) {
   EXPECT_EQ(all->time_s.size(), 42000u);
   EXPECT_NEAR(all->time_s[0], 1543598946.332, 1e-3);
   EXPECT_DOUBLE_EQ(all->rate_hz, 200);
-  EXPECT_EQ(all->notes.size(), 53u);  // where each sensor is, and what holds for all
+  EXPECT_EQ(all->notes.size(), 53u);  // the place of each sensor, and notes on all
 }
 
 TEST_F(StationFile, RawCountsOfARealSensorAreWhatItsNetworkMadeOfThem) {

@@ -1,4 +1,4 @@
-// What StationXML says of the numbers in a miniSEED or SAC file.
+// StationXML and what it says about the numbers in a miniSEED or SAC file.
 #include <cmath>
 #include <optional>
 #include <string>
@@ -182,7 +182,7 @@ TEST_F(StationXml, ThatIsDamagedIsRefused) {
   expect_refused(deep, 1, "nested more than 32 deep");
 }
 
-/// Neither files nor entities of its own: no document type at all.
+/// A document type is refused, so no files are read and no entities are expanded.
 TEST_F(StationXml, WithADocumentTypeIsRefused) {
   const std::string good = station_xml({{}});
   const std::size_t root = good.find("<FDSN");
