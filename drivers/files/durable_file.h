@@ -72,7 +72,7 @@ class DurableFile {
   std::string writing_;  ///< bytes that the thread is writing
   std::size_t written_ = 0;
 
-  mutable std::mutex mutex_;  ///< guards what is below
+  mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable wake_;
   std::string filling_;
   std::size_t waiting_ = 0;  ///< bytes of writing_ that are not yet written

@@ -21,7 +21,7 @@ namespace framewatch::drivers {
 namespace {
 
 constexpr int kTries = 3;
-constexpr mode_t kMode = 0666;  // less what umask takes
+constexpr mode_t kMode = 0666;  // minus the bits of umask
 
 /// The names of the files that are open, where a signal handler can read them.
 struct Mark {
